@@ -1,0 +1,30 @@
+# Two commands do the job on a machine with Python and make: `make demo` and `make test`.
+# PYTHON chooses the interpreter, at least 3.11.
+
+PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+VENV := .venv
+BIN := $(VENV)/bin
+
+.PHONY: demo test lint wheel-test clean
+.DEFAULT_GOAL := demo
+
+# Installed anew when the requirements change; edited code needs no reinstallation.
+$(VENV)/ready: pyproject.toml
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer is needed; none was found. Try: make PYTHON=/path/to/python"; exit 2; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	touch $(VENV)/ready
+
+demo: $(VENV)/ready  ## The whole job on a class of twelve
+	$(BIN)/coursework demo --out demo
+
+test: $(VENV)/ready lint  ## Every test, also against the wheel with the source out of reach
+	$(BIN)/python -m pytest -n auto -q
+
+lint: $(VENV)/ready
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+clean:
+	rm -rf $(VENV) demo build dist .pytest_cache .ruff_cache .hypothesis

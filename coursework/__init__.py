@@ -1,0 +1,36 @@
+"""Parameterised exercises in plane-mechanism kinematics: drawn, solved, printed and marked.
+
+>>> import coursework
+>>> course = coursework.open_course()
+>>> variant = course["slotted_mechanism"].variant(seed=42)
+>>> marking = variant.grade({"rA": "319,8 mm"})
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from coursework.course import Course, Variant, open_course
+    from coursework.errors import CannotAssemble, CourseworkError, NoSolution, Undefined, UnknownName
+
+__version__ = "0.1.0"
+__all__ = [
+    "CannotAssemble",
+    "Course",
+    "CourseworkError",
+    "NoSolution",
+    "Undefined",
+    "UnknownName",
+    "Variant",
+    "open_course",
+]
+
+
+def __getattr__(name: str) -> object:
+    # Loaded on first use, so that the command line answers at once.
+    if name not in __all__:
+        raise AttributeError(f"module 'coursework' has no attribute {name!r}")
+    home = "course" if name in ("Course", "Variant", "open_course") else "errors"
+    return getattr(import_module(f"coursework.{home}"), name)

@@ -1,0 +1,118 @@
+"""The main job: issued variants become sheets, notebooks and pages, with the staff's half beside them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+from coursework.course import Course
+from coursework.issuing import (
+    Issue,
+    csv_text,
+    form_rows,
+    issued_content,
+    json_text,
+    key_content,
+    key_rows,
+)
+from coursework.submissions import COLUMNS
+
+FORMATS = ("pdf", "ipynb", "html")
+KEY_COLUMNS = ("student", "exercise", "seed", "part", "value", "unit", "tolerance")
+
+
+@dataclass(frozen=True)
+class File:
+    """One file of the result: its path below the output folder, and how to make its bytes."""
+
+    path: Path
+    make: Callable[[], bytes]
+
+
+def _text(make: Callable[[], str]) -> Callable[[], bytes]:
+    return lambda: make().encode("utf-8")
+
+
+def files(
+    course: Course, issues: Sequence[Issue], formats: Sequence[str], *, practice: bool = False
+) -> Iterator[File]:
+    """Every file of a build, in order.
+
+    ``practice`` gives notebooks a cell that checks answers with the installed package. A students'
+    copy of the course gives the handouts alone.
+    """
+    for issue in issues:
+        for lang in issue.langs:
+            yield from _sheets(course, issue, lang, formats, practice)
+    content = issued_content(course, issues)
+    yield File(Path("issued.json"), _text(lambda: json_text(content)))
+    yield File(Path("answers.csv"), _text(lambda: csv_text(form_rows(issues), COLUMNS)))
+    if course.has_solutions:
+        key = key_content(issues)
+        folder = Path("instructor")
+        yield File(folder / "key.json", _text(lambda: json_text(key)))
+        yield File(folder / "key.csv", _text(lambda: csv_text(key_rows(key), KEY_COLUMNS)))
+
+
+def _sheets(
+    course: Course, issue: Issue, lang: str, formats: Sequence[str], practice: bool
+) -> Iterator[File]:
+    renderer = course.renderer
+    variant = issue.variant.in_language(lang)
+    name = variant.exercise.name
+    for_student = Path("handouts") / name / f"{issue.stem}.{lang}"
+    for_staff = Path("instructor") / name / f"{issue.stem}.{lang}"
+
+    def handout():
+        return variant.handout(issue.student)
+
+    def solution():
+        return variant.answer_sheet(issue.student)
+
+    if "pdf" in formats:
+        yield File(_with(for_student, ".pdf"), lambda: renderer.pdf(handout()))
+    if "html" in formats:
+        yield File(_with(for_student, ".html"), _text(lambda: renderer.html(handout())))
+    if "ipynb" in formats:
+        yield File(
+            _with(for_student, ".ipynb"), _text(lambda: renderer.notebook(handout(), practice=practice))
+        )
+    if course.has_solutions and "pdf" in formats:
+        yield File(_with(for_staff, ".solution.pdf"), lambda: renderer.pdf(solution()))
+    if course.has_solutions and "html" in formats:
+        yield File(_with(for_staff, ".solution.html"), _text(lambda: renderer.html(solution())))
+
+
+def _with(path: Path, ending: str) -> Path:
+    return path.with_name(path.name + ending)
+
+
+def write(out: Path, wanted: Sequence[File], progress: Callable[[Path], None] = lambda path: None) -> None:
+    """Make and write files, on all processors; each appears whole or not at all."""
+    for folder in {out / f.path.parent for f in wanted}:
+        folder.mkdir(parents=True, exist_ok=True)
+
+    def one(file: File) -> None:
+        write_whole(out / file.path, file.make())
+        progress(file.path)
+
+    # Threads, not processes: the typesetter releases the lock, and must not be forked.
+    with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
+        tasks = [pool.submit(one, file) for file in wanted]
+        try:
+            for task in tasks:
+                task.result()
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+
+
+def write_whole(path: Path, data: bytes) -> None:
+    """Write a file so that it appears whole or not at all."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(path.name + ".part")
+    part.write_bytes(data)
+    part.replace(path)

@@ -1,0 +1,332 @@
+"""The promises that every exercise keeps, tried on many variants.
+
+Used by ``coursework check`` on any course folder, and by this project's own tests.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from coursework import draws
+from coursework.course import CourseExercise, Variant
+from coursework.errors import CourseworkError
+from coursework.language import languages, plain, significant
+from coursework.marking import Key, distance
+from coursework.model import Part
+
+RESIDUAL = 1e-9  #: largest relative residual of the governing equations
+SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
+HIDDEN = 0.25  #: half-widths within which nothing can tell it
+RENDERED = 3  #: variants whose sheets are rendered in every format and language
+NONSENSE = ("?", "je ne sais pas", "12 +", "nan", "9**9**9", "1 = 1 = 1", "__import__('os')", "((((")
+
+
+@dataclass
+class Report:
+    """What the check of one exercise found."""
+
+    name: str
+    variants: int = 0
+    counts: Counter[str] = field(default_factory=Counter)
+    failures: list[str] = field(default_factory=list)
+    mistakes: dict[str, Counter[str]] = field(default_factory=dict)  #: shown, murky, hidden, by mistake
+    acceptance: float = math.nan
+
+    @property
+    def passed(self) -> bool:
+        return not self.failures
+
+    def fail(self, what: str) -> None:
+        self.failures.append(what)
+
+
+def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) -> Report:
+    """Try every promise on the variants of seeds 0, 1, …
+
+    Whatever breaks is reported, and the rest is tried all the same.
+    """
+    report = Report(exercise.name)
+    steps: Sequence[Callable[[], None]] = (
+        lambda: check_texts(exercise, report),
+        lambda: check_known(exercise, report),
+        lambda: _check_variants(exercise, variants, report),
+        lambda: check_rendering(exercise, rendered, report),
+    )
+    for step in steps:
+        try:
+            step()
+        except CourseworkError as fault:
+            report.fail(str(fault))
+        except Exception as fault:  # an author's slip in a function of the course; the check goes on
+            report.fail(f"{type(fault).__name__}: {fault}")
+    return report
+
+
+def _check_variants(exercise: CourseExercise, count: int, report: Report) -> None:
+    report.acceptance = draws.acceptance(exercise.name, exercise.spec)[0]
+    drawn = exercise.variants(range(count), exercise.languages[0])
+    report.variants = len(drawn)
+    check_arrays(exercise, drawn, report)
+    for variant in drawn:
+        key = Key(variant)
+        check_solves(variant, key, report)
+        check_right_answers(variant, key, report)
+        check_mistakes(variant, key, report)
+        check_nonsense(variant, report)
+    for name in exercise.solution.mistakes:
+        tally = report.mistakes.setdefault(name, Counter())
+        if count >= 50 and not tally["shown"]:
+            report.fail(f"mistake {name} shows in none of {count} variants")
+
+
+# ------------------------------------------------------------------------ texts
+
+
+def check_texts(exercise: CourseExercise, report: Report) -> None:
+    """Every language says every part, every case and every mistake."""
+    for lang in languages():
+        if lang not in exercise.languages:
+            report.fail(f"no statement in {lang!r}: exercises/{exercise.name}.{lang}.md.j2 is missing")
+            continue
+        variant = exercise.variant(0, lang)
+        text = variant.text
+        for part in exercise.spec.parts:
+            if not text.section(part.id).text:
+                report.fail(f"{text.source}: section '## {part.id}' is empty")
+            for case in part.choices:
+                text.label(part.id, case)
+        for name, spec in exercise.spec.given.items():
+            for case in spec.choices:
+                text.label(name, case)
+        if exercise.spec.figure and not text.section("figure").text:
+            report.fail(f"{text.source}: the figure has no words")
+        words = exercise.text("solutions", lang, _every_name(exercise, variant))
+        for name in exercise.solution.mistakes:
+            if not words.section(f"mistake {name}").text:
+                report.fail(f"{words.source}: mistake {name} is told in no words")
+        report.counts["texts"] += 1
+
+
+def _every_name(exercise: CourseExercise, variant: Variant) -> dict[str, object]:
+    return {**dict.fromkeys(exercise.solution.graph.quantities, "0"), **variant.printed}
+
+
+# ------------------------------------------------------------------------ known
+
+
+def check_known(exercise: CourseExercise, report: Report) -> None:
+    """The solution gives the values known without it."""
+    if not exercise.solution.known:
+        report.fail("the solution states no KNOWN case; closure alone cannot tell the branch")
+    for given, expected in exercise.solution.known:
+        found = exercise.solve(**given, only=tuple(expected))
+        for name, value in expected.items():
+            if not agrees(found[name], value, is_angle=_is_orientation(exercise, name)):
+                report.fail(f"known case {dict(given)}: {name} is {found[name]!r}, not {value!r}")
+            report.counts["known values"] += 1
+
+
+def _is_orientation(exercise: CourseExercise, name: str) -> bool:
+    return any(p.quantity == name and p.kind == "angle" for p in exercise.spec.parts)
+
+
+def agrees(found: Any, expected: Any, *, is_angle: bool = False) -> bool:
+    """A printed text agrees to its last digit, a number to 1e-9 relative, a vector likewise."""
+    if isinstance(found, str):
+        return found == expected
+    if isinstance(expected, str):
+        digits = len(expected.partition(".")[2])
+        allowed = 0.5 * 10.0**-digits * (1 + 1e-9)
+    else:
+        allowed = 1e-9 * max(1.0, float(np.max(np.abs(expected))))
+    gap = np.asarray(found, dtype=float) - np.asarray(expected, dtype=float)
+    if is_angle:
+        gap = gap - 360.0 * np.rint(gap / 360.0)
+    return bool(np.all(np.abs(gap) <= allowed))
+
+
+# --------------------------------------------------------------------- solution
+
+
+def check_solves(variant: Variant, key: Key, report: Report) -> None:
+    """Every asked quantity is finite, and the governing equations hold."""
+    for name, value in key.reference.items():
+        if not isinstance(value, str) and not np.all(np.isfinite(value)):
+            report.fail(f"seed {variant.seed}: {name} is {value}")
+    for part in variant.parts:
+        value = key.reference[part.quantity]
+        if part.kind == "number" and part.atol == 0 and value == 0:
+            report.fail(f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance")
+    exercise = variant.exercise
+    known = {n: v for n, v in variant.given.items() if n in exercise._names}
+    residual = exercise.solution.residual_graph.evaluate(("residual",), known)["residual"]
+    for number, value in enumerate(residual if isinstance(residual, tuple) else (residual,), start=1):
+        worst = float(np.max(np.abs(value)))
+        report.counts["residuals"] += 1
+        if not worst < RESIDUAL:
+            report.fail(f"seed {variant.seed}: residual {number} is {worst:.3g}")
+
+
+def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: Report) -> None:
+    """One request on arrays gives what each variant gives alone."""
+    given = {n: np.array([v.given[n] for v in drawn]) for n in exercise.spec.given}
+    wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
+    together = exercise.solve(**given, only=wanted)
+    for index, variant in enumerate(drawn):
+        alone = variant.solution()
+        for part in variant.parts:
+            value = together[part.quantity]
+            one = value[index] if isinstance(value, np.ndarray) and len(value) == len(drawn) else value
+            if not _same(one, alone[part.quantity], part):
+                report.fail(
+                    f"seed {variant.seed}: {part.id} is {alone[part.quantity]} alone, {one} in an array"
+                )
+            report.counts["arrays"] += 1
+
+
+def _same(one: Any, other: Any, part: Part) -> bool:
+    if isinstance(other, str):
+        return str(one) == other
+    gap = np.asarray(one, dtype=float) - np.asarray(other, dtype=float)
+    if part.kind == "angle":
+        gap = gap - 360.0 * np.rint(gap / 360.0)
+    return bool(np.all(np.abs(gap) <= 1e-9 * np.maximum(1.0, np.abs(other))))
+
+
+# ---------------------------------------------------------------------- marking
+
+
+def check_right_answers(variant: Variant, key: Key, report: Report) -> None:
+    """Right answers mark right however they are written, and on the tolerance's edge."""
+    for spelling in spellings(variant, key):
+        marking = variant.grade(spelling)
+        for part_id in spelling:
+            mark = marking[part_id]
+            report.counts["right answers"] += 1
+            if mark.verdict != "correct":
+                report.fail(
+                    f"seed {variant.seed}: {part_id} = {spelling[part_id]!r} is right "
+                    f"but marks {mark.verdict} (read as {mark.read_as!r})"
+                )
+
+
+def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
+    """The right answers of a variant in the ways people write them."""
+    full, printed, comma, edge = {}, {}, {}, {}
+    for part in variant.parts:
+        value = key.reference[part.quantity]
+        if part.kind == "choice":
+            full[part.id] = str(value)
+            printed[part.id] = variant.text.label(part.id, str(value))
+        elif part.kind == "equation":
+            full[part.id] = str(value)
+            left, _, right = str(value).partition("=")
+            printed[part.id] = f"2*({right}) - 2*({left}) = 0"
+        elif isinstance(value, np.ndarray):
+            full[part.id] = "; ".join(repr(v) for v in value.tolist())
+            printed[part.id] = "(" + " ; ".join(significant(v, 6) for v in value.tolist()) + ")"
+            comma[part.id] = printed[part.id].replace(".", ",")
+        else:
+            unit = "" if part.unit == "1" else f" {part.unit}"
+            full[part.id] = value
+            printed[part.id] = significant(value, 4 if part.kind != "integer" else 9) + unit
+            comma[part.id] = printed[part.id].replace(".", ",")
+            if part.kind == "number":
+                edge[part.id] = plain(value + part.half_width(value))
+            elif part.kind == "angle":
+                edge[part.id] = plain(value + 360.0 - part.half_width(value))
+    yield from (full, printed, comma, edge)
+
+
+def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
+    """Each named mistake that shows is marked as that mistake, and never as right."""
+    for name, values in key.wrong.items():
+        tally = report.mistakes.setdefault(name, Counter())
+        for part in variant.parts:
+            if part.quantity not in values:
+                continue
+            wrong = values[part.quantity]
+            along = key.reference.get(part.along)
+            if not isinstance(wrong, str) and not np.all(np.isfinite(wrong)):
+                continue
+            gap = distance(part, _as_read(part, wrong), key.reference[part.quantity], along)
+            kind = "shown" if gap > SHOWN else "hidden" if gap <= HIDDEN else "murky"
+            tally[kind] += 1
+            if kind == "shown":
+                _check_recognised(variant, part, name, wrong, report)
+
+
+def _as_read(part: Part, value: Any) -> Any:
+    if part.kind == "equation":
+        from coursework.expressions import parse_equation
+
+        return parse_equation(value, part.variables)
+    return value
+
+
+def _check_recognised(variant: Variant, part: Part, name: str, wrong: Any, report: Report) -> None:
+    answer = "; ".join(repr(v) for v in wrong.tolist()) if isinstance(wrong, np.ndarray) else wrong
+    mark = variant.grade({part.id: answer})[part.id]
+    report.counts["mistakes recognised"] += 1
+    if name not in mark.matches and not _exchanged(variant, part):
+        report.fail(
+            f"seed {variant.seed}: mistake {name} on {part.id} ({answer!r}) marks {mark.verdict}, "
+            f"not mistake:{name}"
+        )
+
+
+def _exchanged(variant: Variant, part: Part) -> bool:
+    """A wrong value of one assembly may be the right one of the other."""
+    return any(part.id in group for group in variant.exercise.spec.either_order)
+
+
+def check_nonsense(variant: Variant, report: Report) -> None:
+    """Nonsense is unreadable or wrong, never right, and never stops the marking."""
+    for nonsense in NONSENSE:
+        marking = variant.grade(dict.fromkeys((p.id for p in variant.parts), nonsense))
+        for part_id, mark in marking.items():
+            report.counts["nonsense"] += 1
+            if mark.points and mark.verdict == "correct":
+                report.fail(f"seed {variant.seed}: {nonsense!r} marks correct on {part_id}")
+
+
+# -------------------------------------------------------------------- rendering
+
+
+def check_rendering(exercise: CourseExercise, count: int, report: Report) -> None:
+    """Sheets, worked solutions and notebooks render in every language."""
+    renderer = exercise.course.renderer
+    for lang in exercise.languages:
+        for variant in exercise.variants(range(count), lang):
+            handout, sheet = variant.handout(), variant.answer_sheet()
+            for made in (
+                renderer.pdf(handout),
+                renderer.html(handout),
+                renderer.notebook(handout),
+                renderer.pdf(sheet),
+                renderer.html(sheet),
+            ):
+                report.counts["sheets rendered"] += bool(made)
+
+
+def table(reports: Sequence[Report]) -> list[Mapping[str, Any]]:
+    """A line an exercise, for printing."""
+    return [
+        {
+            "exercise": r.name,
+            "variants": r.variants,
+            "draws kept": f"{100 * r.acceptance:.0f} %" if r.variants else "",
+            "right answers": r.counts["right answers"],
+            "mistakes": len(r.mistakes),
+            "recognised": r.counts["mistakes recognised"],
+            "murky": sum(t["murky"] for t in r.mistakes.values()),
+            "failures": len(r.failures),
+        }
+        for r in reports
+    ]

@@ -1,0 +1,527 @@
+"""The command line: the only module that reads arguments, writes files and prints."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from coursework.errors import BadInput, CourseworkError, WrongValue
+
+if TYPE_CHECKING:
+    from coursework.course import Course
+
+DONE, FOUND, BAD = 0, 1, 2  #: exit statuses
+
+
+def main() -> None:
+    """Run the command line; a user's mistake is one line on standard error, never a traceback."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command and give its exit status."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(encoding="utf-8", errors="replace")
+    try:
+        return cli.main(list(arguments), prog_name="coursework", standalone_mode=False) or DONE
+    except click.exceptions.NoArgsIsHelpError as fault:
+        click.echo(fault.format_message(), err=True)
+        return BAD
+    except click.ClickException as fault:
+        hint = (
+            f"; see 'coursework {_command(arguments)}--help'" if isinstance(fault, click.UsageError) else ""
+        )
+        return _complain(fault.format_message().rstrip(".") + hint)
+    except click.exceptions.Exit as stop:
+        return stop.exit_code
+    except click.Abort:
+        return _complain("interrupted")
+    except CourseworkError as fault:
+        return _complain(str(fault))
+    except BrokenPipeError:
+        sys.stderr.close()
+        return DONE
+    except OSError as fault:
+        return _complain(f"{fault.filename or 'a file'}: {fault.strerror or fault}")
+
+
+def _command(arguments: Sequence[str]) -> str:
+    known = [a for a in arguments if a in cli.commands]
+    return f"{known[0]} " if known else ""
+
+
+def _complain(message: str) -> int:
+    click.echo(f"coursework: {' '.join(message.split())}", err=True)
+    return BAD
+
+
+class _Lists(click.ParamType):
+    """Comma-separated words, each among those known."""
+
+    name = "list"
+
+    def __init__(self, known: Callable[[], Iterable[str]]):
+        self.known = known
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[str, ...]:
+        if isinstance(value, tuple):
+            return value
+        words = tuple(dict.fromkeys(w.strip() for w in value.split(",") if w.strip()))
+        known = tuple(self.known())
+        for word in words:
+            if word not in known:
+                self.fail(f"no {word!r}; there is {', '.join(known)}", param, ctx)
+        if not words:
+            self.fail(f"nothing named; there is {', '.join(known)}", param, ctx)
+        return words
+
+
+def _known_languages() -> tuple[str, ...]:
+    from coursework.language import languages
+
+    return languages()
+
+
+def _known_formats() -> tuple[str, ...]:
+    from coursework.building import FORMATS
+
+    return FORMATS
+
+
+_json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+_lang_option = click.option("--lang", default="fr", show_default=True, help="Language of the sheet.")
+_seed_option = click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Which variant (the first one)."
+)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--course", "folder", type=click.Path(), help="Course folder; the built-in course unless given."
+)
+@click.version_option(package_name="coursework", prog_name="coursework")
+@click.pass_context
+def cli(context: click.Context, folder: str | None) -> None:
+    """Parameterised exercises in plane-mechanism kinematics: draw, solve, print and mark them."""
+    context.obj = folder
+
+
+def _course(context: click.Context) -> Course:
+    from coursework.course import open_course
+
+    return open_course(context.obj)
+
+
+def _exercise_names(course: Course, names: Sequence[str]) -> tuple[str, ...]:
+    for name in names:
+        course[name]  # an unknown name stops here, with the nearest one
+    if not course.names:
+        raise BadInput(
+            f"the course {course.root} has no exercise; 'coursework new {course.root} NAME' writes one"
+        )
+    return tuple(dict.fromkeys(names)) or course.names
+
+
+def _print_json(content: Any) -> None:
+    import json
+
+    click.echo(json.dumps(content, ensure_ascii=False))
+
+
+def _print_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    if not rows:
+        return
+    table = Table(title=title or None, title_justify="left")
+    for column in rows[0]:
+        right = all(isinstance(r[column], (int, float)) for r in rows)
+        table.add_column(str(column), justify="right" if right else "left", overflow="fold")
+    for row in rows:
+        table.add_row(*[str(v) for v in row.values()])
+    console = Console()
+    # Piped into a file there is no width to fit: nothing is cut.
+    Console(width=None if console.is_terminal else 200).print(table)
+
+
+@contextmanager
+def _progress(what: str, total: int | None) -> Iterator[Callable[..., None]]:
+    """A progress bar on a terminal; nothing elsewhere."""
+    if not sys.stderr.isatty():
+        yield lambda *_: None
+        return
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task(what, total=total)
+        yield lambda *_: bar.advance(task)
+
+
+# ------------------------------------------------------------------------- look
+
+
+@cli.command("list")
+@_json_option
+@click.pass_context
+def list_exercises(context: click.Context, as_json: bool) -> None:
+    """Say which exercises the course has."""
+    course = _course(context)
+    rows = [
+        {
+            "exercise": name,
+            "title": {lang: course[name].title(lang) for lang in course[name].languages},
+            "version": course[name].version,
+            "parts": len(course[name].spec.parts),
+        }
+        for name in course.names
+    ]
+    if as_json:
+        _print_json(rows)
+    else:
+        _print_table([{**r, "title": "\n".join(r["title"].values())} for r in rows])
+        if not rows:
+            click.echo("This course has no exercise yet.")
+
+
+@cli.command()
+@click.argument("exercise")
+@_seed_option
+@_lang_option
+@click.pass_context
+def show(context: click.Context, exercise: str, seed: int, lang: str) -> None:
+    """Print a statement."""
+    course = _course(context)
+    click.echo(course.renderer.terminal(course[exercise].variant(seed, lang).handout()))
+
+
+@cli.command()
+@click.argument("exercise")
+@_seed_option
+@click.option(
+    "--count", type=click.IntRange(min=1), default=1, show_default=True, help="How many, seed after seed."
+)
+@click.option("--solution", is_flag=True, help="With the reference answers.")
+@_lang_option
+@_json_option
+@click.pass_context
+def variant(
+    context: click.Context, exercise: str, seed: int, count: int, solution: bool, lang: str, as_json: bool
+) -> None:
+    """Print the records of variants, one JSON object a line with --json."""
+    from coursework.issuing import record_with_answers
+
+    for drawn in _course(context)[exercise].variants(range(seed, seed + count), lang):
+        record = record_with_answers(drawn) if solution else drawn.record
+        if as_json:
+            _print_json(record)
+            continue
+        rows = [{"quantity": n, "value": g["value"], "unit": g["unit"]} for n, g in record["given"].items()]
+        rows += [
+            {"quantity": f"{part} (asked)", "value": a["value"], "unit": a["unit"]}
+            for part, a in record.get("answers", {}).items()
+        ]
+        _print_table(rows, title=f"{exercise}, seed {drawn.seed}")
+
+
+@cli.command()
+@click.argument("exercise")
+@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A given value: r1=228.6mm.")
+@click.option("--only", default="", metavar="Q,Q", help="The quantities wanted; every part's unless told.")
+@click.option("--effects", default="", metavar="E,E", help="Optional effects to call for.")
+@_json_option
+@click.pass_context
+def solve(
+    context: click.Context, exercise: str, settings: Sequence[str], only: str, effects: str, as_json: bool
+) -> None:
+    """Solve an exercise for one's own numbers."""
+    from coursework.issuing import plain_value
+    from coursework.language import significant, unit_text
+
+    one = _course(context)[exercise]
+    given: dict[str, str] = {}
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        if not equals or not value.strip():
+            raise WrongValue(f"--set takes NAME=VALUE; found {setting!r}")
+        given[name.strip()] = value.strip()
+    found = one.solve(**given, only=_split(only) or None, effects=_split(effects))
+    used = {n: one.spec.given[n].default for n in one.spec.given if one.spec.given[n].default is not None}
+    used |= {n: one._accept(n, v) for n, v in given.items()}
+    units = one.units
+    content = {
+        "exercise": exercise,
+        "given": {n: {"value": plain_value(v), "unit": units.get(n, "1")} for n, v in used.items()},
+        "quantities": {n: {"value": _json_value(v), "unit": units.get(n, "1")} for n, v in found.items()},
+    }
+    if as_json:
+        _print_json(content)
+        return
+    _print_table(
+        [
+            {
+                "quantity": n,
+                "value": significant(v, 6) if isinstance(v, (int, float)) else str(v),
+                "unit": unit_text(units.get(n, "1"), "en"),
+            }
+            for n, v in found.items()
+        ]
+    )
+
+
+def _split(text: str) -> tuple[str, ...]:
+    return tuple(w.strip() for w in text.split(",") if w.strip())
+
+
+def _json_value(value: Any) -> Any:
+    from coursework.issuing import plain_value
+
+    value = plain_value(value)
+    return {"re": value.real, "im": value.imag} if isinstance(value, complex) else value
+
+
+# ------------------------------------------------------------------------ build
+
+
+@cli.command()
+@click.argument("exercises", nargs=-1)
+@click.option(
+    "--variants", "count", type=click.IntRange(min=1), help="How many variants; with a roster, one a student."
+)
+@_seed_option
+@click.option(
+    "--roster", type=click.Path(path_type=Path), help="CSV with a column student and, if wanted, lang."
+)
+@click.option("--formats", type=_Lists(_known_formats), default="pdf,ipynb,html", show_default=True)
+@click.option("--lang", "langs", type=_Lists(_known_languages), default="fr", show_default=True)
+@click.option("--practice", is_flag=True, help="Notebooks check answers with the installed package.")
+@click.option(
+    "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."
+)
+@click.option("--overwrite", is_flag=True, help="Replace what was issued there before.")
+@click.pass_context
+def build(
+    context: click.Context,
+    exercises: Sequence[str],
+    count: int | None,
+    seed: int,
+    roster: Path | None,
+    formats: Sequence[str],
+    langs: Sequence[str],
+    practice: bool,
+    out: Path,
+    overwrite: bool,
+) -> None:
+    """Make sheets, notebooks and pages for a class, with the staff's half beside them."""
+    if roster and count:
+        raise BadInput("--variants and --roster exclude each other: a roster has one variant a student")
+    course = _course(context)
+    names = _exercise_names(course, exercises)
+    written = build_files(
+        course, names, count or 1, seed, roster, formats, langs, out, practice=practice, overwrite=overwrite
+    )
+    click.echo(f"{written} files in {out}: handouts/ to give away, issued.json and answers.csv to keep")
+    if course.has_solutions:
+        click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
+
+
+def build_files(
+    course: Course,
+    names: Sequence[str],
+    count: int,
+    seed: int,
+    roster: Path | None,
+    formats: Sequence[str],
+    langs: Sequence[str],
+    out: Path,
+    *,
+    practice: bool = False,
+    overwrite: bool = False,
+) -> int:
+    """Issue and write a build; gives how many files were written."""
+    import shutil
+
+    from coursework import building, issuing
+
+    students = issuing.read_roster(roster) if roster else ()
+    issues = issuing.issue(course, names, first_seed=seed, count=count, langs=langs, roster=students)
+    issued = issuing.json_text(issuing.issued_content(course, issues))
+    before = out / "issued.json"
+    if before.exists() and before.read_text("utf-8") != issued:
+        if not overwrite:
+            raise BadInput(
+                f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them"
+            )
+        for folder in ("handouts", "instructor"):
+            shutil.rmtree(out / folder, ignore_errors=True)
+    wanted = list(building.files(course, issues, formats, practice=practice))
+    with _progress("building", len(wanted)) as advance:
+        building.write(out, wanted, advance)
+    return len(wanted)
+
+
+# ------------------------------------------------------------------------ grade
+
+
+@cli.command()
+@click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "--issued", type=click.Path(path_type=Path), required=True, help="The issued.json of the build."
+)
+@click.option(
+    "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder to write; marks/ beside it."
+)
+@click.option("--no-feedback", is_flag=True, help="Write no feedback sheets.")
+@click.pass_context
+def grade(
+    context: click.Context, submissions: Sequence[Path], issued: Path, out: Path | None, no_feedback: bool
+) -> int:
+    """Mark CSV, JSON and notebooks of answers, files or folders of them."""
+    from coursework.gradebook import needs_a_look
+
+    out = out or issued.parent / "marks"
+    book = grade_files(_course(context), submissions, issued, out, feedback=not no_feedback)
+    marked = sum(len(g.marked) for g in book.graded)
+    click.echo(f"{book.rows_in} rows: {marked} marked, {len(book.rejected)} rejected; see {out}")
+    for warning in book.warnings:
+        click.echo(f"coursework: note: {warning}", err=True)
+    for rejected in book.rejected[:10]:
+        click.echo(f"coursework: {rejected.source}: {rejected.reason}", err=True)
+    if len(book.rejected) > 10:
+        more = len(book.rejected) - 10
+        click.echo(f"coursework: and {more} more in {out / 'rejected.csv'}", err=True)
+    return FOUND if needs_a_look(book) else DONE
+
+
+def grade_files(course: Course, submissions: Sequence[Path], issued_path: Path, out: Path, *, feedback: bool):
+    """Mark files and write marks.csv, summary.csv, rejected.csv and feedback sheets."""
+    from coursework import gradebook
+    from coursework.building import write_whole
+    from coursework.issuing import csv_text
+    from coursework.submissions import Rejected, find, read_file
+
+    issued = gradebook.Issued.read(issued_path)
+
+    def rows():
+        for found in find(submissions):
+            yield from [found] if isinstance(found, Rejected) else read_file(found)
+
+    with _progress("marking", None) as advance:
+        book = gradebook.grade(course, issued, rows(), advance)
+    marks = csv_text(gradebook.marks_table(book), gradebook.MARKS_COLUMNS)
+    summary = csv_text(gradebook.summary_table(book, issued), gradebook.SUMMARY_COLUMNS)
+    rejected = csv_text(gradebook.rejected_table(book), gradebook.REJECTED_COLUMNS)
+    if feedback:
+        with _progress("feedback", None) as advance:
+            _write_feedback(course, book, out / "feedback", advance)
+    for name, text in (("marks.csv", marks), ("summary.csv", summary), ("rejected.csv", rejected)):
+        write_whole(out / name, text.encode("utf-8"))
+    return book
+
+
+def _write_feedback(course: Course, book: Any, folder: Path, advance: Callable[..., None]) -> None:
+    """One PDF a student, an exercise after another."""
+    from coursework.building import File, write
+    from coursework.gradebook import feedback_sheet
+    from coursework.issuing import Student, file_stems
+
+    by_student: dict[str, list] = {}
+    for graded in book.graded:
+        by_student.setdefault(graded.student, []).append(graded)
+    stems = file_stems([Student(name) for name in by_student])
+
+    def maker(sheets: list) -> Callable[[], bytes]:
+        return lambda: course.renderer.booklet_pdf([feedback_sheet(g) for g in sheets])
+
+    files = [
+        File(Path(f"{stem}.pdf"), maker(mine)) for stem, mine in zip(stems, by_student.values(), strict=True)
+    ]
+    write(folder, files, advance)
+
+
+# ------------------------------------------------------------------------ check
+
+
+@cli.command()
+@click.argument("exercises", nargs=-1)
+@click.option("--variants", "count", type=click.IntRange(min=1), default=100, show_default=True)
+@_json_option
+@click.pass_context
+def check(context: click.Context, exercises: Sequence[str], count: int, as_json: bool) -> int:
+    """Prove the promises of every exercise of the course; status 1 when one is broken."""
+    from coursework import checks
+
+    course = _course(context)
+    names = _exercise_names(course, exercises)
+    with _progress("checking", len(names)) as advance:
+        reports = []
+        for name in names:
+            reports.append(_checked(course, name, count))
+            advance()
+    if as_json:
+        for report in reports:
+            _print_json(
+                {
+                    "exercise": report.name,
+                    "variants": report.variants,
+                    "acceptance": report.acceptance if report.variants else None,
+                    "counts": dict(report.counts),
+                    "mistakes": {n: dict(t) for n, t in report.mistakes.items()},
+                    "failures": report.failures,
+                }
+            )
+    else:
+        _print_table(checks.table(reports))
+        for report in reports:
+            for failure in report.failures[:20]:
+                click.echo(f"{report.name}: {failure}")
+            if len(report.failures) > 20:
+                click.echo(f"{report.name}: and {len(report.failures) - 20} more")
+    return DONE if all(r.passed for r in reports) else FOUND
+
+
+def _checked(course: Course, name: str, count: int):
+    from coursework import checks
+
+    try:
+        return checks.check(course[name], count)
+    except CourseworkError as fault:
+        return checks.Report(name, failures=[str(fault)])
+
+
+# -------------------------------------------------------------------------- new
+
+
+@cli.command()
+@click.argument("folder", type=click.Path(path_type=Path, file_okay=False))
+@click.argument("exercise", required=False)
+def new(folder: Path, exercise: str | None) -> None:
+    """Write a working course folder, or a working exercise in one."""
+    from coursework.scaffold import new_course, new_exercise
+
+    made = new_exercise(folder, exercise) if exercise else new_course(folder)
+    for path in made:
+        click.echo(f"wrote {path}")
+    click.echo(f"try: coursework --course {folder} check")
+
+
+# ------------------------------------------------------------------------- demo
+
+
+@cli.command()
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default="demo", show_default=True)
+def demo(out: Path) -> None:
+    """Do the whole job on a small class: sheets, answers of all kinds, marks."""
+    from coursework.demo import class_of_twelve
+
+    rows, report = class_of_twelve(out, build_files, grade_files)
+    _print_table(rows, title="What became of the answers")
+    for line in report:
+        click.echo(line)

@@ -1,0 +1,543 @@
+"""A course is a folder: ``exercises/``, ``solutions/``, ``templates/`` side by side.
+
+Nothing is registered: the stem of ``exercises/NAME.py`` is the exercise's name everywhere. Opening a
+course imports its Python, as any import does, under a private package name; ``sys.path`` is left alone.
+"""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import sys
+import tomllib
+import traceback
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache, cached_property
+from pathlib import Path
+from types import MappingProxyType, ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coursework import draws, statement
+from coursework.errors import (
+    BadCourse,
+    BadInput,
+    CourseworkError,
+    NoSolution,
+    Undefined,
+    WrongUnit,
+    WrongValue,
+    nearest,
+    unknown,
+)
+from coursework.language import languages, plain, with_unit
+from coursework.model import Exercise, GivenSpec, Part
+from coursework.solution import Solution
+
+if TYPE_CHECKING:
+    from coursework.handout import AnswerSheet, Handout
+    from coursework.marking import Marking
+    from coursework.rendering import Renderer
+
+_packages = itertools.count()
+
+
+def builtin_root() -> Path:
+    """The folder of the course that ships with the package, in a wheel or in a checkout."""
+    shipped = Path(__file__).parent / "_course"
+    return shipped if shipped.is_dir() else Path(__file__).parent.parent
+
+
+def open_course(folder: str | Path | None = None) -> Course:
+    """Open a course folder; the built-in course unless told.
+
+    Raises
+    ------
+    BadCourse
+        The folder does not exist or has no ``exercises/``.
+    """
+    root = (builtin_root() if folder is None else Path(folder)).resolve()
+    return _open(root)
+
+
+@cache
+def _open(root: Path) -> Course:
+    if not root.is_dir():
+        raise BadCourse(f"no course at {root}: there is no such folder; 'coursework new DIR' makes one")
+    if not (root / "exercises").is_dir():
+        raise BadCourse(f"{root} is no course: it has no folder 'exercises'; 'coursework new DIR' makes one")
+    return Course(root)
+
+
+class Course:
+    """An open course: a mapping from names to exercises."""
+
+    def __init__(self, root: Path):
+        self.root = root
+        self._package = f"_coursework_course_{next(_packages)}"
+        package = ModuleType(self._package)
+        package.__path__ = [str(root)]
+        sys.modules[self._package] = package
+        self._exercises: dict[str, CourseExercise] = {}
+
+    def __repr__(self) -> str:
+        return f"<course {self.root.name}: {len(self.names)} exercises>"
+
+    @property
+    def label(self) -> str:
+        """What messages call it."""
+        return "the built-in course" if self.root == builtin_root().resolve() else f"course {self.root.name}"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The exercises' names, in alphabetical order, as the folder holds them now."""
+        folder = self.root / "exercises"
+        files = {p.stem for p in folder.glob("*.py")}
+        folders = {p.parent.name for p in folder.glob("*/__init__.py")}
+        return tuple(sorted(n for n in files | folders if not n.startswith(("_", "."))))
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.names
+
+    def __getitem__(self, name: str) -> CourseExercise:
+        if name not in self._exercises:
+            if name not in self.names:
+                raise unknown("exercise", name, self.names, self.label)
+            self._exercises[name] = CourseExercise(self, name)
+        return self._exercises[name]
+
+    @cached_property
+    def settings(self) -> Mapping[str, Any]:
+        """What ``exercises/course.toml`` says, or nothing."""
+        path = self.root / "exercises" / "course.toml"
+        if not path.exists():
+            return {}
+        try:
+            return tomllib.loads(path.read_text("utf-8"))
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
+            raise BadCourse(f"{path}: {fault}") from fault
+
+    def title(self, lang: str) -> str:
+        """The course's title in a language; the folder's name when it states none."""
+        return self.settings.get("title", {}).get(lang, self.root.name)
+
+    @cached_property
+    def template_folders(self) -> tuple[Path, ...]:
+        """Where templates are looked up: this course first, then the built-in one."""
+        folders = dict.fromkeys([self.root / "templates", builtin_root() / "templates"])
+        return tuple(f for f in folders if f.is_dir())
+
+    @cached_property
+    def renderer(self) -> Renderer:
+        """Renders this course's sheets."""
+        from coursework.rendering import Renderer
+
+        return Renderer(self.template_folders)
+
+    @property
+    def has_solutions(self) -> bool:
+        """False for a students' copy."""
+        return (self.root / "solutions").is_dir()
+
+    def module(self, kind: str, name: str) -> ModuleType:
+        """Import ``KIND/NAME.py`` of this course.
+
+        Raises
+        ------
+        BadCourse
+            The file cannot be imported; the message names the file, the line and the fault.
+        """
+        try:
+            return importlib.import_module(f"{self._package}.{kind}.{name}")
+        except CourseworkError as fault:
+            raise BadCourse(f"{kind}/{name}.py: {fault}") from fault
+        except Exception as fault:
+            raise BadCourse(f"{kind}/{name}.py cannot be used: {_where(fault, self.root)}") from fault
+
+
+def _where(fault: Exception, root: Path) -> str:
+    """The fault in one line, with the last line of the course's own code on its way."""
+    said = f"{type(fault).__name__}: {fault}"
+    if isinstance(fault, SyntaxError):
+        return f"line {fault.lineno}: {fault.msg}"
+    frames = [f for f in traceback.extract_tb(fault.__traceback__) if f.filename.startswith(str(root))]
+    return f"line {frames[-1].lineno}: {said}" if frames else said
+
+
+class CourseExercise:
+    """An exercise of an open course: draws, solves, renders, marks."""
+
+    def __init__(self, course: Course, name: str):
+        self.course = course
+        self.name = name
+        module = course.module("exercises", name)
+        spec = getattr(module, "EXERCISE", None)
+        if not isinstance(spec, Exercise):
+            raise BadCourse(f"exercises/{name}.py states no EXERCISE = Exercise(…)")
+        self.spec: Exercise = spec
+        draws.check_conditions(name, spec)
+
+    def __repr__(self) -> str:
+        return f"<exercise {self.name}>"
+
+    @property
+    def version(self) -> int:
+        return self.spec.version
+
+    # ------------------------------------------------------------------ solving
+
+    @cached_property
+    def solution(self) -> Solution:
+        """The reference solution.
+
+        Raises
+        ------
+        NoSolution
+            The course folder has none: it looks like a students' copy.
+        """
+        folder = self.course.root / "solutions"
+        if not (folder / f"{self.name}.py").exists() and not (folder / self.name).is_dir():
+            why = "it looks like a students' copy" if not folder.is_dir() else f"it lacks {self.name}.py"
+            raise NoSolution(f"no solution of {self.name!r} in {self.course.label}: {why}")
+        return Solution.of(self.name, self.course.module("solutions", self.name))
+
+    @cached_property
+    def units(self) -> Mapping[str, str]:
+        """Canonical units of the quantities that state one."""
+        stated = {n: s.unit for n, s in self.spec.given.items()}
+        stated |= {p.quantity: p.unit for p in self.spec.parts}
+        return MappingProxyType({**self.solution.units, **stated})
+
+    def symbol(self, name: str) -> str:
+        """LaTeX of a quantity of the statement."""
+        return self.spec.symbol(name)
+
+    def plan(self, only: Sequence[str] | None = None, *, effects: Iterable[str] = ()) -> tuple[str, ...]:
+        """The quantities that a request evaluates, in order."""
+        return self.solution.graph.plan(self._wanted(only), self._used_given(effects), effects)
+
+    def _used_given(self, effects: Iterable[str]) -> frozenset[str]:
+        return frozenset(self.spec.given) & self._names
+
+    def _wanted(self, only: Sequence[str] | str | None) -> tuple[str, ...]:
+        if only is None:
+            return tuple(dict.fromkeys(p.quantity for p in self.spec.parts))
+        return (only,) if isinstance(only, str) else tuple(only)
+
+    @cached_property
+    def _names(self) -> frozenset[str]:
+        graph = self.solution.graph
+        return frozenset(graph.quantities) | graph.leaves
+
+    @cached_property
+    def _defaults(self) -> Mapping[str, float | str]:
+        return {
+            n: float(s.default) if not isinstance(s.default, str) else s.default
+            for n, s in self.spec.given.items()
+            if s.default is not None
+        }
+
+    def solve(
+        self,
+        *,
+        only: Sequence[str] | str | None = None,
+        effects: Iterable[str] = (),
+        **given: Any,
+    ) -> dict[str, Any]:
+        """Quantities from given values, in canonical units (degrees for angles).
+
+        Parameters
+        ----------
+        only
+            The quantities wanted, and nothing else is computed; every part's unless told.
+        effects
+            Optional effects that the request calls for.
+        **given
+            Scalars, arrays that broadcast, or texts with a unit (``"0.2286 m"``). Any quantity may be
+            given, also one that the graph could compute: then it is used as it is.
+
+        Returns
+        -------
+        A dict of floats, or of arrays of the broadcast shape.
+
+        Raises
+        ------
+        CannotAssemble
+            A scalar configuration that does not close. In arrays it is NaN there and only there.
+        Undefined
+            A scalar quantity that does not exist for these values.
+        UnknownName, MissingQuantity, WrongUnit, WrongValue
+            A request that makes no sense, each with what would do.
+        """
+        names = self._names
+        values = {n: v for n, v in self._defaults.items() if n in names}
+        for name, value in given.items():
+            if name not in names:
+                if name in self.spec.given:
+                    continue
+                raise unknown("quantity", name, names | self.spec.given.keys(), self.name)
+            values[name] = self._accept(name, value)
+        arrays = any(isinstance(v, np.ndarray) for v in values.values())
+        if only is None and not arrays:
+            only = tuple(p.quantity for p in self._asked_of(values))
+        wanted = self._wanted(only)
+        found = self.solution.graph.evaluate(wanted, values, effects)
+        if not arrays:
+            for name, value in found.items():
+                if isinstance(value, np.generic) or (isinstance(value, np.ndarray) and not value.ndim):
+                    found[name] = value = value.item()
+                if isinstance(value, float) and value != value:
+                    told = ", ".join(f"{n} = {values[n]}" for n in given if n in values)
+                    raise Undefined(f"{self.name}: {name} does not exist for {told}")
+        return found
+
+    def _accept(self, name: str, value: Any) -> Any:
+        """A given value as a float, an array or a case's name, in the canonical unit, within its domain."""
+        spec = self.spec.given.get(name)
+        if spec is not None and spec.is_choice:
+            return self._accept_case(name, spec, value)
+        if isinstance(value, str):
+            value = self._accept_text(name, value)
+        elif isinstance(value, bool) or value is None:
+            raise WrongValue(f"{name} must be a number; found {value!r}")
+        if isinstance(value, (int, float)):
+            value = float(value)
+            if value != value or value in (np.inf, -np.inf):
+                raise WrongValue(f"{name} must be a finite number; found {value}")
+        elif isinstance(value, (list, tuple, range)):
+            value = np.asarray(value)
+        if isinstance(value, np.ndarray):
+            if value.dtype.kind in "iub":
+                value = value.astype(float)
+            if value.ndim == 0:
+                value = value.item()
+        elif isinstance(value, np.generic):
+            value = value.item()
+        if spec is not None:
+            self._check_domain(name, spec, value)
+        return value
+
+    def _accept_case(self, name: str, spec: GivenSpec, value: Any) -> Any:
+        cases = np.unique(np.asarray(value))
+        for case in cases.tolist():
+            if case not in spec.choices:
+                raise WrongValue(
+                    f"{name} must be one of {', '.join(spec.choices)}; found {case!r}"
+                    f"{nearest(str(case), spec.choices)}"
+                )
+        return value if isinstance(value, str) else np.asarray(value)
+
+    def _accept_text(self, name: str, text: str) -> float:
+        from coursework.reading import read_number
+
+        unit = self.units.get(name, "1")
+        reading = read_number(text, unit)
+        if reading.status == "wrong_unit":
+            raise WrongUnit(f"{name} is in {unit}; found {text!r}, which is not a unit of that kind")
+        if reading.status != "read":
+            raise WrongValue(f"{name} must be a number in {unit}; found {text!r}")
+        if len(reading.values) > 1:
+            shown = " or ".join(plain(v) for v in reading.values)
+            raise WrongValue(f"{name}: {text!r} can be read as {shown}; write it without a separator")
+        return reading.values[0]
+
+    def _check_domain(self, name: str, spec: GivenSpec, value: Any) -> None:
+        if isinstance(value, np.ndarray):
+            if spec.positive and value.size and np.nanmin(value) <= 0:
+                raise WrongValue(f"{name} must be positive; found {np.nanmin(value):g} {spec.unit}")
+            if spec.nonzero and not value.all():
+                raise WrongValue(f"{name} must not be 0")
+        elif isinstance(value, float):
+            if spec.positive and value <= 0:
+                raise WrongValue(f"{name} must be positive; found {value:g} {spec.unit}")
+            if spec.nonzero and value == 0:
+                raise WrongValue(f"{name} must not be 0")
+
+    # ----------------------------------------------------------------- variants
+
+    def variant(self, seed: int, lang: str = "fr") -> Variant:
+        """The variant of a seed: the same for ever for this exercise and version.
+
+        Raises
+        ------
+        WrongValue
+            A seed that is not a whole number from 0 on.
+        Starved
+            The conditions refuse every draw.
+        """
+        return self.variants([seed], lang)[0]
+
+    def variants(self, seeds: Iterable[int], lang: str = "fr") -> list[Variant]:
+        """The variants of many seeds, drawn together."""
+        seeds = list(seeds)
+        for seed in seeds:
+            if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
+                raise WrongValue(f"a seed is a whole number from 0 on; found {seed!r}")
+        seeds = [int(seed) for seed in seeds]
+        drawn = draws.draw(self.name, self.spec, seeds)
+        return [Variant(self, seed, given, lang) for seed, given in zip(seeds, drawn, strict=True)]
+
+    def from_record(self, record: Mapping[str, Any]) -> Variant:
+        """The variant that a record issued, with the values that the record holds.
+
+        Raises
+        ------
+        BadInput
+            The record is of another exercise or version, or lacks a given quantity.
+        """
+        if record.get("exercise") != self.name:
+            raise BadInput(f"a record of {record.get('exercise')!r} was given to {self.name!r}")
+        if record.get("version") != self.version:
+            raise BadInput(
+                f"{self.name}: the record is of version {record.get('version')}, the course has "
+                f"version {self.version}; mark it with the course it was issued from"
+            )
+        try:
+            given = {n: record["given"][n]["value"] for n in self.spec.given}
+            seed = int(record["seed"])
+        except (KeyError, TypeError, ValueError) as fault:
+            raise BadInput(f"{self.name}: a record lacks {fault}") from fault
+        for name, value in given.items():
+            self._check_recorded(name, value)
+        return Variant(self, seed, given, str(record.get("lang", "fr")))
+
+    def _check_recorded(self, name: str, value: Any) -> None:
+        spec = self.spec.given[name]
+        fits = value in spec.choices if spec.is_choice else isinstance(value, (int, float))
+        if not fits or isinstance(value, bool):
+            raise BadInput(f"{self.name}: a record gives {name} = {value!r}, which is no value of it")
+
+    def _asked_of(self, given: Mapping[str, Any]) -> tuple[Part, ...]:
+        return tuple(p for p in self.spec.parts if p.when is None or _holds(p, given))
+
+    # -------------------------------------------------------------------- texts
+
+    @property
+    def languages(self) -> tuple[str, ...]:
+        """The languages that this exercise has a statement in, among those the engine speaks."""
+        return tuple(lang for lang in languages() if self._text_file("exercises", lang).exists())
+
+    def _text_file(self, kind: str, lang: str) -> Path:
+        """``NAME.LANG.md.j2``, beside the module or inside the exercise's own folder."""
+        beside = self.course.root / kind / f"{self.name}.{lang}.md.j2"
+        within = self.course.root / kind / self.name / f"{self.name}.{lang}.md.j2"
+        return within if within.exists() else beside
+
+    def text(self, kind: str, lang: str, variables: Mapping[str, object]) -> statement.Text:
+        """The texts of the exercise (``exercises``) or of its solution (``solutions``).
+
+        A solution need not have one: then every section is absent.
+        """
+        path = self._text_file(kind, lang)
+        if not path.exists() and kind == "solutions":
+            return statement.Text("", "", {}, path.name)
+        if not path.exists():
+            raise BadCourse(f"{self.name} has no text in {lang!r}: {kind}/{path.name} is missing")
+        return statement.render(path, self.course.template_folders, variables)
+
+    def title(self, lang: str) -> str:
+        """The title, taken from the statement of the first variant."""
+        return self.variant(0, lang).text.title
+
+
+def _holds(part: Part, given: Mapping[str, Any]) -> bool:
+    import inspect
+
+    names = inspect.signature(part.when).parameters
+    if not set(names) <= set(given):
+        return True
+    return bool(part.when(*[given[n] for n in names]))
+
+
+class Variant:
+    """One student's version of an exercise."""
+
+    def __init__(self, exercise: CourseExercise, seed: int, given: Mapping[str, Any], lang: str):
+        if lang not in languages():
+            raise unknown("language", lang, languages())
+        self.exercise = exercise
+        self.seed = seed
+        self.lang = lang
+        self.given: Mapping[str, Any] = MappingProxyType(dict(given))  #: canonical units, as printed
+
+    def __repr__(self) -> str:
+        return f"<variant {self.exercise.name} {self.seed}>"
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """The parts that this variant asks."""
+        return self.exercise._asked_of(self.given)
+
+    @cached_property
+    def record(self) -> dict[str, Any]:
+        """The JSON record: what is issued, stored and marked against; no answer in it."""
+        spec = self.exercise.spec
+        return {
+            "exercise": self.exercise.name,
+            "version": spec.version,
+            "seed": self.seed,
+            "lang": self.lang,
+            "given": {n: {"value": v, "unit": spec.given[n].unit} for n, v in self.given.items()},
+            "parts": [
+                {"id": p.id, "quantity": p.quantity, "unit": p.unit, "kind": p.kind, "points": p.points}
+                for p in self.parts
+            ],
+        }
+
+    def in_language(self, lang: str) -> Variant:
+        """The same variant on a sheet in another language."""
+        return Variant(self.exercise, self.seed, self.given, lang)
+
+    def solution(self) -> dict[str, Any]:
+        """The asked quantities in canonical units and full precision."""
+        return self.exercise.solve(**self.given, only=self._quantities)
+
+    @property
+    def _quantities(self) -> tuple[str, ...]:
+        along = (p.along for p in self.parts if p.along)
+        return tuple(dict.fromkeys([*(p.quantity for p in self.parts), *along]))
+
+    @cached_property
+    def text(self) -> statement.Text:
+        """The statement's sections in this variant's language."""
+        return self.exercise.text("exercises", self.lang, self.printed)
+
+    @property
+    def printed(self) -> dict[str, str]:
+        """Given values as running text, for the texts: ``228,6 mm``."""
+        spec = self.exercise.spec
+        return {
+            n: str(v) if spec.given[n].is_choice else with_unit(plain(v), spec.given[n].unit, self.lang)
+            for n, v in self.given.items()
+        }
+
+    def grade(self, answers: Mapping[str, Any]) -> Marking:
+        """Mark a student's answers, by part id.
+
+        Raises
+        ------
+        UnknownName
+            An answer to a part that this variant does not ask.
+        """
+        from coursework.marking import mark
+
+        return mark(self, answers)
+
+    def handout(self, student: str = "") -> Handout:
+        """What the student's sheet shows."""
+        from coursework.sheets import handout
+
+        return handout(self, student)
+
+    def answer_sheet(self, student: str = "") -> AnswerSheet:
+        """The handout with its answers and worked solution."""
+        from coursework.sheets import answer_sheet
+
+        return answer_sheet(self, student)

@@ -1,0 +1,79 @@
+"""Every deliberate error, each a :class:`CourseworkError` and a builtin as well.
+
+A message says what was asked, what was found and what would do.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class CourseworkError(Exception):
+    """Base class of all deliberate errors."""
+
+
+class UnknownName(CourseworkError, LookupError):
+    """A name that is not there; the message offers the nearest one."""
+
+
+class MissingQuantity(CourseworkError, TypeError):
+    """A request needs a quantity that nothing gives."""
+
+
+class Cycle(CourseworkError, ValueError):
+    """Quantities that need each other."""
+
+
+class WrongUnit(CourseworkError, ValueError):
+    """A value in a unit of another dimension, or in no unit we know."""
+
+
+class WrongValue(CourseworkError, ValueError):
+    """A given value outside its domain: a negative length, a text for a number."""
+
+
+class CannotAssemble(CourseworkError, ValueError):
+    """The linkage does not close; the message says by how much."""
+
+
+class Undefined(CourseworkError, ValueError):
+    """A quantity that does not exist in this configuration."""
+
+
+class Starved(CourseworkError, RuntimeError):
+    """No variant was found within the allowed draws; names the condition that refuses."""
+
+
+class NoSolution(CourseworkError, LookupError):
+    """An answer was asked of a course folder that has no ``solutions/``."""
+
+
+class BadCourse(CourseworkError, ValueError):
+    """A course folder, or a file in it, is not what it should be."""
+
+
+class BadStatement(BadCourse):
+    """A statement's text cannot be rendered: unknown variable, refused formula."""
+
+
+class BadInput(CourseworkError, ValueError):
+    """A file given by the user cannot be read as what it should be."""
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """``"; did you mean 'x'?"``, or the whole list when nothing is near."""
+    known = list(known)
+    close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    if not close:
+        folded = {k.casefold(): k for k in known}
+        close = [folded[name.casefold()]] if name.casefold() in folded else []
+    if close:
+        return f"; did you mean {close[0]!r}?"
+    return f"; there is: {', '.join(sorted(known))}" if known else "; there is none"
+
+
+def unknown(kind: str, name: str, known: Iterable[str], where: str = "") -> UnknownName:
+    """The error for a look-up that failed."""
+    place = f" in {where}" if where else ""
+    return UnknownName(f"no {kind} {name!r}{place}{nearest(name, known)}")

@@ -1,0 +1,176 @@
+"""A figure: elements, scaled to a paper box, with their labels placed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+from coursework.errors import WrongValue
+from coursework.figures.elements import Element
+from coursework.figures.ink import MARKS, THIN, Ink, Path
+from coursework.figures.paper import Paper
+from coursework.figures.placing import Label, place
+from coursework.figures.writing import written
+
+_MARGIN = 1.0  #: white round the drawing, mm
+_TRIES = 40
+
+
+class LabelBox(NamedTuple):
+    """Where a label is printed: mm on paper from the top left corner of the figure, y down."""
+
+    label: str
+    x: float
+    y: float
+    width: float
+    height: float
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """A drawing at one scale: paper mm, y up; ``low`` and ``high`` are the corners of the frame."""
+
+    scale: float
+    ink: tuple[Ink, ...]
+    labels: tuple[Label, ...]
+    low: complex
+    high: complex
+
+
+@dataclass(frozen=True, init=False)
+class Figure:
+    """Elements in mechanism coordinates (complex, mm, y up), drawn to one scale in a paper box.
+
+    ``paper_mm`` is the largest width and height the drawing may take, labels included; the
+    aspect is kept, so one of the two is usually not used up.
+
+    Raises WrongValue if an element is not one of this package's, if the drawing has no
+    extent, or if the box is too small for the symbols and labels.
+    """
+
+    elements: tuple[Element, ...]
+    paper_mm: tuple[float, float]
+
+    def __init__(self, *elements: Element, paper_mm: tuple[float, float] = (110, 75)) -> None:
+        for element in elements:
+            if not isinstance(element, Element):
+                raise WrongValue(f"a figure is made of elements such as pin(0, 'A'); found {element!r}")
+        object.__setattr__(self, "elements", elements)
+        object.__setattr__(self, "paper_mm", (float(paper_mm[0]), float(paper_mm[1])))
+        self._extent  # noqa: B018  a figure without extent is refused where it is written
+
+    @cached_property
+    def _extent(self) -> tuple[complex, complex]:
+        """Corners of the mechanism, without symbols and labels."""
+        points = [z for element in self.elements for z in element.reach()]
+        low, high = _corners(points) if points else (0j, 0j)
+        if not abs(high - low) > 0:
+            names = ", ".join(type(element).__name__ for element in self.elements) or "no element"
+            raise WrongValue(f"the figure has no extent, so no scale: it is made of {names}")
+        return low, high
+
+    @cached_property
+    def _layout(self) -> _Layout:
+        low, high = self._extent
+        size = high - low
+        symbols = complex(14, 12)  # a first guess of the paper that symbols and labels take
+        scale = float("inf")
+        for _ in range(_TRIES):
+            scale = min(0.985 * scale, self._fitting(size, symbols))
+            layout = self._laid_out(scale)
+            symbols = layout.high - layout.low - scale * size
+            if self._fits(layout):
+                wider = self._fitting(size, symbols)
+                # Now that the labels have shown how much paper they take, grow once into what is left.
+                grown = self._laid_out(wider) if wider > 1.03 * scale else layout
+                return grown if self._fits(grown) else layout
+        raise WrongValue(f"a paper box of {self.paper_mm} mm is too small for this figure's labels")
+
+    def _fits(self, layout: _Layout) -> bool:
+        paper = layout.high - layout.low
+        return paper.real <= self.paper_mm[0] and paper.imag <= self.paper_mm[1]
+
+    def _fitting(self, size: complex, symbols: complex) -> float:
+        room = complex(*self.paper_mm) - symbols
+        scales = [r / s for r, s in ((room.real, size.real), (room.imag, size.imag)) if s > 0]
+        if min(scales) <= 0:
+            raise WrongValue(f"a paper box of {self.paper_mm} mm is too small for this figure's labels")
+        return min(scales)
+
+    def _laid_out(self, scale: float) -> _Layout:
+        low, high = self._extent
+        bars = [bar for element in self.elements for bar in element.bars()]
+        paper = Paper(scale, bars, (low + high) / 2)
+        for element in self.elements:
+            element.draw(paper)
+        labels = place(paper.wishes, paper.ink)
+        leaders = [Path(label.leader, THIN, layer=MARKS) for label in labels if label.leader]
+        ink = (*paper.ink, *leaders)
+        half = [complex(item.width, item.width) / 2 for item in ink]
+        edges = [z + d for item, h in zip(ink, half, strict=True) for z in item.outline() for d in (h, -h)]
+        first, last = _corners([*edges, *(z for label in labels for z in label.corners)])
+        margin = complex(_MARGIN, _MARGIN)
+        # The frame lies on tenths of a mm too, so that rounded points stay rounded in the file.
+        return _Layout(scale, ink, labels, _tenths(first - margin), _tenths(last + margin))
+
+    @property
+    def scale(self) -> float:
+        """Millimetres on paper for one millimetre of mechanism."""
+        return self._layout.scale
+
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        """Width and height of the drawing on paper."""
+        size = self._layout.high - self._layout.low
+        return round(size.real, 1), round(size.imag, 1)
+
+    def labels(self) -> tuple[LabelBox, ...]:
+        """The boxes of the labels as placed."""
+        low, high = self._layout.low, self._layout.high
+        corner = complex(low.real, high.imag)
+        return tuple(
+            LabelBox(
+                it.label,
+                it.corners[0].real - corner.real,
+                corner.imag - it.corners[1].imag,
+                it.width,
+                it.height,
+            )
+            for it in self._layout.labels
+        )
+
+    def _written(self, outlined: bool) -> str:
+        layout = self._layout
+        corner = complex(layout.low.real, layout.high.imag)
+        return written(layout.ink, layout.labels, corner, self.size_mm, outlined=outlined)
+
+    def svg(self) -> str:
+        """The drawing as SVG, in mm, labels as text."""
+        return self._written(outlined=False)
+
+    def outlined_svg(self) -> str:
+        """The same with labels as outlines: looks the same on a machine without the font."""
+        return self._written(outlined=True)
+
+    def png(self, ppi: float = 200) -> bytes:
+        """The drawing as PNG, ``ppi`` pixels an inch."""
+        from coursework.figures.typesetting import converted
+
+        return converted(self.svg(), self.size_mm[0], "png", ppi)
+
+    def pdf(self) -> bytes:
+        """The drawing as one PDF page of its own size."""
+        from coursework.figures.typesetting import converted
+
+        return converted(self.svg(), self.size_mm[0], "pdf")
+
+
+def _corners(points: Sequence[complex]) -> tuple[complex, complex]:
+    xs, ys = [z.real for z in points], [z.imag for z in points]
+    return complex(min(xs), min(ys)), complex(max(xs), max(ys))
+
+
+def _tenths(z: complex) -> complex:
+    return complex(round(z.real, 1), round(z.imag, 1))

@@ -1,0 +1,112 @@
+"""What is drawn, in mm on paper, y up: paths, discs and arcs, and the writing of them as SVG."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+BAR, EDGE, THIN = 0.6, 0.35, 0.2  #: line widths, mm
+DASHED, CHAIN, DOTTED = "1.6 1", "4 1 0.6 1", "0.8 0.8"
+WHITE, TINT, BLACK, NONE = "#fff", "#e4e4e4", "#000", "none"
+
+# From the bottom to the top of the pile.
+FILLS, LINES, GUIDES, BLOCKS, BARS, PINS, MARKS = range(7)
+
+Place = Callable[[complex], complex]
+
+
+def number(x: float) -> str:
+    """A length in mm, to the hundredth at most, without idle zeros."""
+    text = f"{x:.2f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text
+
+
+def pair(z: complex) -> str:
+    return f"{number(z.real)} {number(z.imag)}"
+
+
+def turn(degrees: float) -> complex:
+    """Unit vector at an angle."""
+    return cmath.rect(1.0, math.radians(degrees))
+
+
+def _paint(width: float, fill: str, dash: str = "") -> str:
+    stroke = f' stroke-width="{number(width)}"' if width else ' stroke="none"'
+    filled = f' fill="{fill}"' if fill != NONE else ""
+    return stroke + filled + (f' stroke-dasharray="{dash}"' if dash else "")
+
+
+@dataclass(frozen=True)
+class Path:
+    """A broken line, or a polygon when closed."""
+
+    points: tuple[complex, ...]
+    width: float = EDGE
+    fill: str = NONE
+    dash: str = ""
+    closed: bool = False
+    layer: int = LINES
+    solid: bool = False  #: no label may lie inside
+
+    def outline(self) -> tuple[complex, ...]:
+        return (*self.points, self.points[0]) if self.closed else self.points
+
+    def svg(self, place: Place) -> str:
+        way = "L".join(pair(place(z)) for z in self.points) + ("Z" if self.closed else "")
+        return f'<path d="M{way}"{_paint(self.width, self.fill, self.dash)}/>'
+
+
+@dataclass(frozen=True)
+class Disc:
+    """A circle, filled or not."""
+
+    center: complex
+    radius: float
+    width: float = EDGE
+    fill: str = NONE
+    dash: str = ""
+    layer: int = LINES
+    solid: bool = False
+
+    def outline(self) -> tuple[complex, ...]:
+        sides = max(12, min(72, round(4 * self.radius)))
+        return tuple(self.center + self.radius * turn(360 * k / sides) for k in range(sides + 1))
+
+    def svg(self, place: Place) -> str:
+        center = place(self.center)
+        at = f'cx="{number(center.real)}" cy="{number(center.imag)}" r="{number(self.radius)}"'
+        return f"<circle {at}{_paint(self.width, self.fill, self.dash)}/>"
+
+
+@dataclass(frozen=True)
+class Arc:
+    """An arc from one angle to another, degrees, counter-clockwise when the second is larger."""
+
+    center: complex
+    radius: float
+    start: float
+    end: float
+    width: float = EDGE
+    dash: str = ""
+    layer: int = LINES
+    solid: bool = False
+
+    def at(self, degrees: float) -> complex:
+        return self.center + self.radius * turn(degrees)
+
+    def outline(self) -> tuple[complex, ...]:
+        steps = max(2, round(abs(self.end - self.start) / 6))
+        return tuple(self.at(self.start + (self.end - self.start) * k / steps) for k in range(steps + 1))
+
+    def svg(self, place: Place) -> str:
+        # SVG draws nothing between two equal points, so a long arc goes by thirds.
+        stops = [self.start + (self.end - self.start) * k / 3 for k in range(4)]
+        way = self.end < self.start
+        radius = number(self.radius)
+        legs = "".join(f"A{radius} {radius} 0 0 {int(way)} {pair(place(self.at(a)))}" for a in stops[1:])
+        return f'<path d="M{pair(place(self.at(self.start)))}{legs}"{_paint(self.width, NONE, self.dash)}/>'
+
+
+Ink = Path | Disc | Arc

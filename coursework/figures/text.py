@@ -1,0 +1,186 @@
+"""Labels: a small subset of LaTeX mathematics turned into runs of letters, and measured.
+
+A label is a symbol (``r_1``, ``\\dot{\\psi}``, ``O_4``) or plain words (``crank``, ``228.6 mm``).
+Symbols have italic letters and Greek, upright digits; words are upright.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+from coursework.errors import WrongValue, unknown
+
+SIZE = 3.7  #: letter size, mm on paper
+SMALL = 0.72  #: size of a subscript relative to its base
+DROP, RAISE = -0.20, 0.36  #: shift of a subscript and of a superscript, em of the base
+_SLACK = 1.06  #: a reader's machine may draw the text in another serif, a little wider
+
+_GREEK_NAMES = """
+    alpha beta gamma delta epsilon varepsilon zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau
+    phi varphi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega
+"""
+GREEK = dict(zip(_GREEK_NAMES.split(), "αβγδεεζηθικλμνξπρστφφχψωΓΔΘΛΞΠΣΦΨΩ", strict=True))
+_SIGNS = {
+    "circ": "°", "cdot": "·", "times": "×", "pm": "±", "infty": "∞", "prime": "′",
+    ",": " ", " ": " ", ";": " ",
+}  # fmt: skip
+_ACCENTS = {
+    "dot": "dot", "ddot": "ddot", "vec": "arrow", "overrightarrow": "arrow", "bar": "bar", "overline": "bar",
+}  # fmt: skip
+_UPRIGHT = ("mathrm", "text", "num")
+
+# Advance widths of the embedded serif, upright and italic, hundredths of an em.
+_UPRIGHT_WIDTHS = {
+    19: "'|", 22: ",.", 25: "ijlI-:;·′  !", 29: "°", 32: "tJ()/[]f", 38: "rs*", 42: "cz",
+    46: "aeégèêàç0123456789?ôk", 50: "bdovxhnpquùSPFyLε", 55: "+−=<>±×EBYαβζδηθκλμξτ", 60: "TRZXρσφπνω",
+    66: "CKUV&%", 71: "ADGHNOQΩΘ", 79: "mw∞œ", 95: "WM",
+}  # fmt: skip
+_ITALIC_WIDTHS = {
+    19: "|", 23: ",.:;!", 27: "′° ·iîjlι", 32: "ftI()/[]", 37: "rsεξ", 41: "cesτéèêJz",
+    45: "0123456789SoôFγδθζμν", 49: "abdghkpqxvyαàκβλρηπσχ", 53: "EnuLTPhù+−=<>±×Γ", 58: "BRYZψφΣ",
+    62: "CUXΛΔ", 67: "ADGHKNOQVΘωΞΦ", 70: "wΠΨΩ", 79: "mMœ∞", 92: "W",
+}  # fmt: skip
+
+
+def _by_letter(table: dict[int, str]) -> dict[str, float]:
+    return {letter: width / 100 for width, letters in table.items() for letter in letters}
+
+
+_WIDTHS = {False: _by_letter(_UPRIGHT_WIDTHS), True: _by_letter(_ITALIC_WIDTHS)}
+_DESCENDING = frozenset("gjpqyQJ,;()[]/βγζημξρφψχ|")
+_ITALIC_DESCENDING = _DESCENDING | {"f"}
+_LOW = frozenset("acegmnopqrsuvwxyzαεγηικμνοπρστυχω.,:·−+=×-")
+
+
+@dataclass(frozen=True)
+class Run:
+    """Letters of one style; ``size`` and ``rise`` in em of the label's own size."""
+
+    text: str
+    italic: bool
+    size: float = 1.0
+    rise: float = 0.0
+
+    @property
+    def width(self) -> float:
+        table = _WIDTHS[self.italic]
+        return self.size * sum(table.get(letter, 0.75) for letter in self.text)
+
+    @property
+    def top(self) -> float:
+        return self.rise + self.size * (0.46 if set(self.text) <= _LOW else 0.70)
+
+    @property
+    def bottom(self) -> float:
+        descending = _ITALIC_DESCENDING if self.italic else _DESCENDING
+        return self.rise - self.size * (0.24 if descending & set(self.text) else 0.02)
+
+
+@dataclass(frozen=True)
+class Accent:
+    """A mark over the runs ``first`` to ``last - 1``: dot, ddot, arrow or bar."""
+
+    kind: str
+    first: int
+    last: int
+
+
+@dataclass(frozen=True)
+class Text:
+    """A parsed label; lengths in em."""
+
+    runs: tuple[Run, ...]
+    accents: tuple[Accent, ...]
+
+    @property
+    def width(self) -> float:
+        return sum(run.width for run in self.runs)
+
+    @property
+    def top(self) -> float:
+        return max(run.top for run in self.runs) + (0.24 if self.accents else 0.0)
+
+    @property
+    def bottom(self) -> float:
+        return min(run.bottom for run in self.runs)
+
+    def start(self, index: int) -> float:
+        """Abscissa of a run, from the left of the label."""
+        return sum(run.width for run in self.runs[:index])
+
+    @property
+    def box(self) -> tuple[float, float]:
+        """Width and height of the label's box, mm on paper, with some slack."""
+        return self.width * SIZE * _SLACK + 0.2, (self.top - self.bottom) * SIZE
+
+
+@lru_cache(maxsize=2048)
+def read(label: str) -> Text:
+    """The runs of a label; UnknownName for a command that is not known, WrongValue for stray braces."""
+    label = label.strip().removeprefix("$").removesuffix("$").strip()
+    if not re.search(r"[\\_^{}]", label) and re.search(r"\s|[^\W\d]{3,}", label):
+        return Text((Run(label, italic=False),), ())
+    reader = _Reader(label)
+    reader.sequence(Run("", italic=True), stop=None)
+    if not reader.runs:
+        raise WrongValue(f"label {label!r} has no letter to print")
+    return Text(tuple(reader.runs), tuple(reader.accents))
+
+
+class _Reader:
+    """Reads one formula from left to right, appending runs."""
+
+    def __init__(self, label: str) -> None:
+        self.label = label
+        self.tokens = re.findall(r"\\[A-Za-z]+|\\.|.", label)[::-1]
+        self.runs: list[Run] = []
+        self.accents: list[Accent] = []
+        self.barrier = 0  # runs before this one are complete: an accent counts on them
+
+    def sequence(self, style: Run, stop: str | None) -> None:
+        while self.tokens and self.tokens[-1] != stop:
+            self.atom(style)
+        if stop is not None and not self.tokens:
+            raise WrongValue(f"label {self.label!r} lacks a closing brace")
+        if stop is not None:
+            self.tokens.pop()
+
+    def atom(self, style: Run) -> None:
+        if not self.tokens:
+            raise WrongValue(f"label {self.label!r} ends where a symbol is expected")
+        token = self.tokens.pop()
+        if token == "{":
+            self.sequence(style, stop="}")
+        elif token == "}":
+            raise WrongValue(f"label {self.label!r} has a closing brace without its opening one")
+        elif token in "_^":
+            shift = DROP if token == "_" else RAISE
+            self.atom(replace(style, size=style.size * SMALL, rise=style.rise + shift * style.size))
+        elif token.startswith("\\"):
+            self.command(token[1:], style)
+        elif not token.isspace() or not style.italic:
+            self.letters(token.replace("'", "′").replace("-", "−" if style.italic else "-"), style)
+
+    def command(self, name: str, style: Run) -> None:
+        if name in _ACCENTS:
+            first = self.barrier = len(self.runs)
+            self.atom(style)
+            self.barrier = len(self.runs)
+            self.accents.append(Accent(_ACCENTS[name], first, self.barrier))
+        elif name in _UPRIGHT:
+            self.atom(replace(style, italic=False))
+        elif name in GREEK or name in _SIGNS:
+            self.letters(GREEK.get(name) or _SIGNS[name], style)
+        else:
+            known = [*GREEK, *_SIGNS, *_ACCENTS, *_UPRIGHT]
+            raise unknown("label command", name, known, f"label {self.label!r}")
+
+    def letters(self, text: str, style: Run) -> None:
+        style = replace(style, italic=style.italic and text.isalpha())
+        last = self.runs[-1] if len(self.runs) > self.barrier else None
+        if last is not None and replace(last, text="") == style:
+            self.runs[-1] = replace(last, text=last.text + text)
+        else:
+            self.runs.append(replace(style, text=text))

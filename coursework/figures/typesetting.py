@@ -1,0 +1,42 @@
+"""What needs typst: PNG, PDF, and the outlines of letters. Imported only when one of them is asked."""
+
+from __future__ import annotations
+
+import re
+import threading
+from functools import lru_cache
+
+import typst
+
+from coursework.figures.writing import FONT
+
+_PAGE = b"""#set page(width: auto, height: auto, margin: 0pt)
+#image(bytes(sys.inputs.svg), format: "svg", width: float(sys.inputs.width) * 1mm)"""
+
+# One letter at 100 pt on its baseline, so that outlines are in hundredths of an em, y up.
+_LETTER = f"""#set page(width: auto, height: auto, margin: 0pt, fill: none)
+#set text(font: "{FONT}", size: 100pt, top-edge: "baseline", bottom-edge: "baseline")
+#text(style: sys.inputs.style, sys.inputs.letter)""".encode()
+
+_own = threading.local()
+
+
+def _compiler() -> typst.Compiler:
+    """One compiler for each thread, kept: a new one would read its fonts again."""
+    if not hasattr(_own, "compiler"):
+        _own.compiler = typst.Compiler(ignore_system_fonts=True)
+    return _own.compiler
+
+
+def converted(svg: str, width_mm: float, form: str, ppi: float | None = None) -> bytes:
+    """An SVG drawing as ``png`` or ``pdf``, with the fonts that typst brings and no other."""
+    inputs = {"svg": svg, "width": str(width_mm)}
+    return _compiler().compile(input=_PAGE, format=form, ppi=ppi, sys_inputs=inputs, timestamp=0)
+
+
+@lru_cache(maxsize=512)
+def glyph(letter: str, italic: bool) -> str:
+    """SVG path of a letter, hundredths of an em, y up; empty for a space."""
+    inputs = {"letter": letter, "style": "italic" if italic else "normal"}
+    page = _compiler().compile(input=_LETTER, format="svg", sys_inputs=inputs, timestamp=0).decode()
+    return " ".join(re.findall(r'<symbol[^>]*><path d="([^"]*)"', page)).strip()

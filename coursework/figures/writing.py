@@ -1,0 +1,104 @@
+"""A laid-out figure as SVG: short, deterministic, black on white."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+
+from coursework.figures.ink import BLACK, Ink, number, pair
+from coursework.figures.placing import Label
+from coursework.figures.text import SIZE, Accent, Run, Text
+
+FONT = "Libertinus Serif"
+_FALLBACK = f"{FONT}, Linux Libertine O, Times New Roman, serif"
+
+
+def written(
+    ink: Sequence[Ink], labels: Sequence[Label], corner: complex, size: tuple[float, float], *, outlined: bool
+) -> str:
+    """SVG of paper-mm drawing; ``corner`` is the frame's top left, which becomes (0, 0), y down."""
+
+    def place(z: complex) -> complex:
+        return complex(z.real - corner.real, corner.imag - z.imag)
+
+    width, height = map(number, size)
+    lines = [item.svg(place) for item in sorted(ink, key=lambda item: item.layer)]
+    texts = [_label(label, place(label.center), outlined) for label in labels]
+    style = "" if outlined else f' font-family="{_FALLBACK}" font-size="{number(SIZE)}" text-anchor="middle"'
+    return "\n".join([
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
+        f'viewBox="0 0 {width} {height}">',
+        f'<rect width="{width}" height="{height}" fill="#fff"/>',
+        f'<g fill="none" stroke="{BLACK}" stroke-linecap="round" stroke-linejoin="round">', *lines, "</g>",
+        f'<g fill="{BLACK}" stroke="none"{style}>', *texts, "</g>",
+        "</svg>\n",
+    ])  # fmt: skip
+
+
+def _label(label: Label, center: complex, outlined: bool) -> str:
+    text = label.text
+    baseline = center + 1j * SIZE * (text.top + text.bottom) / 2
+    left = baseline - SIZE * text.width / 2
+    letters = _outlines(text, left) if outlined else _text(text, baseline)
+    return letters + "".join(_accent(text, accent, left) for accent in text.accents)
+
+
+def _text(text: Text, at: complex) -> str:
+    if len(text.runs) == 1 and text.runs[0].size == 1:
+        italic = ' font-style="italic"' if text.runs[0].italic else ""
+        body = escape(text.runs[0].text)
+    else:
+        italic, rise, body = "", 0.0, ""
+        for run in text.runs:
+            body += _tspan(run, rise)
+            rise = run.rise
+    return f'<text x="{number(at.real)}" y="{number(at.imag)}"{italic}>{body}</text>'
+
+
+def _tspan(run: Run, rise: float) -> str:
+    style = ' font-style="italic"' if run.italic else ""
+    style += f' font-size="{number(run.size * SIZE)}"' if run.size != 1 else ""
+    style += f' dy="{number((rise - run.rise) * SIZE)}"' if run.rise != rise else ""
+    return f"<tspan{style}>{escape(run.text)}</tspan>"
+
+
+def _outlines(text: Text, left: complex) -> str:
+    from coursework.figures.typesetting import glyph
+
+    paths = []
+    for index, run in enumerate(text.runs):
+        at = left + SIZE * complex(text.start(index), -run.rise)
+        for letter in run.text:
+            one = Run(letter, run.italic, run.size)
+            scale = _fine(run.size * SIZE / 100)
+            if outline := glyph(letter, run.italic):
+                move = f"translate({pair(at)}) scale({scale} -{scale})"
+                paths.append(f'<path transform="{move}" d="{outline}"/>')
+            at += SIZE * one.width
+    return "".join(paths)
+
+
+def _fine(x: float) -> str:
+    """A scale, which needs more digits than a length."""
+    return f"{x:.5f}".rstrip("0")
+
+
+def _accent(text: Text, accent: Accent, left: complex) -> str:
+    """Dots as discs, bars and arrows as lines: they need no combining character of the font."""
+    runs = text.runs[accent.first : accent.last]
+    start = left.real + SIZE * text.start(accent.first)
+    width = SIZE * sum(run.width for run in runs)
+    # Italic letters lean: what stands above them stands a little to the right.
+    lean = 0.08 * SIZE if runs[0].italic else 0.0
+    top = left.imag - SIZE * (max(run.top for run in runs) + 0.13)
+    middle = start + width / 2 + lean
+    if accent.kind in ("dot", "ddot"):
+        shifts = (0.0,) if accent.kind == "dot" else (-0.11 * SIZE, 0.11 * SIZE)
+        radius = number(0.065 * SIZE)
+        return "".join(f'<circle cx="{number(middle + s)}" cy="{number(top)}" r="{radius}"/>' for s in shifts)
+    a, b = number(start + lean), number(start + width + lean)
+    way = f"M{a} {number(top)}H{b}"
+    if accent.kind == "arrow":
+        back = number(start + width + lean - 0.75)
+        way += f"M{back} {number(top - 0.45)}L{b} {number(top)}L{back} {number(top + 0.45)}"
+    return f'<path d="{way}" fill="none" stroke="{BLACK}" stroke-width="0.2"/>'

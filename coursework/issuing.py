@@ -1,0 +1,251 @@
+"""Who gets which variant: the roster, distinct draws, what was issued, and the key to it."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import re
+import unicodedata
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coursework import draws
+from coursework.course import Course, CourseExercise, Variant
+from coursework.errors import BadInput, Starved
+from coursework.gradebook import ISSUED_FORMAT
+from coursework.language import languages
+
+_STUDENT_COLUMNS = ("student", "name", "étudiant", "etudiant", "élève", "eleve", "nom")
+_LANG_COLUMNS = ("lang", "language", "langue")
+
+
+@dataclass(frozen=True)
+class Student:
+    """A line of the roster; ``lang`` is empty where it does not say."""
+
+    name: str
+    lang: str = ""
+
+
+def read_roster(path: Path) -> list[Student]:
+    """The students of a CSV with a column ``student`` and, if wanted, ``lang``.
+
+    Raises
+    ------
+    BadInput
+        The file cannot be read, names no students, or names one twice.
+    """
+    try:
+        text = path.read_bytes().decode("utf-8-sig")
+    except OSError as fault:
+        raise BadInput(f"the roster {path} cannot be read: {fault.strerror}") from fault
+    except UnicodeDecodeError as fault:
+        raise BadInput(f"the roster {path} is not UTF-8; save it as “CSV UTF-8”") from fault
+    first = text.split("\n", 1)[0]
+    lines = csv.DictReader(io.StringIO(text), delimiter=max((";", ",", "\t"), key=first.count))
+    header = {(h or "").strip().casefold(): h for h in lines.fieldnames or ()}
+    column = next((header[c] for c in _STUDENT_COLUMNS if c in header), None)
+    if column is None:
+        found = ", ".join(h for h in header if h) or "nothing"
+        raise BadInput(f"the roster {path} needs a column named student; found {found}")
+    lang_column = next((header[c] for c in _LANG_COLUMNS if c in header), None)
+    students: list[Student] = []
+    seen: dict[str, int] = {}
+    for number, line in enumerate(lines, start=2):
+        name = " ".join((line[column] or "").split())
+        lang = (line[lang_column] or "").strip().lower() if lang_column else ""
+        if not name:
+            continue
+        if lang and lang not in languages():
+            raise BadInput(
+                f"the roster {path}, line {number}: no language {lang!r}; there is {', '.join(languages())}"
+            )
+        if name.casefold() in seen:
+            raise BadInput(
+                f"the roster {path}, line {number}: {name} stands on line {seen[name.casefold()]} already; "
+                "tell them apart, by a number for instance"
+            )
+        seen[name.casefold()] = number
+        students.append(Student(name, lang))
+    if not students:
+        raise BadInput(f"the roster {path} names no student")
+    return students
+
+
+def distinct_variants(exercise: CourseExercise, first_seed: int, count: int, lang: str) -> list[Variant]:
+    """``count`` variants of different given values, from the first seed on; equal ones are passed over.
+
+    Raises
+    ------
+    Starved
+        Fewer exist, or so few that they are not found; says how many.
+    """
+    found: dict[tuple, Variant] = {}
+    seed = first_seed
+    limit = first_seed + 30 * count + 300
+    while len(found) < count and seed < limit:
+        batch = range(seed, min(limit, seed + max(16, count - len(found))))
+        for variant in exercise.variants(batch, lang):
+            found.setdefault(tuple(variant.given.values()), variant)
+            if len(found) == count:
+                break
+        seed = batch.stop
+    if len(found) < count:
+        exist = draws.population(exercise.spec)
+        told = f"{len(found)} were found" if exist is None else f"only {exist} exist"
+        raise Starved(
+            f"{exercise.name}: {count} different variants were asked, {told}; "
+            "ask for fewer, widen a range or make a step finer"
+        )
+    return list(found.values())
+
+
+@dataclass(frozen=True)
+class Issue:
+    """One variant for one student, in the languages it is printed in."""
+
+    student: str
+    variant: Variant
+    langs: tuple[str, ...]
+    stem: str  #: what its files are called
+
+
+def issue(
+    course: Course,
+    names: Sequence[str],
+    *,
+    first_seed: int,
+    count: int,
+    langs: Sequence[str],
+    roster: Sequence[Student] = (),
+) -> list[Issue]:
+    """One variant of each exercise for each student; or ``count`` variants when there is no roster.
+
+    Raises
+    ------
+    Starved
+        An exercise has not enough different variants.
+    BadInput
+        An exercise has no text in one of the languages.
+    """
+    issues = []
+    students = list(roster) or [Student("")] * count
+    stems = file_stems(students)
+    for name in names:
+        exercise = course[name]
+        for lang in {*langs, *(s.lang for s in students if s.lang)}:
+            if lang not in exercise.languages:
+                have = ", ".join(exercise.languages) or "none"
+                raise BadInput(f"{name} has no text in {lang!r}; it has {have}")
+        variants = distinct_variants(exercise, first_seed, len(students), langs[0])
+        for student, stem, variant in zip(students, stems, variants, strict=True):
+            own = (student.lang,) if student.lang else tuple(langs)
+            stem = stem or f"{variant.seed:05d}"
+            issues.append(Issue(student.name, variant.in_language(own[0]), own, stem))
+    return issues
+
+
+def file_stems(students: Sequence[Student]) -> list[str]:
+    """File names from students' names: ASCII, different, stable; empty where there is no name."""
+    taken: dict[str, int] = {}
+    stems = []
+    for student in students:
+        plain = unicodedata.normalize("NFKD", student.name.casefold()).encode("ascii", "ignore").decode()
+        stem = re.sub(r"[^a-z0-9]+", "-", plain).strip("-")
+        stem = stem or ("student" if student.name else "")
+        if stem:
+            taken[stem] = taken.get(stem, 0) + 1
+            stem = stem if taken[stem] == 1 else f"{stem}-{taken[stem]}"
+        stems.append(stem)
+    return stems
+
+
+def issued_content(course: Course, issues: Sequence[Issue]) -> dict[str, Any]:
+    """What ``issued.json`` says: who got which record. No answers."""
+    return {
+        "format": ISSUED_FORMAT,
+        "roster": any(i.student for i in issues),
+        "issued": [{"student": i.student, "record": i.variant.record} for i in issues],
+    }
+
+
+def plain_value(value: Any) -> Any:
+    """A quantity as JSON holds it."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def record_with_answers(variant: Variant) -> dict[str, Any]:
+    """The record and, by part, the reference answer with its unit and accepted half-width.
+
+    Raises
+    ------
+    NoSolution
+        The course folder has no solutions.
+    """
+    solution = variant.solution()
+    answers = {}
+    for part in variant.parts:
+        value = solution[part.quantity]
+        tolerance = None
+        if not part.is_exact:
+            size = 1.0 if part.kind == "direction" else float(np.linalg.norm(value))
+            tolerance = part.half_width(size)
+        answers[part.id] = {"value": plain_value(value), "unit": part.unit, "tolerance": tolerance}
+    return {**variant.record, "answers": answers}
+
+
+def key_content(issues: Iterable[Issue]) -> list[dict[str, Any]]:
+    """What ``key.json`` says: the issued records with their answers."""
+    return [{"student": i.student, **record_with_answers(i.variant)} for i in issues]
+
+
+def key_rows(key: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+    """The lines of ``key.csv``."""
+    for record in key:
+        for part, answer in record["answers"].items():
+            value = answer["value"]
+            shown = "; ".join(f"{v!r}" for v in value) if isinstance(value, list) else value
+            yield {
+                "student": record["student"],
+                "exercise": record["exercise"],
+                "seed": record["seed"],
+                "part": part,
+                "value": shown,
+                "unit": answer["unit"],
+                "tolerance": "" if answer["tolerance"] is None else answer["tolerance"],
+            }
+
+
+def form_rows(issues: Iterable[Issue]) -> Iterator[dict[str, Any]]:
+    """The lines of ``answers.csv``: an empty form to fill."""
+    for issued in issues:
+        for part in issued.variant.parts:
+            yield {
+                "student": issued.student,
+                "exercise": issued.variant.exercise.name,
+                "seed": issued.variant.seed,
+                "part": part.id,
+                "answer": "",
+            }
+
+
+def csv_text(rows: Iterable[Mapping[str, Any]], columns: Sequence[str]) -> str:
+    """Rows as CSV with a header."""
+    out = io.StringIO()
+    writer = csv.DictWriter(out, columns, lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({c: row[c] for c in columns})
+    return out.getvalue()
+
+
+def json_text(content: Any) -> str:
+    """JSON as files hold it."""
+    return json.dumps(content, ensure_ascii=False, indent=1, allow_nan=False) + "\n"

@@ -1,0 +1,78 @@
+"""Languages: how numbers are written, and the engine's own words.
+
+The words of a language are one file, ``coursework/words/LANG.toml``; a language exists
+when its file does.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from importlib import resources
+
+from coursework.errors import unknown
+
+NARROW_SPACE = "\N{NARROW NO-BREAK SPACE}"
+MINUS = "\N{MINUS SIGN}"
+
+
+@cache
+def languages() -> tuple[str, ...]:
+    """The languages the engine speaks, in alphabetical order."""
+    folder = resources.files("coursework") / "words"
+    return tuple(sorted(f.name.removesuffix(".toml") for f in folder.iterdir() if f.name.endswith(".toml")))
+
+
+@cache
+def words(lang: str) -> Mapping[str, object]:
+    """The engine's words in one language, as nested tables of texts."""
+    if lang not in languages():
+        raise unknown("language", lang, languages())
+    return tomllib.loads((resources.files("coursework") / "words" / f"{lang}.toml").read_text("utf-8"))
+
+
+def localise(number: str, lang: str) -> str:
+    """A number written with a point (``-1234.5``) as the language prints it."""
+    style = words(lang)["numbers"]
+    return number.replace("-", MINUS).replace(".", style["decimal"])
+
+
+def plain(value: float) -> str:
+    """The shortest decimal text of a number, with a point and no exponent where that is readable.
+
+    ``228.6`` -> ``"228.6"``, ``90.0`` -> ``"90"``. Reading it back gives the same double.
+    """
+    if isinstance(value, (int, str)):
+        return str(value)
+    text = repr(float(value))
+    if text.endswith(".0"):
+        text = text[:-2]
+    return "0" if text == "-0" else text
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """A number rounded to significant digits, as a text with a point; for templates only."""
+    text = f"{float(value):.{digits}g}"
+    if "e" in text:
+        mantissa, exponent = text.split("e")
+        if -4 <= int(exponent) < 10:
+            text = f"{float(value):.{max(0, digits - 1 - int(exponent))}f}"
+        else:
+            text = f"{mantissa}e{int(exponent)}"
+    return "0" if float(text) == 0 else text
+
+
+def unit_text(unit: str, lang: str) -> str:
+    """A canonical unit as printed: ``rad/s^2`` -> ``rad/s²``, ``deg`` -> ``°``, ``1`` -> nothing."""
+    table = words(lang)["units"]
+    if unit in table:
+        return table[unit]
+    return unit.replace("^2", "²").replace("^3", "³").replace("*", "·")
+
+
+def with_unit(number: str, unit: str, lang: str) -> str:
+    """A number and its unit as running text: ``228,6 mm``, ``135°``."""
+    shown = unit_text(unit, lang)
+    space = "" if not shown or shown == "°" else NARROW_SPACE if lang == "fr" else "\N{NO-BREAK SPACE}"
+    return localise(number, lang) + space + shown

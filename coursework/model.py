@@ -1,0 +1,249 @@
+"""What an exercise says of itself: given quantities, conditions, parts. Immutable; no answers.
+
+``exercises/NAME.py`` states one :class:`Exercise` under the name ``EXERCISE``::
+
+    EXERCISE = Exercise(
+        given={
+            "r1": drawn(100, 300, step=5, unit="mm"),
+            "theta1": fixed(90, unit="deg"),
+            "mode": chosen("open", "crossed"),
+        },
+        keep=(crank_turns,),
+        parts=(Part("rA", unit="mm"), Part("theta4", unit="deg", kind="angle", points=2)),
+        figure=figure,
+    )
+"""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
+from typing import Any
+
+from coursework.errors import BadCourse, WrongValue, nearest
+
+KINDS = ("number", "angle", "integer", "choice", "point_on_line", "direction", "equation")
+_EXACT_KINDS = ("integer", "choice", "equation")
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
+
+Bound = float | Callable[..., Any]  #: a number, or a function of quantities drawn before
+
+
+@dataclass(frozen=True)
+class GivenSpec:
+    """How one given quantity varies, and what values a request may give it."""
+
+    unit: str
+    low: Bound | None = None
+    high: Bound | None = None
+    step: Fraction = Fraction(1)
+    choices: tuple[str, ...] = ()
+    default: float | str | None = None  #: value of a request that does not give it
+    positive: bool = False
+    nonzero: bool = False
+
+    @property
+    def is_choice(self) -> bool:
+        return bool(self.choices)
+
+    @property
+    def is_fixed(self) -> bool:
+        return self.low is None and not self.choices
+
+
+def _bound(value: Bound | None) -> Bound | None:
+    return value if callable(value) or value is None else float(value)
+
+
+def drawn(
+    low: Bound,
+    high: Bound,
+    *,
+    step: float = 1,
+    unit: str = "1",
+    default: float | None = None,
+    positive: bool | None = None,
+    nonzero: bool = False,
+) -> GivenSpec:
+    """A quantity drawn on the grid of multiples of ``step`` in [low, high].
+
+    A bound may be a function of quantities declared before it; its parameters name them. ``positive``
+    says whether a request may only give positive values; unless told, it follows from a positive
+    ``low``. ``nonzero`` refuses 0, both in draws and in requests. ``default`` is what a request
+    that leaves the quantity out takes.
+    """
+    if positive is None:
+        positive = not callable(low) and low > 0 and unit != "deg"
+    exact = Fraction(str(step))
+    if exact <= 0:
+        raise WrongValue(f"a step must be positive; found {step}")
+    return GivenSpec(unit, _bound(low), _bound(high), exact, (), default, positive, nonzero)
+
+
+def fixed(value: float, *, unit: str = "1") -> GivenSpec:
+    """A quantity with the same value in every variant; a request may give it another."""
+    return GivenSpec(unit, default=value)
+
+
+def chosen(*choices: str) -> GivenSpec:
+    """A quantity drawn among named cases, all equally likely."""
+    return GivenSpec("1", choices=tuple(choices))
+
+
+@dataclass(frozen=True)
+class Part:
+    """One question: which quantity, in which unit, for how many points, how judged.
+
+    ``kind`` is ``number``, ``angle`` (compared modulo 360), ``integer``, ``choice`` (of ``choices``),
+    ``point_on_line`` (a point of the line through the reference along the quantity ``along``),
+    ``direction`` (any non-zero multiple of the reference vector) or ``equation`` (in the exercise's
+    symbols, up to a factor). A numeric answer is right within max(``atol``, ``rtol`` · |reference|),
+    by default 1 %, or 1° for what is measured in degrees. ``when``, a function of given quantities,
+    says whether a variant asks the part.
+    """
+
+    quantity: str
+    unit: str = "1"
+    points: float = 1
+    kind: str = "number"
+    id: str = ""
+    rtol: float | None = None
+    atol: float | None = None
+    choices: tuple[str, ...] = ()
+    along: str = ""
+    variables: tuple[str, ...] = ()
+    when: Callable[..., Any] | None = None
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            raise BadCourse(f"part {self.quantity!r}: no kind {self.kind!r}{nearest(self.kind, KINDS)}")
+        if (self.kind == "choice") != bool(self.choices):
+            raise BadCourse(f"part {self.quantity!r}: a part has choices exactly when its kind is 'choice'")
+        if (self.kind == "point_on_line") != bool(self.along):
+            raise BadCourse(f"part {self.quantity!r}: 'along' goes with kind 'point_on_line', and it must")
+        if (self.kind == "equation") != bool(self.variables):
+            raise BadCourse(f"part {self.quantity!r}: 'variables' goes with kind 'equation', and it must")
+        if not self.points > 0:
+            raise BadCourse(f"part {self.quantity!r}: points must be positive; found {self.points}")
+        in_degrees = self.kind == "angle" or self.unit == "deg"
+        if self.atol is None:
+            object.__setattr__(self, "atol", 1.0 if in_degrees else 0.0)
+        if self.rtol is None:
+            object.__setattr__(self, "rtol", 0.0 if in_degrees else 0.01)
+        if self.kind == "angle" and self.unit == "1":
+            object.__setattr__(self, "unit", "deg")
+        if not self.id:
+            object.__setattr__(self, "id", self.quantity)
+
+    @property
+    def is_exact(self) -> bool:
+        """Judged by identity: no tolerance."""
+        return self.kind in _EXACT_KINDS
+
+    def half_width(self, reference: float) -> float:
+        """The largest accepted distance from a reference, in the part's unit."""
+        return max(self.atol, self.rtol * abs(reference))
+
+
+@dataclass(frozen=True)
+class Exercise:
+    """An exercise without its answers.
+
+    Parameters
+    ----------
+    given
+        The given quantities, in the order they are drawn and printed.
+    parts
+        The questions, in order.
+    keep
+        Conditions a variant must satisfy: functions of given quantities (and of ``helpers``) to
+        booleans, on arrays; a name says what it wants, since refusals are counted by it.
+    helpers
+        Functions that several conditions share; their names are quantities to the conditions.
+    figure
+        A function of given quantities (and of ``helpers``) to a :class:`~coursework.figures.Figure`.
+    version
+        Raised when a change alters what a seed draws, or what is asked; records keep theirs.
+    symbols
+        LaTeX of quantities whose name does not say it (``rA_dot`` does: ``\\dot{r}_A``).
+    either_order
+        Groups of part ids that a student may exchange as wholes: two assembly modes.
+    """
+
+    given: Mapping[str, GivenSpec]
+    parts: Sequence[Part]
+    keep: Sequence[Callable[..., Any]] = ()
+    helpers: Sequence[Callable[..., Any]] = ()
+    figure: Callable[..., Any] | None = None
+    version: int = 1
+    symbols: Mapping[str, str] = field(default_factory=dict)
+    either_order: tuple[tuple[str, ...], ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "parts", tuple(self.parts))
+        if not self.given or not self.parts:
+            raise BadCourse("an exercise needs given quantities and parts; one of them is empty")
+        for name in self.given:
+            if not _NAME.match(name):
+                raise BadCourse(f"{name!r} is no name for a quantity; use letters, digits and underscores")
+        ids = [part.id for part in self.parts]
+        twice = sorted({i for i in ids if ids.count(i) > 1})
+        if twice:
+            raise BadCourse(f"two parts are called {twice[0]!r}; give one of them another id")
+        earlier: list[str] = []
+        for name, spec in self.given.items():
+            for bound in (spec.low, spec.high):
+                needs = tuple(inspect.signature(bound).parameters) if callable(bound) else ()
+                for need in needs:
+                    if need not in earlier:
+                        raise BadCourse(
+                            f"the range of {name} needs {need}, which is not drawn before it"
+                            f"{nearest(need, earlier)}"
+                        )
+            earlier.append(name)
+        for group in self.either_order:
+            for i in group:
+                if i not in ids:
+                    raise BadCourse(f"either_order names no part {i!r}{nearest(i, ids)}")
+
+    def part(self, part_id: str) -> Part | None:
+        """The part of this id, or None."""
+        return next((p for p in self.parts if p.id == part_id), None)
+
+    def symbol(self, name: str) -> str:
+        """LaTeX of a quantity."""
+        return self.symbols.get(name) or symbol_of(name)
+
+
+_GREEK = (
+    "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi chi psi omega"
+).split()
+
+
+def symbol_of(name: str) -> str:
+    r"""LaTeX of a public name: ``theta4`` -> ``\theta_4``, ``rA_dot`` -> ``\dot{r}_A``.
+
+    >>> symbol_of("theta3_open")
+    '\\theta_{3,\\mathrm{open}}'
+    """
+    stem, *rest = name.split("_")
+    dots = ""
+    while rest and rest[-1] in ("dot", "ddot"):
+        dots = rest.pop()
+    match = re.fullmatch(r"([A-Za-z]+?)(\d+|[A-Z]\d*)?", stem)
+    letters, index = match.groups() if match else (stem, None)
+    if letters in _GREEK:
+        letters = "\\" + letters
+    elif len(letters) > 1:
+        letters = rf"\mathrm{{{letters}}}"
+    if dots:
+        letters = rf"\{dots}{{{letters}}}"
+    subscripts = [index] if index else []
+    subscripts += [r if len(r) == 1 or not r.isalpha() else rf"\mathrm{{{r}}}" for r in rest]
+    if not subscripts:
+        return letters
+    joined = ",".join(subscripts)
+    return f"{letters}_{joined}" if len(joined) == 1 else f"{letters}_{{{joined}}}"

@@ -1,0 +1,548 @@
+"""From what a student wrote to a value: numbers, points, choices, equations.
+
+A text with two honest readings (``1,234``) gives two values, the likelier first, and the
+marking takes the one nearer the reference. A text that cannot be read is never wrong: it
+comes back with the reason, and as it was written.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import unicodedata
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+from numbers import Real
+
+from coursework.errors import WrongUnit
+from coursework.expressions import (
+    MAX_LENGTH,
+    Expression,
+    Unreadable,
+    parse_equation,
+    parse_expression,
+    shorten,
+    tidy,
+    without_latex,
+)
+from coursework.units import Unit, convert, find_unit, parse_unit, same_dimension
+
+_MAX_INTEGER = 10**15
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What was understood of one answer.
+
+    ``status``: ``read``, ``missing``, ``unreadable`` or ``wrong_unit``. ``values``: one or two honest
+    readings in the canonical unit (floats; integers; tuples of floats for a point; a key for a choice; an
+    :class:`~coursework.expressions.Equation`), empty unless read. ``read_as``: one echo a value, with a
+    decimal point and the unit as written. When it is not read, ``code`` is a short key for the reason and
+    ``found`` the piece that stops the reading.
+    """
+
+    text: str
+    status: str
+    values: tuple = ()
+    read_as: tuple[str, ...] = ()
+    unit_given: bool = False
+    code: str = ""
+    found: str = ""
+
+
+class _Stop(Exception):
+    """Why a text is not read."""
+
+    def __init__(self, code: str, found: str, status: str = "unreadable") -> None:
+        super().__init__(code)
+        self.code, self.found, self.status = code, found, status
+
+
+@dataclass(frozen=True)
+class _Amount:
+    """One honest reading of a number: its value in the canonical unit, its echo, its unit if written."""
+
+    value: float
+    echo: str
+    unit: str = ""
+
+
+def _amount(value: float, digits: str, unit: str = "", *, assumed: str = "") -> _Amount:
+    """``assumed``: a unit that the echo names although nobody wrote it."""
+    unit = _POWER.sub(lambda m: m[1].translate(_RAISED), unit.lstrip("*").strip()).replace("*", "·")
+    return _Amount(value, f"{digits} {unit or assumed}".strip(), unit)
+
+
+_POWER = re.compile(r"\^\(([+-]?[0-9]+)\)")
+_RAISED = str.maketrans("0123456789+-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻")
+
+
+def _reading(answer: object, read: Callable[[str], Reading]) -> Reading:
+    """Common to all kinds: what is missing, what is too long, what stops on the way."""
+    if answer is None:
+        return Reading("", "missing")
+    text = answer if isinstance(answer, str) else str(answer)
+    if isinstance(answer, bool) or not isinstance(answer, (str, Real)):
+        return Reading(text, "unreadable", code="not_a_number", found=shorten(text))
+    if len(text) > MAX_LENGTH and len(text.strip()) > MAX_LENGTH:
+        return Reading(text, "unreadable", code="too_long", found=shorten(text))
+    try:
+        plain = without_latex(tidy(text))
+        return read(plain) if plain else Reading(text, "missing")
+    except _Stop as stop:
+        return Reading(text, stop.status, code=stop.code, found=shorten(stop.found or plain))
+    except Unreadable as error:
+        return Reading(text, "unreadable", code=error.code, found=error.found)
+
+
+# --- numbers ----------------------------------------------------------------------------
+
+#: Digits with one honest reading; three of them after a comma may have two.
+_PLAIN = re.compile(r"\s*([+-]?[0-9]+(?:\.[0-9]+|,(?:[0-9]{1,2}|[0-9]{4,}))?(?:[eE][+-]?[0-9]+)?)\s*")
+_match_plain = _PLAIN.fullmatch
+
+_GROUPED = r"""
+      [0-9]{1,3}(?:[ '][0-9]{3})+(?![0-9])(?:[.,][0-9]*)?     # 1 234,5   1'234.5
+    | [0-9]{1,3}(?:,[0-9]{3})+\.[0-9]+                        # 1,234.5
+    | [0-9]{1,3}(?:\.[0-9]{3})+,[0-9]+                        # 1.234,5
+    | [0-9]{1,3}(?:,[0-9]{3}){2,}(?![0-9,])                   # 1,234,567
+    | [0-9]{1,3}(?:\.[0-9]{3}){2,}(?![0-9.])                  # 1.234.567
+    | [0-9]+[.,][0-9]{3}(?:[ ][0-9]{3})+(?![0-9])             # 3,141 592
+    | [0-9]+(?:[.,][0-9]*)?
+    | [.,][0-9]+
+"""
+_POWER_OF_TEN = r"""
+      \s*[eE]\s*(?P<e>[+-]?[0-9]+)
+    | (?:\s*[x*.]\s*|\s+)10\s*(?:\^|\*\*)\s*(?:[({]\s*(?P<bracketed>[+-]?[0-9]+)\s*[)}]|(?P<bare>[+-]?[0-9]+))
+"""
+_LITERAL = re.compile(
+    rf"(?P<sign>[+-]?)\s*(?P<number>{_GROUPED})(?:{_POWER_OF_TEN})?\s*(?P<rest>.*)", re.VERBOSE | re.DOTALL
+)
+_LOST_POWER = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*(?:\.10\s*\^|[x*]\s*10(?=[+-][0-9]))")
+_TWO_WAYS = re.compile(r"[1-9][0-9]{0,2},[0-9]{3}")
+_SEXAGESIMAL = re.compile(
+    r"""(?P<sign>[+-]?)\s*(?P<degrees>[0-9]+)\s*°\s*
+        (?P<minutes>[0-9]+(?:[.,][0-9]+)?)\s*(?:'(?!')|(?=$))\s*
+        (?:(?P<seconds>[0-9]+(?:[.,][0-9]+)?)\s*(?:"|''|$))?""",
+    re.VERBOSE,
+)
+_NAME = re.compile(r"(?:[^\W\d_]|[\\|‖])[^=≈≃:]{0,39}?\s*(?:=|≈|≃|:)\s*(?=\S)")
+_ABOUT = re.compile(
+    r"(?:≈|≃|~|=|(?:environ|env\.|env|about|approximately|approx\.?|circa|ca\.|soit)(?![^\W\d_]))\s*", re.I
+)
+_NOT_FINITE = re.compile(r"[+-]?\s*(?:nan|inf(?:inity|ini)?|∞)(?![^\W\d_])", re.I)
+_TWO_VALUES = re.compile(
+    r"±|\+/-|\+-|\.\.|…|;|<|>|≤|≥|(?<![^\W\d_])(?:à|to|ou|or|et|and|entre|between)(?![^\W\d_])", re.I
+)
+_RANGE = re.compile(r"([0-9]+(?:[.,][0-9]+)?)\s*-\s*([0-9]+(?:[.,][0-9]+)?)(?![0-9.,]*\s*[*/^(])")
+_UNIT_START = re.compile(r"(?<![^\W\d_])[^\W\d_]|[°%]|(?<![0-9.,])1\s*/")
+_WORD = re.compile(r"[\[(]?(?:[^\W\d_]|[°%])")
+
+
+def _without_name(text: str) -> str:
+    """The text without ``rA =``, ``≈``, ``environ``, and without the full stop of a sentence."""
+    text = _NAME.sub("", text, count=1) if _NAME.match(text) else text
+    text = _ABOUT.sub("", text, count=1) if _ABOUT.match(text) else text
+    return text.rstrip(" .;,!")
+
+
+def _decimal_texts(number: str) -> tuple[str, ...]:
+    """The honest readings of written digits, each with a point: ``1,234`` -> ``1.234``, ``1234``."""
+    if _TWO_WAYS.fullmatch(number):
+        return number.replace(",", "."), number.replace(",", "")
+    number = number.replace(" ", "").replace("'", "")
+    last = max(number.rfind(","), number.rfind("."))
+    if last < 0 or number.count(number[last]) > 1:  # repeated, it separates thousands
+        return (number.replace(",", "").replace(".", ""),)
+    whole, fraction = number[:last].replace(",", "").replace(".", ""), number[last + 1 :]
+    return ((whole or "0") + ("." + fraction if fraction else ""),)
+
+
+def _rest_unit(rest: str) -> Unit | None:
+    """The unit after a number: ``mm``, ``*m/s``, ``/s``, ``[mm]``."""
+    if rest[0] == "*":
+        rest = rest[1:]
+    return find_unit("1" + rest if rest[0:1] == "/" else rest.strip())
+
+
+def _in_unit(value: Fraction | float, unit: Unit, target: Unit) -> float:
+    """The value converted and rounded once, or the reason why it is not."""
+    if not same_dimension(unit, target):
+        raise _Stop("other_dimension", unit.text, "wrong_unit")
+    try:
+        number = float(convert(value, unit, target))
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise _Stop("not_finite", "")
+    return number
+
+
+def _float(digits: str) -> float:
+    value = float(digits)
+    if not math.isfinite(value):
+        raise _Stop("not_finite", digits)
+    return value
+
+
+def _literal(text: str, target: Unit) -> list[_Amount] | None:
+    """A number written in digits with its unit, or ``None`` when the text is something else."""
+    found = _LITERAL.fullmatch(text)
+    if found is None:
+        return None
+    exponent = found["e"] or found["bracketed"] or found["bare"]
+    rest = found["rest"]
+    unit = _rest_unit(rest) if rest else target
+    if unit is None:
+        if exponent is None or not _WORD.match(rest):
+            return None
+        raise _Stop("unknown_unit", rest)
+    texts = _decimal_texts(found["number"]) if exponent is None else _decimal_texts(found["number"])[:1]
+    sign = "-" if found["sign"] == "-" else ""
+    amounts = []
+    for digits in texts:
+        digits = sign + digits + (f"e{int(exponent)}" if exponent else "")
+        value = _float(digits)
+        if unit is not target and abs(int(exponent or 0)) < 400:
+            value = _in_unit(Fraction(digits), unit, target)
+        amounts.append(_amount(value, digits, rest))
+    return amounts
+
+
+def _sexagesimal(text: str, target: Unit) -> list[_Amount] | None:
+    """Degrees, minutes and seconds; below 60 each of the latter two."""
+    found = _SEXAGESIMAL.fullmatch(text)
+    if found is None:
+        return None
+    minutes, seconds = (Fraction((found[part] or "0").replace(",", ".")) for part in ("minutes", "seconds"))
+    if minutes >= 60 or seconds >= 60:
+        raise _Stop("not_a_number", text)
+    degrees = int(found["degrees"]) + minutes / 60 + seconds / 3600
+    if found["sign"] == "-":
+        degrees = -degrees
+    value = _in_unit(degrees, parse_unit("deg"), target)
+    return [_amount(value, _short(float(degrees)), "deg")]
+
+
+def _short(value: float) -> str:
+    return f"{value:.7g}"
+
+
+def _formula(text: str, target: Unit) -> list[_Amount]:
+    """A formula, with or without a unit behind it; the longest unit that leaves a formula is taken."""
+    first: Unreadable | None = None
+    starts = [m.start() for m in _UNIT_START.finditer(text) if m.start() > 0 and len(text) - m.start() <= 60]
+    for start in [*starts, len(text)]:
+        unit_text = text[start:]
+        unit = find_unit(unit_text) if unit_text else None
+        if unit_text and unit is None:
+            continue
+        try:
+            expression = parse_expression(text[:start].rstrip("* " if unit else " "))
+        except Unreadable as error:
+            first = first or error
+            continue
+        if unit and expression.is_angle:
+            continue
+        return _evaluated(expression, unit, unit_text, target)
+    raise first
+
+
+def _evaluated(expression: Expression, unit: Unit | None, unit_text: str, target: Unit) -> list[_Amount]:
+    """The values of a formula: as written, or in radians where an angle's formula speaks of them."""
+    amounts = []
+    for reading in (expression, expression.other):
+        if reading is None:
+            continue
+        value = reading.evaluate()
+        digits = _short(value)
+        if unit:
+            amounts.append(_amount(_in_unit(value, unit, target), digits, unit_text))
+        elif reading.is_angle:
+            degrees = math.degrees(value)
+            amounts.append(_amount(_in_unit(degrees, parse_unit("deg"), target), _short(degrees), "deg"))
+        elif target.is_angle and reading.speaks_radians and target.factor != 1:
+            radians = _in_unit(value, parse_unit("rad"), target)
+            amounts.append(_amount(radians, digits, assumed="rad"))
+            amounts.append(_amount(value, digits, assumed=target.text))
+        else:
+            amounts.append(_amount(value, digits))
+    return amounts
+
+
+def _refuse_ranges(text: str) -> None:
+    """``5 ± 0.1``, ``3 to 4`` and ``3 - 4`` are two values; ``180 - 75.4`` is a difference."""
+    pair = _RANGE.match(text)
+    if pair and float(pair[1].replace(",", ".")) < float(pair[2].replace(",", ".")):
+        raise _Stop("two_values", text)
+    if pair is None and _TWO_VALUES.search(text) and "atan2" not in text.replace("arctan2", "atan2"):
+        raise _Stop("two_values", text)
+
+
+def _named_unit_unknown(text: str) -> _Stop | None:
+    """When a number is clear and only words follow, it is the unit that is not understood."""
+    found = _LITERAL.fullmatch(text)
+    if found is None or not _WORD.match(found["rest"]):
+        return None
+    try:
+        parse_unit(found["rest"])
+    except WrongUnit as error:
+        return _Stop("unknown_unit", getattr(error, "found", found["rest"]))
+    return None
+
+
+def _amounts(text: str, target: Unit) -> list[_Amount]:
+    """All honest readings of one number, the likelier first."""
+    text = _without_name(text)
+    if not text:
+        raise _Stop("not_a_number", text)
+    if _NOT_FINITE.match(text):
+        raise _Stop("not_finite", text)
+    amounts = _sexagesimal(text, target) or _literal(text, target)
+    if amounts is not None:
+        return amounts
+    _refuse_ranges(text)
+    amounts = _scientific(text, target)
+    try:
+        return [*amounts, *_formula(text, target)]
+    except Unreadable as error:
+        if amounts:
+            return amounts
+        words = error.code in ("unknown_symbol", "not_a_number")
+        raise (words and _named_unit_unknown(text)) or error from None
+
+
+def _scientific(text: str, target: Unit) -> list[_Amount]:
+    """The first reading of ``3.10^2``, 300 on paper and 9.61 on a keyboard, and of ``3x10-2``, 0.03 or 28."""
+    repaired, count = _LOST_POWER.subn(r"\1*10^", text, count=1) if _LOST_POWER.match(text) else (text, 0)
+    return (_literal(repaired, target) or []) if count else []
+
+
+def _from_amounts(text: str, amounts: Sequence[_Amount]) -> Reading:
+    distinct: dict[float, _Amount] = {}
+    for amount in amounts:
+        distinct.setdefault(amount.value, amount)
+    kept = list(distinct.values())[:2]
+    return Reading(
+        text,
+        "read",
+        tuple(a.value for a in kept),
+        tuple(a.echo for a in kept),
+        unit_given=any(a.unit for a in amounts),
+    )
+
+
+def _plain_reading(text: str, value: float, digits: str) -> Reading:
+    """What ``Reading(text, "read", (value,), (digits,))`` is, without the checks of a frozen class."""
+    reading = Reading.__new__(Reading)
+    reading.__dict__.update(
+        text=text, status="read", values=(value,), read_as=(digits,), unit_given=False, code="", found=""
+    )
+    return reading
+
+
+def _from_real(answer: Real) -> Reading:
+    text = repr(answer) if isinstance(answer, float) else str(answer)
+    try:
+        value = float(answer)
+    except OverflowError:
+        value = math.inf
+    if not math.isfinite(value):
+        return Reading(text, "unreadable", code="not_finite", found=shorten(text))
+    return Reading(text, "read", (value,), (text,))
+
+
+@lru_cache(maxsize=256)
+def _target(unit: str) -> Unit:
+    return parse_unit(unit)
+
+
+def read_number(text: object, unit: str) -> Reading:
+    """A number, with or without its unit, in the canonical ``unit``.
+
+    Without a unit it is in ``unit``; where ``unit`` is ``deg`` and the formula speaks of radians (``π/3``),
+    radians are tried first. An int or float is taken as it is.
+
+    Raises
+    ------
+    WrongUnit
+        The canonical unit itself is unknown.
+    """
+    if text.__class__ is str and len(text) < 40 and (plain := _match_plain(text)):
+        digits = plain[1].replace(",", ".")
+        value = float(digits)
+        if value - value == 0:
+            return _plain_reading(text, value, digits)
+    target = _target(unit)
+    if isinstance(text, Real) and not isinstance(text, bool):
+        return _from_real(text)
+    return _reading(text, lambda plain: _from_amounts(text, _amounts(plain, target)))
+
+
+def read_integer(text: object) -> Reading:
+    """A whole number, without unit: ``3``, ``3,0``, ``γ = 3``; the values are ints."""
+    reading = read_number(text, "1")
+    if reading.status != "read":
+        return reading
+    pairs = [p for p in zip(reading.values, reading.read_as, strict=True) if p[0].is_integer()]
+    if not pairs or abs(pairs[0][0]) > _MAX_INTEGER:
+        return Reading(reading.text, "unreadable", code="not_an_integer", found=shorten(reading.text))
+    values, echoes = zip(*pairs, strict=True)
+    return Reading(reading.text, "read", tuple(map(int, values)), echoes, reading.unit_given)
+
+
+# --- points -----------------------------------------------------------------------------
+
+_POINT = re.compile(r"(?:[^\W\d_]\w{0,9}\s*)?[(\[{<](?P<inside>.*)[)\]}>]\s*(?P<unit>.*)", re.DOTALL)
+
+
+def _splits(text: str) -> Iterable[list[str]]:
+    """Ways to cut a text into coordinates, the likelier first."""
+    if ";" in text or "|" in text:
+        yield re.split(r"[;|]", text)
+        return
+    commas = text.split(",")
+    yield re.split(r",\s+|\s+,\s*", text)
+    pieces = text.replace(", ", " ").split()
+    yield pieces
+    yield commas
+    if len(commas) % 2 == 0:  # 12,3,4,5: each other comma is decimal
+        yield [f"{a},{b}" for a, b in zip(commas[::2], commas[1::2], strict=True)]
+
+
+def _coordinates(pieces: Sequence[str], unit: str, target: Unit) -> list[tuple[tuple[float, ...], str, bool]]:
+    """The readings of coordinates, their echo, whether a unit is written; the last one's serves for all."""
+    pieces = [piece.strip() for piece in pieces]
+    columns = [_amounts(piece, target) for piece in pieces]
+    units = {column[0].unit for column in columns}
+    if not unit and len(units) == 2 and "" in units:
+        unit = (units - {""}).pop()
+        columns = [
+            column if column[0].unit else _amounts(f"{_without_name(piece)} {unit}", target)
+            for piece, column in zip(pieces, columns, strict=True)
+        ]
+    readings = []
+    for which in (0, -1):
+        amounts = [column[which] for column in columns]
+        echo = "(" + "; ".join(a.echo for a in amounts) + ")"
+        readings.append((tuple(a.value for a in amounts), echo, any(a.unit for a in amounts)))
+    return readings
+
+
+def _bare_point(text: str) -> tuple[str, str]:
+    """The coordinates inside brackets, and the unit behind the brackets."""
+    if text.count("=") + text.count(":") == 1:  # A = (1 ; 2), but not x = 1 ; y = 2
+        text = _NAME.sub("", text, count=1) if _NAME.match(text) else text
+    found = _POINT.fullmatch(text.rstrip(" .;,"))
+    return (found["inside"], found["unit"].lstrip("*").strip()) if found else (text.rstrip(" .;,"), "")
+
+
+def _point(text: str, original: str, target: Unit, count: int) -> Reading:
+    inside, unit = _bare_point(text)
+    source = target
+    if unit:
+        source = find_unit(unit)
+        if source is None:
+            raise _Stop("unknown_unit", unit)
+        _in_unit(0.0, source, target)
+    readings: dict[tuple[float, ...], str] = {}
+    given = bool(unit)
+    stop: Exception | None = None
+    for pieces in _splits(inside):
+        if len(pieces) != count:
+            continue
+        try:
+            for values, echo, written in _coordinates(pieces, unit, source):
+                values = tuple(_in_unit(v, source, target) for v in values)
+                readings.setdefault(values, _amount(0.0, echo, unit).echo)
+                given = given or written
+        except (_Stop, Unreadable) as error:
+            stop = stop or error
+    if not readings:
+        raise stop or _Stop("wrong_count", text)
+    kept = list(readings.items())[:2]
+    return Reading(original, "read", tuple(v for v, _ in kept), tuple(e for _, e in kept), given)
+
+
+def read_point(text: object, unit: str, count: int) -> Reading:
+    """The ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``.
+
+    ``(12,3 ; 4,5) mm``, ``12.3, 4.5``, ``[1, 0, 1]``, ``(1 0 1)``, ``x = 1; y = 2``, or a list. A unit
+    behind the brackets or behind the last coordinate serves for all.
+    """
+    target = _target(unit)
+    if isinstance(text, (list, tuple)):
+        text = "[" + " ; ".join(str(item) for item in text[: count + 1]) + "]"
+    elif isinstance(text, Real) and not isinstance(text, bool):
+        return Reading(str(text), "unreadable", code="wrong_count", found=shorten(str(text)))
+    return _reading(text, lambda plain: _point(plain, text, target, count))
+
+
+# --- choices ----------------------------------------------------------------------------
+
+_POSITION = re.compile(r"[(\[]?\s*([a-z]|[0-9]{1,2})\s*(?:[)\].:]\s*(?P<label>.*))?")
+
+
+def _folded(text: str) -> str:
+    """A label without case, accents, markup and punctuation."""
+    text = re.sub(r"\\(?:mathrm|text|mathit|vec|overrightarrow)(?![A-Za-z])|\\[,;! ]", " ", text)
+    text = unicodedata.normalize("NFKD", text).casefold()
+    text = "".join(" " if c in "-_‐‑–−'’/" else c for c in text if not unicodedata.combining(c))
+    return " ".join(re.sub(r"[^\w\s+<>=%°.,]", " ", text).split()).strip(" .,")
+
+
+def _by_label(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    folded = _folded(text)
+    if not folded:
+        return []
+    keys = [key for key in choices if _folded(key) == folded]
+    return keys or [key for key, labels in choices.items() if folded in map(_folded, labels)]
+
+
+def _by_position(text: str, choices: Mapping[str, Sequence[str]]) -> tuple[list[str], str]:
+    """The choice that a letter or a number counts, and the label written after it."""
+    found = _POSITION.fullmatch(text.strip().casefold())
+    if found is None:
+        return [], ""
+    place = int(found[1]) - 1 if found[1].isdigit() else ord(found[1]) - ord("a")
+    return list(choices)[place : place + 1] if place >= 0 else [], found["label"] or ""
+
+
+def _choice(text: str, choices: Mapping[str, Sequence[str]]) -> Reading:
+    keys = _by_label(text, choices)
+    if not keys:
+        keys, label = _by_position(text, choices)
+        if label and (named := _by_label(label, choices)) != keys:
+            raise _Stop("two_values" if named else "not_a_choice", text)
+    if len(keys) != 1:
+        raise _Stop("two_values" if keys else "not_a_choice", text)
+    return Reading(text, "read", (keys[0],), (keys[0],))
+
+
+def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
+    """The key of a choice, given by its key, a label of any language, or its place: ``b)``, ``2``.
+
+    ``choices`` maps each key to its labels, in the order in which they are printed.
+    """
+    if isinstance(text, Real) and not isinstance(text, (bool, float)):
+        text = str(text)
+    if not (text is None or isinstance(text, str)):
+        return Reading(str(text), "unreadable", code="not_a_choice", found=shorten(str(text)))
+    return _reading(text, lambda _: _choice(text, choices))
+
+
+# --- equations --------------------------------------------------------------------------
+
+
+def read_equation(text: object, variables: Iterable[str]) -> Reading:
+    """An equation over the given variables; the value is an :class:`~coursework.expressions.Equation`."""
+    if isinstance(text, Real) and not isinstance(text, bool):
+        text = str(text)
+
+    def read(plain: str) -> Reading:
+        plain = plain.rstrip(" .;,")
+        return Reading(text, "read", (parse_equation(plain, tuple(variables)),), (plain,))
+
+    return _reading(text, read)

@@ -1,0 +1,56 @@
+"""Handouts, worked solutions and feedback as PDF, web page, notebook and text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from coursework.handout import AnswerSheet, FeedbackSheet, Handout
+
+
+class Renderer:
+    """Renders sheets through the templates of these folders, the first that has one.
+
+    The same sheet gives the same bytes. Safe to share between threads; not to be carried into a
+    forked process.
+    """
+
+    def __init__(self, template_folders: Sequence[Path]) -> None:
+        self.template_folders = tuple(Path(folder) for folder in template_folders)
+
+    def typst(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
+        """The Typst source of a sheet; it stands alone."""
+        from coursework.rendering import pdf
+
+        return pdf.source(self.template_folders, [sheet])
+
+    def pdf(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> bytes:
+        """A sheet as a tagged PDF, A4."""
+        return self.booklet_pdf([sheet])
+
+    def booklet_pdf(self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]) -> bytes:
+        """Several sheets in one PDF, each from an odd page on, with its own page numbers."""
+        from coursework.rendering import pdf
+
+        return pdf.compile_pdf(pdf.source(self.template_folders, sheets))
+
+    def html(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
+        """A sheet as one web page that fetches nothing and runs no script."""
+        from coursework.rendering import html
+
+        return html.page(self.template_folders, sheet)
+
+    def notebook(self, handout: Handout, *, practice: bool = False) -> str:
+        """A handout as a notebook (JSON, nbformat 4.5); with practice, a cell that checks the answers."""
+        from coursework.rendering import notebook
+
+        return notebook.notebook(self.template_folders, handout, practice=practice)
+
+    def terminal(self, handout: Handout) -> str:
+        """A handout as plain text."""
+        from coursework.rendering import terminal
+
+        return terminal.statement(handout)
+
+
+__all__ = ["Renderer"]

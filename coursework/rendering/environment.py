@@ -1,0 +1,72 @@
+"""Jinja2 environments: what a template prints is always text of its back end.
+
+Every value that a template prints is escaped for the back end, unless one of the filters made it. A name
+with a ``#`` or a ``<`` in it prints as itself, in every template, whoever wrote it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+
+from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound, Undefined
+from markupsafe import Markup
+
+from coursework.errors import BadCourse, BadStatement
+from coursework.rendering import views
+
+Writer = Callable[[str, str], str]
+
+
+def environment(
+    folders: Sequence[Path], lang: str, text: Writer, filters: Mapping[str, Callable[..., str]]
+) -> Environment:
+    """An environment for one back end and one language.
+
+    ``text`` escapes plain text. ``filters`` make text of the back end; the views' own filters
+    (``points``, ``verdict``, ...) make plain text, escaped like any other.
+    """
+
+    def printed(value: object) -> object:
+        if isinstance(value, (Markup, Undefined)):
+            return value
+        return Markup(text(str(value), lang))
+
+    env = Environment(
+        loader=FileSystemLoader([str(folder) for folder in folders]),
+        undefined=StrictUndefined,
+        autoescape=True,
+        finalize=printed,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    env.filters.update({name: _marked(make) for name, make in filters.items()})
+    env.filters.update(
+        points=lambda points: views.points_text(points, lang),
+        points_number=lambda points: views.points_number(points, lang),
+        verdict=lambda verdict: views.verdict_word(verdict, lang),
+        given_formula=views.given_formula,
+        value_formula=views.value_formula,
+        one_line=views.chain_on_one_line,
+        many_lines=views.chain_on_lines,
+        chain=views.chain,
+        answer_comment=lambda question: views.answer_comment(question, lang),
+        python_name=views.python_name,
+        fill=lambda pattern, *parts: pattern.format(*parts),
+    )
+    return env
+
+
+def _marked(make: Callable[..., str]) -> Callable[..., Markup]:
+    return lambda *args, **options: Markup(make(*args, **options))
+
+
+def render(env: Environment, template: str, names: Mapping[str, object]) -> str:
+    """One template with these names; what is wrong in it is said with its file."""
+    try:
+        return env.get_template(template).render(names)
+    except TemplateNotFound as missing:
+        raise BadCourse(f"no template {missing.name!r} in {', '.join(env.loader.searchpath)}") from None
+    except TemplateError as wrong:
+        raise BadStatement(f"template {template}: {wrong}") from wrong

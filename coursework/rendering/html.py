@@ -1,0 +1,40 @@
+"""Sheets as one self-contained HTML page: no script, nothing fetched."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from functools import lru_cache
+from html import escape
+from pathlib import Path
+
+from jinja2 import Environment
+
+from coursework.figures import Figure
+from coursework.rendering import markup, views
+from coursework.rendering.environment import environment, render
+from coursework.rendering.formulas import to_mathml
+
+
+def page(folders: Sequence[Path], sheet: views.Sheet) -> str:
+    """The whole page."""
+    env = _environment(tuple(folders), views.handout_of(sheet).lang)
+    return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", views.context(sheet))
+
+
+@lru_cache(maxsize=32)
+def _environment(folders: tuple[Path, ...], lang: str) -> Environment:
+    filters = {
+        "markup": lambda text: markup.to_html(text, lang),
+        "inline": lambda text: markup.html_inline(text, lang),
+        "math": lambda tex: to_mathml(tex, lang),
+        "display": lambda tex: to_mathml(tex, lang, True),
+        "drawing": _drawing,
+    }
+    return environment(folders, lang, markup.html_text, filters)
+
+
+def _drawing(figure: Figure, alt: str) -> str:
+    """The figure as an image inside the page, its letters as outlines: it looks the same everywhere."""
+    data = base64.b64encode(figure.outlined_svg().encode()).decode()
+    return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(alt)}">'

@@ -1,0 +1,62 @@
+"""Sheets as PDF, through Typst."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+
+from jinja2 import Environment
+from markupsafe import Markup
+
+from coursework.figures import Figure
+from coursework.rendering import markup, views
+from coursework.rendering.environment import environment, render
+from coursework.rendering.formulas import spoken, to_typst
+
+_LOCAL = threading.local()
+
+
+def source(folders: Sequence[Path], sheets: Sequence[views.Sheet]) -> str:
+    """The Typst source of one document that holds these sheets, each from an odd page on."""
+    names = views.context(sheets[0])
+    bodies = []
+    for sheet in sheets:
+        env = _environment(tuple(folders), views.handout_of(sheet).lang)
+        body = render(env, views.TEMPLATES[type(sheet)] + ".typ.j2", views.context(sheet))
+        bodies.append(Markup(body))
+    return render(_environment(tuple(folders), names["lang"]), "_page.typ.j2", names | {"bodies": bodies})
+
+
+def compile_pdf(typst_source: str) -> bytes:
+    """The tagged PDF (PDF/UA-1) of a Typst source; the same bytes for the same source.
+
+    A compiler serves one thread, and is kept: fonts are read once.
+    """
+    import typst
+
+    compiler = getattr(_LOCAL, "compiler", None)
+    if compiler is None:
+        compiler = _LOCAL.compiler = typst.Compiler(ignore_system_fonts=True)
+    return compiler.compile(input=typst_source.encode(), format="pdf", pdf_standards="ua-1", timestamp=0)
+
+
+@lru_cache(maxsize=32)
+def _environment(folders: tuple[Path, ...], lang: str) -> Environment:
+    filters = {
+        "markup": lambda text: markup.to_typst_markup(text, lang),
+        "math": lambda tex: markup.typst_formula(tex, lang),
+        "display": lambda tex: markup.typst_formula(tex, lang, display=True),
+        "raw_math": lambda tex: to_typst(tex, lang),
+        "spoken_literal": lambda tex: markup.typst_string(spoken(tex, lang)),
+        "literal": lambda text: markup.typst_string(str(text)),
+        "drawing": _drawing,
+    }
+    return environment(folders, lang, markup.typst_text, filters)
+
+
+def _drawing(figure: Figure, alt: str) -> str:
+    """The figure's SVG inside the source: a sheet's source stands alone."""
+    svg = markup.typst_string(figure.svg())
+    return f"bytes({svg}), alt: {markup.typst_string(alt)}"

@@ -1,0 +1,45 @@
+"""A handout as plain text, to read in a terminal."""
+
+from __future__ import annotations
+
+import textwrap
+
+from coursework.handout import Handout, Question
+from coursework.language import words
+from coursework.rendering import views
+from coursework.rendering.formulas import to_line
+from coursework.rendering.markup import to_text
+
+WIDTH = 88
+
+
+def statement(handout: Handout) -> str:
+    """The statement, the given data and the questions as lines of at most 88 characters."""
+    lang = handout.lang
+    said = words(lang)["sheet"]
+    code = views.context(handout)["variant"]
+    total = views.points_text(handout.points, lang)
+    parts = [
+        "\n".join((handout.title, "=" * len(handout.title), f"{handout.course} | {code} | {total}")),
+        to_text(handout.statement, lang, WIDTH),
+    ]
+    if handout.figure is not None:
+        parts.append(textwrap.fill(f"[{said['figure']}{said['colon']} {handout.figure_alt}]", WIDTH))
+    if handout.given:
+        lines = (f"  {to_line(views.given_formula(given), lang)}" for given in handout.given)
+        parts.append("\n".join([said["data"], *lines]))
+    parts += [_question(question, lang) for question in handout.questions]
+    parts += [
+        f"{said['tolerance']}{said['colon']} {f'{numbers}, ' if numbers else ''}{margin}"
+        for numbers, margin in views.tolerances(handout.questions, lang)
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+def _question(question: Question, lang: str) -> str:
+    mark = f"{question.number:2d}. "
+    details = [question.id, question.unit, views.points_text(question.points, lang)]
+    body = to_text(question.prompt, lang, WIDTH - len(mark))
+    lines = [body, f"[{', '.join(filter(None, details))}]"]
+    lines += [f"( ) {key}: {to_text(label, lang)}" for key, label in question.choices]
+    return mark + textwrap.indent("\n".join(lines), " " * len(mark)).lstrip()

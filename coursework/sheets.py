@@ -1,0 +1,235 @@
+"""From a variant to what its sheets show: a handout without answers, an answer sheet with them."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coursework.errors import BadCourse, BadStatement
+from coursework.expressions import latex_of_equation
+from coursework.graph import Graph
+from coursework.handout import Answer, AnswerSheet, Given, Handout, Question, Step
+from coursework.language import localise, plain, significant, unit_text, words
+from coursework.model import Part
+from coursework.worked import formula_latex, number_latex
+
+if TYPE_CHECKING:
+    from coursework.course import Variant
+    from coursework.figures import Figure
+
+PRINTED_DIGITS = 5  #: significant digits of a value in a worked solution
+_WITHOUT_SYMBOL = ("choice", "equation")
+
+
+def handout(variant: Variant, student: str = "") -> Handout:
+    """What the student's sheet shows.
+
+    Raises
+    ------
+    BadStatement
+        A part has no section in the statement.
+    """
+    exercise, text, lang = variant.exercise, variant.text, variant.lang
+    return Handout(
+        lang=lang,
+        course=exercise.course.title(lang),
+        exercise=exercise.name,
+        version=exercise.version,
+        seed=variant.seed,
+        student=student,
+        title=text.title,
+        statement=text.opening,
+        given=tuple(_given(variant, name) for name in variant.given),
+        figure=_figure(variant),
+        figure_alt=" ".join(text.section("figure").text.split()) if exercise.spec.figure else "",
+        questions=tuple(_question(variant, n, p) for n, p in enumerate(variant.parts, start=1)),
+        record=variant.record,
+    )
+
+
+def _given(variant: Variant, name: str) -> Given:
+    spec, value = variant.exercise.spec.given[name], variant.given[name]
+    symbol = variant.exercise.symbol(name)
+    if spec.is_choice:
+        return Given(name, symbol, variant.text.label(name, value), "", is_number=False)
+    return Given(name, symbol, plain(value), unit_text(spec.unit, variant.lang))
+
+
+def _question(variant: Variant, number: int, part: Part) -> Question:
+    section = variant.text.section(part.id)
+    choices = tuple((case, variant.text.label(part.id, case)) for case in part.choices)
+    return Question(
+        number=number,
+        id=part.id,
+        symbol="" if part.kind in _WITHOUT_SYMBOL else variant.exercise.symbol(part.quantity),
+        prompt=section.text,
+        unit=unit_text(part.unit, variant.lang),
+        kind=part.kind,
+        choices=choices,
+        points=part.points,
+        tolerance=tolerance_words(part, variant.lang),
+    )
+
+
+def tolerance_words(part: Part, lang: str) -> str:
+    """The accepted margin as a student reads it; empty for what is judged exactly."""
+    if part.is_exact:
+        return ""
+    table = words(lang)["accepted"]
+    percent = localise(plain(round(100 * part.rtol, 6)), lang)
+    absolute = localise(plain(part.atol), lang)
+    if part.atol and part.unit == "deg":
+        fixed = table["degrees"].format(absolute)
+    else:
+        fixed = table["absolute"].format(f"{absolute} {unit_text(part.unit, lang)}".strip())
+    if not part.rtol:
+        return fixed
+    if not part.atol:
+        return table["percent"].format(percent)
+    return table["either"].format(f"{percent} %", f"{absolute} {unit_text(part.unit, lang)}".strip())
+
+
+def _call(function: Any, values: Mapping[str, Any], helpers: tuple = ()) -> Any:
+    """Call a figure function with the quantities its parameters name."""
+    graph = Graph({**{f.__name__: f for f in helpers}, "figure": function})
+    return graph.evaluate(("figure",), {n: v for n, v in values.items() if n in graph.leaves})["figure"]
+
+
+def _figure(variant: Variant) -> Figure | None:
+    spec = variant.exercise.spec
+    return None if spec.figure is None else _call(spec.figure, variant.given, tuple(spec.helpers))
+
+
+def answer_sheet(variant: Variant, student: str = "") -> AnswerSheet:
+    """The handout with its answers and worked solution.
+
+    Raises
+    ------
+    NoSolution
+        The course folder has no solutions.
+    """
+    exercise, lang = variant.exercise, variant.lang
+    sheet = handout(variant, student)
+    solution = exercise.solution
+    known = exercise._names
+    given = {n: v for n, v in variant.given.items() if n in known}
+    wanted = variant._quantities
+    values = {**given, **solution.graph.evaluate_all(wanted, given)}
+    values = {n: v.item() if isinstance(v, np.ndarray) and v.ndim == 0 else v for n, v in values.items()}
+    text = exercise.text("solutions", lang, _printed(variant, values))
+    steps = tuple(_step(variant, name, values, text) for name in values if name not in given)
+    answers = tuple(
+        Answer(question, answer_text(variant, part, values), _margin(part, values, lang))
+        for question, part in zip(sheet.questions, variant.parts, strict=True)
+    )
+    figure = None
+    if solution.figure is not None:
+        needed = inspect.signature(solution.figure).parameters
+        more = solution.graph.evaluate(tuple(n for n in needed if n not in values), given)
+        figure = _call(solution.figure, {**values, **more})
+    return AnswerSheet(sheet, answers, steps, text.opening, figure)
+
+
+def _printed(variant: Variant, values: Mapping[str, Any]) -> dict[str, str]:
+    """Every quantity as running text for the solution's words: given ones exact, others rounded."""
+    shown = dict(variant.printed)
+    for name, value in values.items():
+        if name not in shown:
+            shown[name] = _running(value, variant.lang)
+    return shown
+
+
+def _running(value: Any, lang: str) -> str:
+    if isinstance(value, (str, complex, np.ndarray)):
+        return str(value)
+    return localise(significant(value, PRINTED_DIGITS), lang)
+
+
+def _symbol(variant: Variant, name: str) -> str:
+    return variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)
+
+
+def _step(variant: Variant, name: str, values: Mapping[str, Any], text: Any) -> Step:
+    exercise = variant.exercise
+    function = exercise.solution.graph.node(name).function
+    section = text.sections.get(name)
+    asked = {p.quantity for p in variant.parts}
+    symbols = {n: (_symbol(variant, n), False) for n in values}
+    numbers = {
+        n: (number_latex(v, exercise.units.get(n, "1"), PRINTED_DIGITS), True)
+        for n, v in values.items()
+        if isinstance(v, (int, float, complex))
+    }
+    value = _value_latex(variant, name, values[name])
+    try:
+        formula = formula_latex(function, symbols)
+        substitution = formula_latex(function, numbers) if formula and value else ""
+    except KeyError as fault:
+        raise BadCourse(
+            f"solutions/{exercise.name}.py: the formula of {name} names {fault}, which is not among its quantities"
+        ) from fault
+    remarks = tuple(
+        text.section(f"mistake {m}").text
+        for m, mistake in exercise.solution.mistakes.items()
+        if mistake.targets[0] == name
+    )
+    return Step(
+        name=name,
+        symbol=_symbol(variant, name),
+        formula=formula,
+        substitution=substitution if substitution != formula else "",
+        value=value,
+        words=section.text if section else "",
+        remarks=remarks,
+        asked=name in asked,
+    )
+
+
+def _value_latex(variant: Variant, name: str, value: Any) -> str:
+    r"""``\num{319.8}\ \mathrm{mm}``; a case's label or an equation in words; a vector by coordinates."""
+    exercise = variant.exercise
+    part = next((p for p in variant.parts if p.quantity == name), None)
+    unit = exercise.units.get(name, "1")
+    if isinstance(value, str):
+        return equation_latex(variant, value) if part is not None and part.kind == "equation" else ""
+    if isinstance(value, np.ndarray):
+        inner = r";\ ".join(number_latex(v, "1", PRINTED_DIGITS) for v in value.tolist())
+        return rf"\left({inner}\right)" + _unit_latex(unit)
+    return number_latex(value, unit, PRINTED_DIGITS) + ("" if unit == "deg" else _unit_latex(unit))
+
+
+def _unit_latex(unit: str) -> str:
+    if unit == "1":
+        return ""
+    text = unit.replace("*", r"\cdot ").replace("^2", "^{2}")
+    return rf"\ \mathrm{{{text}}}"
+
+
+def equation_latex(variant: Variant, equation: str) -> str:
+    """A reference equation as it is printed."""
+    names = {n for p in variant.parts for n in p.variables}
+    return latex_of_equation(equation, {n: _symbol(variant, n) for n in names})
+
+
+def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
+    """The reference answer of a part, rounded for print, as Markdown."""
+    value = values[part.quantity]
+    if part.kind == "choice":
+        return variant.text.label(part.id, str(value))
+    latex = _value_latex(variant, part.quantity, value)
+    if not latex:
+        raise BadStatement(f"{variant.exercise.name}: the answer to {part.id} cannot be printed")
+    return f"${latex}$"
+
+
+def _margin(part: Part, values: Mapping[str, Any], lang: str) -> str:
+    if part.is_exact or part.kind == "direction":
+        return ""
+    reference = values[part.quantity]
+    size = float(np.linalg.norm(reference)) if isinstance(reference, np.ndarray) else reference
+    width = localise(significant(part.half_width(size), 2), lang)
+    unit = unit_text(part.unit, lang)
+    return f"± {width}" + (unit if unit == "°" else f" {unit}" if unit else "")

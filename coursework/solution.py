@@ -1,0 +1,151 @@
+"""What a solution module holds: a function a quantity, named mistakes, known cases, a residual.
+
+``solutions/NAME.py`` is read by these rules:
+
+* a public function defined in it is a quantity, and its parameters are what it needs;
+* a function marked :func:`mistake` is a wrong way to get a quantity;
+* ``residual`` gives the governing equations, written independently, relative to their terms: 0 when right;
+* ``KNOWN`` lists pairs (given values, expected values); an expected text such as ``"319.80"`` is
+  right to its last printed digit, a number to 1e-9 relative;
+* ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
+* a name that begins with an underscore is the module's own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import ModuleType
+from typing import Any
+
+from coursework.errors import BadCourse, CourseworkError, unknown
+from coursework.graph import Graph, Replacement
+
+
+@dataclass(frozen=True)
+class Mistake:
+    """A named wrong way: what it replaces, and the share of a part's points it still earns."""
+
+    name: str
+    replacement: Replacement
+    share: float
+    approximation: bool
+
+    @property
+    def targets(self) -> tuple[str, ...]:
+        return self.replacement.targets
+
+
+def mistake(
+    *targets: str, share: float = 0.0, approximation: bool = False
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Mark a function as a named mistake about ``targets``, given or computed quantities.
+
+    The function returns the wrong value, or a tuple of them for several targets. A parameter that
+    bears a target's name stands for its right value, so ``def sign(omega5): return -omega5`` reads
+    as it sounds. ``share``, 0 to 1, is the part of the points that the mistake leaves;
+    ``approximation`` declares a legitimate one.
+    """
+    if not targets or not all(isinstance(t, str) for t in targets):
+        raise BadCourse('@mistake names what it gets wrong: @mistake("theta4")')
+    if not 0 <= share <= 1:
+        raise BadCourse(f"a mistake leaves a share of the points between 0 and 1; found {share}")
+
+    def mark(function: Callable[..., Any]) -> Callable[..., Any]:
+        function.__mistake__ = Mistake(  # type: ignore[attr-defined]
+            function.__name__, Replacement(targets, function), share, approximation
+        )
+        return function
+
+    return mark
+
+
+def formula(latex: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    r"""Say how a quantity's formula is printed, where its code does not read as one.
+
+    ``<name>`` stands for the quantity of that name: its symbol in the formula, its number in the
+    substitution. ``@formula(r"\operatorname{arg}(<arm>)")``.
+    """
+
+    def mark(function: Callable[..., Any]) -> Callable[..., Any]:
+        function.__formula__ = latex  # type: ignore[attr-defined]
+        return function
+
+    return mark
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A loaded solution."""
+
+    name: str
+    graph: Graph
+    mistakes: Mapping[str, Mistake]
+    known: Sequence[tuple[Mapping[str, Any], Mapping[str, Any]]]
+    residual: Callable[..., Any] | None
+    figure: Callable[..., Any] | None
+    units: Mapping[str, str]
+    symbols: Mapping[str, str]
+
+    @staticmethod
+    def of(name: str, module: ModuleType) -> Solution:
+        """Read a solution module.
+
+        Raises
+        ------
+        BadCourse
+            It defines no quantity, or a mistake about something that it does not have.
+        """
+        own = {
+            key: value
+            for key, value in vars(module).items()
+            if not key.startswith("_")
+            and callable(value)
+            and not isinstance(value, type)
+            and getattr(value, "__module__", None) == module.__name__
+        }
+        mistakes = {k: f.__mistake__ for k, f in own.items() if hasattr(f, "__mistake__")}
+        special = {"residual", "figure"}
+        functions = {k: f for k, f in own.items() if k not in special and k not in mistakes}
+        if not functions:
+            raise BadCourse(f"solutions/{name}.py defines no quantity; a quantity is a function of its name")
+        graph = Graph(functions)
+        for wrong in mistakes.values():
+            try:
+                graph.replacing(wrong.replacement)
+            except CourseworkError as fault:
+                raise BadCourse(f"solutions/{name}.py: mistake {wrong.name!r}: {fault}") from fault
+        return Solution(
+            name,
+            graph,
+            mistakes,
+            tuple(getattr(module, "KNOWN", ())),
+            own.get("residual"),
+            own.get("figure"),
+            dict(getattr(module, "UNITS", {})),
+            dict(getattr(module, "SYMBOLS", {})),
+        )
+
+    def mistaken(self, name: str) -> Graph:
+        """The graph with one named mistake in it."""
+        if name not in self.mistakes:
+            raise unknown("mistake", name, self.mistakes, f"solution {self.name}")
+        return self._mistaken_graphs[name]
+
+    @cached_property
+    def _mistaken_graphs(self) -> dict[str, Graph]:
+        return {n: self.graph.replacing(m.replacement) for n, m in self.mistakes.items()}
+
+    @cached_property
+    def residual_graph(self) -> Graph:
+        """The graph with the residual as one more quantity.
+
+        Raises
+        ------
+        BadCourse
+            The solution states no residual.
+        """
+        if self.residual is None:
+            raise BadCourse(f"solutions/{self.name}.py states no residual; write the governing equations")
+        return self.graph.with_functions({"residual": self.residual})

@@ -1,0 +1,135 @@
+r"""Texts of an exercise in one language: one Markdown file of named sections, through Jinja2.
+
+``exercises/NAME.LANG.md.j2``::
+
+    # Title of the exercise
+
+    The statement, in Markdown with $LaTeX$. {{ r1 }} prints a given value with its unit.
+
+    ## rA
+    What part rA asks.
+
+    ## guide
+    Does the guide oscillate?
+    - oscillates: it oscillates
+    - rotates: it turns fully
+
+    ## figure
+    What the figure shows, for those who cannot see it.
+
+``solutions/NAME.LANG.md.j2`` has the same form: opening words, a section a quantity (words before its
+formula), and ``## mistake NAME`` sections (what to tell a student who made it).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from coursework.errors import BadStatement
+
+_HEADING = re.compile(r"^(#{1,2})\s+(.+?)\s*$", re.MULTILINE)
+_LABEL = re.compile(r"^- ([A-Za-z][\w-]*): (.+)$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A piece of text and the labels of cases listed in it."""
+
+    text: str = ""
+    labels: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Text:
+    """The sections of one file, rendered."""
+
+    title: str
+    opening: str
+    sections: Mapping[str, Section]
+    source: str  #: the file, for messages
+
+    def section(self, name: str) -> Section:
+        """The section of this name; a clear error if the file has none."""
+        if name not in self.sections:
+            raise BadStatement(f"{self.source} has no section '## {name}'")
+        return self.sections[name]
+
+    def label(self, quantity: str, case: str) -> str:
+        """What a case of a quantity is called in this language."""
+        labels = self.section(quantity).labels
+        if case not in labels:
+            raise BadStatement(f"{self.source}: section '## {quantity}' has no line '- {case}: …'")
+        return labels[case]
+
+
+def parse(markdown: str, source: str) -> Text:
+    """Split a rendered text into its sections.
+
+    Raises
+    ------
+    BadStatement
+        No title, or a section twice.
+    """
+    marks = list(_HEADING.finditer(markdown))
+    if not marks or marks[0].group(1) != "#":
+        raise BadStatement(f"{source} must begin with its title: '# …'")
+    pieces: dict[str, str] = {}
+    for mark, following in zip(marks, [*marks[1:], None], strict=True):
+        body = markdown[mark.end() : following.start() if following else len(markdown)].strip()
+        name = mark.group(2)
+        if mark is not marks[0] and mark.group(1) == "#":
+            raise BadStatement(f"{source} has a second title '# {name}'; sections begin with '##'")
+        if name in pieces:
+            raise BadStatement(f"{source} has two sections '## {name}'")
+        pieces[name] = body
+    title = marks[0].group(2)
+    opening = pieces.pop(title)
+    sections = {
+        name: Section(_LABEL.sub("", body).strip(), dict(_LABEL.findall(body)))
+        for name, body in pieces.items()
+    }
+    return Text(title, opening, sections, source)
+
+
+def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object]) -> Text:
+    """Render a text file with the variables of a variant.
+
+    Raises
+    ------
+    BadStatement
+        Unknown variable or broken template: says the file and the line.
+    """
+    import jinja2
+
+    template = _template(path, path.stat().st_mtime_ns, folders)
+    try:
+        return parse(template.render(variables), path.name)
+    except jinja2.UndefinedError as fault:
+        names = ", ".join(sorted(variables))
+        raise BadStatement(f"{path.name}: {fault.message}; a text may use: {names}") from fault
+    except jinja2.TemplateError as fault:
+        raise BadStatement(f"{path.name}: {fault}") from fault
+
+
+_templates: dict[tuple, object] = {}
+
+
+def _template(path: Path, changed: int, folders: tuple[Path, ...]):
+    import jinja2
+
+    key = (path, changed, folders)
+    if key not in _templates:
+        environment = jinja2.Environment(
+            loader=jinja2.FileSystemLoader([path.parent, *folders]),
+            undefined=jinja2.StrictUndefined,
+            autoescape=False,
+            keep_trailing_newline=True,
+        )
+        try:
+            _templates[key] = environment.get_template(path.name)
+        except jinja2.TemplateSyntaxError as fault:
+            raise BadStatement(f"{path.name}, line {fault.lineno}: {fault.message}") from fault
+    return _templates[key]

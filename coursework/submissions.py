@@ -1,0 +1,265 @@
+"""Reading what comes back: CSV, JSON and notebooks of answers. Answers are data: nothing is run.
+
+Every row of every file comes out, as a :class:`Row` or as a :class:`Rejected` with its reason.
+"""
+
+from __future__ import annotations
+
+import ast
+import csv
+import json
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+COLUMNS = ("student", "exercise", "seed", "part", "answer")
+ENDINGS = (".csv", ".json", ".ipynb")
+MAX_LINES = 20  #: of one quoted answer
+
+
+@dataclass(frozen=True)
+class Row:
+    """One answer as it came."""
+
+    student: str
+    exercise: str
+    seed: str
+    part: str
+    answer: Any  #: a text, a number, or None
+    source: str  #: file and place, for reports
+    warning: str = ""
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """One row, or one file, that cannot be marked, and why."""
+
+    source: str
+    reason: str
+    row: dict[str, str] = field(default_factory=dict)
+
+
+def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
+    """The files to read, folders walked in name order."""
+    for path in paths:
+        if path.is_dir():
+            files = sorted(p for p in path.rglob("*") if p.is_file() and not _is_hidden(p, path))
+            yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files)
+            if not files:
+                yield Rejected(str(path), "the folder holds no file")
+        elif not path.exists():
+            yield Rejected(str(path), "there is no such file")
+        elif path.suffix.lower() not in ENDINGS:
+            yield _odd_file(path)
+        else:
+            yield path
+
+
+def _is_hidden(path: Path, below: Path) -> bool:
+    return any(part.startswith(".") for part in path.relative_to(below).parts)
+
+
+def _odd_file(path: Path) -> Rejected:
+    return Rejected(str(path), f"answers come as {', '.join(ENDINGS)}; found {path.suffix or 'no ending'}")
+
+
+def read_file(path: Path) -> Iterator[Row | Rejected]:
+    """The rows of one file; a file that cannot be read is one rejected row."""
+    try:
+        data = path.read_bytes()
+    except OSError as fault:
+        yield Rejected(str(path), f"cannot be read: {fault.strerror}")
+        return
+    reader = {".csv": _read_csv, ".json": _read_json, ".ipynb": _read_notebook}[path.suffix.lower()]
+    yield from reader(data, str(path))
+
+
+# ------------------------------------------------------------------------- text
+
+
+def _decode(data: bytes) -> tuple[str, str]:
+    """The text and a warning; UTF-8 unless it cannot be, then what Windows and Excel write."""
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        try:
+            return data.decode("utf-16"), "the file is UTF-16, not UTF-8"
+        except UnicodeDecodeError:
+            pass
+    try:
+        return data.decode("utf-8-sig"), ""
+    except UnicodeDecodeError:
+        return data.decode("cp1252", "replace"), "the file is not UTF-8; it was read as Windows-1252"
+
+
+def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
+    if not data.strip():
+        yield Rejected(source, "the file is empty")
+        return
+    text, warning = _decode(data)
+    if "\0" in text:
+        yield Rejected(source, "the file holds NUL bytes: it is not a CSV of answers")
+        return
+    lines = re.split(r"\r\n|\n|\r", text)
+    delimiter = max((";", ",", "\t"), key=lines[0].count)
+    header: list[str] = []
+    number = 0
+    while number < len(lines):
+        place = f"{source}, line {number + 1}"
+        cells, taken = _record(lines, number, delimiter, len(header))
+        number += taken
+        if not any(c.strip() for c in cells):
+            continue  # a blank line is no row
+        if header:
+            yield from _csv_row(header, cells, place, warning)
+            continue
+        header = [c.strip().casefold() for c in cells]
+        missing = [c for c in COLUMNS if c not in header]
+        if missing:
+            found = ", ".join(c for c in header if c) or "nothing"
+            wanted = f"the header must name {', '.join(COLUMNS)}; {', '.join(missing)} missing, found {found}"
+            yield Rejected(place, wanted)
+            return
+
+
+def _record(lines: list[str], start: int, delimiter: str, width: int) -> tuple[list[str], int]:
+    """The cells of the record at a line, and how many lines it takes.
+
+    A quoted cell may run over a few lines, if the record then has as many cells as the header. A
+    quotation mark that never closes costs its own line and no other.
+    """
+    for taken in range(1, min(MAX_LINES, len(lines) - start) + 1):
+        record = "\n".join(lines[start : start + taken])
+        if record.count('"') % 2 == 0:
+            cells = _cells(record, delimiter)
+            if taken == 1 or len(cells) == width:
+                return cells, taken
+            break
+    return _cells(lines[start].replace('"', ""), delimiter), 1
+
+
+def _cells(record: str, delimiter: str) -> list[str]:
+    try:
+        return next(csv.reader([record], delimiter=delimiter), [])
+    except csv.Error:  # a cell longer than the reader takes
+        return record.split(delimiter)
+
+
+def _csv_row(header: list[str], cells: list[str], place: str, warning: str) -> Iterator[Row | Rejected]:
+    row = dict(zip(header, cells, strict=False))
+    if len(cells) != len(header):
+        kept = {c: row.get(c, "") for c in COLUMNS}
+        yield Rejected(place, f"{len(cells)} cells where the header has {len(header)}", kept)
+        return
+    names = {c: row[c].strip() for c in ("student", "exercise", "seed", "part")}
+    yield Row(**names, answer=row["answer"], source=place, warning=warning)
+
+
+# ------------------------------------------------------------------------- JSON
+
+
+def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected]:
+    text, warning = _decode(data)
+    try:
+        content = json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as fault:
+        yield Rejected(source, f"not JSON: {_short(fault)}")
+        return
+    sheets = content if isinstance(content, list) else [content]
+    if not sheets:
+        yield Rejected(source, "the file holds no answers")
+    for number, sheet in enumerate(sheets, start=1):
+        place = f"{source}, item {number}" if isinstance(content, list) else source
+        if not isinstance(sheet, dict) or not isinstance(sheet.get("answers"), dict):
+            yield Rejected(place, 'an item is {"student", "exercise", "seed", "answers": {part: text}}')
+            continue
+        yield from _sheet_rows(sheet, sheet["answers"], place, warning)
+
+
+def _sheet_rows(
+    about: dict[str, Any], answers: dict[Any, Any], place: str, warning: str
+) -> Iterator[Row | Rejected]:
+    names = {c: _name(about.get(c)) for c in ("student", "exercise", "seed")}
+    if not answers:
+        yield Rejected(place, "the sheet holds no answer", {**names, "part": "", "answer": ""})
+    for part, answer in answers.items():
+        if isinstance(answer, (list, tuple)):
+            answer = "; ".join(str(a) for a in answer)
+        if isinstance(answer, (dict, set, bytes)):
+            row = {**names, "part": str(part), "answer": str(answer)[:200]}
+            yield Rejected(f"{place}, part {part}", "an answer is a text or a number", row)
+            continue
+        yield Row(
+            **names, part=str(part).strip(), answer=answer, source=f"{place}, part {part}", warning=warning
+        )
+
+
+def _name(value: Any) -> str:
+    return "" if value is None else str(value).strip()
+
+
+def _short(fault: BaseException) -> str:
+    return str(fault).split("\n")[0][:120]
+
+
+# --------------------------------------------------------------------- notebook
+
+
+def _read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
+    text, warning = _decode(data)
+    try:
+        notebook = json.loads(text)
+    except (json.JSONDecodeError, RecursionError) as fault:
+        yield Rejected(source, f"not a notebook: {_short(fault)}")
+        return
+    about = notebook.get("metadata", {}) if isinstance(notebook, dict) else {}
+    about = about.get("coursework") if isinstance(about, dict) else None
+    cells = notebook.get("cells") if isinstance(notebook, dict) else None
+    if not isinstance(about, dict) or not isinstance(cells, list):
+        yield Rejected(source, "not a notebook of ours: its metadata names no exercise")
+        return
+    tagged = [c for c in cells if isinstance(c, dict) and "answers" in _tags(c)]
+    if len(tagged) != 1:
+        yield Rejected(source, f"one cell must be tagged 'answers'; found {len(tagged)}", _about(about))
+        return
+    code = tagged[0].get("source", "")
+    code = "".join(code) if isinstance(code, list) else str(code)
+    answers = literal_answers(code)
+    if isinstance(answers, str):
+        yield Rejected(source, f"the answers cell {answers}", _about(about) | {"answer": code[:200]})
+        return
+    yield from _sheet_rows(about, answers, source, warning)
+
+
+def _about(about: dict[str, Any]) -> dict[str, str]:
+    return {**{c: _name(about.get(c)) for c in ("student", "exercise", "seed")}, "part": "", "answer": ""}
+
+
+def _tags(cell: dict[str, Any]) -> list[Any]:
+    metadata = cell.get("metadata")
+    tags = metadata.get("tags") if isinstance(metadata, dict) else None
+    return tags if isinstance(tags, list) else []
+
+
+def literal_answers(code: str) -> dict[Any, Any] | str:
+    """The dict that an answers cell holds, or what is wrong with the cell. Nothing is run.
+
+    ``answers = {…}`` or a bare ``{…}`` of texts, numbers, None, and lists or tuples of these.
+    """
+    if len(code) > 200_000:
+        return "is too long to be read"
+    try:
+        statements = ast.parse(code).body
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as fault:
+        line = f", line {fault.lineno}" if isinstance(fault, SyntaxError) and fault.lineno else ""
+        return f"is not a Python literal{line}: {_short(fault)}"
+    if len(statements) != 1:
+        return f"must hold one dict and nothing else; found {len(statements)} statements"
+    statement = statements[0]
+    value = statement.value if isinstance(statement, (ast.Assign, ast.AnnAssign, ast.Expr)) else None
+    if not isinstance(value, ast.Dict):
+        return "must hold one dict and nothing else; found code, which is never run"
+    try:
+        return ast.literal_eval(value)
+    except (ValueError, TypeError, RecursionError, MemoryError):
+        return "must hold texts and numbers only; found code, which is never run"

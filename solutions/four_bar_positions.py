@@ -1,0 +1,351 @@
+"""Four-bar linkage, positions: solution. Both assemblies close the triangle A, B, C.
+
+The loop's projections, with theta4 eliminated, leave a cos(theta3) + b sin(theta3) = c. Its
+discriminant a^2 + b^2 - c^2 is the product of the two margins by which the triangle closes; taken
+so, it loses nothing at a dead point.
+"""
+
+import numpy as np
+
+from coursework.degrees import atan, atan2, cos, polar, sin, sqrt, wrap
+from coursework.errors import CannotAssemble, Undefined
+from coursework.figures import Figure, circle, ground_pivot, line, link, pin
+from coursework.kinematics.margins import exact_sum, grashof_margins
+from coursework.solution import formula, mistake
+
+UNITS = {"phi": "deg", "psi": "deg", "AC": "mm"}
+SYMBOLS = {"phi": r"\varphi", "psi": r"\psi", "AC": "AC"}
+
+
+def _triangle_margins(r1, r2, r3, r4, theta2):
+    """(r3 + r4)^2 - AC^2 and AC^2 - (r3 - r4)^2, each a sum of terms that do not cancel."""
+    stretched, folded = grashof_margins(r1, r2, r3, r4)
+    return stretched + 4 * r1 * r2 * cos(theta2 / 2) ** 2, folded + 4 * r1 * r2 * sin(theta2 / 2) ** 2
+
+
+def _closed(*margins):
+    """Refuse a scalar configuration that does not close; arrays say NaN by their square roots."""
+    if isinstance(margins[0], float) and min(margins) < 0:
+        raise CannotAssemble(
+            "the linkage does not close: coupler and rocker together are too short for the distance AC, or "
+            f"one is too long (AC^2 is off by {-min(margins):.6g} mm^2)"
+        )
+
+
+def _of_the_data(r1, r2, r3, r4, theta2):
+    return a(r1, r2, r3, theta2), b(r2, r3, theta2), c(r1, r2, r3, r4, theta2)
+
+
+def _shortest(r1, r2, r3, r4):
+    return np.minimum(np.minimum(r1, r2), np.minimum(r3, r4))
+
+
+def _longest(r1, r2, r3, r4):
+    return np.maximum(np.maximum(r1, r2), np.maximum(r3, r4))
+
+
+def _grashof_excess(r1, r2, r3, r4):
+    """Of p + q over s + l; zero when it is less than the rounding of four printed lengths to doubles."""
+    excess = exact_sum(r1, r2, r3, r4, -2 * _shortest(r1, r2, r3, r4), -2 * _longest(r1, r2, r3, r4))
+    return np.where(abs(excess) <= 2.0**-53 * (r1 + r2 + r3 + r4), 0.0, excess)
+
+
+def _type_by_shortest(r1, r2, r3, r4):
+    """Of a linkage that satisfies Grashof's rule: r1 is the frame, r2 the input, r4 the output."""
+    shortest = _shortest(r1, r2, r3, r4)
+    return np.select(
+        [r2 == shortest, r4 == shortest, r1 == shortest],
+        ["crank-rocker", "rocker-crank", "double-crank"],
+        "double-rocker",
+    )
+
+
+def linkage_type(r1, r2, r3, r4):
+    """Can it close at all; does s + l reach p + q; and if not, which bar is the shortest?"""
+    excess = _grashof_excess(r1, r2, r3, r4)
+    return np.select(
+        [2 * _longest(r1, r2, r3, r4) >= r1 + r2 + r3 + r4, excess == 0, excess < 0],
+        ["impossible", "change-point", "triple-rocker"],
+        _type_by_shortest(r1, r2, r3, r4),
+    )
+
+
+@formula(r"2 \times <r2> \times <r3> \times \cos <theta2> - 2 \times <r1> \times <r3>")
+def a(r1, r2, r3, theta2):
+    """Coefficient of cos(theta3)."""
+    return -2 * r3 * ((r1 - r2) + 2 * r2 * sin(theta2 / 2) ** 2)
+
+
+@formula(r"2 \times <r2> \times <r3> \times \sin <theta2>")
+def b(r2, r3, theta2):
+    """Coefficient of sin(theta3): zero when the crank lies along the frame."""
+    return 2 * r2 * r3 * sin(theta2)
+
+
+@formula(r"<r4>^2 - <r1>^2 - <r2>^2 - <r3>^2 + 2 \times <r1> \times <r2> \times \cos <theta2>")
+def c(r1, r2, r3, r4, theta2):
+    """Right-hand side: r4^2 - r3^2 - AC^2."""
+    return (r4 - r3) * (r4 + r3) - (r1 - r2) ** 2 - 4 * r1 * r2 * sin(theta2 / 2) ** 2
+
+
+@formula(r"\operatorname{atan2}\left(<b>;\ <a>\right)")
+def phi(a, b):
+    """Direction of C towards A, in which a and b are the components."""
+    nowhere = (a == 0) & (b == 0)
+    if isinstance(nowhere, bool):
+        if nowhere:
+            raise Undefined("A lies on C: coupler and rocker may point anywhere, so theta3 is not determined")
+        return atan2(b, a)
+    return np.where(nowhere, np.nan, atan2(b, a))
+
+
+@formula(r"\arccos \left(\frac{<c>}{\sqrt{<a>^2 + <b>^2}}\right)")
+def psi(a, b, c, r1, r2, r3, r4, theta2):
+    """Angle between the coupler and the direction phi, by its sine and cosine together."""
+    stretched, folded = _triangle_margins(r1, r2, r3, r4, theta2)
+    a0, b0, c0 = _of_the_data(r1, r2, r3, r4, theta2)
+    # Coefficients that are not those of the data (given, or a student's) change the discriminant.
+    change = (a - a0) * (a + a0) + (b - b0) * (b + b0) - (c - c0) * (c + c0)
+    if isinstance(change, float) and change == 0.0:
+        _closed(stretched, folded)
+    discriminant = stretched * folded + change
+    if isinstance(discriminant, float) and discriminant < 0:
+        raise CannotAssemble(
+            f"no angle: |c| = {abs(c):.6g} exceeds the root of a^2 + b^2, {abs(a + 1j * b):.6g}"
+        )
+    return atan2(sqrt(discriminant), c)
+
+
+def theta3_open(phi, psi):
+    """Inner joint B to the left of the line from A to C."""
+    return wrap(phi - psi)
+
+
+def theta3_crossed(phi, psi):
+    """Inner joint B to the right of the line from A to C."""
+    return wrap(phi + psi)
+
+
+def _rocker(r1, r2, r3, theta2, theta3):
+    along = (r2 - r1) - 2 * r2 * sin(theta2 / 2) ** 2
+    return atan2(r2 * sin(theta2) + r3 * sin(theta3), along + r3 * cos(theta3))
+
+
+_ROCKER = (
+    r"\operatorname{atan2}\left(<r2> \sin <theta2> + <r3> \sin <MODE>;\ "
+    r"<r2> \cos <theta2> + <r3> \cos <MODE> - <r1>\right)"
+)
+
+
+@formula(_ROCKER.replace("MODE", "theta3_open"))
+def theta4_open(r1, r2, r3, theta2, theta3_open):
+    """Direction from C to B, by its quadrant."""
+    return _rocker(r1, r2, r3, theta2, theta3_open)
+
+
+@formula(_ROCKER.replace("MODE", "theta3_crossed"))
+def theta4_crossed(r1, r2, r3, theta2, theta3_crossed):
+    """Direction from C to B, by its quadrant."""
+    return _rocker(r1, r2, r3, theta2, theta3_crossed)
+
+
+@formula(r"\sqrt{<r1>^2 + <r2>^2 - 2 \times <r1> \times <r2> \times \cos <theta2>}")
+def AC(r1, r2, theta2):
+    """Diagonal AC, by the law of cosines as a sum of two squares."""
+    return sqrt((r1 - r2) ** 2 + 4 * r1 * r2 * sin(theta2 / 2) ** 2)
+
+
+@formula(r"\arccos \left(\frac{<r3>^2 + <r4>^2 - <AC>^2}{2 \times <r3> \times <r4>}\right)")
+def mu(AC, r1, r2, r3, r4, theta2):
+    """Angle CBA at B, by its half: what coupler and rocker lack to be in line, either way."""
+    stretched, folded = _triangle_margins(r1, r2, r3, r4, theta2)
+    exact = (r1 - r2) ** 2 + 4 * r1 * r2 * sin(theta2 / 2) ** 2
+    # As in psi: a diagonal that is not that of the data moves both margins.
+    change = (AC - sqrt(exact)) * (AC + sqrt(exact))
+    _closed(stretched - change, folded + change)
+    return 2 * atan2(sqrt(folded + change), sqrt(stretched - change))
+
+
+@mistake("c")
+def notes_c_sign(r1, c):
+    return c + 2 * r1**2
+
+
+@mistake("c")
+def c_cosine_sign(r1, r2, theta2, c):
+    return c - 4 * r1 * r2 * cos(theta2)
+
+
+@mistake("a")
+def a_without_r1(r2, r3, theta2):
+    return 2 * r2 * r3 * cos(theta2)
+
+
+@mistake("phi", share=0.5)
+def theta3_arctan_no_quadrant(a, b):
+    return atan(b / a)
+
+
+@mistake("theta4_open", "theta4_crossed", share=0.5)
+def theta4_arctan_no_quadrant(theta4_open, theta4_crossed):
+    return atan(sin(theta4_open) / cos(theta4_open)), atan(sin(theta4_crossed) / cos(theta4_crossed))
+
+
+@mistake("theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed")
+def theta_exchanged(r1, r2, r3, theta2, theta3_open, theta3_crossed):
+    theta4_open = _rocker(r1, r2, r3, theta2, theta3_open)
+    theta4_crossed = _rocker(r1, r2, r3, theta2, theta3_crossed)
+    return theta4_open, theta3_open, theta4_crossed, theta3_crossed
+
+
+@mistake("theta2")
+def degrees_as_radians(theta2):
+    return theta2 * 180 / np.pi
+
+
+@mistake("AC")
+def diagonal_sign(r1, r2, theta2):
+    return sqrt(r1**2 + r2**2 + 2 * r1 * r2 * cos(theta2))
+
+
+@mistake("mu", share=0.5)
+def acute_mu(mu):
+    return np.minimum(mu, 180 - mu)
+
+
+@mistake("mu", share=0.5)
+def inverse_angle_B(mu):
+    return 180 - mu
+
+
+@mistake("linkage_type")
+def fixed_plus_input(r1, r2, r3, r4):
+    by_shortest = _type_by_shortest(r1, r2, r3, r4)
+    return np.where(r1 + r2 < r3 + r4, by_shortest, "triple-rocker")
+
+
+@mistake("linkage_type")
+def grashof_not_tested(r1, r2, r3, r4):
+    return _type_by_shortest(r1, r2, r3, r4)
+
+
+@mistake("linkage_type")
+def always_crank_rocker(linkage_type):
+    grashof = np.isin(linkage_type, ("crank-rocker", "rocker-crank", "double-crank", "double-rocker"))
+    return np.where(grashof, "crank-rocker", linkage_type)
+
+
+@mistake("linkage_type")
+def frame_and_coupler_exchanged(linkage_type):
+    return np.where(
+        linkage_type == "double-crank",
+        "double-rocker",
+        np.where(linkage_type == "double-rocker", "double-crank", linkage_type),
+    )
+
+
+def residual(r1, r2, r3, r4, theta2, a, b, c, theta3_open, theta4_open, theta3_crossed, theta4_crossed, mu):
+    """Loop closure in both assemblies, the side of B, the equation in theta3, the triangle ABC."""
+
+    def unit(theta):
+        return np.exp(1j * np.radians(theta))
+
+    crank = r2 * unit(theta2)
+    size = r1 + r2 + r3 + r4
+    found = []
+    for side, theta3, theta4 in ((1, theta3_open, theta4_open), (-1, theta3_crossed, theta4_crossed)):
+        found.append(abs(crank + r3 * unit(theta3) - r1 - r4 * unit(theta4)) / size)
+        turned = side * (np.conj(r1 - crank) * unit(theta3)).imag / size
+        found.append(np.maximum(-turned, 0))
+        found.append(abs((np.conj(a + 1j * b) * unit(theta3)).real - c) / (abs(a) + abs(b) + abs(c)))
+    found.append(abs(abs(r3 - r4 * unit(mu)) - abs(r1 - crank)) / size)
+    return tuple(found)
+
+
+def figure(r1, r2, r3, r4, theta2, theta3_open, theta3_crossed):
+    """The drawn construction: the circles about A and C, and both inner joints."""
+    O, A, C = 0j, polar(r2, theta2), complex(r1)
+    B1, B2 = A + polar(r3, theta3_open), A + polar(r3, theta3_crossed)
+    return Figure(
+        circle(A, r3, dashed=True),
+        circle(C, r4, dashed=True),
+        line(O, C, dashed=True),
+        line(A, C, dashed=True),
+        link(O, A, label="r_2"),
+        link(A, B1, label="r_3"),
+        link(C, B1, label="r_4"),
+        line(A, B2, thin=False),
+        line(C, B2, thin=False),
+        ground_pivot(O, "O"),
+        ground_pivot(C, "C"),
+        pin(A, "A"),
+        pin(B1, "B_1"),
+        pin(B2, "B_2"),
+    )
+
+
+KNOWN = (
+    # A rectangle, and the same turned over about its diagonal: a 7-24-25 triangle.
+    (
+        {"r1": 40, "r2": 30, "r3": 40, "r4": 30, "theta2": 90},
+        {
+            "a": -3200,
+            "b": 2400,
+            "c": -3200,
+            "theta3_open": 0,
+            "theta4_open": 90,
+            "theta3_crossed": "-73.7398",
+            "theta4_crossed": "-163.7398",
+            "mu": 90,
+            "linkage_type": "change-point",
+        },
+    ),
+    # Crank along the frame, b = 0, and ABC equilateral.
+    (
+        {"r1": 100, "r2": 40, "r3": 60, "r4": 60, "theta2": 0},
+        {
+            "a": -7200,
+            "b": 0,
+            "c": -3600,
+            "theta3_open": 60,
+            "theta4_open": 120,
+            "theta3_crossed": -60,
+            "theta4_crossed": -120,
+            "mu": 60,
+            "linkage_type": "triple-rocker",
+        },
+    ),
+    # Crank away from the frame, b = 0 again, and ABC half a square.
+    (
+        {"r1": 40, "r2": 20, "r3": 30 * 2**0.5, "r4": 30 * 2**0.5, "theta2": 180},
+        {
+            "b": 0,
+            "theta3_open": 45,
+            "theta4_open": 135,
+            "theta3_crossed": -45,
+            "theta4_crossed": -135,
+            "mu": 90,
+            "linkage_type": "crank-rocker",
+        },
+    ),
+    # A dead point: coupler and rocker in line, both assemblies at once.
+    (
+        {"r1": 60, "r2": 20, "r3": 50, "r4": 30, "theta2": 180},
+        {
+            "a": -8000,
+            "c": -8000,
+            "theta3_open": 0,
+            "theta3_crossed": 0,
+            "theta4_open": 180,
+            "theta4_crossed": 180,
+            "mu": 180,
+            "linkage_type": "change-point",
+        },
+    ),
+    # The output, the frame, the coupler shortest.
+    ({"r1": 100, "r2": 90, "r3": 80, "r4": 40, "theta2": 60}, {"linkage_type": "rocker-crank"}),
+    ({"r1": 40, "r2": 90, "r3": 80, "r4": 100, "theta2": 60}, {"linkage_type": "double-crank"}),
+    ({"r1": 100, "r2": 90, "r3": 40, "r4": 80, "theta2": 60}, {"linkage_type": "double-rocker"}),
+    # Equality of the printed lengths, which their doubles miss: 0.1 + 0.6 = 0.3 + 0.4.
+    ({"r1": 0.3, "r2": 0.1, "r3": 0.4, "r4": 0.6, "theta2": 60}, {"linkage_type": "change-point"}),
+)

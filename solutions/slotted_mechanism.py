@@ -1,0 +1,175 @@
+"""Slotted mechanism: solution. The vector of the guide is the frame's plus the crank's.
+
+Everything is measured from the frame's direction theta1, where no difference of nearly equal
+lengths appears: the block may pass as near to O4 as it likes.
+"""
+
+import numpy as np
+
+from coursework.degrees import asin, atan, atan2, cos, polar, sin, sqrt, wrap
+from coursework.solution import formula, mistake
+
+UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
+SYMBOLS = {"delta": r"\delta"}
+
+
+def delta(theta1, theta2):
+    """Crank angle from the direction of the frame."""
+    return wrap(theta2 - theta1)
+
+
+@formula(r"\sqrt{<r1>^2 + <r2>^2 + 2 \times <r1> \times <r2> \times \cos <delta>}")
+def rA(r1, r2, delta):
+    """Distance O4A: the law of cosines, as a sum of two squares."""
+    return sqrt((r2 - r1) ** 2 + 4 * r1 * r2 * cos(delta / 2) ** 2)
+
+
+@formula(
+    r"\operatorname{atan2}\left(<r1> \sin <theta1> + <r2> \sin <theta2>;\ "
+    r"<r1> \cos <theta1> + <r2> \cos <theta2>\right)"
+)
+def theta4(r1, r2, theta1, delta):
+    """Direction of the guide, by its quadrant."""
+    return wrap(theta1 + atan2(r2 * sin(delta), (r1 - r2) + 2 * r2 * cos(delta / 2) ** 2))
+
+
+def guide(r1, r2):
+    """The guide turns fully when O4 lies inside the circle of A."""
+    return np.where(r2 > r1, "rotates", "oscillates")
+
+
+def swing(r1, r2):
+    """Between the two directions tangent to the circle of A, when O4 lies outside it."""
+    return 2 * asin(r2 / r1)
+
+
+@formula(r"<r2> \times <omega2> \times \sin\left(<theta4> - <theta2>\right)")
+def rA_dot(r1, r2, omega2, delta, rA):
+    """Component of the velocity of A along the guide."""
+    return -r1 * r2 * omega2 * sin(delta) / rA
+
+
+@formula(r"\frac{<r2> \times <omega2> \times \cos\left(<theta2> - <theta4>\right)}{<rA>}")
+def omega4(r1, r2, omega2, delta, rA):
+    """Component of the velocity of A across the guide, over its distance."""
+    return r2 * omega2 * ((r2 - r1) + 2 * r1 * cos(delta / 2) ** 2) / rA**2
+
+
+def a_centripetal(rA, omega4):
+    return -rA * omega4**2
+
+
+def a_coriolis(rA_dot, omega4):
+    return 2 * omega4 * rA_dot
+
+
+def rA_ddot(r2, alpha2, omega2, theta2, theta4, a_centripetal):
+    """Component of the acceleration of A along the guide, less the centripetal term."""
+    return -r2 * alpha2 * sin(theta2 - theta4) - r2 * omega2**2 * cos(theta2 - theta4) - a_centripetal
+
+
+def alpha4(r2, alpha2, omega2, theta2, theta4, a_coriolis, rA):
+    """Component of the acceleration of A across the guide, less the Coriolis term."""
+    return (r2 * alpha2 * cos(theta2 - theta4) - r2 * omega2**2 * sin(theta2 - theta4) - a_coriolis) / rA
+
+
+def a_radial(rA_ddot):
+    return rA_ddot
+
+
+def a_tangential(rA, alpha4):
+    return rA * alpha4
+
+
+@mistake("theta4", share=0.5)
+def arctan_no_quadrant(r1, r2, theta1, theta2):
+    arm = polar(r1, theta1) + polar(r2, theta2)
+    return atan(arm.imag / arm.real)
+
+
+@mistake("rA", "theta4")
+def sin_cos_swapped(r1, r2, theta2):
+    x, y = r2 * sin(theta2), r1 + r2 * cos(theta2)
+    return sqrt(x**2 + y**2), atan2(y, x)
+
+
+@mistake("theta2")
+def degrees_as_radians(theta2):
+    return theta2 * 180 / np.pi
+
+
+@mistake("rA")
+def cosine_rule_sign(r1, r2, delta):
+    return sqrt(r1**2 + r2**2 - 2 * r1 * r2 * cos(delta))
+
+
+@mistake("swing", share=0.5)
+def half_swing(swing):
+    return swing / 2
+
+
+@mistake("omega4")
+def guide_speed_no_projection(r2, omega2, rA):
+    return r2 * omega2 / rA
+
+
+@mistake("rA_dot", share=0.5)
+def rA_dot_sign(rA_dot):
+    return -rA_dot
+
+
+@mistake("alpha4")
+def no_coriolis(r2, alpha2, omega2, theta2, theta4, rA):
+    return (r2 * alpha2 * cos(theta2 - theta4) - r2 * omega2**2 * sin(theta2 - theta4)) / rA
+
+
+@mistake("a_coriolis")
+def coriolis_no_2(omega4, rA_dot):
+    return omega4 * rA_dot
+
+
+@mistake("rA_ddot")
+def no_centripetal(r2, alpha2, omega2, theta2, theta4):
+    return -r2 * alpha2 * sin(theta2 - theta4) - r2 * omega2**2 * cos(theta2 - theta4)
+
+
+def residual(r1, r2, theta1, theta2, omega2, alpha2, rA, theta4, rA_dot, omega4, rA_ddot, alpha4):
+    """Loop closure and its two derivatives, as complex equations."""
+    frame = r1 * np.exp(1j * np.radians(theta1))
+    crank = r2 * np.exp(1j * np.radians(theta2))
+    along = np.exp(1j * np.radians(theta4))
+    position = frame + crank - rA * along
+    velocity = 1j * omega2 * crank - (rA_dot + 1j * rA * omega4) * along
+    acceleration = (1j * alpha2 - omega2**2) * crank - (
+        rA_ddot - rA * omega4**2 + 1j * (rA * alpha4 + 2 * rA_dot * omega4)
+    ) * along
+    speed = r2 * abs(omega2) + rA * abs(omega4)
+    return (
+        abs(position) / (r1 + r2),
+        abs(velocity) / speed,
+        abs(acceleration) / (r2 * (abs(alpha2) + omega2**2) + rA * (omega4**2 + abs(alpha4))),
+    )
+
+
+KNOWN = (
+    # The course's own numbers.
+    (
+        {"r1": 228.6, "r2": 114.3, "theta1": 90, "theta2": 135, "omega2": 1},
+        {"rA": "319.80", "theta4": "104.64", "guide": "oscillates", "swing": "60.000"},
+    ),
+    # Crank along the frame: the guide is at its greatest length and turns with the least slide.
+    (
+        {"r1": 200, "r2": 100, "theta1": 90, "theta2": 90, "omega2": 3},
+        {"rA": 300, "theta4": 90, "rA_dot": 0, "omega4": 1, "a_coriolis": 0, "a_centripetal": -300},
+    ),
+    # Crank square to the guide at the end of the swing: the guide stands still.
+    (
+        {"r1": 200, "r2": 100, "theta1": 90, "theta2": -150, "omega2": 4},
+        {"rA": 100 * 3**0.5, "theta4": 120, "omega4": 0, "rA_dot": -400},
+    ),
+    # Frame and crank equal: the guide turns at half the crank's speed, wherever it is.
+    (
+        {"r1": 150, "r2": 150, "theta1": 90, "theta2": -80, "omega2": 10},
+        {"omega4": 5, "alpha4": 0, "theta4": 5},
+    ),
+)
