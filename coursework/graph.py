@@ -64,7 +64,11 @@ class Graph:
     def __init__(self, functions: Mapping[str, Callable[..., Value]]):
         self._build({name: Node.of(f) for name, f in functions.items()}, frozenset())
 
-    def _build(self, nodes: Mapping[str, Node], shadowed: frozenset[str]) -> None:
+    def _build(
+        self, nodes: Mapping[str, Node], shadowed: frozenset[str], effects: tuple[str, ...] | None = None
+    ) -> None:
+        optional = {p for node in nodes.values() for p in node.defaults}
+        self._effects = tuple(n for n in nodes if n in optional) if effects is None else effects
         self._nodes = dict(nodes)
         self._shadowed = shadowed
         self._plans: dict[object, tuple[tuple[str, ...], list, dict]] = {}
@@ -89,8 +93,7 @@ class Graph:
 
     def effects(self) -> tuple[str, ...]:
         """The quantities that a request may call for as optional effects."""
-        optional = {p for node in self._nodes.values() for p in node.defaults}
-        return tuple(name for name in self._nodes if name in optional)
+        return self._effects
 
     def plan(
         self, wanted: Sequence[str], given: Iterable[str] = (), effects: Iterable[str] = ()
@@ -116,8 +119,9 @@ class Graph:
 
     def _resolve(self, wanted: tuple[str, ...], given: frozenset[str], effects: frozenset[str]):
         for effect in effects:
-            if effect not in self.effects():
-                raise unknown("effect", effect, self.effects())
+            if effect not in self._effects:
+                raise unknown("effect", effect, self._effects)
+        effects = effects | {_right(effect) for effect in effects}
         order: dict[str, tuple[Callable, tuple[str, ...]]] = {}
         constants: dict[str, Value] = {}
         path: list[str] = []
@@ -217,9 +221,13 @@ class Graph:
             if target not in self._known:
                 raise unknown("quantity", target, self._known)
         nodes = dict(self._nodes)
-        for target in targets:
-            if target in nodes:
-                nodes[_right(target)] = nodes[target]
+        # The right value of a target is that of the right graph, all the way up.
+        touched = self.descendants(targets)
+        for name in touched & self._nodes.keys():
+            node = self._nodes[name]
+            arguments = tuple(_right(a) if a in touched else a for a in node.arguments)
+            defaults = {_right(a) if a in touched else a: v for a, v in node.defaults.items()}
+            nodes[_right(name)] = Node(node.function, arguments, defaults)
         wrong = Node.of(replacement.function)
         arguments = tuple(_right(a) if a in targets else a for a in wrong.arguments)
         wrong = Node(wrong.function, arguments, wrong.defaults)
@@ -231,7 +239,7 @@ class Graph:
             for index, target in enumerate(targets):
                 nodes[target] = Node(lambda values, i=index: values[i], (together,), {})
         graph = Graph.__new__(Graph)
-        graph._build(nodes, frozenset(t for t in targets if t not in self._nodes))
+        graph._build(nodes, frozenset(t for t in targets if t not in self._nodes), self._effects)
         return graph
 
     def descendants(self, names: Iterable[str]) -> frozenset[str]:

@@ -164,6 +164,10 @@ def _step(variant: Variant, name: str, values: Mapping[str, Any], text: Any) -> 
         if isinstance(v, (int, float, complex))
     }
     value = _value_latex(variant, name, values[name])
+    words = section.text if section else ""
+    part = next((p for p in variant.parts if p.quantity == name and p.kind == "choice"), None)
+    if part is not None:
+        words = f"{words} **{variant.text.label(part.id, str(values[name]))}**".strip()
     try:
         formula = formula_latex(function, symbols)
         substitution = formula_latex(function, numbers) if formula and value else ""
@@ -182,7 +186,7 @@ def _step(variant: Variant, name: str, values: Mapping[str, Any], text: Any) -> 
         formula=formula,
         substitution=substitution if substitution != formula else "",
         value=value,
-        words=section.text if section else "",
+        words=words,
         remarks=remarks,
         asked=name in asked,
     )

@@ -155,6 +155,19 @@ def r6_ddot(r4, omega4, alpha4, theta4, r5, omega5, alpha5, theta5):
     )
 
 
+# Where two mistakes give one answer, the first is told: what is wrong there before what is wrong earlier.
+
+
+@mistake("omega5", share=0.5)
+def omega5_sign(omega5):
+    return -omega5
+
+
+@mistake("r6_dot", share=0.5)
+def r6_dot_sign(r6_dot):
+    return -r6_dot
+
+
 @mistake("mobility")
 def frame_counted():
     return 3 * 6 - 2 * 7
@@ -276,19 +289,9 @@ def signs_of_omegas(omega3, omega4):
     return -omega3, -omega4
 
 
-@mistake("omega5", share=0.5)
-def omega5_sign(omega5):
-    return -omega5
-
-
 @mistake("r6_dot")
 def notes_eq7(r4, omega4, theta4, r5, omega5, theta5):
     return r4 * omega4 * sin(theta4) + r5 * omega5 * sin(theta5)
-
-
-@mistake("r6_dot", share=0.5)
-def r6_dot_sign(r6_dot):
-    return -r6_dot
 
 
 @mistake("alpha3", "alpha4")

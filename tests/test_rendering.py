@@ -368,6 +368,22 @@ def test_a_name_with_marks_of_typst_or_html_prints_as_itself(lang):
     assert "#panic() $x$ &lt;b&gt;O’Neil&lt;/b&gt;" in RENDERER.html(sheet)
 
 
+@every_language
+def test_what_follows_a_formula_in_a_text_is_text(lang):
+    sheet = replace(handout(lang), statement="$x$(y) $x$.width *a*(b) `c`[d] **e**.f $\\num{1}$[g]")
+    assert RENDERER.pdf(sheet).startswith(b"%PDF")
+
+
+@every_language
+def test_a_long_exercise_and_a_formula_wider_than_the_page_still_compile(lang):
+    sheet = answer_sheet(lang)
+    wide = " + ".join([r"\frac{r_1\cos\theta_1}{r_2}"] * 14)
+    questions = tuple(replace(q, number=k + 1) for k, q in enumerate(sheet.handout.questions * 3))
+    long = replace(sheet, steps=(replace(sheet.steps[0], formula=wide, substitution=wide),) * 3)
+    assert RENDERER.pdf(long).startswith(b"%PDF")
+    assert pages_of(replace(sheet.handout, questions=questions)) in (2, 3)
+
+
 # -- what a student's sheet never holds --------------------------------------------------------------
 
 
@@ -512,6 +528,19 @@ def test_a_name_that_a_template_does_not_have_is_an_error(tmp_path):
     (tmp_path / "_figure_and_data.html.j2").write_text("{{ nonsense }}", "utf-8")
     with pytest.raises(BadStatement, match="nonsense"):
         Renderer([tmp_path, TEMPLATES]).html(handout("en"))
+
+
+def test_a_course_template_may_use_macros(tmp_path):
+    (tmp_path / "_figure_and_data.html.j2").write_text(
+        "{% macro shown(name) %}<b>{{ name }}</b>{% endmacro %}{{ shown('a < b') }}", "utf-8"
+    )
+    assert "<b>a &lt; b</b>" in Renderer([tmp_path, TEMPLATES]).html(handout("en"))
+
+
+def test_a_template_that_typst_refuses_is_an_error_of_the_course(tmp_path):
+    (tmp_path / "_figure_and_data.typ.j2").write_text("#nonsense", "utf-8")
+    with pytest.raises(BadStatement, match="nonsense"):
+        Renderer([tmp_path, TEMPLATES]).pdf(handout("en"))
 
 
 def test_a_missing_template_is_named(tmp_path):

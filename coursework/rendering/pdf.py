@@ -10,6 +10,7 @@ from pathlib import Path
 from jinja2 import Environment
 from markupsafe import Markup
 
+from coursework.errors import BadStatement
 from coursework.figures import Figure
 from coursework.rendering import markup, views
 from coursework.rendering.environment import environment, render
@@ -32,14 +33,18 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet]) -> str:
 def compile_pdf(typst_source: str) -> bytes:
     """The tagged PDF (PDF/UA-1) of a Typst source; the same bytes for the same source.
 
-    A compiler serves one thread, and is kept: fonts are read once.
+    A compiler serves one thread, and is kept: fonts are read once. What the course's own template may
+    have got wrong is said as :class:`BadStatement`.
     """
     import typst
 
     compiler = getattr(_LOCAL, "compiler", None)
     if compiler is None:
         compiler = _LOCAL.compiler = typst.Compiler(ignore_system_fonts=True)
-    return compiler.compile(input=typst_source.encode(), format="pdf", pdf_standards="ua-1", timestamp=0)
+    try:
+        return compiler.compile(input=typst_source.encode(), format="pdf", pdf_standards="ua-1", timestamp=0)
+    except typst.TypstError as wrong:
+        raise BadStatement(f"the sheet does not compile: {wrong}") from wrong
 
 
 @lru_cache(maxsize=32)

@@ -1,0 +1,264 @@
+"""Quick return with crank and rocker: velocity, acceleration, stroke and time ratio (Figure 27)."""
+
+import numpy as np
+
+from coursework.degrees import acos, angle, asin, cos, polar, sin, wrap
+from coursework.figures import (
+    Figure,
+    angle_mark,
+    arc,
+    circle,
+    dimension,
+    ground_pivot,
+    line,
+    link,
+    note,
+    pin,
+    rail,
+    slider,
+)
+from coursework.kinematics.dyads import rrp, rrr, side_of
+from coursework.model import Exercise, Part, chosen, drawn
+
+
+def B(r1, theta1, r2, r3, r4, angle_OAB, B_side):
+    OB = abs(r2 - polar(r3, angle_OAB))
+    return rrr(0j, polar(r1, theta1), OB, r4, side_of(B_side))
+
+
+def A(B, r2, r3, A_side):
+    return rrr(0j, B, r2, r3, side_of(A_side))
+
+
+def C(B, r5, h):
+    return rrp(B, r5, h)
+
+
+def coupler(A, B):
+    return B - A
+
+
+def rocker(B, r1, theta1):
+    return B - polar(r1, theta1)
+
+
+def rod(B, C):
+    return C - B
+
+
+def _cross(u, v):
+    return u.real * v.imag - u.imag * v.real
+
+
+def _dot(u, v):
+    return u.real * v.real + u.imag * v.imag
+
+
+def omega3(A, rocker, coupler):
+    """Over omega2, as every rate below."""
+    return _cross(A, rocker) / _cross(rocker, coupler)
+
+
+def omega4(A, rocker, coupler):
+    return _cross(A, coupler) / _cross(rocker, coupler)
+
+
+def omega5(omega4, rocker, rod):
+    return -omega4 * rocker.real / rod.real
+
+
+def v_C(omega4, rocker, omega5, rod):
+    return -omega4 * rocker.imag - omega5 * rod.imag
+
+
+def a_C(A, coupler, rocker, rod, omega3, omega4, omega5):
+    """Over omega2 squared."""
+    alpha4 = (_dot(A, coupler) + omega3**2 * abs(coupler) ** 2 - omega4**2 * _dot(rocker, coupler)) / _cross(
+        coupler, rocker
+    )
+    rise = alpha4 * rocker.real - omega4**2 * rocker.imag - omega5**2 * rod.imag
+    return -alpha4 * rocker.imag - omega4**2 * rocker.real - omega5**2 * rod.real + rise * rod.imag / rod.real
+
+
+def OB_at_the_ends(r2, r3):
+    """Where the rocker turns back, crank and coupler are in line."""
+    return np.stack([r3 - r2, r3 + r2])
+
+
+def rocker_at_the_ends(OB_at_the_ends, r1, theta1, r4, B_side):
+    at_D = acos((r1**2 + r4**2 - OB_at_the_ends**2) / (2 * r1 * r4))
+    return theta1 + 180 - side_of(B_side) * at_D
+
+
+def unequal_halves(OB_at_the_ends, r1, r4):
+    """(alpha - beta) / 2: the angle between the two directions of OB."""
+    at_O = acos((r1**2 + OB_at_the_ends**2 - r4**2) / (2 * r1 * OB_at_the_ends))
+    return abs(at_O[1] - at_O[0])
+
+
+def _passes(ends, direction):
+    """Whether the swing between two directions, less than half a turn apart, passes another one or nearly."""
+    low = np.minimum(ends[0], ends[1])
+    swing = abs(ends[1] - ends[0])
+    return (direction - low + 6) % 360 < swing + 12
+
+
+def greatest_rise(rocker_at_the_ends, r1, theta1, r4, h):
+    """Of |h - yB| over the turn: at an end of the swing, or where the rocker points straight up or down."""
+    middle = h - r1 * sin(theta1)
+    rise = abs(middle - r4 * sin(rocker_at_the_ends)).max(axis=0)
+    for upright, top in ((90, r4), (-90, -r4)):
+        inside = _passes(rocker_at_the_ends, upright)
+        rise = np.where(inside, np.maximum(rise, abs(middle - top)), rise)
+    return rise
+
+
+def crank_is_the_shortest(r1, r2, r3, r4):
+    return r2 < np.minimum(r1, np.minimum(r3, r4))
+
+
+def crank_turns(r1, r2, r3, r4):
+    longest = np.maximum(r1, np.maximum(r3, r4))
+    return 2 * (r2 + longest) < r1 + r2 + r3 + r4
+
+
+def transmission_angle_from_30_to_150(r1, r2, r3, r4):
+    limit = 2 * r3 * r4 * cos(30)
+    sides = r3**2 + r4**2
+    return (abs(sides - (r1 - r2) ** 2) < limit) & (abs(sides - (r1 + r2) ** 2) < limit)
+
+
+def rod_stays_flat(greatest_rise, r5):
+    return greatest_rise < r5 * sin(50)
+
+
+def two_turning_points(rocker_at_the_ends, r1, theta1, r4, r5, h):
+    """The rod never lines up with the rocker: C would turn back there too."""
+    rise = h - r1 * sin(theta1)
+    stretched = asin(rise / (r5 + r4))
+    folded = 180 + asin(rise / (r5 - r4))
+    return ~_passes(rocker_at_the_ends, stretched) & ~_passes(rocker_at_the_ends, folded)
+
+
+def return_is_quick(unequal_halves):
+    return (180 + unequal_halves) > 1.05 * (180 - unequal_halves)
+
+
+def bars_turn_visibly(omega3, omega4, omega5):
+    return (abs(omega3) > 0.05) & (abs(omega4) > 0.05) & (abs(omega5) > 0.02)
+
+
+def piston_moves_visibly(v_C, r2):
+    return abs(v_C) > 0.15 * r2
+
+
+def piston_accelerates_visibly(a_C, r2):
+    return abs(a_C) > 0.15 * r2
+
+
+def figure(A, B, C, r1, theta1, r2, h, rocker_at_the_ends, r4, r5):
+    D = polar(r1, theta1)
+    ends = [rrp(D + polar(r4, end), r5, h).real for end in rocker_at_the_ends.tolist()]
+    to_O = angle(-A)
+    corner = wrap(angle(B - A) - to_O)
+    middle = A + polar(0.42 * r2, to_O + corner / 2)
+    return Figure(
+        circle(0j, r2, dashed=True),
+        rail(min(ends) - 0.1 * r5 + 1j * h, max(ends) + 0.1 * r5 + 1j * h),
+        link(0j, A, label="2"),
+        link(A, B, label="3"),
+        link(D, B, label="4"),
+        link(B, C, label="5"),
+        arc(A, 0.25 * r2, to_O, to_O + corner),
+        slider(C, 0, label="C"),
+        ground_pivot(0j, "O"),
+        ground_pivot(D, "D"),
+        pin(A, "A"),
+        pin(B, "B"),
+        pin(C),
+    )
+
+
+EXERCISE = Exercise(
+    given={
+        "r1": drawn(150, 320, step=5, unit="mm"),
+        "r2": drawn(40, 110, step=5, unit="mm"),
+        "r3": drawn(150, 320, step=5, unit="mm"),
+        "r4": drawn(120, 420, step=5, unit="mm"),
+        "r5": drawn(250, 600, step=5, unit="mm"),
+        "B_side": chosen("left", "right"),
+        "A_side": chosen("left", "right"),
+        # On either side of O-D the linkages are mirror images in the x axis.
+        "theta1": drawn(
+            lambda B_side: np.where(B_side == "left", -30, -60),
+            lambda B_side: np.where(B_side == "left", 60, 30),
+            step=5,
+            unit="deg",
+        ),
+        "h": drawn(
+            lambda B_side: np.where(B_side == "left", -100, -250),
+            lambda B_side: np.where(B_side == "left", 250, 100),
+            step=5,
+            unit="mm",
+        ),
+        "angle_OAB": drawn(60, 140, step=5, unit="deg"),
+        "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
+    },
+    helpers=(
+        B,
+        A,
+        C,
+        coupler,
+        rocker,
+        rod,
+        omega3,
+        omega4,
+        omega5,
+        v_C,
+        a_C,
+        OB_at_the_ends,
+        rocker_at_the_ends,
+        unequal_halves,
+        greatest_rise,
+    ),
+    keep=(
+        crank_is_the_shortest,
+        crank_turns,
+        transmission_angle_from_30_to_150,
+        rod_stays_flat,
+        two_turning_points,
+        return_is_quick,
+        bars_turn_visibly,
+        piston_moves_visibly,
+        piston_accelerates_visibly,
+    ),
+    parts=(
+        Part("theta2", unit="deg", kind="angle", points=1),
+        Part("theta3", unit="deg", kind="angle", points=1),
+        Part("theta4", unit="deg", kind="angle", points=1),
+        Part("xC", unit="mm", points=1),
+        Part("theta5", unit="deg", kind="angle", points=1),
+        Part("omega3", unit="rad/s", points=1),
+        Part("omega4", unit="rad/s", points=1),
+        Part("omega5", unit="rad/s", points=1),
+        Part("v_C", unit="mm/s", points=1),
+        Part("a_C", unit="mm/s^2", points=2),
+        Part("stroke", unit="mm", points=1),
+        Part("alpha", unit="deg", points=1),
+        Part("beta", unit="deg", points=1),
+        Part("Q", points=1),
+        Part("T", unit="s", points=1),
+        Part("t_advance", unit="s", points=1),
+        Part("t_return", unit="s", points=1),
+        Part("mechanical_advantage", points=1),
+    ),
+    symbols={
+        "angle_OAB": r"\angle OAB",
+        "xC": "x_C",
+        "stroke": "s",
+        "t_advance": "t_a",
+        "t_return": "t_r",
+        "mechanical_advantage": r"\lambda",
+    },
+    figure=figure,
+)

@@ -1,0 +1,538 @@
+"""Quick return with crank and rocker: solution.
+
+The angle OAB fixes the distance OB; two triangles then give B and A, each on its stated side. The
+rates follow from the two loops O-A-B-D and D-B-C. Over the turn, C turns back where its velocity
+vanishes: where crank and coupler are in line, and wherever the rod would line up with the rocker.
+"""
+
+import math
+
+import numpy as np
+
+from coursework.degrees import atan2, cos, polar, sin, sqrt, wrap
+from coursework.errors import CannotAssemble, Undefined
+from coursework.kinematics.cycle import turning_points
+from coursework.kinematics.dyads import rrp, rrr, side_of
+from coursework.kinematics.margins import grashof_margins
+from coursework.solution import formula, mistake
+
+UNITS = {
+    "xC_max": "mm",
+    "xC_min": "mm",
+    "OB": "mm",
+    "DOB": "deg",
+    "AOB": "deg",
+    "phi": "deg",
+    "yB": "mm",
+    "alpha4": "rad/s^2",
+    "alpha5": "rad/s^2",
+    "theta2_turns": "deg",
+}
+SYMBOLS = {
+    "OB": "OB",
+    "DOB": r"\angle DOB",
+    "AOB": r"\angle AOB",
+    "phi": r"\varphi",
+    "yB": "y_B",
+    "theta2_turns": r"\theta_{2,\mathrm{ext}}",
+    "xC_max": r"x_{C,\mathrm{max}}",
+    "xC_min": r"x_{C,\mathrm{min}}",
+}
+
+
+def _refuse_negative(message, *margins):
+    """Stop on a scalar that does not close; arrays say NaN by their square roots."""
+    if isinstance(margins[0], float) and min(margins) < 0:
+        raise CannotAssemble(message)
+
+
+@formula(r"\sqrt{<r2>^2 + <r3>^2 - 2 \times <r2> \times <r3> \times \cos <angle_OAB>}")
+def OB(r2, r3, angle_OAB):
+    """The law of cosines in triangle OAB, as a sum of two squares."""
+    return sqrt((r3 - r2) ** 2 + 4 * r2 * r3 * sin(angle_OAB / 2) ** 2)
+
+
+@formula(r"\arccos \left(\frac{<r1>^2 + <OB>^2 - <r4>^2}{2 \times <r1> \times <OB>}\right)")
+def DOB(r1, r4, OB):
+    """Angle at O of triangle ODB, by its half."""
+    short, long = (r4 - r1 + OB) * (r4 + r1 - OB), (r1 + OB - r4) * (r1 + OB + r4)
+    _refuse_negative(
+        f"the linkage does not close: with OB = {OB:.6g}, OD = {r1:.6g} and DB = {r4:.6g}, "
+        "the longest exceeds the two others together"
+        if isinstance(short, float)
+        else "",
+        short,
+        long,
+    )
+    return 2 * atan2(sqrt(short), sqrt(long))
+
+
+@formula(r"\arccos \left(\frac{<r2>^2 + <OB>^2 - <r3>^2}{2 \times <r2> \times <OB>}\right)")
+def AOB(r2, r3, angle_OAB, OB):
+    """Angle at O of triangle OAB, by its sine and cosine together."""
+    exact = (r3 - r2) ** 2 + 4 * r2 * r3 * sin(angle_OAB / 2) ** 2
+    # A distance OB that is not that of the data (given, or a student's) moves both margins.
+    change = (OB - sqrt(exact)) * (OB + sqrt(exact))
+    longer = 4 * r2 * r3 * cos(angle_OAB / 2) ** 2 - change
+    shorter = 4 * r2 * r3 * sin(angle_OAB / 2) ** 2 + change
+    _refuse_negative("no triangle OAB has these three sides", longer, shorter)
+    along = 2 * r2 * ((r2 - r3) + 2 * r3 * sin(angle_OAB / 2) ** 2) + change
+    return atan2(sqrt(longer * shorter), along)
+
+
+def _to_the(side, theta, turn):
+    """A direction turned anticlockwise for ``left``, clockwise for ``right``."""
+    return wrap(theta + side_of(side) * turn)
+
+
+@formula(r"<theta1> \pm <DOB>")
+def phi(theta1, DOB, B_side):
+    """Direction of OB."""
+    return _to_the(B_side, theta1, DOB)
+
+
+@formula(r"<phi> \pm <AOB>")
+def theta2(phi, AOB, A_side):
+    """Direction of OA."""
+    return _to_the(A_side, phi, AOB)
+
+
+@formula(r"<theta2> \mp \left(180^{\circ} - <angle_OAB>\right)")
+def theta3(theta2, angle_OAB, A_side):
+    """At A the path O-A-B turns by the supplement of its angle, back towards OB."""
+    return _to_the(A_side, theta2, angle_OAB - 180)
+
+
+@formula(
+    r"\operatorname{atan2}\left(<OB> \sin <phi> - <r1> \sin <theta1>;\ "
+    r"<OB> \cos <phi> - <r1> \cos <theta1>\right)"
+)
+def theta4(r1, theta1, OB, phi):
+    """Direction of DB, by its quadrant."""
+    return atan2(OB * sin(phi) - r1 * sin(theta1), OB * cos(phi) - r1 * cos(theta1))
+
+
+@formula(r"<r1> \sin <theta1> + <r4> \sin <theta4>")
+def yB(r1, theta1, r4, theta4):
+    return r1 * sin(theta1) + r4 * sin(theta4)
+
+
+@formula(r"<r1> \cos <theta1> + <r4> \cos <theta4> + \sqrt{<r5>^2 - \left(<h> - <yB>\right)^2}")
+def xC(r1, theta1, r4, theta4, r5, h, yB):
+    """C to the right of B."""
+    return r1 * cos(theta1) + r4 * cos(theta4) + _run(r5, h, yB)
+
+
+@formula(r"\arcsin \left(\frac{<h> - <yB>}{<r5>}\right)")
+def theta5(r5, h, yB):
+    """Direction of BC, between -90 and 90 degrees."""
+    return atan2(h - yB, _run(r5, h, yB))
+
+
+def _run(r5, h, yB):
+    """How far C lies to the right of B."""
+    above, below = r5 - (h - yB), r5 + (h - yB)
+    if isinstance(above, float) and min(above, below) < 0:
+        raise CannotAssemble(
+            f"the rod does not reach the line: it is {abs(h - yB):.6g} from B, the rod is {r5:.6g} long "
+            f"(gap {abs(h - yB) - r5:.3g})"
+        )
+    return sqrt(above * below)
+
+
+@formula(
+    r"\frac{<r2> \times <omega2> \times \sin\left(<theta2> - <theta4>\right)}"
+    r"{<r3> \times \sin\left(<theta4> - <theta3>\right)}"
+)
+def omega3(r2, omega2, r3, theta2, theta3, theta4):
+    """Across the rocker, crank and coupler move B by opposite amounts."""
+    return r2 * omega2 * sin(theta2 - theta4) / (r3 * sin(theta4 - theta3))
+
+
+@formula(
+    r"\frac{<r2> \times <omega2> \times \sin\left(<theta2> - <theta3>\right)}"
+    r"{<r4> \times \sin\left(<theta4> - <theta3>\right)}"
+)
+def omega4(r2, omega2, r4, theta2, theta3, theta4):
+    """Along the coupler, A and B have the same velocity."""
+    return r2 * omega2 * sin(theta2 - theta3) / (r4 * sin(theta4 - theta3))
+
+
+@formula(r"-\frac{<r4> \times <omega4> \times \cos <theta4>}{<r5> \times \cos <theta5>}")
+def omega5(r4, omega4, theta4, r5, theta5):
+    """C keeps to its line."""
+    return -r4 * omega4 * cos(theta4) / (r5 * cos(theta5))
+
+
+@formula(r"-<r4> \times <omega4> \times \sin <theta4> - <r5> \times <omega5> \times \sin <theta5>")
+def v_C(r4, omega4, theta4, r5, omega5, theta5):
+    return -r4 * omega4 * sin(theta4) - r5 * omega5 * sin(theta5)
+
+
+@formula(
+    r"\frac{<r2> \times <omega2>^2 \times \cos\left(<theta2> - <theta3>\right) + <r3> \times <omega3>^2"
+    r" - <r4> \times <omega4>^2 \times \cos\left(<theta4> - <theta3>\right)}"
+    r"{<r4> \times \sin\left(<theta4> - <theta3>\right)}"
+)
+def alpha4(r2, omega2, r3, omega3, r4, omega4, theta2, theta3, theta4):
+    """The accelerations of loop O-A-B-D, along the coupler."""
+    return (
+        r2 * omega2**2 * cos(theta2 - theta3) + r3 * omega3**2 - r4 * omega4**2 * cos(theta4 - theta3)
+    ) / (r4 * sin(theta4 - theta3))
+
+
+@formula(
+    r"\frac{<r4> \times <omega4>^2 \times \sin <theta4> - <r4> \times <alpha4> \times \cos <theta4>"
+    r" + <r5> \times <omega5>^2 \times \sin <theta5>}{<r5> \times \cos <theta5>}"
+)
+def alpha5(r4, omega4, alpha4, theta4, r5, omega5, theta5):
+    """C keeps to its line: no acceleration across it."""
+    return (r4 * omega4**2 * sin(theta4) - r4 * alpha4 * cos(theta4) + r5 * omega5**2 * sin(theta5)) / (
+        r5 * cos(theta5)
+    )
+
+
+@formula(
+    r"-<r4> \times <alpha4> \times \sin <theta4> - <r4> \times <omega4>^2 \times \cos <theta4>"
+    r" - <r5> \times <alpha5> \times \sin <theta5> - <r5> \times <omega5>^2 \times \cos <theta5>"
+)
+def a_C(r4, omega4, alpha4, theta4, r5, omega5, alpha5, theta5):
+    return (
+        -r4 * alpha4 * sin(theta4)
+        - r4 * omega4**2 * cos(theta4)
+        - r5 * alpha5 * sin(theta5)
+        - r5 * omega5**2 * cos(theta5)
+    )
+
+
+def mode(theta3, theta4):
+    """Of the dyad A-B-D, kept over the turn: open when B lies to the left of the line from A to D."""
+    return np.where(sin(theta4 - theta3) >= 0, "open", "crossed")
+
+
+def _rocker_and_coupler(theta, r1, theta1, r2, r3, r4, side):
+    """Vectors DB, AB and OA at the crank angle ``theta``, in radians."""
+    crank, frame = r2 * np.exp(1j * theta), r1 * np.exp(1j * theta1)
+    inner = rrr(crank, frame, r3, r4, side)
+    return inner - frame, inner - crank, crank
+
+
+def _cross(u, v):
+    return u.real * v.imag - u.imag * v.real
+
+
+def _rocker_speed(rocker, coupler, crank):
+    return _cross(coupler, crank) / _cross(coupler, rocker)
+
+
+def _rise_of_B(theta, r1, theta1, r2, r3, r4, side):
+    """Derivative of yB with respect to the crank angle."""
+    rocker, coupler, crank = _rocker_and_coupler(theta, r1, theta1, r2, r3, r4, side)
+    return _rocker_speed(rocker, coupler, crank) * rocker.real
+
+
+def _advance_of_C(theta, r1, theta1, r2, r3, r4, side, r5, h):
+    """Derivative of xC with respect to the crank angle."""
+    rocker, coupler, crank = _rocker_and_coupler(theta, r1, theta1, r2, r3, r4, side)
+    rise = h - r1 * np.sin(theta1) - rocker.imag
+    with np.errstate(invalid="ignore"):
+        run = np.sqrt((r5 - rise) * (r5 + rise))
+    return _rocker_speed(rocker, coupler, crank) * (rocker.real * rise / run - rocker.imag)
+
+
+def _closes_all_turn(linkage, r5, h):
+    """By how much the crank turns fully, and the rod reaches its line, at every crank angle; mm."""
+    r1, theta1, r2, r3, r4, side = linkage
+    stretched, folded = grashof_margins(r1, r2, r3, r4)
+    crank = np.minimum(stretched, folded) / (r1 + r2 + r3 + r4)
+    at_ends = turning_points(_rise_of_B, linkage)
+    with np.errstate(invalid="ignore"):
+        rocker = _rocker_and_coupler(at_ends, *[p[:, None] for p in linkage])[0]
+        rise = abs((h - r1 * np.sin(theta1))[:, None] - rocker.imag)
+    return crank, r5 - np.where(np.isnan(rise), 0.0, rise).max(axis=1)
+
+
+def theta2_turns(r1, theta1, r2, r3, r4, r5, h, mode):
+    """Crank angles at which C turns back, over a whole turn; the last axis runs over them, then NaN."""
+    alone = isinstance(r1 + theta1 + r2 + r3 + r4 + r5 + h, float) and np.ndim(mode) == 0
+    given = np.broadcast_arrays(r1, np.radians(theta1), r2, r3, r4, side_of(mode), r5, h)
+    shape = given[0].shape
+    *linkage, r5, h = [np.atleast_1d(np.asarray(p, dtype=float)).ravel() for p in given]
+    crank, rod = _closes_all_turn(linkage, r5, h)
+    if alone and not crank[0] > 0:
+        raise CannotAssemble(
+            f"the crank does not turn fully: the linkage lacks {-crank[0]:.3g} mm to close at every angle"
+        )
+    if alone and not rod[0] > 0:
+        raise CannotAssemble(f"the rod does not reach its line all turn: it is {-rod[0]:.3g} mm too short")
+    angles = turning_points(_advance_of_C, [*linkage, r5, h])
+    angles[~((crank > 0) & (rod > 0))] = np.nan
+    return wrap(np.degrees(angles)).reshape(*shape, angles.shape[1])
+
+
+def _last_axis(value):
+    return np.asarray(value)[..., None]
+
+
+def _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
+    """xC where C turns back, along the last axis."""
+    linkage = [_last_axis(p) for p in (r1, np.radians(theta1), r2, r3, r4, side_of(mode))]
+    rocker = _rocker_and_coupler(np.radians(theta2_turns), *linkage)[0]
+    return rrp(_last_axis(polar(r1, theta1)) + rocker, _last_axis(r5), _last_axis(h)).real
+
+
+def xC_max(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
+    """The farthest of the positions where C turns back."""
+    found = _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns)
+    highest = np.where(np.isnan(found), -np.inf, found).max(axis=-1)
+    return np.where(np.isfinite(highest), highest, np.nan)
+
+
+def xC_min(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
+    """The nearest of the positions where C turns back."""
+    found = _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns)
+    lowest = np.where(np.isnan(found), np.inf, found).min(axis=-1)
+    return np.where(np.isfinite(lowest), lowest, np.nan)
+
+
+def stroke(xC_max, xC_min):
+    return xC_max - xC_min
+
+
+def alpha(theta2_turns):
+    """The longer of the two arcs of crank between the two positions where C turns back."""
+    two = np.isfinite(theta2_turns).sum(axis=-1) == 2
+    if np.ndim(two) == 0 and not two:
+        found = int(np.isfinite(theta2_turns).sum())
+        raise Undefined(
+            f"C turns back {found} times a turn, not twice: the rod lines up with the rocker within its swing, "
+            "and one stroke out and one back are not two arcs of crank; only the stroke exists"
+        )
+    arc = abs(wrap(theta2_turns[..., 0] - theta2_turns[..., 1]))
+    return np.where(two, 360 - arc, np.nan)
+
+
+def beta(alpha):
+    return 360 - alpha
+
+
+def Q(alpha, beta):
+    return alpha / beta
+
+
+@formula(r"\frac{2 \times \pi}{\left|<omega2>\right|}")
+def T(omega2):
+    """Duration of a turn."""
+    return 2 * math.pi / abs(omega2)
+
+
+def t_advance(alpha, T):
+    return alpha / 360 * T
+
+
+def t_return(beta, T):
+    return beta / 360 * T
+
+
+@formula(r"\left|\frac{<r2> \times <omega2>}{<v_C>}\right|")
+def mechanical_advantage(r2, omega2, v_C):
+    """Of the crank pin over the piston, by their speeds."""
+    if np.ndim(v_C) == 0 and v_C == 0:
+        raise Undefined("the piston is at rest: the mechanical advantage grows without bound there")
+    return np.where(v_C == 0, np.nan, abs(r2 * omega2 / v_C))
+
+
+@mistake("theta3")
+def angle_from_OAB_as_theta3(angle_OAB):
+    return 180 - angle_OAB
+
+
+@mistake("A_side")
+def A_other_side(A_side):
+    return np.where(side_of(A_side) > 0, "right", "left")
+
+
+@mistake("B_side")
+def B_other_side(B_side):
+    return np.where(side_of(B_side) > 0, "right", "left")
+
+
+@mistake("OB")
+def cosine_rule_sign(r2, r3, angle_OAB):
+    return sqrt(r2**2 + r3**2 + 2 * r2 * r3 * cos(angle_OAB))
+
+
+@mistake("v_C")
+def v_C_is_v_B(r4, omega4):
+    return r4 * abs(omega4)
+
+
+@mistake("v_C")
+def v_C_x_of_B(r4, omega4, theta4):
+    return -r4 * omega4 * sin(theta4)
+
+
+@mistake("a_C")
+def a_C_no_rod_normal(a_C, r5, omega5, theta5):
+    return a_C + r5 * omega5**2 * cos(theta5)
+
+
+@mistake("a_C")
+def a_C_no_rocker_normal(a_C, r4, omega4, theta4):
+    return a_C + r4 * omega4**2 * cos(theta4)
+
+
+@mistake("stroke")
+def stroke_2r2(r2):
+    return 2 * r2
+
+
+@mistake("alpha")
+def strokes_of_equal_arcs(alpha):
+    return 180 + 0 * alpha
+
+
+@mistake("Q", share=0.5)
+def Q_inverse(alpha, beta):
+    return beta / alpha
+
+
+@mistake("T")
+def T_is_frequency(omega2):
+    return abs(omega2) / (2 * math.pi)
+
+
+@mistake("t_advance", "t_return", share=0.5)
+def advance_and_return_exchanged(t_advance, t_return):
+    return t_return, t_advance
+
+
+@mistake("mechanical_advantage", share=0.5)
+def advantage_inverse(r2, omega2, v_C):
+    return abs(v_C / (r2 * omega2))
+
+
+@mistake("mechanical_advantage")
+def advantage_angular(omega2, omega4):
+    return abs(omega2 / omega4)
+
+
+def residual(
+    r1, theta1, r2, r3, r4, r5, h, angle_OAB, omega2, B_side, A_side,
+    theta2, theta3, theta4, xC, theta5, omega3, omega4, omega5, v_C, a_C,
+    alpha4, alpha5, alpha, beta, Q, T, t_advance, t_return, mechanical_advantage,
+):  # fmt: skip
+    """Both loops with their derivatives, the angle OAB and the two sides, and the times of the strokes."""
+
+    def vector(length, theta):
+        return length * np.exp(1j * np.radians(theta))
+
+    def across(u, v):
+        return (np.conj(u) * v).imag
+
+    # The angular acceleration of the coupler is not asked: the loop's acceleration is read across it.
+    crank, coupler, rocker = vector(r2, theta2), vector(r3, theta3), vector(r4, theta4)
+    frame, rod, inner = vector(r1, theta1), vector(r5, theta5), vector(r2, theta2) + vector(r3, theta3)
+    speed = r2 * abs(omega2) + r3 * abs(omega3) + r4 * abs(omega4) + r5 * abs(omega5)
+    size = r1 + r2 + r3 + r4 + r5
+    force = r2 * omega2**2 + r3 * omega3**2 + r4 * omega4**2 + r5 * omega5**2 + r4 * abs(alpha4)
+    of_B = (1j * alpha4 - omega4**2) * rocker
+    left_B, left_A = np.where(B_side == "left", 1, -1), np.where(A_side == "left", 1, -1)
+    corner = np.conj(-crank) * coupler / (r2 * r3)
+    return (
+        abs(inner - frame - rocker) / size,
+        abs(frame + rocker + rod - xC - 1j * h) / size,
+        abs(corner.real - np.cos(np.radians(angle_OAB))),
+        np.maximum(-left_B * across(frame, inner), 0) / size**2,
+        np.maximum(-left_A * across(inner, crank), 0) / size**2,
+        abs(1j * (omega2 * crank + omega3 * coupler - omega4 * rocker)) / speed,
+        abs(1j * (omega4 * rocker + omega5 * rod) - v_C) / speed,
+        abs((np.conj(coupler) * (of_B + omega2**2 * crank + omega3**2 * coupler)).real) / (r3 * force),
+        abs(of_B + (1j * alpha5 - omega5**2) * rod - a_C) / (force + r5 * abs(alpha5)),
+        abs(alpha + beta - 360) / 360,
+        abs(Q * beta - alpha) / alpha,
+        abs(T * abs(omega2) - 2 * np.pi),
+        abs(t_advance + t_return - T) / T,
+        abs(t_advance * beta - t_return * alpha) / (T * alpha),
+        abs(mechanical_advantage * abs(v_C) - r2 * abs(omega2)) / (r2 * abs(omega2)),
+    )
+
+
+KNOWN = (
+    # O-A-B is a 3-4-5 triangle with A on the x axis and B above it, B-C another: all by hand.
+    (
+        {
+            "r1": 72,
+            "theta1": 0,
+            "r2": 30,
+            "r3": 40,
+            "r4": 58,
+            "r5": 50,
+            "h": 10,
+            "omega2": 1,
+            "angle_OAB": 90,
+            "B_side": "left",
+            "A_side": "right",
+        },
+        {
+            "theta2": 0,
+            "theta3": 90,
+            "theta4": "136.3972",
+            "xC": 70,
+            "theta5": "-36.8699",
+            "omega3": -5 / 7,
+            "omega4": -5 / 7,
+            "omega5": -0.75,
+            "v_C": 85 / 14,
+            "alpha4": 0,
+            "a_C": 150 / 7 - 45 / 2 + 0.75 * (1000 / 49 - 135 / 8),
+            "T": 2 * math.pi,
+            "mechanical_advantage": 84 / 17,
+        },
+    ),
+    # r1^2 + r2^2 = r3^2 + r4^2: both extreme positions of B are in line with O, and the strokes last alike.
+    (
+        {
+            "r1": 80,
+            "theta1": 0,
+            "r2": 10,
+            "r3": 70,
+            "r4": 40,
+            "r5": 100,
+            "h": 0,
+            "omega2": 3,
+            "angle_OAB": 90,
+            "B_side": "left",
+            "A_side": "left",
+        },
+        {
+            "alpha": 180,
+            "beta": 180,
+            "Q": 1,
+            "stroke": 17.5 + 8500**0.5 - 9156.25**0.5,
+            "t_advance": math.pi / 3,
+        },
+    ),
+    # Crank and coupler in line make the triangles 50-70-80, with 60 degrees at O, and 90-70-80, with cosine 2/3.
+    (
+        {
+            "r1": 80,
+            "theta1": 30,
+            "r2": 20,
+            "r3": 70,
+            "r4": 70,
+            "r5": 300,
+            "h": 100,
+            "omega2": -2,
+            "angle_OAB": 100,
+            "B_side": "left",
+            "A_side": "left",
+        },
+        {
+            "alpha": "191.8103",
+            "beta": "168.1897",
+            "T": math.pi,
+            "Q": 191.810314895778592 / 168.189685104221401,
+        },
+    ),
+)

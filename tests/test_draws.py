@@ -1,0 +1,152 @@
+"""Draws: the same for ever, on the printed grid, uniform, bounded, and honest when they starve."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+
+import numpy as np
+import pytest
+from golden import FOLDER, drawn
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from coursework import draws
+from coursework.errors import BadCourse, Starved
+from coursework.issuing import distinct_variants
+from coursework.model import Exercise, Part, chosen, fixed
+from coursework.model import drawn as ranged
+
+FROZEN = sorted(FOLDER.glob("*.json"))
+
+
+@pytest.mark.parametrize("path", FROZEN, ids=lambda p: p.stem)
+def test_seeds_draw_what_they_have_always_drawn(path, course):
+    frozen = json.loads(path.read_text("utf-8"))
+    exercise = course[frozen["exercise"]]
+    if frozen["version"] == exercise.version:
+        assert drawn(exercise) == frozen
+    else:
+        assert frozen["version"] < exercise.version, "a version goes up, never down"
+
+
+def test_raw_bits_are_those_of_the_published_function():
+    """SHAKE-128 of the key, little-endian, as any other language gives it."""
+    import hashlib
+
+    expected = hashlib.shake_128(b"coursework/four_bar/2/7/3").digest(8 * 16 * 5)
+    words = draws._words("four_bar", 2, 7, 3, 5)
+    assert words.shape == (16, 5)
+    assert [int(w) for w in words.ravel()] == [
+        int.from_bytes(expected[i : i + 8], "little") for i in range(0, len(expected), 8)
+    ]
+
+
+def exercise_of(given, **more):
+    return Exercise(given=given, parts=(Part("y"),), **more)
+
+
+def values(name, exercise, count=4000):
+    return [v[name] for v in draws.draw("test", exercise, range(count))]
+
+
+@given(
+    st.integers(-400, 400), st.integers(1, 300), st.sampled_from(["0.1", "0.25", "0.5", "1", "2", "5"])
+)
+@settings(max_examples=60)
+def test_values_are_decimals_of_the_grid_within_the_range(low, steps, step):
+    low, high = low * float(step), (low + steps) * float(step)
+    exercise = exercise_of({"x": ranged(low, high, step=float(step))})
+    for value in values("x", exercise, 50):
+        assert low - 1e-9 <= value <= high + 1e-9
+        assert float(f"{value:.2f}") == value
+        assert abs(value / float(step) - round(value / float(step))) < 1e-9
+
+
+def test_both_ends_of_a_range_are_drawn_and_all_is_equally_likely():
+    counts = Counter(values("x", exercise_of({"x": ranged(10, 19)})))
+    assert set(counts) == set(range(10, 20))
+    # 4000 draws in 10 cells: chi-square of 9 degrees of freedom stays below 27.9 in 999 cases of 1000.
+    assert sum((n - 400) ** 2 / 400 for n in counts.values()) < 27.9
+
+
+def test_a_range_may_depend_on_what_was_drawn_before():
+    exercise = exercise_of({"a": ranged(10, 20), "b": ranged(lambda a: 2 * a, lambda a: 3 * a)})
+    for variant in draws.draw("test", exercise, range(500)):
+        assert 2 * variant["a"] <= variant["b"] <= 3 * variant["a"]
+
+
+def test_zero_is_passed_over_where_it_is_refused():
+    counts = Counter(values("x", exercise_of({"x": ranged(-2, 2, nonzero=True)})))
+    assert set(counts) == {-2, -1, 1, 2}
+    assert min(counts.values()) > 850
+
+
+def test_cases_are_equally_likely():
+    counts = Counter(values("mode", exercise_of({"mode": chosen("open", "crossed")})))
+    assert set(counts) == {"open", "crossed"}
+    assert abs(counts["open"] - 2000) < 200
+
+
+def test_a_bound_that_is_not_drawn_before_is_named():
+    with pytest.raises(BadCourse, match="range of a needs b"):
+        exercise_of({"a": ranged(lambda b: b, 3), "b": ranged(1, 2)})
+
+
+def test_a_step_must_be_a_decimal():
+    with pytest.raises(BadCourse, match="decimal"):
+        values("x", exercise_of({"x": ranged(0, 1, step=1 / 3)}), 1)
+
+
+def never(x):
+    return x > 1000
+
+
+def rarely(x):
+    return x > 2
+
+
+def test_starving_names_the_condition_that_refuses():
+    exercise = exercise_of({"x": ranged(1, 9)}, keep=(rarely, never))
+    with pytest.raises(Starved, match=r"refused by never \(4096 times\), rarely"):
+        draws.draw("test", exercise, [3])
+
+
+def test_a_condition_on_something_unknown_is_refused_at_once():
+    exercise = exercise_of({"r": ranged(1, 9)}, keep=(never,))
+    with pytest.raises(BadCourse, match="never needs x"):
+        draws.check_conditions("test", exercise)
+
+
+def test_population_counts_the_variants_that_exist():
+    exercise = exercise_of({"x": ranged(1, 9), "mode": chosen("p", "q"), "c": fixed(3)}, keep=(rarely,))
+    assert draws.population(exercise) == 7 * 2
+    assert draws.population(exercise_of({"x": ranged(1, 9, step=0.001), "y": ranged(1, 9, step=0.001)})) is None
+
+
+def test_distinct_variants_are_distinct_or_the_error_says_how_many_exist(small_course):
+    import coursework
+
+    path = small_course / "exercises" / "crank_pin.py"
+    text = path.read_text("utf-8")
+    text = text.replace("drawn(50, 200, step=5", "drawn(50, 60, step=5")
+    path.write_text(text.replace("drawn(2, 20", "drawn(2, 3").replace("drawn(-175, 180, step=5", "drawn(20, 60, step=20"))
+    exercise = coursework.open_course(small_course)["crank_pin"]
+    assert draws.population(exercise.spec) == 3 * 2 * 3
+    drawn = distinct_variants(exercise, 0, 18, "fr")
+    assert len({tuple(v.given.values()) for v in drawn}) == 18
+    with pytest.raises(Starved, match="only 18 exist"):
+        distinct_variants(exercise, 0, 19, "fr")
+
+
+def test_another_version_draws_something_else():
+    one = exercise_of({"x": ranged(1, 1000)})
+    two = exercise_of({"x": ranged(1, 1000)}, version=2)
+    assert values("x", one, 20) != values("x", two, 20)
+
+
+def test_draws_do_not_touch_numpys_random_state():
+    np.random.seed(1)
+    before = np.random.get_state()[1].copy()
+    values("x", exercise_of({"x": ranged(1, 9)}), 10)
+    assert (np.random.get_state()[1] == before).all()

@@ -1,0 +1,204 @@
+"""The promises that every registered exercise keeps. An empty registry fails at collection."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+import coursework
+from coursework import checks
+from coursework.draws import BLOCK, acceptance
+from coursework.errors import NoSolution
+from coursework.language import languages
+from coursework.marking import Key
+
+COURSE = coursework.open_course()
+VARIANTS = 30
+
+every_exercise = pytest.mark.parametrize("name", COURSE.names)
+every_language = pytest.mark.parametrize("lang", languages())
+
+
+@cache
+def keys(name):
+    return [Key(v) for v in COURSE[name].variants(range(VARIANTS))]
+
+
+def failures(name, check, *arguments):
+    report = checks.Report(name)
+    check(*arguments, report)
+    assert sum(report.counts.values()) > 0 or report.mistakes, "the check tried nothing"
+    return report.failures
+
+
+@every_exercise
+def test_known_cases_come_out(name):
+    assert failures(name, checks.check_known, COURSE[name]) == []
+
+
+@every_exercise
+def test_answers_satisfy_the_governing_equations(name):
+    for key in keys(name):
+        assert failures(name, checks.check_solves, key.variant, key) == []
+
+
+@every_exercise
+def test_arrays_give_what_scalars_give(name):
+    assert failures(name, checks.check_arrays, COURSE[name], [k.variant for k in keys(name)]) == []
+
+
+@every_exercise
+def test_right_answers_mark_right_in_every_spelling(name):
+    for key in keys(name):
+        assert failures(name, checks.check_right_answers, key.variant, key) == []
+
+
+@every_exercise
+def test_each_mistake_marks_as_that_mistake(name):
+    for key in keys(name):
+        assert failures(name, checks.check_mistakes, key.variant, key) == []
+    assert len(COURSE[name].solution.mistakes) >= 3
+
+
+@every_exercise
+def test_nonsense_is_never_right(name):
+    assert failures(name, checks.check_nonsense, keys(name)[0].variant) == []
+
+
+@every_exercise
+def test_texts_are_complete_in_every_language(name):
+    assert failures(name, checks.check_texts, COURSE[name]) == []
+
+
+@every_exercise
+def test_sheets_render_in_every_format_and_language(name):
+    report = checks.Report(name)
+    checks.check_rendering(COURSE[name], 2, report)
+    assert report.counts["sheets rendered"] == 2 * 5 * len(languages())
+
+
+@every_exercise
+def test_just_beyond_the_tolerance_is_not_right(name):
+    for key in keys(name)[:10]:
+        for part in key.variant.parts:
+            if part.kind not in ("number", "angle"):
+                continue
+            value = key.reference[part.quantity]
+            for side in (-1, 1):
+                inside = value + side * 0.99 * part.half_width(value)
+                beyond = value + side * 1.01 * part.half_width(value)
+                assert key.variant.grade({part.id: inside})[part.id].verdict == "correct"
+                assert key.variant.grade({part.id: beyond})[part.id].verdict != "correct"
+
+
+@every_exercise
+def test_an_angle_and_a_full_turn_more_is_the_same_angle_but_an_amount_is_not(name):
+    key = keys(name)[0]
+    for part in key.variant.parts:
+        value = key.reference[part.quantity]
+        if part.kind == "angle":
+            assert key.variant.grade({part.id: value + 360})[part.id].verdict == "correct"
+        elif part.unit == "deg":
+            assert key.variant.grade({part.id: value + 360})[part.id].verdict != "correct"
+
+
+@every_exercise
+def test_a_request_computes_what_it_needs_and_nothing_else(name):
+    exercise = COURSE[name]
+    graph = exercise.solution.graph
+    for part in exercise.spec.parts:
+        plan = exercise.plan((part.quantity,))
+        assert plan[-1] == part.quantity
+        # Taking any step out starves the request: every step is needed.
+        for step in plan[:-1]:
+            later = plan[plan.index(step) + 1 :]
+            assert any(step in graph.node(n).arguments for n in later)
+
+
+@every_exercise
+def test_at_least_one_draw_in_ten_is_a_variant(name):
+    assert acceptance(name, COURSE[name].spec, 4096)[0] > 0.1
+
+
+@every_exercise
+def test_variants_are_nearly_all_different(name):
+    drawn = COURSE[name].variants(range(300))
+    assert len({tuple(v.given.values()) for v in drawn}) >= 290
+
+
+@every_exercise
+def test_a_seed_draws_the_same_alone_and_in_company(name):
+    exercise = COURSE[name]
+    together = exercise.variants([7, 3, 3 + BLOCK, 7])
+    assert dict(together[0].given) == dict(exercise.variant(7).given) == dict(together[3].given)
+    assert dict(together[1].given) == dict(exercise.variant(3).given)
+
+
+@every_exercise
+def test_given_values_are_the_decimals_that_are_printed(name):
+    for key in keys(name):
+        handout = key.variant.handout()
+        for given in handout.given:
+            if given.is_number:
+                assert float(given.value) == key.variant.given[given.name]
+                assert len(given.value.lstrip("-")) <= 6
+
+
+@every_exercise
+def test_a_record_gives_back_its_variant(name):
+    for key in keys(name)[:5]:
+        again = COURSE[name].from_record(key.variant.record)
+        assert again.record == key.variant.record
+        assert {k: np.asarray(v).tolist() for k, v in again.solution().items()} == {
+            k: np.asarray(v).tolist() for k, v in key.reference.items()
+        }
+
+
+@every_exercise
+@every_language
+def test_handouts_render_identically_without_solutions(name, lang, students_copy):
+    here, there = COURSE[name].variant(5, lang), students_copy[name].variant(5, lang)
+    assert there.record == here.record
+    for render in ("html", "notebook", "typst"):
+        assert getattr(students_copy.renderer, render)(there.handout("A")) == getattr(COURSE.renderer, render)(
+            here.handout("A")
+        )
+    with pytest.raises(NoSolution, match="students' copy"):
+        there.solution()
+
+
+@pytest.fixture(scope="module")
+def students_copy(tmp_path_factory):
+    import shutil
+
+    root = tmp_path_factory.mktemp("students")
+    for kind in ("exercises", "templates"):
+        shutil.copytree(COURSE.root / kind, root / kind, ignore=shutil.ignore_patterns("__pycache__"))
+    return coursework.open_course(root)
+
+
+@every_exercise
+@every_language
+def test_a_handout_holds_no_answer(name, lang):
+    """No reference value, to four digits, in what the student receives; short ones may stand for a given."""
+    for key in keys(name)[:3]:
+        variant = key.variant.in_language(lang)
+        handout = variant.handout()
+        given = " ".join(g.value for g in handout.given)
+        texts = {
+            "page": COURSE.renderer.html(handout),
+            "notebook": COURSE.renderer.notebook(handout),
+            "sheet": COURSE.renderer.typst(handout),
+        }
+        for part in variant.parts:
+            value = key.reference[part.quantity]
+            if part.kind not in ("number", "angle") or float(f"{value:.4g}") == int(value):
+                continue
+            printed = f"{abs(value):.6g}"
+            if printed in given:
+                continue
+            for where, text in texts.items():
+                for spelling in (printed, printed.replace(".", ",")):
+                    assert spelling not in text, f"{part.id} = {spelling} stands in the {where}"
