@@ -280,13 +280,14 @@ def summary_table(book: Gradebook, issued: Issued) -> Iterator[dict[str, Any]]:
 def feedback_sheet(graded: Graded) -> FeedbackSheet:
     """A student's marks on one exercise, ready to print."""
     from coursework.handout import FeedbackLine, FeedbackSheet
+    from coursework.marking import echo
 
     handout = graded.variant.handout(graded.student)
     lines = tuple(
         FeedbackLine(
             question=question,
             answer=graded.marking[question.id].answer,
-            read_as=graded.marking[question.id].read_as,
+            read_as=echo(graded.marking[question.id].read_as, graded.variant.lang),
             verdict=graded.marking[question.id].verdict,
             points=graded.marking[question.id].points,
             out_of=graded.marking[question.id].out_of,

@@ -19,7 +19,6 @@ import numpy as np
 from coursework.errors import CourseworkError, unknown
 from coursework.language import languages, localise, unit_text, words
 from coursework.model import Part
-from coursework.plain_text import plain_text
 from coursework.reading import (
     Reading,
     read_choice,
@@ -269,9 +268,9 @@ def _mark_part(variant: Variant, key: Key, part: Part, answer: Any, reading: Rea
     index, gap = _nearest(part, reading, key, judged_by)
     read_as = reading.read_as[index]
     if part.kind == "choice":
-        read_as = plain_text(variant.text.label(part.id, str(reading.values[index])), variant.lang)
+        read_as = _plain(variant.text.label(part.id, str(reading.values[index])), variant.lang)
     if gap <= 1:
-        says = _say(variant, part, "correct", read=_echo(read_as, variant.lang))
+        says = _say(variant, part, "correct", read=echo(read_as, variant.lang))
         return _made(variant, part, text, read_as, "correct", part.points, says)
     matches = _mistakes(key, part, reading, judged_by)
     if matches:
@@ -279,11 +278,11 @@ def _mark_part(variant: Variant, key: Key, part: Part, answer: Any, reading: Rea
         told = (
             variant.exercise.text("solutions", variant.lang, variant.printed).section(f"mistake {name}").text
         )
-        says = _say(variant, part, "mistake", read=_echo(read_as, variant.lang), says=told)
+        says = _say(variant, part, "mistake", read=echo(read_as, variant.lang), says=told)
         points = part.points * key.solution.mistakes[name].share
         return _made(variant, part, text, read_as, f"mistake:{name}", points, says, matches)
     sentence = {"choice": "wrong_case", "equation": "wrong_equation"}.get(part.kind, "wrong")
-    says = _say(variant, part, sentence, read=_echo(read_as, variant.lang))
+    says = _say(variant, part, sentence, read=echo(read_as, variant.lang))
     return _made(variant, part, text, read_as, "wrong", 0.0, says)
 
 
@@ -308,8 +307,8 @@ def part_name(variant: Variant, part: Part) -> str:
     return f"${variant.exercise.symbol(part.quantity)}$"
 
 
-def _echo(text: str, lang: str) -> str:
-    """What was read, as the language writes numbers."""
+def echo(text: str, lang: str) -> str:
+    """What was read, shortened, as the language writes numbers; safe inside Markdown."""
     shown = text if len(text) <= ECHO else text[: ECHO - 1] + "…"
     number = re.sub(r"-?\d+(?:\.\d+)?", lambda m: localise(m.group(), lang), shown, count=1)
     return _harmless(number).replace(" °", "°")
@@ -344,6 +343,13 @@ def _harmless(text: str) -> str:
     return "".join(c for c in text if c.isprintable() and c not in "$`*_\\<>[]#|")
 
 
+def _plain(markdown: str, lang: str) -> str:
+    """Markdown as one line of plain text."""
+    from coursework.rendering.markup import to_text
+
+    return " ".join(to_text(markdown, lang).split())
+
+
 def _made(
     variant: Variant,
     part: Part,
@@ -354,5 +360,5 @@ def _made(
     says: str,
     matches: tuple[str, ...] = (),
 ) -> Mark:
-    plain = plain_text(says, variant.lang)
+    plain = _plain(says, variant.lang)
     return Mark(part.id, text, read_as, verdict, float(points), float(part.points), says, plain, matches)

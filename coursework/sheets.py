@@ -236,4 +236,4 @@ def _margin(part: Part, values: Mapping[str, Any], lang: str) -> str:
     size = float(np.linalg.norm(reference)) if isinstance(reference, np.ndarray) else reference
     width = localise(significant(part.half_width(size), 2), lang)
     unit = unit_text(part.unit, lang)
-    return f"± {width}" + (unit if unit == "°" else f" {unit}" if unit else "")
+    return width + (unit if unit == "°" else f" {unit}" if unit else "")

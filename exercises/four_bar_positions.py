@@ -97,10 +97,10 @@ EXERCISE = Exercise(
     ),
     either_order=(("theta3_open", "theta4_open"), ("theta3_crossed", "theta4_crossed")),
     symbols={
-        "theta3_open": r"\theta_{3,1}",
-        "theta4_open": r"\theta_{4,1}",
-        "theta3_crossed": r"\theta_{3,2}",
-        "theta4_crossed": r"\theta_{4,2}",
+        "theta3_open": r"\theta_3^{(1)}",
+        "theta4_open": r"\theta_4^{(1)}",
+        "theta3_crossed": r"\theta_3^{(2)}",
+        "theta4_crossed": r"\theta_4^{(2)}",
     },
     figure=figure,
 )

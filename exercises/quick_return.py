@@ -5,16 +5,14 @@ import numpy as np
 from coursework.degrees import acos, angle, asin, cos, polar, sin, wrap
 from coursework.figures import (
     Figure,
-    angle_mark,
     arc,
     circle,
-    dimension,
     ground_pivot,
     line,
     link,
-    note,
     pin,
     rail,
+    rotation_arrow,
     slider,
 )
 from coursework.kinematics.dyads import rrp, rrr, side_of
@@ -148,6 +146,18 @@ def bars_turn_visibly(omega3, omega4, omega5):
     return (abs(omega3) > 0.05) & (abs(omega4) > 0.05) & (abs(omega5) > 0.02)
 
 
+def rod_turning_counts_in_the_speed(v_C, omega5, rod):
+    return abs(omega5 * rod.imag) > 0.025 * abs(v_C)
+
+
+def rod_turning_counts_in_the_acceleration(a_C, omega5, rod):
+    return omega5**2 * rod.real > 0.025 * abs(a_C)
+
+
+def angle_OAB_not_square(angle_OAB):
+    return abs(angle_OAB - 90) >= 10
+
+
 def piston_moves_visibly(v_C, r2):
     return abs(v_C) > 0.15 * r2
 
@@ -156,22 +166,23 @@ def piston_accelerates_visibly(a_C, r2):
     return abs(a_C) > 0.15 * r2
 
 
-def figure(A, B, C, r1, theta1, r2, h, rocker_at_the_ends, r4, r5):
-    D = polar(r1, theta1)
-    ends = [rrp(D + polar(r4, end), r5, h).real for end in rocker_at_the_ends.tolist()]
-    to_O = angle(-A)
+def figure(A, B, C, r1, theta1, r2, omega2):
+    O, D = 0j, polar(r1, theta1)
+    to_O = angle(O - A)
     corner = wrap(angle(B - A) - to_O)
-    middle = A + polar(0.42 * r2, to_O + corner / 2)
+    ahead = angle(A) + 90
     return Figure(
-        circle(0j, r2, dashed=True),
-        rail(min(ends) - 0.1 * r5 + 1j * h, max(ends) + 0.1 * r5 + 1j * h),
-        link(0j, A, label="2"),
-        link(A, B, label="3"),
-        link(D, B, label="4"),
-        link(B, C, label="5"),
+        circle(O, r2, dashed=True),
+        rotation_arrow(O, 1.3 * r2, ahead, ahead + (50 if omega2 > 0 else -50), label=r"\omega_2"),
+        rail(C - 2.2 * r2, C + 2.2 * r2),
+        line(O, D, dashed=True, label="r_1"),
+        link(O, A, label="r_2"),
+        link(A, B, label="r_3"),
+        link(D, B, label="r_4"),
+        link(B, C, label="r_5"),
         arc(A, 0.25 * r2, to_O, to_O + corner),
         slider(C, 0, label="C"),
-        ground_pivot(0j, "O"),
+        ground_pivot(O, "O"),
         ground_pivot(D, "D"),
         pin(A, "A"),
         pin(B, "B"),
@@ -181,10 +192,10 @@ def figure(A, B, C, r1, theta1, r2, h, rocker_at_the_ends, r4, r5):
 
 EXERCISE = Exercise(
     given={
-        "r1": drawn(150, 320, step=5, unit="mm"),
+        "r1": drawn(180, 320, step=5, unit="mm"),
         "r2": drawn(40, 110, step=5, unit="mm"),
-        "r3": drawn(150, 320, step=5, unit="mm"),
-        "r4": drawn(120, 420, step=5, unit="mm"),
+        "r3": drawn(lambda r1: 0.7 * r1, lambda r1: 1.2 * r1, step=5, unit="mm", positive=True),
+        "r4": drawn(lambda r1: 0.7 * r1, lambda r1: 1.1 * r1, step=5, unit="mm", positive=True),
         "r5": drawn(250, 600, step=5, unit="mm"),
         "B_side": chosen("left", "right"),
         "A_side": chosen("left", "right"),
@@ -229,6 +240,9 @@ EXERCISE = Exercise(
         two_turning_points,
         return_is_quick,
         bars_turn_visibly,
+        rod_turning_counts_in_the_speed,
+        rod_turning_counts_in_the_acceleration,
+        angle_OAB_not_square,
         piston_moves_visibly,
         piston_accelerates_visibly,
     ),
@@ -253,6 +267,8 @@ EXERCISE = Exercise(
         Part("mechanical_advantage", points=1),
     ),
     symbols={
+        "A_side": "A",
+        "B_side": "B",
         "angle_OAB": r"\angle OAB",
         "xC": "x_C",
         "stroke": "s",

@@ -205,9 +205,12 @@ def a_C(r4, omega4, alpha4, theta4, r5, omega5, alpha5, theta5):
     )
 
 
-def mode(theta3, theta4):
+def mode(r1, r2, r3, r4, angle_OAB, B_side, A_side):
     """Of the dyad A-B-D, kept over the turn: open when B lies to the left of the line from A to D."""
-    return np.where(sin(theta4 - theta3) >= 0, "open", "crossed")
+    length = OB(r2, r3, angle_OAB)
+    to_B = _to_the(B_side, 0.0, DOB(r1, r4, length))
+    crank = polar(r2, _to_the(A_side, to_B, AOB(r2, r3, angle_OAB, length)))
+    return np.where(_cross(r1 - crank, polar(length, to_B) - crank) >= 0, "open", "crossed")
 
 
 def _rocker_and_coupler(theta, r1, theta1, r2, r3, r4, side):
@@ -242,7 +245,7 @@ def _advance_of_C(theta, r1, theta1, r2, r3, r4, side, r5, h):
 
 def _closes_all_turn(linkage, r5, h):
     """By how much the crank turns fully, and the rod reaches its line, at every crank angle; mm."""
-    r1, theta1, r2, r3, r4, side = linkage
+    r1, theta1, r2, r3, r4, _ = linkage
     stretched, folded = grashof_margins(r1, r2, r3, r4)
     crank = np.minimum(stretched, folded) / (r1 + r2 + r3 + r4)
     at_ends = turning_points(_rise_of_B, linkage)

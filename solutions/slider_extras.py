@@ -101,7 +101,7 @@ def C(r4, r5):
 def r6(A, B, C):
     """The larger root, without a difference of nearly equal lengths."""
     total = abs(B) + _real_root(B**2 - 4 * A * C, "the rod does not reach the axis")
-    return np.where(B > 0, -2 * C / total, total / (2 * A))
+    return np.where(B > 0, -2 * C / total, total / (2 * A))[()]
 
 
 @formula(r"\operatorname{atan2}\left(<r4> \sin <theta4>;\ <r4> \cos <theta4> - <r6>\right)")

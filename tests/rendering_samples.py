@@ -1,7 +1,5 @@
 """Sheets made by hand, in both languages, for the tests of the rendering."""
 
-# ruff: noqa: E501  (sentences and formulas read better unbroken)
-
 from __future__ import annotations
 
 import cmath

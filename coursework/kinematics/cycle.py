@@ -51,7 +51,9 @@ def turning_points(slope: Slope, parameters: Sequence[Any], *, samples: int = 24
     return _in_rows(np.concatenate(rows), np.concatenate(angles), count)
 
 
-def _turning_points(slope: Slope, parameters: list[np.ndarray], samples: int) -> tuple[np.ndarray, np.ndarray]:
+def _turning_points(
+    slope: Slope, parameters: list[np.ndarray], samples: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Row and angle of every turning point."""
     theta = _FIRST + np.arange(samples) * (_TURN / samples)
     with np.errstate(all="ignore"):
@@ -109,9 +111,7 @@ def _lowest(f: Slope, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np
     return np.where(at_left < at_right, left, right), np.minimum(at_left, at_right)
 
 
-def _zero(
-    f: Slope, low: np.ndarray, high: np.ndarray, at_low: np.ndarray, at_high: np.ndarray
-) -> np.ndarray:
+def _zero(f: Slope, low: np.ndarray, high: np.ndarray, at_low: np.ndarray, at_high: np.ndarray) -> np.ndarray:
     """The zero in each bracket; the signs at its ends differ."""
     a, b, fa, fb = high, low, at_high, at_low
     c, fc = a, fa

@@ -1,0 +1,185 @@
+"""Ball reducer: answers against exact fractions from the no-slip velocities in space, and the notes' misprints."""
+
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+
+import coursework
+
+EXERCISE = coursework.open_course()["ball_reducer"]
+MOTIONS = ("30", "31", "32")
+GIVEN = {"R": 60.0, "r": 20.0, "psi_dot": -80.0, "psi_ddot": -40.0}
+
+
+def cross(u, v):
+    return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+
+
+def no_slip(R, r, psi_dot, wx, wy, wz, phi_dot, theta_dot):
+    """The twelve components of the four slips, the ball's rotation vector left general."""
+    ball, O3 = [wx, wy, wz], [R + r, 0, 0]
+    velocity_of_O3 = cross([0, 0, phi_dot], O3)
+    contacts = ((r, 0, 0, 0), (0, 0, -r, 0), (-r, 0, 0, psi_dot), (0, 0, r, theta_dot))
+    slips = []
+    for x, y, z, rate in contacts:
+        place = [O3[0] + x, O3[1] + y, O3[2] + z]
+        carried, held = cross(ball, [x, y, z]), cross([0, 0, rate], place)
+        slips += [v + c - h for v, c, h in zip(velocity_of_O3, carried, held, strict=True)]
+    return slips
+
+
+def exact(given):
+    """The rates as fifty-digit numbers: the only ones that stop all four slips, found by linear algebra."""
+    with mpmath.workdps(50):
+        R, r, psi_dot, psi_ddot = (mpmath.mpf(given[n]) for n in ("R", "r", "psi_dot", "psi_ddot"))
+
+        def rates(psi_rate):
+            at_rest = mpmath.matrix(no_slip(R, r, psi_rate, 0, 0, 0, 0, 0))
+            columns = [
+                mpmath.matrix(no_slip(R, r, psi_rate, *[int(i == k) for i in range(5)])) - at_rest
+                for k in range(5)
+            ]
+            system = mpmath.matrix([[column[i] for column in columns] for i in range(12)])
+            found = mpmath.lu_solve(system, -at_rest)
+            assert mpmath.norm(system * found + at_rest) < mpmath.mpf("1e-40")
+            return found
+
+        wx, wy, wz, phi_dot, theta_dot = rates(psi_dot)
+        phi_ddot = rates(psi_ddot)[3]
+        assert abs(wy) < 1e-40
+        assert abs(wx - wz) < 1e-40
+        place = R + r
+        return {
+            "omega": wx,
+            "phi_dot": phi_dot,
+            "theta_dot": theta_dot,
+            "rho": theta_dot / psi_dot,
+            "v_O3": place * phi_dot,
+            "a_O3_x": -place * phi_dot**2,
+            "a_O3_y": place * phi_ddot,
+            "rolling_D": wx,
+            "spin_D": wz - theta_dot,
+        }
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_answers_are_those_of_the_no_slip_velocities_in_fifty_digits(seed):
+    variant = EXERCISE.variant(seed)
+    answers = variant.solution()
+    for name, reference in exact(variant.given).items():
+        assert abs(mpmath.mpf(float(answers[name])) - reference) < 1e-14 * abs(reference), name
+
+
+def test_three_independent_conditions_on_four_rates_leave_one_mobility():
+    rates = ("psi_dot", "wx", "phi_dot", "theta_dot")
+
+    def slips(psi_dot, wx, phi_dot, theta_dot):
+        return no_slip(60, 20, psi_dot, wx, 0, wx, phi_dot, theta_dot)
+
+    columns = [slips(**{n: int(n == name) for n in rates}) for name in rates]
+    assert len(rates) - np.linalg.matrix_rank(np.array(columns)) == EXERCISE.solve(**GIVEN)["mobility"] == 1
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_the_three_central_axes_and_z_meet_below_the_ball(seed):
+    variant = EXERCISE.variant(seed)
+    answers = variant.solution()
+    R, r = variant.given["R"], variant.given["r"]
+    meeting = np.array([0.0, 0.0, -(R + 2 * r)])
+    for motion in MOTIONS:
+        place, way = answers[f"axis_{motion}_point"], answers[f"axis_{motion}_dir"]
+        off = np.linalg.norm(np.cross(meeting - place, way)) / np.linalg.norm(way)
+        assert off < 1e-13 * (R + 2 * r), motion
+
+
+def test_the_axes_run_along_the_directions_of_the_notes():
+    answers = EXERCISE.solve(**GIVEN)
+    for motion, rise in zip(MOTIONS, (1, 1 + Fraction(2 * 20, 60), 1 + Fraction(2 * 20, 80)), strict=True):
+        assert answers[f"axis_{motion}_dir"] == pytest.approx([1, 0, float(rise)], rel=1e-15)
+
+
+def test_the_ball_turns_about_its_axes_without_moving_along_them():
+    """At any point of a central axis the velocity is zero: a rotation, not a helical motion."""
+    answers = EXERCISE.solve(**GIVEN)
+    O3 = np.array([80.0, 0.0, 0.0])
+    ball = answers["omega"] * np.array([1.0, 0.0, 1.0])
+    shafts = {"30": 0.0, "31": GIVEN["psi_dot"], "32": answers["theta_dot"]}
+    for motion, rate in shafts.items():
+        for far in (0.0, 1.0, -37.0):
+            place = answers[f"axis_{motion}_point"] + far * answers[f"axis_{motion}_dir"]
+            velocity = np.cross(ball, place - O3) - np.cross([0, 0, rate], place)
+            velocity[1] += answers["v_O3"]
+            assert abs(velocity).max() < 1e-11
+        assert answers[f"nature_{motion}"] == "rotation"
+
+
+def test_any_point_of_an_axis_and_any_multiple_of_its_direction_is_right():
+    variant = EXERCISE.variant(3)
+    answers = variant.solution()
+    for motion in MOTIONS:
+        place, way = answers[f"axis_{motion}_point"], answers[f"axis_{motion}_dir"]
+        told = {
+            f"axis_{motion}_point": " ; ".join(map(repr, (place - 25.0 * way).tolist())),
+            f"axis_{motion}_dir": " ; ".join(map(repr, (-3.0 * way).tolist())),
+        }
+        marks = variant.grade(told)
+        assert [marks[part].verdict for part in told] == ["correct", "correct"]
+
+
+@pytest.mark.parametrize(
+    ("part", "text", "verdict"),
+    [
+        ("no_slip_A", "(R+r)*phi_dot = -r*omega", "correct"),
+        ("no_slip_C", "R*psi_dot = (R+r)*phi_dot - r*omega", "correct"),
+        ("no_slip_D", "theta_dot*(R+r) = (R+r)*phi_dot - r*omega", "correct"),
+        ("no_slip_A", "(R+r)*phi_dot = r*omega", "mistake:omega_sign"),
+        ("no_slip_D", "R*theta_dot = (R+r)*phi_dot - r*omega", "mistake:D_at_radius_R"),
+        ("no_slip_A", "R*phi_dot + r*omega = 0", "wrong"),
+    ],
+)
+def test_no_slip_equations_are_judged_as_equations(part, text, verdict):
+    assert EXERCISE.variant(0).grade({part: text})[part].verdict == verdict
+
+
+def test_no_slip_equations_hold_for_the_answers():
+    from coursework.expressions import parse_equation
+
+    variant = EXERCISE.variant(0)
+    answers = variant.solution()
+    symbols = EXERCISE.spec.part("no_slip_A").variables
+    values = {n: variant.given.get(n, answers.get(n)) for n in symbols}
+    for place in "ACD":
+        equation = parse_equation(answers[f"no_slip_{place}"], symbols)
+        assert abs(equation.difference(values)) < 1e-9
+
+
+def test_misprints_of_the_notes_move_what_they_touch():
+    right = EXERCISE.solve(**GIVEN)
+
+    def mistaken(name, quantity):
+        return EXERCISE.solution.mistaken(name).evaluate((quantity,), GIVEN)[quantity]
+
+    # The circle of O3 has radius R + r = 80, not R = 60; phi_ddot = -15 is not phi_dot = -30.
+    assert (right["v_O3"], mistaken("radius_R", "v_O3")) == (-2400, -1800)
+    assert (right["a_O3_x"], mistaken("radius_R", "a_O3_x")) == (-72000, -54000)
+    assert (right["a_O3_y"], mistaken("notes_phi_dot_for_ddot", "a_O3_y")) == (-1200, -2400)
+
+
+def test_arrays_and_scalars_agree():
+    variants = EXERCISE.variants(range(20))
+    arrays = {n: np.array([v.given[n] for v in variants]) for n in GIVEN}
+    together = EXERCISE.solve(**arrays, only=variants[0]._quantities)
+    for index, variant in enumerate(variants):
+        for name, value in variant.solution().items():
+            if isinstance(value, (float, np.ndarray)):
+                assert together[name][index] == pytest.approx(value, rel=1e-14), name
+
+
+@pytest.mark.parametrize("case", range(3))
+def test_known_cases(case):
+    given, expected = EXERCISE.solution.known[case]
+    found = EXERCISE.solve(**given, only=tuple(expected))
+    for name, value in expected.items():
+        assert found[name] == pytest.approx(value, rel=1e-14, abs=1e-12), name

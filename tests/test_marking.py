@@ -1,0 +1,230 @@
+"""Marking: fair to every honest spelling, and never a point for what is wrong."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from coursework.errors import NoSolution, UnknownName
+from coursework.marking import distance
+from coursework.model import Part
+
+GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "theta2": 135.0, "omega2": 5.0, "alpha2": 0.0}
+
+
+@pytest.fixture(scope="module")
+def slotted(course):
+    """The course's own numbers: rA = 319.80 mm, theta4 = 104.64 deg."""
+    from coursework.course import Variant
+
+    return Variant(course["slotted_mechanism"], 0, GIVEN, "fr")
+
+
+def verdict(variant, part, answer):
+    return variant.grade({part: answer})[part].verdict
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        "319,8 mm",
+        "319.8",
+        "0.3198 m",
+        "31,98 cm",
+        "3,198e2",
+        "3.198·10²",
+        " 319,80 mm ",
+        "rA = 319,8 mm",
+        319.8,
+    ],
+)
+def test_a_length_is_right_in_every_honest_spelling(slotted, answer):
+    assert verdict(slotted, "rA", answer) == "correct"
+
+
+@pytest.mark.parametrize("answer", ["104,6°", "104.64 deg", "1.8263 rad", "-255,4", "464.64", "104°38'"])
+def test_an_angle_is_right_in_every_honest_spelling(slotted, answer):
+    assert verdict(slotted, "theta4", answer) == "correct"
+
+
+@pytest.mark.parametrize(
+    ("answer", "expected"),
+    [
+        ("319,8 kg", "wrong_unit"),
+        ("319,8 rad", "wrong_unit"),
+        ("", "missing"),
+        ("   ", "missing"),
+        (None, "missing"),
+        ("beaucoup", "unreadable"),
+        ("9**9**9", "unreadable"),
+        ("nan", "unreadable"),
+        ("x" * 10_000, "unreadable"),
+        ("0", "wrong"),
+        ("500", "wrong"),
+        ("319.8 m", "wrong"),
+        (True, "unreadable"),
+    ],
+)
+def test_what_is_not_right_has_its_own_verdict(slotted, answer, expected):
+    mark = slotted.grade({"rA": answer})["rA"]
+    assert mark.verdict == expected
+    assert mark.points == 0
+
+
+def test_the_original_text_is_always_kept(slotted):
+    for answer in ("x" * 10_000, "  319,8  ", "319.8\u202fmm"):
+        assert slotted.grade({"rA": answer})["rA"].answer == answer
+
+
+def test_a_part_left_out_is_missing(slotted):
+    marking = slotted.grade({})
+    assert {m.verdict for m in marking.values()} == {"missing"}
+    assert marking.points == 0
+    assert marking.out_of == sum(p.points for p in slotted.parts)
+
+
+def test_an_answer_to_an_unknown_part_is_refused_with_the_nearest(slotted):
+    with pytest.raises(UnknownName, match="did you mean 'theta4'"):
+        slotted.grade({"theta5": "3"})
+    with pytest.raises(UnknownName, match="did you mean 'rA'"):
+        slotted.grade({})["ra"]
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_a_choice_may_be_given_by_label_in_either_language_by_key_or_by_place(course, lang):
+    exercise = course["slotted_mechanism"]
+    variant = next(v for v in exercise.variants(range(20), lang) if any(p.id == "guide" for p in v.parts))
+    right = variant.solution()["guide"]
+    place = "ab"[("oscillates", "rotates").index(right)]
+    labels = [variant.in_language(other).text.label("guide", right) for other in ("fr", "en")]
+    for answer in (*labels, right, right.upper(), f"{place})", labels[0].upper()):
+        assert verdict(variant, "guide", answer) == "correct", answer
+    other = {"oscillates": "rotates", "rotates": "oscillates"}[right]
+    assert verdict(variant, "guide", other) == "wrong"
+    assert verdict(variant, "guide", "peut-être") == "unreadable"
+
+
+def test_a_known_mistake_is_recognised_with_its_share_of_the_points(slotted):
+    marking = slotted.grade({"theta4": "-75,36", "a_coriolis": ""})
+    assert marking["theta4"].verdict == "mistake:arctan_no_quadrant"
+    assert marking["theta4"].points == 0.5
+    assert "quadrant" in marking["theta4"].feedback
+
+
+def test_feedback_never_gives_the_reference(slotted):
+    for answer in ("12", "-75.36", "3 kg", "??", ""):
+        for lang in ("fr", "en"):
+            mark = slotted.in_language(lang).grade({"theta4": answer})["theta4"]
+            assert "104" not in mark.feedback
+            assert mark.feedback
+
+
+def test_feedback_names_the_quantity_and_what_was_read(slotted):
+    assert slotted.grade({"theta4": "12,5 grad"})["theta4"].feedback.startswith("θ₄ : 12,5 grad")
+    assert (
+        slotted.in_language("en")
+        .grade({"theta4": "12,5 grad"})["theta4"]
+        .feedback.startswith("θ₄: 12.5 grad")
+    )
+
+
+def test_a_hostile_answer_cannot_write_markup_into_feedback(slotted):
+    mark = slotted.grade({"rA": "<script>$x$`*_[a](b)|\\"})["rA"]
+    assert not set("<>$`*_[]|\\") & set(mark.says.replace("$r_A$", ""))
+
+
+def test_both_readings_of_an_ambiguous_group_are_tried(course):
+    from coursework.course import Variant
+
+    variant = Variant(
+        course["slotted_mechanism"], 0, {**GIVEN, "r1": 1000.0, "r2": 234.0, "theta2": 90.0}, "fr"
+    )
+    assert verdict(variant, "rA", "1,234") == "correct"
+    assert verdict(variant, "rA", "1,234 m") == "correct"
+    small = Variant(course["slotted_mechanism"], 0, {**GIVEN, "r1": 1.0, "r2": 0.234, "theta2": 90.0}, "fr")
+    assert verdict(small, "rA", "1,234") == "correct"
+    assert small.grade({"rA": "1,234"})["rA"].read_as == "1.234"
+
+
+def test_a_students_copy_cannot_mark(course, tmp_path):
+    import shutil
+
+    import coursework
+
+    shutil.copytree(course.root / "exercises", tmp_path / "exercises")
+    with pytest.raises(NoSolution):
+        coursework.open_course(tmp_path)["slotted_mechanism"].variant(1).grade({"rA": "3"})
+
+
+# ----------------------------------------------------------------------- distance
+
+
+@pytest.mark.parametrize("reference", [319.8, -0.731, 12345.6, 1e-6])
+@pytest.mark.parametrize("rtol", [0.01, 0.05, 1e-3])
+def test_the_boundary_counts_as_right_and_a_hair_beyond_does_not(reference, rtol):
+    part = Part("x", rtol=rtol)
+    for side in (-1, 1):
+        for edge in (reference * (1 + side * rtol), reference + side * rtol * abs(reference)):
+            assert distance(part, edge, reference) <= 1
+        assert distance(part, reference * (1 + side * rtol * (1 + 1e-8)), reference) > 1
+
+
+def test_every_decimal_on_the_edge_of_a_decimal_reference_is_right():
+    """An answer of so many cents on the edge, written in decimals, is inside: no rounding decides."""
+    part = Part("x", rtol=0.01)
+    for cents in range(100, 20_000, 100):
+        reference = cents / 100
+        for edge in (cents * 99, cents * 101):
+            assert distance(part, edge / 10_000, reference) <= 1
+
+
+def test_angles_compare_modulo_a_turn_and_amounts_do_not():
+    angle, amount = Part("x", kind="angle"), Part("x", unit="deg")
+    assert distance(angle, -179.5, 180.0) <= 1
+    assert distance(angle, 539.0, 180.0) <= 1
+    assert distance(angle, 178.9, 180.0) > 1
+    assert distance(amount, -179.5, 180.0) > 1
+
+
+def test_a_zero_reference_needs_an_absolute_tolerance():
+    assert distance(Part("x"), 0.0, 0.0) <= 1
+    assert distance(Part("x"), 1e-9, 0.0) == math.inf
+    assert distance(Part("x", atol=0.1), 0.1, 0.0) <= 1
+
+
+def test_any_point_of_the_line_is_right_and_no_other():
+    part = Part("p", unit="mm", kind="point_on_line", along="d", atol=0.5, rtol=0.0)
+    reference, along = np.array([10.0, 0.0, 0.0]), np.array([1.0, 0.0, 1.0])
+    assert distance(part, (10.0, 0.0, 0.0), reference, along) <= 1
+    assert distance(part, (60.0, 0.0, 50.0), reference, along) <= 1
+    assert distance(part, (10.0, 0.5, 0.0), reference, along) <= 1
+    assert distance(part, (10.0, 0.6, 0.0), reference, along) > 1
+    assert distance(part, (0.0, 0.0, 0.0), reference, along) > 1
+
+
+def test_any_nonzero_multiple_of_a_direction_is_right():
+    part, reference = Part("d", kind="direction"), np.array([1.0, 0.0, 1.5])
+    for multiple in (1, -1, 1e-6, 250):
+        assert distance(part, tuple(multiple * reference), reference) <= 1
+    assert distance(part, (0.0, 0.0, 0.0), reference) > 1
+    assert distance(part, (1.0, 0.0, 1.0), reference) > 1
+
+
+# -------------------------------------------------------------------- either order
+
+
+def test_two_assemblies_may_be_given_in_the_other_order_consistently(course):
+    variant = course["four_bar_positions"].variant(3)
+    right = variant.solution()
+    names = ("theta3", "theta4")
+    swapped = {}
+    for name in names:
+        swapped[f"{name}_open"] = right[f"{name}_crossed"]
+        swapped[f"{name}_crossed"] = right[f"{name}_open"]
+    marking = variant.grade(swapped)
+    assert [marking[p].verdict for p in swapped] == ["correct"] * 4
+    assert "autre ordre" in marking["theta3_open"].feedback
+    mixed = {**swapped, "theta3_open": right["theta3_open"], "theta3_crossed": right["theta3_crossed"]}
+    assert sum(variant.grade(mixed)[p].verdict == "correct" for p in mixed) == 2

@@ -1,0 +1,203 @@
+"""What comes back is read as data: every row comes out once, and one damage costs one row."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from coursework.submissions import Rejected, Row, find, literal_answers, read_file
+
+HEADER = "student,exercise,seed,part,answer\n"
+
+
+def read(tmp_path: Path, name: str, data: str | bytes):
+    path = tmp_path / name
+    path.write_bytes(data if isinstance(data, bytes) else data.encode("utf-8"))
+    rows = list(read_file(path))
+    return [r for r in rows if isinstance(r, Row)], [r for r in rows if isinstance(r, Rejected)]
+
+
+def test_a_plain_csv(tmp_path):
+    rows, rejected = read(tmp_path, "a.csv", HEADER + "Ann,x,1,rA,319.8 mm\nBob,x,2,rA,\n")
+    assert [(r.student, r.seed, r.answer) for r in rows] == [("Ann", "1", "319.8 mm"), ("Bob", "2", "")]
+    assert rejected == []
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_encodings_that_say_what_they_are(tmp_path, encoding):
+    rows, rejected = read(tmp_path, "a.csv", (HEADER + "Émilie,x,1,rA,104°\n").encode(encoding))
+    assert (rows[0].student, rows[0].answer) == ("Émilie", "104°")
+    assert rejected == []
+
+
+def test_a_wrong_encoding_is_read_and_reported(tmp_path):
+    rows, _ = read(tmp_path, "a.csv", (HEADER + "Émilie,x,1,rA,104°\n").encode("cp1252"))
+    assert (rows[0].student, rows[0].answer) == ("Émilie", "104°")
+    assert "Windows-1252" in rows[0].warning
+
+
+def test_semicolons_leave_decimal_commas_alone(tmp_path):
+    rows, _ = read(tmp_path, "a.csv", "student;exercise;seed;part;answer\r\nAnn;x;1;rA;319,8\r\n")
+    assert rows[0].answer == "319,8"
+
+
+def test_columns_in_any_order_with_others_between(tmp_path):
+    rows, _ = read(tmp_path, "a.csv", "Answer,note,student,part,seed,exercise\n3,hm,Ann,rA,1,x\n")
+    assert (rows[0].student, rows[0].part, rows[0].answer) == ("Ann", "rA", "3")
+
+
+def test_an_unclosed_quotation_mark_costs_no_other_row(tmp_path):
+    rows, rejected = read(tmp_path, "a.csv", HEADER + 'Ann,x,1,rA,"319.8\nBob,x,2,rA,12\nCy,x,3,rA,13\n')
+    assert [r.student for r in rows] == ["Ann", "Bob", "Cy"]
+    assert rows[0].answer == "319.8"
+    assert rejected == []
+
+
+def test_a_quoted_answer_may_run_over_lines(tmp_path):
+    rows, rejected = read(tmp_path, "a.csv", HEADER + 'Ann,x,1,rA,"319.8\nmm"\nBob,x,2,rA,"a ""b"""\n')
+    assert [r.answer for r in rows] == ["319.8\nmm", 'a "b"']
+    assert rejected == []
+
+
+def test_a_row_of_another_width_is_rejected_with_its_line(tmp_path):
+    rows, rejected = read(tmp_path, "a.csv", HEADER + "Ann,x,1,rA\nBob,x,2,rA,12\nCy,x,3,rA,13,14\n")
+    assert [r.student for r in rows] == ["Bob"]
+    assert [r.source.rpartition(", ")[2] for r in rejected] == ["line 2", "line 4"]
+    assert rejected[0].row["student"] == "Ann"
+
+
+def test_a_header_without_the_columns_says_which_are_missing(tmp_path):
+    _, rejected = read(tmp_path, "a.csv", "student,exercise,part,answer\nAnn,x,rA,3\n")
+    assert "seed missing" in rejected[0].reason
+
+
+@pytest.mark.parametrize("data", [b"", b"  \n", b"\0\0\0\0", b"\xff\xfe\x00"])
+def test_a_file_that_is_no_csv_is_one_rejection(tmp_path, data):
+    rows, rejected = read(tmp_path, "a.csv", data)
+    assert rows == []
+    assert len(rejected) == 1
+
+
+@given(st.binary(max_size=300))
+@settings(max_examples=200)
+def test_any_bytes_are_read_without_a_traceback(tmp_path_factory, data):
+    folder = tmp_path_factory.mktemp("any")
+    for ending in (".csv", ".json", ".ipynb"):
+        path = folder / f"a{ending}"
+        path.write_bytes(data)
+        assert all(isinstance(r, (Row, Rejected)) for r in read_file(path))
+
+
+@given(
+    st.lists(
+        st.text(st.characters(exclude_characters='"\0\r\n', exclude_categories=["Cs"]), max_size=20),
+        min_size=1,
+    )
+)
+@settings(max_examples=100)
+def test_rows_in_are_rows_out(tmp_path_factory, answers):
+    import csv
+    import io
+
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(["student", "exercise", "seed", "part", "answer"])
+    writer.writerows([f"s{i}", "x", i, "rA", a] for i, a in enumerate(answers))
+    path = tmp_path_factory.mktemp("rows") / "a.csv"
+    path.write_bytes(out.getvalue().encode("utf-8"))
+    rows = list(read_file(path))
+    assert [r.answer for r in rows] == answers
+
+
+def sheet(**more):
+    return {"student": "Ann", "exercise": "x", "seed": 1, "answers": {"rA": "3 mm", "theta4": 104.6}, **more}
+
+
+def test_json_of_one_sheet_or_of_many(tmp_path):
+    rows, _ = read(tmp_path, "a.json", json.dumps(sheet()))
+    assert [(r.part, r.answer, r.seed) for r in rows] == [("rA", "3 mm", "1"), ("theta4", 104.6, "1")]
+    rows, rejected = read(tmp_path, "a.json", json.dumps([sheet(), {"answers": 3}, sheet(student="Bob")]))
+    assert [r.student for r in rows] == ["Ann", "Ann", "Bob", "Bob"]
+    assert rejected[0].source.endswith("item 2")
+
+
+@pytest.mark.parametrize("text", ["{", "3", "[]", '{"student": "A"}', "[" * 100_000])
+def test_json_that_is_no_sheet_is_one_rejection(tmp_path, text):
+    rows, rejected = read(tmp_path, "a.json", text)
+    assert rows == []
+    assert len(rejected) == 1
+
+
+def test_a_nested_answer_costs_its_own_part(tmp_path):
+    rows, rejected = read(tmp_path, "a.json", json.dumps(sheet(answers={"rA": {"v": 3}, "b": "4"})))
+    assert [r.part for r in rows] == ["b"]
+    assert len(rejected) == 1
+
+
+def notebook(code, tags=("answers",), about=None, cells=None):
+    about = {"student": "Ann", "exercise": "x", "seed": 1} if about is None else about
+    cell = {"cell_type": "code", "metadata": {"tags": list(tags)}, "source": code}
+    return json.dumps({"cells": cells if cells is not None else [cell], "metadata": {"coursework": about}})
+
+
+@pytest.mark.parametrize(
+    "code", ['answers = {"rA": "3", "b": -4.5, "c": None}', '{"rA": "3", "b": -4.5, "c": None}']
+)
+def test_the_answers_cell_of_a_notebook(tmp_path, code):
+    rows, rejected = read(tmp_path, "a.ipynb", notebook(code))
+    assert [(r.part, r.answer) for r in rows] == [("rA", "3"), ("b", -4.5), ("c", None)]
+    assert rejected == []
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        'answers = {"rA": __import__("os").system("touch /tmp/ran")}',
+        'import os\nanswers = {"rA": "3"}',
+        "answers = dict(rA=3)",
+        'answers = {"rA": f"{3}"}',
+        "answers = {",
+        "answers = 3",
+        "",
+        "x" * 300_000,
+        "answers = " + "{" * 5000,
+    ],
+)
+def test_code_in_the_answers_cell_is_told_and_never_run(tmp_path, code):
+    rows, rejected = read(tmp_path, "a.ipynb", notebook(code))
+    assert rows == []
+    assert len(rejected) == 1
+    assert rejected[0].row["student"] == "Ann"
+    assert not Path("/tmp/ran").exists()
+
+
+@pytest.mark.parametrize(
+    "text", ["{", "[]", "3", "{}", notebook("{}", about=3), notebook("{}", tags=()), notebook("", cells=3)]
+)
+def test_a_notebook_that_is_none_is_one_rejection(tmp_path, text):
+    rows, rejected = read(tmp_path, "a.ipynb", text)
+    assert rows == []
+    assert len(rejected) == 1
+
+
+def test_a_literal_may_hold_points():
+    assert literal_answers("answers = {'p': (1, 0, -2.5), 'q': [1, 2, 3]}") == {
+        "p": (1, 0, -2.5),
+        "q": [1, 2, 3],
+    }
+
+
+def test_folders_are_walked_in_name_order_and_strangers_are_reported(tmp_path):
+    for name in ("b.csv", "a.json", "sub/c.ipynb", "notes.docx", ".hidden/x.csv"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("x")
+    found = list(find([tmp_path, tmp_path / "none.csv"]))
+    assert [p.name for p in found if isinstance(p, Path)] == ["a.json", "b.csv", "c.ipynb"]
+    assert ["docx" in r.reason or "no such file" in r.reason for r in found if isinstance(r, Rejected)] == [
+        True,
+        True,
+    ]
