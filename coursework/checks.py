@@ -74,7 +74,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
     report.variants = len(drawn)
     check_arrays(exercise, drawn, report)
     for variant in drawn:
-        key = Key(variant)
+        key = variant.key
         check_solves(variant, key, report)
         check_right_answers(variant, key, report)
         check_mistakes(variant, key, report)
@@ -163,9 +163,7 @@ def check_solves(variant: Variant, key: Key, report: Report) -> None:
         value = key.reference[part.quantity]
         if part.kind == "number" and part.atol == 0 and value == 0:
             report.fail(f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance")
-    exercise = variant.exercise
-    known = {n: v for n, v in variant.given.items() if n in exercise._names}
-    residual = exercise.solution.residual_graph.evaluate(("residual",), known)["residual"]
+    residual = variant.exercise.solution.residual_graph.evaluate(("residual",), variant.used)["residual"]
     for number, value in enumerate(residual if isinstance(residual, tuple) else (residual,), start=1):
         worst = float(np.max(np.abs(value)))
         report.counts["residuals"] += 1
@@ -248,18 +246,20 @@ def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
     """Each named mistake that shows is marked as that mistake, and never as right."""
     for name, values in key.wrong.items():
         tally = report.mistakes.setdefault(name, Counter())
+        shown = {}
         for part in variant.parts:
-            if part.quantity not in values:
+            wrong = values.get(part.quantity)
+            if wrong is None or not (isinstance(wrong, str) or np.all(np.isfinite(wrong))):
                 continue
-            wrong = values[part.quantity]
             along = key.reference.get(part.along)
-            if not isinstance(wrong, str) and not np.all(np.isfinite(wrong)):
-                continue
             gap = distance(part, _as_read(part, wrong), key.reference[part.quantity], along)
             kind = "shown" if gap > SHOWN else "hidden" if gap <= HIDDEN else "murky"
             tally[kind] += 1
             if kind == "shown":
-                _check_recognised(variant, part, name, wrong, report)
+                shown[part.id] = (
+                    "; ".join(map(repr, wrong.tolist())) if isinstance(wrong, np.ndarray) else wrong
+                )
+        _check_recognised(variant, name, shown, report)
 
 
 def _as_read(part: Part, value: Any) -> Any:
@@ -270,20 +270,21 @@ def _as_read(part: Part, value: Any) -> Any:
     return value
 
 
-def _check_recognised(variant: Variant, part: Part, name: str, wrong: Any, report: Report) -> None:
-    answer = "; ".join(repr(v) for v in wrong.tolist()) if isinstance(wrong, np.ndarray) else wrong
-    mark = variant.grade({part.id: answer})[part.id]
-    report.counts["mistakes recognised"] += 1
-    if name not in mark.matches and not _exchanged(variant, part):
-        report.fail(
-            f"seed {variant.seed}: mistake {name} on {part.id} ({answer!r}) marks {mark.verdict}, "
-            f"not mistake:{name}"
-        )
+def _check_recognised(variant: Variant, name: str, shown: Mapping[str, Any], report: Report) -> None:
+    marking = variant.grade(shown)
+    for part_id, answer in shown.items():
+        mark = marking[part_id]
+        report.counts["mistakes recognised"] += 1
+        if name not in mark.matches and not _exchanged(variant, part_id):
+            report.fail(
+                f"seed {variant.seed}: mistake {name} on {part_id} ({answer!r}) marks {mark.verdict}, "
+                f"not mistake:{name}"
+            )
 
 
-def _exchanged(variant: Variant, part: Part) -> bool:
+def _exchanged(variant: Variant, part_id: str) -> bool:
     """A wrong value of one assembly may be the right one of the other."""
-    return any(part.id in group for group in variant.exercise.spec.either_order)
+    return any(part_id in group for group in variant.exercise.spec.either_order)
 
 
 def check_nonsense(variant: Variant, report: Report) -> None:

@@ -31,13 +31,14 @@ from coursework.errors import (
     nearest,
     unknown,
 )
-from coursework.language import languages, plain, with_unit
+from coursework.graph import plain_scalar
+from coursework.language import languages, localise, plain, significant, with_unit
 from coursework.model import Exercise, GivenSpec, Part
 from coursework.solution import Solution
 
 if TYPE_CHECKING:
     from coursework.handout import AnswerSheet, Handout
-    from coursework.marking import Marking
+    from coursework.marking import Key, Marking
     from coursework.rendering import Renderer
 
 _packages = itertools.count()
@@ -224,7 +225,7 @@ class CourseExercise:
         return self.solution.graph.plan(self._wanted(only), self._used_given(effects), effects)
 
     def _used_given(self, effects: Iterable[str]) -> frozenset[str]:
-        return frozenset(self.spec.given) & self._names
+        return frozenset(self.spec.given) & self.quantity_names
 
     def _wanted(self, only: Sequence[str] | str | None) -> tuple[str, ...]:
         if only is None:
@@ -232,7 +233,8 @@ class CourseExercise:
         return (only,) if isinstance(only, str) else tuple(only)
 
     @cached_property
-    def _names(self) -> frozenset[str]:
+    def quantity_names(self) -> frozenset[str]:
+        """Every name that a request may give: computed quantities and what they need."""
         graph = self.solution.graph
         return frozenset(graph.quantities) | graph.leaves
 
@@ -276,7 +278,7 @@ class CourseExercise:
         UnknownName, MissingQuantity, WrongUnit, WrongValue
             A request that makes no sense, each with what would do.
         """
-        names = self._names
+        names = self.quantity_names
         values = {n: v for n, v in self._defaults.items() if n in names}
         for name, value in given.items():
             if name not in names:
@@ -291,8 +293,7 @@ class CourseExercise:
         found = self.solution.graph.evaluate(wanted, values, effects)
         if not arrays:
             for name, value in found.items():
-                if isinstance(value, np.generic) or (isinstance(value, np.ndarray) and not value.ndim):
-                    found[name] = value = value.item()
+                found[name] = value = plain_scalar(value)
                 if isinstance(value, float) and value != value:
                     told = ", ".join(f"{n} = {values[n]}" for n in given if n in values)
                     raise Undefined(f"{self.name}: {name} does not exist for {told}")
@@ -447,6 +448,10 @@ class CourseExercise:
         return self.variant(0, lang).text.title
 
 
+def _rounded(value: Any, lang: str) -> str:
+    return localise(significant(value), lang) if isinstance(value, (int, float)) else str(value)
+
+
 def _holds(part: Part, given: Mapping[str, Any]) -> bool:
     import inspect
 
@@ -497,10 +502,11 @@ class Variant:
 
     def solution(self) -> dict[str, Any]:
         """The asked quantities in canonical units and full precision."""
-        return self.exercise.solve(**self.given, only=self._quantities)
+        return self.exercise.solve(**self.given, only=self.asked_quantities)
 
     @property
-    def _quantities(self) -> tuple[str, ...]:
+    def asked_quantities(self) -> tuple[str, ...]:
+        """The quantities of the parts, and those that parts are judged with."""
         along = (p.along for p in self.parts if p.along)
         return tuple(dict.fromkeys([*(p.quantity for p in self.parts), *along]))
 
@@ -517,6 +523,47 @@ class Variant:
             n: str(v) if spec.given[n].is_choice else with_unit(plain(v), spec.given[n].unit, self.lang)
             for n, v in self.given.items()
         }
+
+    @cached_property
+    def used(self) -> dict[str, Any]:
+        """The given quantities that the solution knows."""
+        return {n: v for n, v in self.given.items() if n in self.exercise.quantity_names}
+
+    @cached_property
+    def walk(self) -> dict[str, Any]:
+        """The given quantities, then every one met on the way to the asked ones, in order.
+
+        Raises
+        ------
+        NoSolution
+            The course folder has no solutions.
+        """
+        given = {n: v for n, v in self.given.items() if n in self.exercise.quantity_names}
+        found = self.exercise.solution.graph.evaluate_all(self.asked_quantities, given)
+        return {**given, **{n: plain_scalar(v) for n, v in found.items()}}
+
+    @cached_property
+    def solution_text(self) -> statement.Text:
+        """The sections of the solution's words; any quantity of the walk may stand in them, rounded."""
+        rounded = {n: _rounded(v, self.lang) for n, v in self.walk.items()}
+        return self.exercise.text("solutions", self.lang, {**rounded, **self.printed})
+
+    @cached_property
+    def _texts(self) -> tuple[statement.Text, ...]:
+        """The statement in every language, this one's first."""
+        others = (lang for lang in self.exercise.languages if lang != self.lang)
+        return (self.text, *(self.in_language(lang).text for lang in others))
+
+    def labels(self, part: Part) -> dict[str, list[str]]:
+        """What each case of a choice is called, in every language; nothing for another kind."""
+        return {case: [text.label(part.id, case) for text in self._texts] for case in part.choices}
+
+    @cached_property
+    def key(self) -> Key:
+        """What the variant's answers are marked by."""
+        from coursework.marking import Key
+
+        return Key(self)
 
     def grade(self, answers: Mapping[str, Any]) -> Marking:
         """Mark a student's answers, by part id.

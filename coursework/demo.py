@@ -54,7 +54,14 @@ def decimal_commas(variant: Variant, key: Key, part: Part, place: int) -> Any:
 
 
 def with_units(variant: Variant, key: Key, part: Part, place: int) -> Any:
-    written = {"deg": "°", "mm/s^2": " mm.s⁻²", "rad/s": " rad.s-1", "rad/s^2": " rad/s²", "mm^2": " mm²", "1": ""}
+    written = {
+        "deg": "°",
+        "mm/s^2": " mm.s⁻²",
+        "rad/s": " rad.s-1",
+        "rad/s^2": " rad/s²",
+        "mm^2": " mm²",
+        "1": "",
+    }
     if not _is_number(part):
         return careful(variant, key, part, place)
     return _right(variant, key, part) + written.get(part.unit, f" {part.unit}")
@@ -137,7 +144,9 @@ def class_of_twelve(
     """
     course = open_course()
     formats = ("pdf", "ipynb", "html")
-    written = build(course, course.names, 1, FIRST_SEED, ROSTER, formats, languages()[:1], out, overwrite=True)
+    written = build(
+        course, course.names, 1, FIRST_SEED, ROSTER, formats, languages()[:1], out, overwrite=True
+    )
     issued = Issued.read(out / "issued.json")
     _hand_in(course, issued, out)
     book = grade(course, [out / "submissions"], out / "issued.json", out / "marks", feedback=True)
@@ -150,7 +159,10 @@ def class_of_twelve(
             {
                 "exercise": name,
                 "answers": len(marks),
-                **{v: verdicts[v] for v in ("correct", "mistake", "wrong", "wrong_unit", "unreadable", "missing")},
+                **{
+                    v: verdicts[v]
+                    for v in ("correct", "mistake", "wrong", "wrong_unit", "unreadable", "missing")
+                },
                 "mean": f"{100 * points / out_of:.0f} %" if out_of else "",
             }
         )
@@ -179,7 +191,7 @@ def _hand_in(course: Any, issued: Issued, out: Path) -> None:
         for name in issued.exercises:
             seed = issued.seeds[student.casefold(), name]
             variant = course[name].from_record(issued.records[name, seed])
-            key = Key(variant)
+            key = variant.key
             answers = {p.id: habit(variant, key, p, place) for place, p in enumerate(variant.parts)}
             if number % 3 == 0:
                 rows += [[student, name, seed, part, answer] for part, answer in answers.items()]
@@ -197,7 +209,9 @@ def _hand_in(course: Any, issued: Issued, out: Path) -> None:
     (folder / "broken.ipynb").write_text('{"cells": [', "utf-8")
 
 
-def _write_notebook(course: Any, variant: Variant, student: str, answers: Mapping[str, Any], folder: Path) -> None:
+def _write_notebook(
+    course: Any, variant: Variant, student: str, answers: Mapping[str, Any], folder: Path
+) -> None:
     notebook = json.loads(course.renderer.notebook(variant.handout(student)))
     cell = next(c for c in notebook["cells"] if "answers" in c["metadata"].get("tags", ()))
     lines = [f"    {part!r}: {answer!r},\n" for part, answer in answers.items()]

@@ -26,6 +26,12 @@ from coursework.errors import (
 Value = Any  #: a float, a complex number, a text, or an array of them
 
 
+def plain_scalar(value: Value) -> Value:
+    """A numpy scalar as Python's own; vectors are left alone."""
+    zero_dimensional = isinstance(value, np.generic) or (isinstance(value, np.ndarray) and not value.ndim)
+    return value.item() if zero_dimensional else value
+
+
 def _right(name: str) -> str:
     """The name under which a replaced quantity keeps its right value."""
     return f"{name} (right)"

@@ -176,9 +176,7 @@ def issued_content(course: Course, issues: Sequence[Issue]) -> dict[str, Any]:
 
 def plain_value(value: Any) -> Any:
     """A quantity as JSON holds it."""
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return value.item() if isinstance(value, np.generic) else value
+    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
 def record_with_answers(variant: Variant) -> dict[str, Any]:

@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coursework.errors import CourseworkError, unknown
-from coursework.language import languages, localise, unit_text, words
+from coursework.graph import plain_scalar
+from coursework.language import localise, unit_text, words
 from coursework.model import Part
 from coursework.reading import (
     Reading,
@@ -46,8 +47,13 @@ class Mark:
     points: float
     out_of: float
     says: str  #: Markdown in the sheet's language; never the reference value
-    feedback: str  #: the same as plain text
+    lang: str
     matches: tuple[str, ...] = ()  #: every named mistake that gives this answer
+
+    @cached_property
+    def feedback(self) -> str:
+        """What is said, as one line of plain text."""
+        return _plain(self.says, self.lang)
 
 
 class Marking(Mapping[str, Mark]):
@@ -98,16 +104,14 @@ class Key:
     def _wrong(self, name: str) -> dict[str, Any]:
         graph = self.solution.mistaken(name)
         reached = self.solution.graph.descendants(self.solution.mistakes[name].targets)
-        known = self.variant.exercise._names
-        given = {n: v for n, v in self.variant.given.items() if n in known}
         values = {}
         for quantity in self.reference:
             if quantity in reached:
                 try:
-                    value = graph.evaluate((quantity,), given)[quantity]
+                    value = graph.evaluate((quantity,), self.variant.used)[quantity]
                 except CourseworkError:
                     continue  # the wrong way leads nowhere on this variant
-                values[quantity] = value.item() if isinstance(value, np.generic) else value
+                values[quantity] = plain_scalar(value)
         return values
 
 
@@ -147,11 +151,7 @@ def distance(part: Part, value: Any, reference: Any, along: Any = None) -> float
             right = parse_equation(reference, part.variables)
             return 0.0 if same_equation(value, right) else math.inf
         case _:
-            return 0.0 if value == _scalar(reference) else math.inf
-
-
-def _scalar(value: Any) -> Any:
-    return value.item() if isinstance(value, (np.generic, np.ndarray)) else value
+            return 0.0 if value == plain_scalar(reference) else math.inf
 
 
 def _over(gap: float, half_width: float, scale: float) -> float:
@@ -193,33 +193,16 @@ def mark(variant: Variant, answers: Mapping[str, Any]) -> Marking:
     for part_id in answers:
         if part_id not in asked:
             raise unknown("part", part_id, asked, f"{variant.exercise.name} {variant.seed}")
-    key = _key_of(variant)
-    readings = {i: read(p, answers.get(i), _labels(variant, p)) for i, p in asked.items()}
+    key = variant.key
+    readings = {i: read(p, answers.get(i), variant.labels(p)) for i, p in asked.items()}
     target = _targets(variant, readings, key)
     marks = {i: _mark_part(variant, key, p, answers.get(i), readings[i], target[i]) for i, p in asked.items()}
     if any(target[i] != i for i in target):
         note = words(variant.lang)["marking"]["either_order"]
         for i in target:
             if target[i] != i and marks[i].verdict == "correct":
-                marks[i] = replace(
-                    marks[i], says=f"{marks[i].says} {note}", feedback=f"{marks[i].feedback} {note}"
-                )
+                marks[i] = replace(marks[i], says=f"{marks[i].says} {note}")
     return Marking(marks)
-
-
-def _key_of(variant: Variant) -> Key:
-    """The key, kept with its variant."""
-    if not hasattr(variant, "_marking_key"):
-        variant._marking_key = Key(variant)  # type: ignore[attr-defined]
-    return variant._marking_key  # type: ignore[attr-defined]
-
-
-def _labels(variant: Variant, part: Part) -> dict[str, list[str]]:
-    """What each case of a choice is called, in every language."""
-    if part.kind != "choice":
-        return {}
-    texts = [variant.in_language(lang).text for lang in variant.exercise.languages if lang in languages()]
-    return {case: [t.label(part.id, case) for t in texts] for case in part.choices}
 
 
 def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dict[str, str]:
@@ -275,9 +258,7 @@ def _mark_part(variant: Variant, key: Key, part: Part, answer: Any, reading: Rea
     matches = _mistakes(key, part, reading, judged_by)
     if matches:
         name = matches[0]
-        told = (
-            variant.exercise.text("solutions", variant.lang, variant.printed).section(f"mistake {name}").text
-        )
+        told = variant.solution_text.section(f"mistake {name}").text
         says = _say(variant, part, "mistake", read=echo(read_as, variant.lang), says=told)
         points = part.points * key.solution.mistakes[name].share
         return _made(variant, part, text, read_as, f"mistake:{name}", points, says, matches)
@@ -360,5 +341,6 @@ def _made(
     says: str,
     matches: tuple[str, ...] = (),
 ) -> Mark:
-    plain = _plain(says, variant.lang)
-    return Mark(part.id, text, read_as, verdict, float(points), float(part.points), says, plain, matches)
+    return Mark(
+        part.id, text, read_as, verdict, float(points), float(part.points), says, variant.lang, matches
+    )

@@ -111,41 +111,24 @@ def answer_sheet(variant: Variant, student: str = "") -> AnswerSheet:
     NoSolution
         The course folder has no solutions.
     """
-    exercise, lang = variant.exercise, variant.lang
+    lang = variant.lang
     sheet = handout(variant, student)
-    solution = exercise.solution
-    known = exercise._names
-    given = {n: v for n, v in variant.given.items() if n in known}
-    wanted = variant._quantities
-    values = {**given, **solution.graph.evaluate_all(wanted, given)}
-    values = {n: v.item() if isinstance(v, np.ndarray) and v.ndim == 0 else v for n, v in values.items()}
-    text = exercise.text("solutions", lang, _printed(variant, values))
-    steps = tuple(_step(variant, name, values, text) for name in values if name not in given)
+    values, text = variant.walk, variant.solution_text
+    steps = tuple(_step(variant, name, values, text) for name in values if name not in variant.given)
     answers = tuple(
         Answer(question, answer_text(variant, part, values), _margin(part, values, lang))
         for question, part in zip(sheet.questions, variant.parts, strict=True)
     )
-    figure = None
-    if solution.figure is not None:
-        needed = inspect.signature(solution.figure).parameters
-        more = solution.graph.evaluate(tuple(n for n in needed if n not in values), given)
-        figure = _call(solution.figure, {**values, **more})
-    return AnswerSheet(sheet, answers, steps, text.opening, figure)
+    return AnswerSheet(sheet, answers, steps, text.opening, _solution_figure(variant))
 
 
-def _printed(variant: Variant, values: Mapping[str, Any]) -> dict[str, str]:
-    """Every quantity as running text for the solution's words: given ones exact, others rounded."""
-    shown = dict(variant.printed)
-    for name, value in values.items():
-        if name not in shown:
-            shown[name] = _running(value, variant.lang)
-    return shown
-
-
-def _running(value: Any, lang: str) -> str:
-    if isinstance(value, (str, complex, np.ndarray)):
-        return str(value)
-    return localise(significant(value, PRINTED_DIGITS), lang)
+def _solution_figure(variant: Variant) -> Figure | None:
+    solution = variant.exercise.solution
+    if solution.figure is None:
+        return None
+    values = dict(variant.walk)
+    more = tuple(n for n in inspect.signature(solution.figure).parameters if n not in values)
+    return _call(solution.figure, {**values, **solution.graph.evaluate(more, variant.used)})
 
 
 def _symbol(variant: Variant, name: str) -> str:

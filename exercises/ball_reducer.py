@@ -10,8 +10,8 @@ NO_SLIP_SYMBOLS = ("R", "r", "omega", "phi_dot", "psi_dot", "theta_dot")
 
 
 def smallest_ball(R):
-    """A sixth of R: the letters fit in the figure, and the ratio differs from 1."""
-    return np.maximum(4, R / 6)
+    """A fifth of R: the letters fit in the figure, and the ratio differs from 1."""
+    return np.maximum(4, R / 5)
 
 
 def largest_ball(R):
@@ -35,7 +35,7 @@ def figure(R, r):
     """Half-section by the plane of z and O1O3; x and y of the drawing are along x_a and z."""
     wall, shaft = 0.7 * r, 0.4 * R
     O3, outer = R + r, R + 2 * r
-    top, bottom = 3.2 * r, -3.2 * r
+    top, bottom = 2.7 * r, -2.7 * r
     input_shaft = (
         complex(0, 0.6 * r),
         complex(R, 0.6 * r),
@@ -66,7 +66,7 @@ def figure(R, r):
         section(output_shaft, label="S_2", angle=45, spacing=2.6),
         ball(O3, r),
         centre_line(complex(0, 1.1 * bottom), complex(0, 1.1 * top), label="z"),
-        centre_line(0, outer + 2.5 * wall, label="x_a"),
+        centre_line(0, outer + 2 * wall, label="x_a"),
         point(0, "O_1"),
         point(O3, "O_3"),
         contact(outer, "A"),
@@ -75,7 +75,6 @@ def figure(R, r):
         contact(complex(O3, r), "D"),
         dimension(0, R, label="R", offset=1.15 * bottom),
         dimension(O3, outer, label="r", offset=1.15 * bottom),
-        paper_mm=(120, 95),
     )
 
 

@@ -26,7 +26,6 @@ UNITS = {
     "yB": "mm",
     "alpha4": "rad/s^2",
     "alpha5": "rad/s^2",
-    "theta2_turns": "deg",
 }
 SYMBOLS = {
     "OB": "OB",
@@ -315,6 +314,7 @@ def alpha(theta2_turns):
     return np.where(two, 360 - arc, np.nan)
 
 
+@formula(r"360^{\circ} - <alpha>")
 def beta(alpha):
     return 360 - alpha
 
@@ -329,10 +329,12 @@ def T(omega2):
     return 2 * math.pi / abs(omega2)
 
 
+@formula(r"\frac{<alpha>}{360^{\circ}} \times <T>")
 def t_advance(alpha, T):
     return alpha / 360 * T
 
 
+@formula(r"\frac{<beta>}{360^{\circ}} \times <T>")
 def t_return(beta, T):
     return beta / 360 * T
 

@@ -84,6 +84,7 @@ def theta4(r1, r2, theta2, r3, theta3):
     return angle(1j * r1 + polar(r2, theta2) + polar(r3, theta3))
 
 
+@formula("")
 def A():
     return 1.0
 

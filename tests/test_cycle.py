@@ -78,4 +78,6 @@ def test_rows_are_independent_of_how_many_are_asked_together():
     phase, level = np.linspace(0, 6, 5000), np.linspace(-0.9, 0.9, 5000)
     together = turning_points(shifted_cosine, [phase, level])
     for i in (0, 2047, 2048, 4999):
-        assert np.array_equal(turning_points(shifted_cosine, [phase[i : i + 1], level[i : i + 1]])[0], together[i])
+        assert np.array_equal(
+            turning_points(shifted_cosine, [phase[i : i + 1], level[i : i + 1]])[0], together[i]
+        )

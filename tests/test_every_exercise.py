@@ -12,7 +12,6 @@ from coursework import checks
 from coursework.draws import BLOCK, acceptance
 from coursework.errors import NoSolution
 from coursework.language import languages
-from coursework.marking import Key
 
 COURSE = coursework.open_course()
 VARIANTS = 30
@@ -23,7 +22,7 @@ every_language = pytest.mark.parametrize("lang", languages())
 
 @cache
 def keys(name):
-    return [Key(v) for v in COURSE[name].variants(range(VARIANTS))]
+    return [v.key for v in COURSE[name].variants(range(VARIANTS))]
 
 
 def failures(name, check, *arguments):

@@ -116,7 +116,7 @@ def _zero(f: Slope, low: np.ndarray, high: np.ndarray, at_low: np.ndarray, at_hi
     a, b, fa, fb = high, low, at_high, at_low
     c, fc = a, fa
     t = np.full(a.shape, 0.5)
-    best = np.where(abs(fa) < abs(fb), a, b)
+    best, done = np.where(abs(fa) < abs(fb), a, b), np.zeros(a.shape, dtype=bool)
     with np.errstate(all="ignore"):
         for _ in range(_STEPS):
             x = a + t * (b - a)
@@ -125,9 +125,11 @@ def _zero(f: Slope, low: np.ndarray, high: np.ndarray, at_low: np.ndarray, at_hi
             c, fc = np.where(same, a, b), np.where(same, fa, fb)
             b, fb = np.where(same, b, a), np.where(same, fb, fa)
             a, fa = x, fx
-            best = np.where(abs(fa) < abs(fb), a, b)
+            # A bracket that is narrow enough keeps its zero, whatever the others still need.
+            best = np.where(done, best, np.where(abs(fa) < abs(fb), a, b))
             least = 2 * np.finfo(float).eps * abs(best) / abs(b - a)
-            if not len(a) or ((least > 0.5) | (fa == 0) | (fb == 0)).all():
+            done |= ~(least <= 0.5) | (fa == 0) | (fb == 0)
+            if done.all():
                 break
             xi, phi = (a - b) / (c - b), (fa - fb) / (fc - fb)
             quadratic = (phi**2 < xi) & ((1 - phi) ** 2 < 1 - xi)

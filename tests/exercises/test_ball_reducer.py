@@ -170,7 +170,7 @@ def test_misprints_of_the_notes_move_what_they_touch():
 def test_arrays_and_scalars_agree():
     variants = EXERCISE.variants(range(20))
     arrays = {n: np.array([v.given[n] for v in variants]) for n in GIVEN}
-    together = EXERCISE.solve(**arrays, only=variants[0]._quantities)
+    together = EXERCISE.solve(**arrays, only=tuple(part.quantity for part in variants[0].parts))
     for index, variant in enumerate(variants):
         for name, value in variant.solution().items():
             if isinstance(value, (float, np.ndarray)):

@@ -113,8 +113,7 @@ def test_misprints_of_the_notes_move_what_they_touch():
     given = {**LENGTHS, "theta2": 0.0, "mode": "crossed"}
 
     def mistaken(name, quantity):
-        values = {n: v for n, v in given.items() if n in EXERCISE._names}
-        return EXERCISE.solution.mistaken(name).evaluate((quantity,), values)[quantity]
+        return EXERCISE.solution.mistaken(name).evaluate((quantity,), given)[quantity]
 
     # theta4 + theta3 stands below instead of theta4 - theta3: sines 3/5, 4/5, 24/25, 7/25 of the triangles.
     assert mistaken("sum_in_denominator", "omega4") == pytest.approx(15 * 40 * -3 / 5 / (200 * -117 / 125))
