@@ -19,8 +19,19 @@ $(VENV)/ready: pyproject.toml
 demo: $(VENV)/ready  ## The whole job on a class of twelve
 	$(BIN)/coursework demo --out demo
 
-test: $(VENV)/ready lint  ## Every test, also against the wheel with the source out of reach
+test: $(VENV)/ready lint  ## Every test
 	$(BIN)/python -m pytest -n auto -q
+
+# The wheel in an environment of its own, the tests beside it, and no source in reach.
+wheel-test: $(VENV)/ready
+	rm -rf build/wheel
+	mkdir -p build/wheel
+	$(BIN)/python -m build --quiet --outdir build/wheel .
+	$(PYTHON) -m venv build/wheel/venv
+	build/wheel/venv/bin/python -m pip install --quiet --disable-pip-version-check "$$(ls build/wheel/*.whl)[test]"
+	cp -r tests pyproject.toml build/wheel/
+	cd build/wheel && venv/bin/python -P -m pytest -n auto -q
+	cd build/wheel && venv/bin/coursework demo --out demo
 
 lint: $(VENV)/ready
 	$(BIN)/ruff check .

@@ -57,12 +57,15 @@ class _Grid:
 
     def first(self, low: Any) -> np.ndarray:
         """The first multiple not below ``low``; a bound on the grid, but for rounding, is on it."""
-        steps = np.asarray(low, dtype=float) * self.denominator / self.numerator
-        return np.ceil(steps - 1e-9).astype(np.int64)
+        return self._steps(np.ceil, low, -1e-9, without=1)
 
     def last(self, high: Any) -> np.ndarray:
-        steps = np.asarray(high, dtype=float) * self.denominator / self.numerator
-        return np.floor(steps + 1e-9).astype(np.int64)
+        return self._steps(np.floor, high, 1e-9, without=0)
+
+    def _steps(self, to_whole: Callable, bound: Any, slack: float, without: int) -> np.ndarray:
+        """A bound in whole steps; a bound that is not a number makes the range empty."""
+        steps = to_whole(np.asarray(bound, dtype=float) * self.denominator / self.numerator + slack)
+        return np.where(np.isfinite(steps), steps, without).astype(np.int64)
 
     def value(self, k: np.ndarray) -> np.ndarray:
         return (k * self.numerator) / self.denominator

@@ -291,7 +291,9 @@ def part_name(variant: Variant, part: Part) -> str:
 def echo(text: str, lang: str) -> str:
     """What was read, shortened, as the language writes numbers; safe inside Markdown."""
     shown = text if len(text) <= ECHO else text[: ECHO - 1] + "…"
-    number = re.sub(r"-?\d+(?:\.\d+)?", lambda m: localise(m.group(), lang), shown, count=1)
+    if "=" in shown:
+        return "`" + "".join(c for c in shown if c.isprintable() and c not in "`$") + "`"
+    number = re.sub(r"(?<![A-Za-z.])-?\d+(?:\.\d+)?", lambda m: localise(m.group(), lang), shown)
     return _harmless(number).replace(" °", "°")
 
 

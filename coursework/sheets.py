@@ -166,8 +166,8 @@ def _step(variant: Variant, name: str, values: Mapping[str, Any], text: Any) -> 
     return Step(
         name=name,
         symbol=_symbol(variant, name),
-        formula=formula,
-        substitution=substitution if substitution != formula else "",
+        formula=formula if formula != value else "",
+        substitution=substitution if substitution not in (formula, value) else "",
         value=value,
         words=words,
         remarks=remarks,
@@ -185,12 +185,12 @@ def _value_latex(variant: Variant, name: str, value: Any) -> str:
     if isinstance(value, np.ndarray):
         inner = r";\ ".join(number_latex(v, "1", PRINTED_DIGITS) for v in value.tolist())
         return rf"\left({inner}\right)" + _unit_latex(unit)
-    return number_latex(value, unit, PRINTED_DIGITS) + ("" if unit == "deg" else _unit_latex(unit))
+    return number_latex(value, "1", PRINTED_DIGITS) + _unit_latex(unit)
 
 
 def _unit_latex(unit: str) -> str:
-    if unit == "1":
-        return ""
+    if unit in ("1", "deg"):
+        return r"^{\circ}" if unit == "deg" else ""
     text = unit.replace("*", r"\cdot ").replace("^2", "^{2}")
     return rf"\ \mathrm{{{text}}}"
 

@@ -80,7 +80,7 @@ class _Printer:
             case ast.Name(id=name):
                 return self._name(name)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
-                return "-" + self.latex(operand, _PRODUCT), _UNARY
+                return "-" + self._second(operand, _PRODUCT), _UNARY
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self._print(operand)
             case ast.BinOp(left=left, op=ast.Add(), right=right):
@@ -101,7 +101,7 @@ class _Printer:
         raise Unprintable
 
     def _second(self, node: ast.expr, within: int) -> str:
-        """The second term of a sum or difference: no sign follows a sign."""
+        """What comes after a sign: no sign follows a sign."""
         text = self.latex(node, within)
         return rf"\left({text}\right)" if text.startswith(("-", r"\num{-")) else text
 
@@ -171,17 +171,21 @@ def formula_latex(function: Callable[..., Any], shown: Shown) -> str:
     """LaTeX of a quantity's formula, each name shown as told; empty when words must say it."""
     template = getattr(function, "__formula__", None)
     if template is not None:
-        return re.sub(r"<(\w+)>", lambda m: _template_name(shown, m.group(1)), template)
+        return re.sub(r"<(\w+)>", lambda m: _in_template(shown, m), template)
     try:
         return _Printer(shown).latex(_expression(function))
     except Unprintable:
         return ""
 
 
-def _template_name(shown: Shown, name: str) -> str:
-    text, is_number = shown[name]
-    negative = is_number and (text.startswith(r"\num{-") or text.startswith("-"))
-    return rf"\left({text}\right)" if negative else text
+def _in_template(shown: Shown, name: re.Match[str]) -> str:
+    """A name of a stated formula; a negative number in brackets unless an opening bracket stands before it."""
+    text, is_number = shown[name.group(1)]
+    if not is_number or not text.startswith((r"\num{-", "-")):
+        return text
+    before, after = name.string[: name.start()].rstrip(), name.string[name.end() :].lstrip()
+    opens = not before or before.endswith(("{", "(", ";", ";\\"))
+    return text if opens and not after.startswith("^") else rf"\left({text}\right)"
 
 
 def number_latex(value: Any, unit: str, digits: int = 5) -> str:

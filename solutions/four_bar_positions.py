@@ -10,6 +10,7 @@ import numpy as np
 from coursework.degrees import atan, atan2, cos, polar, sin, sqrt, wrap
 from coursework.errors import CannotAssemble, Undefined
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin
+from coursework.kinematics.dyads import out_of_reach
 from coursework.kinematics.margins import exact_sum, grashof_margins
 from coursework.solution import formula, mistake
 
@@ -23,13 +24,10 @@ def _triangle_margins(r1, r2, r3, r4, theta2):
     return stretched + 4 * r1 * r2 * cos(theta2 / 2) ** 2, folded + 4 * r1 * r2 * sin(theta2 / 2) ** 2
 
 
-def _closed(*margins):
+def _closed(stretched, folded, r3, r4):
     """Refuse a scalar configuration that does not close; arrays say NaN by their square roots."""
-    if isinstance(margins[0], float) and min(margins) < 0:
-        raise CannotAssemble(
-            "the linkage does not close: coupler and rocker together are too short for the distance AC, or "
-            f"one is too long (AC^2 is off by {-min(margins):.6g} mm^2)"
-        )
+    if isinstance(stretched, float) and min(stretched, folded) < 0:
+        raise out_of_reach(sqrt((r3 + r4) ** 2 - stretched), r3, r4)
 
 
 def _of_the_data(r1, r2, r3, r4, theta2):
@@ -107,7 +105,7 @@ def psi(a, b, c, r1, r2, r3, r4, theta2):
     # Coefficients that are not those of the data (given, or a student's) change the discriminant.
     change = (a - a0) * (a + a0) + (b - b0) * (b + b0) - (c - c0) * (c + c0)
     if isinstance(change, float) and change == 0.0:
-        _closed(stretched, folded)
+        _closed(stretched, folded, r3, r4)
     discriminant = stretched * folded + change
     if isinstance(discriminant, float) and discriminant < 0:
         raise CannotAssemble(
@@ -162,7 +160,7 @@ def mu(AC, r1, r2, r3, r4, theta2):
     exact = (r1 - r2) ** 2 + 4 * r1 * r2 * sin(theta2 / 2) ** 2
     # As in psi: a diagonal that is not that of the data moves both margins.
     change = (AC - sqrt(exact)) * (AC + sqrt(exact))
-    _closed(stretched - change, folded + change)
+    _closed(stretched - change, folded + change, r3, r4)
     return 2 * atan2(sqrt(folded + change), sqrt(stretched - change))
 
 

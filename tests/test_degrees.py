@@ -43,7 +43,14 @@ def test_the_direction_of_a_polar_vector_is_its_angle(theta, length):
 def test_directions_lie_above_minus_180_and_up_to_180(make):
     assert degrees.atan2(make(-0.0), make(-1.0)) == 180
     assert degrees.angle(make(-1.0) + make(0.0) * 1j) == 180
-    for theta, expected in ((-180.0, 180), (180.0, 180), (540.0, 180), (181.0, -179), (-190.0, 170), (360.0, 0)):
+    for theta, expected in (
+        (-180.0, 180),
+        (180.0, 180),
+        (540.0, 180),
+        (181.0, -179),
+        (-190.0, 170),
+        (360.0, 0),
+    ):
         assert degrees.wrap(make(theta)) == expected
 
 

@@ -50,9 +50,7 @@ def values(name, exercise, count=4000):
     return [v[name] for v in draws.draw("test", exercise, range(count))]
 
 
-@given(
-    st.integers(-400, 400), st.integers(1, 300), st.sampled_from(["0.1", "0.25", "0.5", "1", "2", "5"])
-)
+@given(st.integers(-400, 400), st.integers(1, 300), st.sampled_from(["0.1", "0.25", "0.5", "1", "2", "5"]))
 @settings(max_examples=60)
 def test_values_are_decimals_of_the_grid_within_the_range(low, steps, step):
     low, high = low * float(step), (low + steps) * float(step)
@@ -121,7 +119,9 @@ def test_a_condition_on_something_unknown_is_refused_at_once():
 def test_population_counts_the_variants_that_exist():
     exercise = exercise_of({"x": ranged(1, 9), "mode": chosen("p", "q"), "c": fixed(3)}, keep=(rarely,))
     assert draws.population(exercise) == 7 * 2
-    assert draws.population(exercise_of({"x": ranged(1, 9, step=0.001), "y": ranged(1, 9, step=0.001)})) is None
+    assert (
+        draws.population(exercise_of({"x": ranged(1, 9, step=0.001), "y": ranged(1, 9, step=0.001)})) is None
+    )
 
 
 def test_distinct_variants_are_distinct_or_the_error_says_how_many_exist(small_course):
@@ -130,7 +130,9 @@ def test_distinct_variants_are_distinct_or_the_error_says_how_many_exist(small_c
     path = small_course / "exercises" / "crank_pin.py"
     text = path.read_text("utf-8")
     text = text.replace("drawn(50, 200, step=5", "drawn(50, 60, step=5")
-    path.write_text(text.replace("drawn(2, 20", "drawn(2, 3").replace("drawn(-175, 180, step=5", "drawn(20, 60, step=20"))
+    path.write_text(
+        text.replace("drawn(2, 20", "drawn(2, 3").replace("drawn(-175, 180, step=5", "drawn(20, 60, step=20")
+    )
     exercise = coursework.open_course(small_course)["crank_pin"]
     assert draws.population(exercise.spec) == 3 * 2 * 3
     drawn = distinct_variants(exercise, 0, 18, "fr")

@@ -60,12 +60,7 @@ def rrr(p: Any, q: Any, p_length: Any, q_length: Any, side: Any = OPEN) -> Any:
     product = (p_length + q_length + distance) * longer * shorter * inner
     if isinstance(product, float):
         if distance == 0.0 or product < 0.0:
-            reach = f"{abs(p_length - q_length):.6g} to {p_length + q_length:.6g}"
-            gap = max(-longer, -shorter, -inner)
-            raise CannotAssemble(
-                f"the linkage does not close: the pins are {distance:.6g} apart, but the two bodies "
-                f"{p_length:.6g} and {q_length:.6g} reach only {reach} (gap {gap:.3g})"
-            )
+            raise out_of_reach(distance, p_length, q_length)
         height = math.sqrt(product) / 2
     else:
         with np.errstate(invalid="ignore", divide="ignore"):
@@ -73,6 +68,16 @@ def rrr(p: Any, q: Any, p_length: Any, q_length: Any, side: Any = OPEN) -> Any:
     along = (distance * distance + (p_length - q_length) * (p_length + q_length)) / 2
     with np.errstate(invalid="ignore", divide="ignore"):
         return p + line * (along + 1j * side * height) / (distance * distance)
+
+
+def out_of_reach(distance: float, p_length: float, q_length: float) -> CannotAssemble:
+    """The error for two bodies that do not span the distance between their pins, with the gap."""
+    least, most = abs(p_length - q_length), p_length + q_length
+    gap = max(distance - most, least - distance)
+    return CannotAssemble(
+        f"the linkage does not close: the pins are {distance:.6g} apart, but the two bodies "
+        f"{p_length:.6g} and {q_length:.6g} reach only {least:.6g} to {most:.6g} (gap {gap:.3g})"
+    )
 
 
 def rrp(p: Any, length: Any, y: Any, side: Any = 1) -> Any:
