@@ -10,13 +10,13 @@ import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from importlib import resources
-from pathlib import Path
 
 import nbformat
 import pytest
 import typst
 from rendering_samples import ANSWER_DIGITS, answer_sheet, feedback_sheet, handout, many_given
 
+from coursework.course import builtin_root
 from coursework.errors import BadCourse, BadStatement
 from coursework.handout import Given
 from coursework.rendering import Renderer
@@ -34,7 +34,7 @@ from coursework.rendering.markup import to_html, to_notebook_markdown, to_text, 
 from coursework.rendering.typography import typeset
 from coursework.rendering.views import points_text, tolerances, verdict_word
 
-TEMPLATES = Path(__file__).parent.parent / "templates"
+TEMPLATES = builtin_root() / "templates"
 RENDERER = Renderer([TEMPLATES])
 SHEETS = {"handout": handout, "many given": many_given, "answers": answer_sheet, "feedback": feedback_sheet}
 
