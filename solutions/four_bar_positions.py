@@ -24,10 +24,10 @@ def _triangle_margins(r1, r2, r3, r4, theta2):
     return stretched + 4 * r1 * r2 * cos(theta2 / 2) ** 2, folded + 4 * r1 * r2 * sin(theta2 / 2) ** 2
 
 
-def _closed(stretched, folded, r3, r4):
+def _closed(stretched, folded, r1, r2, r3, r4, theta2):
     """Refuse a scalar configuration that does not close; arrays say NaN by their square roots."""
     if isinstance(stretched, float) and min(stretched, folded) < 0:
-        raise out_of_reach(sqrt((r3 + r4) ** 2 - stretched), r3, r4)
+        raise out_of_reach(AC(r1, r2, theta2), r3, r4)
 
 
 def _of_the_data(r1, r2, r3, r4, theta2):
@@ -105,7 +105,7 @@ def psi(a, b, c, r1, r2, r3, r4, theta2):
     # Coefficients that are not those of the data (given, or a student's) change the discriminant.
     change = (a - a0) * (a + a0) + (b - b0) * (b + b0) - (c - c0) * (c + c0)
     if isinstance(change, float) and change == 0.0:
-        _closed(stretched, folded, r3, r4)
+        _closed(stretched, folded, r1, r2, r3, r4, theta2)
     discriminant = stretched * folded + change
     if isinstance(discriminant, float) and discriminant < 0:
         raise CannotAssemble(
@@ -160,7 +160,7 @@ def mu(AC, r1, r2, r3, r4, theta2):
     exact = (r1 - r2) ** 2 + 4 * r1 * r2 * sin(theta2 / 2) ** 2
     # As in psi: a diagonal that is not that of the data moves both margins.
     change = (AC - sqrt(exact)) * (AC + sqrt(exact))
-    _closed(stretched - change, folded + change, r3, r4)
+    _closed(stretched - change, folded + change, r1, r2, r3, r4, theta2)
     return 2 * atan2(sqrt(folded + change), sqrt(stretched - change))
 
 

@@ -1,0 +1,181 @@
+"""Slider-crank: solution. The rod's vector is what is left from the crank pin to the piston's line.
+
+Its two projections p and q carry everything: sin theta3 = p / r3, cos theta3 = q / r3. The root q is
+taken through the two lengths by which the crank clears its turn, so that no difference of nearly
+equal lengths appears where the rod is hardly longer than the crank.
+"""
+
+import numpy as np
+
+from coursework.degrees import atan2, cos, polar, sin, sqrt
+from coursework.errors import CannotAssemble
+from coursework.figures import Figure, ground_pivot, link, note, pin, point, rail, slider, vector
+from coursework.kinematics.margins import exact_sum
+from coursework.solution import formula, mistake
+
+UNITS = {"p": "mm", "q": "mm"}
+
+
+def p(e, r2, theta2):
+    """Height of B above A: r3 sin theta3."""
+    return e - r2 * sin(theta2)
+
+
+@formula(r"\sqrt{<r3>^2 - <p>^2}")
+def q(r2, r3, e, theta2):
+    """How far B lies to the right of A: r3 cos theta3, positive."""
+    below = exact_sum(r3, -r2, e) + 2 * r2 * sin(45 - theta2 / 2) ** 2
+    above = exact_sum(r3, -r2, -e) + 2 * r2 * cos(45 - theta2 / 2) ** 2
+    if isinstance(below, float) and min(below, above) < 0:
+        raise CannotAssemble(
+            f"the linkage does not close: the piston's line is {abs(e - r2 * sin(theta2)):.6g} from the crank pin, "
+            f"but the rod reaches only {r3:.6g} (gap {-min(below, above):.3g})"
+        )
+    return sqrt(below * above)
+
+
+@formula(r"\arcsin \frac{<e> - <r2> \sin <theta2>}{<r3>}")
+def theta3(p, q):
+    """Direction of AB, to the right of A: between -90 and 90 degrees."""
+    return atan2(p, q)
+
+
+@formula(r"<r2> \cos <theta2> + <r3> \cos <theta3>")
+def r1(r2, theta2, q):
+    return r2 * cos(theta2) + q
+
+
+@formula(r"-\frac{<r2> \times <omega2> \times \cos <theta2>}{<r3> \times \cos <theta3>}")
+def omega3(r2, omega2, theta2, q):
+    """The piston keeps to its line: no velocity across it."""
+    return -r2 * omega2 * cos(theta2) / q
+
+
+@formula(
+    r"-<r2> \times <omega2> \times \sin <theta2> + <r2> \times <omega2> \times \cos <theta2> \times \tan <theta3>"
+)
+def r1_dot(r2, omega2, theta2, p, omega3):
+    """Velocity of the piston, positive to the right."""
+    return -r2 * omega2 * sin(theta2) - p * omega3
+
+
+@formula(
+    r"\frac{<r2> \times <omega2>^2 \times \sin <theta2> - <r2> \times <alpha2> \times \cos <theta2>"
+    r" + <r3> \times <omega3>^2 \times \sin <theta3>}{<r3> \times \cos <theta3>}"
+)
+def alpha3(r2, omega2, alpha2, theta2, p, q, omega3):
+    """No acceleration across the line either."""
+    return (r2 * omega2**2 * sin(theta2) - r2 * alpha2 * cos(theta2) + p * omega3**2) / q
+
+
+@formula(
+    r"-<r2> \times <alpha2> \times \sin <theta2> - <r2> \times <omega2>^2 \times \cos <theta2>"
+    r" - <r3> \times <alpha3> \times \sin <theta3> - <r3> \times <omega3>^2 \times \cos <theta3>"
+)
+def r1_ddot(r2, omega2, alpha2, theta2, p, q, omega3, alpha3):
+    """Acceleration of the piston, positive to the right."""
+    return -r2 * alpha2 * sin(theta2) - r2 * omega2**2 * cos(theta2) - p * alpha3 - q * omega3**2
+
+
+def pv_a(r2, omega2, kv):
+    return r2 * abs(omega2) / kv
+
+
+def pv_b(r1_dot, kv):
+    return abs(r1_dot) / kv
+
+
+def ab(r3, omega3, kv):
+    return r3 * abs(omega3) / kv
+
+
+def pa_a(r2, omega2, ka):
+    return r2 * omega2**2 / ka
+
+
+def ab_n(r3, omega3, ka):
+    return r3 * omega3**2 / ka
+
+
+def bb_t(r3, alpha3, ka):
+    return r3 * abs(alpha3) / ka
+
+
+def pa_b(r1_ddot, ka):
+    return abs(r1_ddot) / ka
+
+
+@mistake("r1_dot")
+def notes_piston_sign(r2, omega2, theta2, p, q):
+    return r2 * omega2 * sin(theta2) - r2 * omega2 * cos(theta2) * p / q
+
+
+@mistake("r1_dot")
+def one_sign_wrong(r2, omega2, theta2, p, q):
+    return -r2 * omega2 * sin(theta2) - r2 * omega2 * cos(theta2) * p / q
+
+
+@mistake("r1_dot")
+def rod_forgotten_in_v(r2, omega2, theta2):
+    return -r2 * omega2 * sin(theta2)
+
+
+@mistake("p", share=0.5)
+def theta3_sign(p):
+    return -p
+
+
+@mistake("omega3", share=0.5)
+def omega3_sign(omega3):
+    return -omega3
+
+
+@mistake("r1_ddot")
+def rod_normal_missing(r1_ddot, q, omega3):
+    return r1_ddot + q * omega3**2
+
+
+@mistake("pa_a")
+def square_forgotten(r2, omega2, ka):
+    return r2 * abs(omega2) / ka
+
+
+@mistake("kv", "ka")
+def scales_exchanged(kv, ka):
+    return ka, kv
+
+
+@mistake("kv", "ka")
+def multiplied_by_the_scale(kv, ka):
+    return 1 / kv, 1 / ka
+
+
+def figure(r2, r3, e, theta2, omega2, alpha2, r1, theta3, omega3, r1_dot, alpha3, r1_ddot):
+    """The linkage, and under it the two polygons, each at a scale of its own."""
+    A, AB = polar(r2, theta2), polar(r3, theta3)
+    B, half_rail = A + AB, 0.5 * r2
+    polygons = (
+        _polygon(
+            1j * omega2 * A,
+            (1j * omega3 * AB, ("a", "b"), ("V_A", "V_{BA}", "V_B")),
+        ),
+    )
+    return Figure(rail(B - half_rail, B + half_rail), link(0, A), link(A, B), slider(B), ground_pivot(0, "O"), pin(A, "A"), pin(B, "B"))
+
+
+def residual(r2, r3, e, theta2, omega2, alpha2, theta3, r1, omega3, r1_dot, alpha3, r1_ddot):
+    """Loop closure and its two derivatives, as complex equations."""
+    crank = r2 * np.exp(1j * np.radians(theta2))
+    rod = r3 * np.exp(1j * np.radians(theta3))
+    position = crank + rod - (r1 + 1j * e)
+    velocity = 1j * (omega2 * crank + omega3 * rod) - r1_dot
+    acceleration = (1j * alpha2 - omega2**2) * crank + (1j * alpha3 - omega3**2) * rod - r1_ddot
+    size = r2 * (omega2**2 + abs(alpha2)) + r3 * (omega3**2 + abs(alpha3))
+    return (
+        abs(position) / (r2 + r3),
+        abs(velocity) / (r2 * abs(omega2) + r3 * abs(omega3)),
+        abs(acceleration) / size,
+    )
+
+
+KNOWN = ()
