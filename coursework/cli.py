@@ -137,15 +137,16 @@ def _print_json(content: Any) -> None:
 def _print_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
     from rich.console import Console
     from rich.table import Table
+    from rich.text import Text  # as it is: brackets are not markup
 
     if not rows:
         return
     table = Table(title=title or None, title_justify="left")
     for column in rows[0]:
         right = all(isinstance(r[column], (int, float)) for r in rows)
-        table.add_column(str(column), justify="right" if right else "left", overflow="fold")
+        table.add_column(Text(str(column)), justify="right" if right else "left", overflow="fold")
     for row in rows:
-        table.add_row(*[str(v) for v in row.values()])
+        table.add_row(*[Text(str(v)) for v in row.values()])
     console = Console()
     # Piped into a file there is no width to fit: nothing is cut.
     Console(width=None if console.is_terminal else 200).print(table)
@@ -246,12 +247,7 @@ def solve(
     from coursework.language import significant, unit_text
 
     one = _course(context)[exercise]
-    given: dict[str, str] = {}
-    for setting in settings:
-        name, equals, value = setting.partition("=")
-        if not equals or not value.strip():
-            raise WrongValue(f"--set takes NAME=VALUE; found {setting!r}")
-        given[name.strip()] = value.strip()
+    given = _settings(settings)
     found = one.solve(**given, only=_split(only) or None, effects=_split(effects))
     used = {n: one.spec.given[n].default for n in one.spec.given if one.spec.given[n].default is not None}
     used |= {n: one._accept(n, v) for n, v in given.items()}
@@ -276,6 +272,17 @@ def solve(
     )
 
 
+def _settings(settings: Sequence[str]) -> dict[str, str]:
+    """The given values of ``--set NAME=VALUE``, as texts."""
+    given: dict[str, str] = {}
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        if not equals or not value.strip():
+            raise WrongValue(f"--set takes NAME=VALUE; found {setting!r}")
+        given[name.strip()] = value.strip()
+    return given
+
+
 def _split(text: str) -> tuple[str, ...]:
     return tuple(w.strip() for w in text.split(",") if w.strip())
 
@@ -285,6 +292,89 @@ def _json_value(value: Any) -> Any:
 
     value = plain_value(value)
     return {"re": value.real, "im": value.imag} if isinstance(value, complex) else value
+
+
+# --------------------------------------------------------------------- simulate
+
+
+@cli.command()
+@click.argument("exercise")
+@click.option(
+    "--effects", default="", metavar="E,E", help="What the scene calls for; positions alone unless told."
+)
+@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A given value: r1=228.6mm.")
+@_seed_option
+@click.option(
+    "--over", type=click.Choice(["cycle"]), default="cycle", show_default=True, help="One turn of the driver."
+)
+@click.option("--steps", type=click.IntRange(min=1), default=360, show_default=True, help="Steps of a cycle.")
+@click.option(
+    "--drive", metavar="torque=VALUE", help="Integrate the motion under this constant torque instead."
+)
+@click.option("--duration", type=float, default=1.0, show_default=True, help="Seconds of a motion in time.")
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for table and plot.")
+@_json_option
+@click.pass_context
+def simulate(
+    context: click.Context,
+    exercise: str,
+    effects: str,
+    settings: Sequence[str],
+    seed: int,
+    over: str,
+    steps: int,
+    drive: str | None,
+    duration: float,
+    out: Path | None,
+    as_json: bool,
+) -> None:
+    """Move a mechanism over a cycle or in time, with only the effects named.
+
+    Values that are not set are those of the variant of --seed.
+    """
+    from coursework.building import write_whole
+    from coursework.charts import curves
+    from coursework.issuing import csv_text
+    from coursework.scenes import Scene
+
+    one = _course(context)[exercise]
+    scene = Scene(one, {**one.variant(seed).used, **_settings(settings)}, _split(effects))
+    table = scene.over_cycle(steps) if drive is None else scene.in_time(_drive(one, drive), duration)
+    rows = table.rows()
+    if as_json:
+        _print_json({"exercise": exercise, "evaluated": table.evaluated, "rows": rows, "notes": table.notes})
+    else:
+        click.echo(f"evaluated: {', '.join(table.evaluated)}")
+        for note in table.notes:
+            click.echo(f"note: {note}")
+    if out is not None:
+        first, *others = table.columns
+        name = f"{exercise}-{'cycle' if drive is None else 'motion'}"
+        write_whole(out / f"{name}.csv", csv_text(rows, list(rows[0])).encode("utf-8"))
+        shown = {n: table.columns[n] for n in others if n != "dead_centre"}
+        plot = curves((f"{first} [{table.units[first]}]", table.columns[first]), shown, table.units, exercise)
+        write_whole(out / f"{name}.svg", plot)
+        if not as_json:
+            click.echo(f"table and plot: {out / name}.csv, .svg")
+    elif not as_json:
+        shown_rows = rows[:: max(1, len(rows) // 12)]
+        _print_table([{h: _short_number(v) for h, v in row.items()} for row in shown_rows])
+
+
+def _short_number(value: Any) -> str:
+    from coursework.language import significant
+
+    return significant(value, 5) if isinstance(value, float) else str(value)
+
+
+def _drive(exercise: Any, text: str) -> float:
+    """The torque of ``--drive torque=5``, in N*m."""
+    name, equals, value = text.partition("=")
+    effort = exercise.spec.driver.effort if exercise.spec.driver else ""
+    if not equals or name.strip() != effort:
+        wanted = f"{effort}=VALUE" if effort else "nothing: the exercise names no effort of its driver"
+        raise WrongValue(f"--drive takes {wanted}; found {text!r}")
+    return exercise._accept(effort, value.strip())
 
 
 # ------------------------------------------------------------------------ build

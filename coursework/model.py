@@ -149,6 +149,22 @@ class Part:
 
 
 @dataclass(frozen=True)
+class Driver:
+    """What drives the mechanism when it is simulated, by names of quantities.
+
+    ``angle`` in degrees, ``speed`` in rad/s and ``acceleration`` in rad/s^2 of the driving crank; a name
+    is empty where the exercise has no such quantity. ``effort`` (N*m, along ``angle``) is what the drive
+    must supply, ``output`` a velocity that vanishes at the dead centres.
+    """
+
+    angle: str
+    speed: str = ""
+    acceleration: str = ""
+    effort: str = ""
+    output: str = ""
+
+
+@dataclass(frozen=True)
 class Exercise:
     """An exercise without its answers.
 
@@ -171,6 +187,8 @@ class Exercise:
         LaTeX of quantities whose name does not say it (``rA_dot`` does: ``\\dot{r}_A``).
     either_order
         Groups of part ids that a student may exchange as wholes: two assembly modes.
+    driver
+        What drives it when it is simulated; none for an exercise that does not move.
     """
 
     given: Mapping[str, GivenSpec]
@@ -181,6 +199,7 @@ class Exercise:
     version: int = 1
     symbols: Mapping[str, str] = field(default_factory=dict)
     either_order: tuple[tuple[str, ...], ...] = ()
+    driver: Driver | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parts", tuple(self.parts))

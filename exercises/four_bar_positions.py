@@ -3,7 +3,7 @@
 from coursework.degrees import cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
 from coursework.kinematics.dyads import rrr
-from coursework.model import Exercise, Part, drawn
+from coursework.model import Driver, Exercise, Part, drawn
 
 
 def diagonal(r1, r2, theta2):
@@ -103,4 +103,5 @@ EXERCISE = Exercise(
         "theta4_crossed": r"\theta_4^{(2)}",
     },
     figure=figure,
+    driver=Driver("theta2"),
 )

@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider
 from coursework.kinematics.dyads import rrp, rrr, side_of
-from coursework.model import Exercise, Part, chosen, drawn
+from coursework.model import Driver, Exercise, Part, chosen, drawn
 
 SYMBOLS_OF_THE_LOOPS = (
     "r1", "r2", "r3", "r4", "r5", "r6", "theta2", "theta3", "theta4", "theta5",
@@ -190,4 +190,5 @@ EXERCISE = Exercise(
     ),
     figure=figure,
     symbols={"mobility": "m", "cycles": r"\gamma"},
+    driver=Driver("theta2", "omega2", output="r6_dot"),
 )

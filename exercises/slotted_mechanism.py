@@ -2,7 +2,7 @@
 
 from coursework.degrees import angle, cos, polar, sin
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, slider, slot_link
-from coursework.model import Exercise, Part, drawn, fixed
+from coursework.model import Driver, Exercise, Part, drawn, fixed
 
 
 def arm(r1, theta1, r2, theta2):
@@ -89,4 +89,5 @@ EXERCISE = Exercise(
     ),
     figure=figure,
     symbols={"a_radial": "a_r", "a_centripetal": "a_n", "a_tangential": "a_t", "a_coriolis": "a_c"},
+    driver=Driver("theta2", "omega2", "alpha2", output="omega4"),
 )

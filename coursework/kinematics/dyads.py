@@ -70,10 +70,12 @@ def rrr(p: Any, q: Any, p_length: Any, q_length: Any, side: Any = OPEN) -> Any:
         return p + line * (along + 1j * side * height) / (distance * distance)
 
 
-def out_of_reach(distance: float, p_length: float, q_length: float) -> CannotAssemble:
+def out_of_reach(
+    distance: float, p_length: float, q_length: float, gap: float | None = None
+) -> CannotAssemble:
     """The error for two bodies that do not span the distance between their pins, with the gap."""
     least, most = abs(p_length - q_length), p_length + q_length
-    gap = max(distance - most, least - distance)
+    gap = max(distance - most, least - distance) if gap is None else gap
     return CannotAssemble(
         f"the linkage does not close: the pins are {distance:.6g} apart, but the two bodies "
         f"{p_length:.6g} and {q_length:.6g} reach only {least:.6g} to {most:.6g} (gap {gap:.3g})"

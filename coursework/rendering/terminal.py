@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import textwrap
 
-from coursework.handout import Handout, Question
+from coursework.handout import Given, Handout, Question
 from coursework.language import words
 from coursework.rendering import views
 from coursework.rendering.formulas import to_line
@@ -26,7 +26,7 @@ def statement(handout: Handout) -> str:
     if handout.figure is not None:
         parts.append(textwrap.fill(f"[{said['figure']}{said['colon']} {handout.figure_alt}]", WIDTH))
     if handout.given:
-        lines = (f"  {to_line(views.given_formula(given), lang)}" for given in handout.given)
+        lines = (f"  {_given(given, lang)}" for given in handout.given)
         parts.append("\n".join([said["data"], *lines]))
     parts += [_question(question, lang) for question in handout.questions]
     parts += [
@@ -34,6 +34,12 @@ def statement(handout: Handout) -> str:
         for numbers, margin in views.tolerances(handout.questions, lang)
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _given(given: Given, lang: str) -> str:
+    if given.is_number:
+        return to_line(views.given_formula(given), lang)
+    return to_text(views.given_words(given, lang), lang)
 
 
 def _question(question: Question, lang: str) -> str:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import keyword
+import re
 from collections.abc import Sequence
 from typing import TypeAlias
 
 from coursework.handout import AnswerSheet, FeedbackSheet, Given, Handout, Question, Step
 from coursework.language import localise, plain, words
-from coursework.rendering.formulas import quantity_formula
+from coursework.rendering.formula_tree import tokens
+from coursework.rendering.formulas import quantity_formula, to_line
 
 Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 
@@ -62,6 +64,13 @@ def given_formula(given: Given) -> str:
     return quantity_formula(given.symbol, given.value, given.unit, is_number=given.is_number)
 
 
+def given_words(given: Given, lang: str) -> str:
+    """A given case as Markdown: ``Mode : ouvert`` where its symbol is a word, ``$B$ : à gauche`` else."""
+    word = re.fullmatch(r"\\(?:text|mathrm)\{([^{}]+)\}", given.symbol)
+    name = word[1].capitalize() if word else f"${given.symbol}$"
+    return f"{name}{words(lang)['sheet']['colon']} {given.value}"
+
+
 def value_formula(given: Given) -> str:
     return quantity_formula("", given.value, given.unit, is_number=given.is_number)
 
@@ -97,18 +106,64 @@ def _ranges(numbers: Sequence[int]) -> str:
 
 
 def chain(step: Step) -> tuple[str, ...]:
-    """What a worked step equals, in order: formula, numbers put in, value; those that it has."""
-    return tuple(filter(None, (step.formula, step.substitution, step.value)))
+    """What a worked step equals, in order: formula, numbers put in, value; those that add something."""
+    value = "".join(step.value.split())
+    repeats = value.startswith("".join(step.substitution.split()))
+    parts = (_without_idle_signs(step.formula), "" if repeats else _without_idle_signs(step.substitution))
+    return tuple(filter(None, (*parts, step.value)))
+
+
+#: A multiplication sign says nothing before a letter or the name of a function.
+_IDLE_SIGN = re.compile(r"\s*\\times\s+(?=[A-Za-z]|\\(?!num|left|frac|vec|overrightarrow))")
+
+
+def _without_idle_signs(latex: str) -> str:
+    return _IDLE_SIGN.sub(r"\\,", latex)
+
+
+def _is_equation(step: Step) -> bool:
+    return any(token == "=" for token in tokens(step.value))
 
 
 def chain_on_one_line(step: Step) -> str:
-    return " = ".join((step.symbol, *chain(step)))
+    return " = ".join(chain(step) if _is_equation(step) else (step.symbol, *chain(step)))
 
 
 def chain_on_lines(step: Step) -> str:
-    first, *others = chain(step)
-    lines = [f"{step.symbol} &= {first}", *(f"&= {other}" for other in others)]
-    return r"\begin{aligned} " + r" \\ ".join(lines) + r" \end{aligned}"
+    if _is_equation(step):
+        return chain_on_one_line(step)
+    lines = [line for member in chain(step) for line in _broken(member)]
+    return r"\begin{aligned} " + step.symbol + " " + r" \\ ".join(lines) + r" \end{aligned}"
+
+
+_LINE = 85  #: characters of a formula written out that a printed line holds
+
+
+def _broken(member: str) -> list[str]:
+    """A member of a chain as lines of an aligned formula, cut before its signs where it is too wide."""
+    terms = _terms(member)
+    width = len(to_line(member, "en"))
+    count = min(len(terms), -(-width // _LINE))
+    lines, share = [""], width / count
+    for term in terms:
+        if lines[-1] and len(lines) < count and len(to_line(lines[-1] + term, "en")) > 1.1 * share:
+            lines.append("")
+        lines[-1] += term
+    return [f"&= {lines[0]}", *(rf"&\quad {line}" for line in lines[1:])]
+
+
+def _terms(latex: str) -> list[str]:
+    """The terms of a sum, each with the sign before it; what brackets hold is one with its term."""
+    terms, depth, before = [""], 0, ""
+    for token in tokens(latex):
+        depth += (token in ("{", "(", r"\left")) - (token in ("}", ")", r"\right"))
+        # The bracket after \left has been counted with it.
+        depth -= (before == r"\left" and token == "(") - (before == r"\right" and token == ")")
+        if depth == 0 and token in "+-" and terms[-1].strip():
+            terms.append("")
+        terms[-1] += token
+        before = token
+    return terms
 
 
 def python_name(name: str) -> str:

@@ -1,0 +1,78 @@
+"""Long arrays in pieces that fit the processor's cache: a million configurations cost a piece what ten thousand do."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+BLOCK = 8192  #: configurations computed together: about twenty arrays of 64 kB live at a time
+
+
+def in_blocks(kernel: Callable[..., Sequence[np.ndarray]], *inputs: Any) -> tuple[np.ndarray, ...]:
+    """``kernel(*inputs)``, evaluated block by block over the broadcast shape of the inputs.
+
+    Parameters
+    ----------
+    kernel
+        Takes the inputs, or pieces of them that broadcast in the same way, and returns real or complex
+        arrays, one an output. Each element may depend on the elements at the same place only.
+    inputs
+        Numbers, or numpy arrays that broadcast. An axis along which an input does not vary is not expanded:
+        ``n`` linkages of shape ``(n, 1)`` and ``m`` angles of shape ``(m,)`` give ``(n, m)``.
+
+    Returns
+    -------
+    One array an output, of the broadcast shape. Nothing is warned of: what is not defined is NaN.
+    """
+    arrays = [given for given in inputs if np.ndim(given)]
+    shape = np.broadcast_shapes(*{given.shape for given in arrays})
+    with np.errstate(all="ignore"):
+        if math.prod(shape) <= BLOCK:
+            return tuple(_whole(part, shape) for part in kernel(*inputs))
+        # An input with one value is handed over as it is: cutting it would cost more than using it.
+        axes = [_varying(given, len(shape)) if np.size(given) > 1 else None for given in inputs]
+        results = None
+        for place in _places(shape):
+            parts = kernel(*[_cut(g, a, place) for g, a in zip(inputs, axes, strict=True)])
+            if results is None:
+                results = tuple(np.empty(shape, dtype=part.dtype) for part in parts)
+            for result, part in zip(results, parts, strict=True):
+                result[place] = part
+    return results
+
+
+def _whole(part: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    return part if np.shape(part) == shape else np.array(np.broadcast_to(part, shape))
+
+
+def _varying(given: np.ndarray, axes: int) -> tuple[int | None, ...]:
+    """For each axis of the broadcast shape, the axis of the input that follows it, or None."""
+    missing = axes - given.ndim
+    return tuple(i - missing if i >= missing and given.shape[i - missing] > 1 else None for i in range(axes))
+
+
+def _cut(given: np.ndarray, axes: tuple[int | None, ...] | None, place: tuple[slice, ...]) -> np.ndarray:
+    if axes is None:
+        return given
+    missing = len(axes) - given.ndim
+    every = slice(None)
+    return given[tuple(every if a is None else s for a, s in list(zip(axes, place, strict=True))[missing:])]
+
+
+def _places(shape: tuple[int, ...]) -> Iterator[tuple[slice, ...]]:
+    """Slices that cover an array once, in order, each of at most ``BLOCK`` elements."""
+    if len(shape) == 0:
+        yield ()
+        return
+    inner = math.prod(shape[1:])
+    if inner > BLOCK:
+        for i in range(shape[0]):
+            for rest in _places(shape[1:]):
+                yield (slice(i, i + 1), *rest)
+        return
+    step = max(1, BLOCK // max(inner, 1))
+    for start in range(0, shape[0], step):
+        yield (slice(start, start + step), *[slice(None)] * (len(shape) - 1))

@@ -1,0 +1,447 @@
+"""The four-bar linkage moved by its crank, exact to the last digits at its hard places too.
+
+The crank a turns about O = (0, 0), the rocker c about D = (d, 0); the coupler b joins the crank pin A to the
+rocker's pin B. Angles are those of O -> A, A -> B and D -> B.
+
+With the squared distance m = AD^2, everything follows from the two margins by which the coupler and
+the rocker reach from A to D,
+
+    P = (b + c)^2 - m = E+ + 4 a d cos^2(crank / 2),    Q = m - (b - c)^2 = E- + 4 a d sin^2(crank / 2),
+
+where E+ and E- are the Grashof margins (:func:`margins.grashof_margins`), free of rounding. A crank that turns
+fully has E+, E- >= 0: then nothing is a difference of nearly equal lengths, at a change point neither.
+S = side * sqrt(P Q) = 2 b c sin(transmission angle) is twice the determinant of the velocities.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.errors import Undefined, WrongValue
+from coursework.kinematics.angles import Heading, full_angle, half_angle, half_squares
+from coursework.kinematics.blocks import in_blocks
+from coursework.kinematics.dyads import out_of_reach, side_of
+from coursework.kinematics.margins import grashof_margins
+from coursework.kinematics.scaling import exponent_of, scaled
+from coursework.kinematics.vectors import direction
+
+
+class FourBarMotion(NamedTuple):
+    """Angles (radians) of coupler and rocker, then as many of their time derivatives as were asked for."""
+
+    coupler_angle: Any
+    rocker_angle: Any
+    coupler_rate: Any = None
+    rocker_rate: Any = None
+    coupler_acceleration: Any = None
+    rocker_acceleration: Any = None
+    coupler_jerk: Any = None
+    rocker_jerk: Any = None
+
+
+class _Linkage(NamedTuple):
+    """What the formulas need of the lengths, once a linkage: lengths scaled to at most 1."""
+
+    stretched: Any  # E+
+    folded: Any  # E-
+    reach: Any  # 4 a d
+    gap: Any  # d - a
+    crank: Any  # a
+    coupler: Any  # 2 b (b - c)
+    rocker: Any  # 2 c (b - c)
+    frame: Any  # d^2 - a^2
+    sides: Any  # b^2 - c^2
+    twice_bc: Any  # 2 b c
+    side: Any  # +1 open, -1 crossed
+
+
+class _Turn(NamedTuple):
+    """What the formulas need of the crank angle; the signed halves for smooth continuation only."""
+
+    cos_squared: Any
+    sin_squared: Any
+    sine: Any
+    half_cos: Any = None
+    half_sin: Any = None
+
+
+class FourBar:
+    """One four-bar linkage, or an array of them.
+
+    Parameters
+    ----------
+    ground, crank, coupler, rocker
+        Lengths d, a, b, c, positive, in one common unit; scalars or arrays that broadcast, also with the crank
+        angles given later (``n`` linkages of shape ``(n, 1)`` at ``m`` angles give ``(n, m)``).
+    mode
+        ``open`` (or +1): B to the left of the directed line A -> D; ``crossed`` (or -1): to the right.
+    smooth
+        What a linkage does at a change point, where E+ or E- is exactly 0 and its two modes meet. By default it
+        keeps its mode, and its rates jump. If true it passes through as a moving body would, with continuous
+        rates: ``mode`` then is its mode at crank angles from 0 to half a turn, and it takes two turns to come back.
+        A parallelogram that starts ``open`` stays a parallelogram. Other linkages have no change
+        point and move alike under both.
+
+    Raises
+    ------
+    WrongValue
+        Scalars only: a length that is not positive and finite. In arrays such a linkage is NaN.
+    """
+
+    def __init__(
+        self, ground: Any, crank: Any, coupler: Any, rocker: Any, mode: Any = "open", *, smooth: bool = False
+    ) -> None:
+        self.lengths = tuple(_lengths(ground, crank, coupler, rocker))
+        self.side = _side(mode)
+        self.smooth = smooth
+        self._exponent = exponent_of(*self.lengths)
+        self._linkage = _linkage(*self._scaled_lengths(), self.side)
+
+    @property
+    def margins(self) -> tuple[Any, Any]:
+        """E+ and E-, in squared units of length: both positive when the crank turns fully, 0 at a change point."""
+        return grashof_margins(*self.lengths)
+
+    def turns_fully(self) -> Any:
+        """Whether the crank can make a whole turn, change points included."""
+        return (self._linkage.stretched >= 0) & (self._linkage.folded >= 0)
+
+    def limits(self) -> tuple[Any, Any]:
+        """The least and the greatest absolute crank angle at which the linkage closes, in [0, pi].
+
+        0 and pi for a crank that turns fully; NaN for a linkage that never closes.
+        """
+        t = self._linkage
+        with np.errstate(all="ignore"):
+            # cos^2 of half the greatest angle is -E+/(4 a d); 4 a d + E+ = (b + c)^2 - (d - a)^2 is a product.
+            d, a, b, c = self._scaled_lengths()
+            beyond = (b + c - d + a) * (b + c + d - a)
+            before = (d + a - b + c) * (d + a + b - c)
+            greatest = 2 * np.arctan2(np.sqrt(np.where(t.stretched < 0, beyond, 0)), np.sqrt(-t.stretched))
+            least = 2 * np.arctan2(np.sqrt(-t.folded), np.sqrt(np.where(t.folded < 0, before, 1)))
+            greatest = np.where(t.stretched >= 0, math.pi, greatest)
+            least = np.where(t.folded >= 0, 0.0, least)
+        never = np.isnan(greatest) | np.isnan(least)
+        return np.where(never, math.nan, least)[()], np.where(never, math.nan, greatest)[()]
+
+    def angles(self, crank_angle: Any) -> tuple[Any, Any]:
+        """Angles of coupler and rocker, radians in (-pi, pi].
+
+        ``crank_angle`` is in radians or a :class:`Heading`, any shape that broadcasts with the lengths.
+
+        Raises
+        ------
+        CannotAssemble
+            Scalars only: coupler and rocker do not reach each other; says by how much. NaN in arrays.
+        Undefined
+            Scalars only: A lies on D and coupler and rocker are equal, so that they may point anywhere.
+        """
+        return self._evaluate(_angles, crank_angle)
+
+    def motion(
+        self,
+        crank_angle: Any,
+        crank_rate: Any = 1.0,
+        crank_acceleration: Any = 0.0,
+        crank_jerk: Any = 0.0,
+        *,
+        order: int = 2,
+    ) -> FourBarMotion:
+        """Angles and their time derivatives up to ``order`` (0 to 3); nothing is computed beyond.
+
+        Rates in rad/s where the crank's are. Errors are those of :meth:`angles`, and
+
+        Raises
+        ------
+        Undefined
+            Scalars only, order 1 or more: a dead point, or a change point at which the mode is kept. There the
+            angles exist and their rates do not. NaN in arrays.
+        """
+        given = (crank_rate, crank_acceleration, crank_jerk)[:order]
+        return FourBarMotion(*self._evaluate(_motion, crank_angle, *given))
+
+    def coefficients(self, crank_angle: Any, *, order: int = 1) -> tuple[tuple[Any, Any], ...]:
+        """Derivatives of the coupler's and the rocker's angle by the crank angle.
+
+        A pair (coupler, rocker) for each order from 1 to ``order`` (at most 3): the first holds the ratios
+        omega3/omega2 and omega4/omega2. They need no inverse trigonometry. Errors as in :meth:`motion`.
+        """
+        found = self._evaluate(_coefficients, crank_angle, order=order)
+        return tuple(zip(found[::2], found[1::2], strict=True))
+
+    def pins(self, crank_angle: Any) -> tuple[Any, Any]:
+        """The points A and B, complex, in the linkage's unit of length. Errors as in :meth:`angles`."""
+        a, b = self._evaluate(_pins, crank_angle)
+        return scaled(a, self._exponent)[()], scaled(b, self._exponent)[()]
+
+    def transmission_angle(self, crank_angle: Any) -> Any:
+        """The angle CBA at B between coupler and rocker, radians in [0, pi]; 0 and pi are dead points."""
+        return self._evaluate(_transmission_angle, crank_angle)[0]
+
+    def conditioning(self, crank_angle: Any) -> Any:
+        """1 / |sin(transmission angle)|: how much larger an error of the lengths comes out at B; inf at a dead point."""
+        return self._evaluate(_conditioning, crank_angle)[0]
+
+    def _scaled_lengths(self) -> list[Any]:
+        found = [scaled(x, -self._exponent) for x in self.lengths]
+        return [x if x.ndim else float(x) for x in found]
+
+    def _evaluate(self, formula: Any, crank_angle: Any, *rates: Any, order: int | None = None) -> tuple:
+        heading = crank_angle if isinstance(crank_angle, Heading) else (crank_angle,)
+        # A numpy number where the angle is one: its quotient by zero is NaN, not an error.
+        heading = tuple(np.asarray(part, dtype=float)[()] for part in heading)
+        rates = tuple(np.asarray(rate, dtype=float)[()] for rate in rates)
+        turn = _signed_turn if self.smooth else _turn
+        last = len(_Linkage._fields)
+        extra = {} if order is None else {"order": order}
+
+        def kernel(*inputs: Any) -> tuple:
+            linkage, angle = _Linkage(*inputs[:last]), inputs[last : last + len(heading)]
+            angle = Heading(*angle) if len(angle) > 1 else angle[0]
+            return formula(linkage, turn(angle), angle, *inputs[last + len(heading) :], **extra)
+
+        found = in_blocks(kernel, *self._linkage, *heading, *rates)
+        if np.ndim(found[0]):
+            return found
+        found = tuple(value.item() for value in found)
+        if any(value != value for value in found):
+            raise self._failure(crank_angle)
+        return found
+
+    def _failure(self, crank_angle: Any) -> Exception:
+        """Why a scalar came out NaN."""
+        turn, t = _turn(crank_angle), self._linkage
+        if not math.isfinite(turn.sine):
+            return WrongValue(f"the crank angle is {crank_angle}, where a finite number is needed")
+        m, stretch, fold = (float(x) for x in _reaches(t, turn))
+        distance = math.ldexp(math.sqrt(m), int(self._exponent))
+        _, _, coupler, rocker = (float(x) for x in self.lengths)
+        if min(stretch, fold) < 0:
+            # The gap from the margin itself: the difference of the lengths would lose its digits.
+            reach = math.sqrt(m) + abs(
+                scaled(coupler + rocker if stretch < 0 else coupler - rocker, -self._exponent)
+            )
+            gap = math.ldexp(-min(stretch, fold) / float(reach), int(self._exponent))
+            return out_of_reach(distance, coupler, rocker, gap)
+        if m == 0.0:
+            return Undefined(
+                f"coupler and rocker are both {coupler:.6g} long and their far pins coincide: they may point anywhere"
+            )
+        return Undefined(
+            f"coupler and rocker are in line (pins {distance:.6g} apart, lengths {coupler:.6g} and {rocker:.6g}): "
+            "at a dead point the rates do not exist"
+        )
+
+
+def grashof_type(ground: Any, crank: Any, coupler: Any, rocker: Any) -> str:
+    """Which links turn: ``impossible``, ``change-point``, ``crank-rocker``, ``rocker-crank``, ``double-crank``,
+    ``double-rocker`` or ``triple-rocker``; decided exactly on the numbers given (scalars).
+    """
+    d, a, b, c = _lengths(ground, crank, coupler, rocker)
+    s, p, q, l = sorted((d, a, b, c))
+    if math.fsum((s, p, q, -l)) <= 0:
+        return "impossible"
+    margin = math.fsum((p, q, -s, -l))
+    if margin == 0:
+        return "change-point"
+    if margin < 0:
+        return "triple-rocker"
+    return {a: "crank-rocker", c: "rocker-crank", d: "double-crank", b: "double-rocker"}[s]
+
+
+def _lengths(*given: Any) -> list[Any]:
+    if all(np.ndim(length) == 0 for length in given):
+        for name, length in zip(("ground", "crank", "coupler", "rocker"), given, strict=True):
+            if not 0 < length < math.inf:
+                raise WrongValue(f"the length of the {name} is {length}, where a positive number is needed")
+        return [float(length) for length in given]
+    arrays = [np.asarray(length, dtype=float) for length in given]
+    return [np.where((x > 0) & (x < math.inf), x, math.nan) for x in arrays]
+
+
+def _side(mode: Any) -> Any:
+    """+1.0 or -1.0, from a mode or a side."""
+    words = np.asarray(mode)
+    side = np.asarray(side_of(mode) if words.dtype.kind in "UO" else words, dtype=float)
+    return side if side.ndim else float(side)
+
+
+def _linkage(d: Any, a: Any, b: Any, c: Any, side: Any) -> _Linkage:
+    stretched, folded = grashof_margins(d, a, b, c)
+    return _Linkage(
+        stretched=stretched,
+        folded=folded,
+        reach=4 * a * d,
+        gap=d - a,
+        crank=a,
+        coupler=2 * b * (b - c),
+        rocker=2 * c * (b - c),
+        frame=(d - a) * (d + a),
+        sides=(b - c) * (b + c),
+        twice_bc=2 * b * c,
+        side=side,
+    )
+
+
+def _turn(angle: Any) -> _Turn:
+    return _Turn(*half_squares(angle))
+
+
+def _signed_turn(angle: Any) -> _Turn:
+    cos, sin = half_angle(angle)
+    return _Turn(cos * cos, sin * sin, 2 * cos * sin, cos, sin)
+
+
+def _reaches(t: _Linkage, turn: _Turn) -> tuple[Any, Any, Any]:
+    """m, P and Q."""
+    swept = t.reach * turn.sin_squared
+    return t.gap * t.gap + swept, t.stretched + t.reach * turn.cos_squared, t.folded + swept
+
+
+def _closing(t: _Linkage, turn: _Turn, stretch: Any, fold: Any) -> Any:
+    """S. Continued smoothly, sqrt(P) at E+ = 0 is the signed 2 sqrt(a d) cos(crank / 2), and likewise for Q."""
+    if turn.half_cos is None:
+        return t.side * np.sqrt(stretch * fold)
+    root_p, root_q = _signed_roots(t, turn, stretch, fold)
+    return t.side * root_p * root_q
+
+
+def _signed_roots(t: _Linkage, turn: _Turn, stretch: Any, fold: Any) -> tuple[Any, Any]:
+    root_reach = np.sqrt(t.reach)
+    return (
+        np.where(t.stretched == 0, root_reach * turn.half_cos, np.sqrt(stretch)),
+        np.where(t.folded == 0, root_reach * turn.half_sin, np.sqrt(fold)),
+    )
+
+
+def _line(t: _Linkage, turn: _Turn, m: Any) -> tuple[Any, Any]:
+    """The vector A -> D. NaN where A lies on D: coupler and rocker have no direction there."""
+    x, y = t.gap + (2 * t.crank) * turn.sin_squared, -t.crank * turn.sine
+    return (np.where(m == 0, np.nan, x) if np.any(t.gap == 0) else x), y
+
+
+def _directions(t: _Linkage, turn: _Turn, m: Any, fold: Any, closing: Any) -> tuple[Any, Any]:
+    """Coupler and rocker turn from A -> D by the angles of X3 + i S and X4 + i S, with
+    X3 = m + b^2 - c^2 and X4 = -m + b^2 - c^2 written without cancellation."""
+    x, y = _line(t, turn, m)
+    coupler, rocker = t.coupler + fold, t.rocker - fold
+    x_closing, y_closing = x * closing, y * closing
+    return (
+        direction(x_closing + y * coupler, x * coupler - y_closing),
+        direction(x_closing + y * rocker, x * rocker - y_closing),
+    )
+
+
+def _angles(t: _Linkage, turn: _Turn, _: Any) -> tuple[Any, Any]:
+    m, stretch, fold = _reaches(t, turn)
+    return _directions(t, turn, m, fold, _closing(t, turn, stretch, fold))
+
+
+def _pins(t: _Linkage, turn: _Turn, angle: Any) -> tuple[Any, Any]:
+    m, stretch, fold = _reaches(t, turn)
+    x, y = _line(t, turn, m)
+    cos, sin = full_angle(angle)
+    crank_pin = t.crank * (cos + 1j * sin)
+    closing = _closing(t, turn, stretch, fold)
+    return crank_pin, crank_pin + (x + 1j * y) * ((t.coupler + fold) + 1j * closing) / (2 * m)
+
+
+def _transmission_angle(t: _Linkage, turn: _Turn, _: Any) -> tuple[Any]:
+    _, stretch, fold = _reaches(t, turn)
+    return (2 * np.arctan2(np.sqrt(fold), np.sqrt(stretch)),)
+
+
+def _conditioning(t: _Linkage, turn: _Turn, _: Any) -> tuple[Any]:
+    _, stretch, fold = _reaches(t, turn)
+    return (t.twice_bc / np.sqrt(stretch * fold),)
+
+
+def _motion(t: _Linkage, turn: _Turn, _: Any, *rates: Any) -> tuple:
+    m, stretch, fold = _reaches(t, turn)
+    closing = _closing(t, turn, stretch, fold)
+    found = _directions(t, turn, m, fold, closing)
+    order = len(rates)
+    if order == 0:
+        return found
+    # Chain rule through the crank angle.
+    g = _derivatives(t, turn, m, stretch, fold, closing, order)
+    rate = rates[0]
+    found += g[0] * rate, g[1] * rate
+    if order >= 2:
+        squared, acceleration = rate * rate, rates[1]
+        found += tuple(g[2 + i] * squared + g[i] * acceleration for i in (0, 1))
+    if order >= 3:
+        both = 3 * rate * acceleration
+        found += tuple(g[4 + i] * (squared * rate) + g[2 + i] * both + g[i] * rates[2] for i in (0, 1))
+    return found
+
+
+def _coefficients(t: _Linkage, turn: _Turn, _: Any, *, order: int) -> tuple:
+    m, stretch, fold = _reaches(t, turn)
+    return _derivatives(t, turn, m, stretch, fold, _closing(t, turn, stretch, fold), order)
+
+
+def _derivatives(
+    t: _Linkage, turn: _Turn, m: Any, stretch: Any, fold: Any, closing: Any, order: int
+) -> tuple:
+    """Derivatives of both angles by the crank angle, in pairs.
+
+    The direction of A -> D has the derivative (a^2 - a d cos)/m, and coupler and rocker turn against it at
+    (a d / m) X4 rho and (a d / m) X3 rho, where rho = sin(crank) / S stays finite at a change point. Written
+    so, the higher derivatives share all but one term, and no term grows where the sum does not.
+    """
+    rho = _opening(t, turn, stretch, fold, closing, order)
+    a_d = t.reach * 0.25
+    share = a_d / m
+    coupler, rocker = t.coupler + fold, t.rocker - fold
+    common = (t.reach * 0.5 * turn.sin_squared - t.crank * t.gap) / m
+    along = share * rho[0]
+    found = (common + along * rocker, common + along * coupler)
+    if order >= 2:
+        swing = share * turn.sine
+        sides = (2 * a_d) * t.sides
+        excess = (t.frame - sides * rho[0]) / m
+        common = swing * excess
+        along = share * rho[1]
+        found += (common + along * rocker, common + along * coupler)
+    if order >= 3:
+        cosine = turn.cos_squared - turn.sin_squared
+        common = share * cosine * excess - 4 * swing * common - swing * sides * rho[1] / m
+        both = share * rho[2] - 2 * swing * along
+        apart = 2 * swing * a_d * rho[1]
+        found += (common + both * rocker - apart, common + both * coupler + apart)
+    return found
+
+
+def _opening(t: _Linkage, turn: _Turn, stretch: Any, fold: Any, closing: Any, order: int) -> list:
+    """rho = sin(crank) / S and its derivatives by the crank angle, ``order`` of them in all.
+
+    NaN where S is 0, except for the smooth policy at a change point, where the factor that vanishes is
+    divided out.
+    """
+    if turn.half_cos is None:
+        inverse = closing / (stretch * fold)
+        rho, cos_part, sin_part = turn.sine * inverse, turn.cos_squared * inverse, turn.sin_squared * inverse
+        of_stretch, of_fold = (t.stretched / stretch, t.folded / fold) if order >= 2 else (None, None)
+    else:
+        root_p, root_q = _signed_roots(t, turn, stretch, fold)
+        flat_p, flat_q = t.stretched == 0, t.folded == 0
+        # Where a root is a multiple of the half angle's cosine or sine, their quotient is a constant.
+        cos_p = np.where(flat_p, 1 / np.sqrt(t.reach), turn.half_cos / root_p)
+        sin_q = np.where(flat_q, 1 / np.sqrt(t.reach), turn.half_sin / root_q)
+        rho = 2 * t.side * cos_p * sin_q
+        of_stretch, of_fold = np.where(flat_p, 0, t.stretched / stretch), np.where(flat_q, 0, t.folded / fold)
+        cos_part = t.side * cos_p * np.where(flat_q, 0, turn.half_cos / root_q)
+        sin_part = t.side * sin_q * np.where(flat_p, 0, turn.half_sin / root_p)
+    found = [rho]
+    if order >= 2:
+        found.append(of_fold * cos_part - of_stretch * sin_part)
+    if order >= 3:
+        thrice = 3 * t.reach
+        stretching = of_stretch * (1 + np.where(of_stretch == 0, 0, thrice * turn.sin_squared / stretch))
+        folding = of_fold * (1 + np.where(of_fold == 0, 0, thrice * turn.cos_squared / fold))
+        found.append(-0.25 * rho * (stretching + folding + 2 * of_stretch * of_fold))
+    return found

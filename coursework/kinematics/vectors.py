@@ -1,0 +1,71 @@
+"""Plane vectors as complex numbers, and their derivatives when their length and their angle vary."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+
+def cross(u: Any, v: Any) -> Any:
+    """The z component of u x v."""
+    return np.real(u) * np.imag(v) - np.imag(u) * np.real(v)
+
+
+def dot(u: Any, v: Any) -> Any:
+    """The scalar product."""
+    return np.real(u) * np.real(v) + np.imag(u) * np.imag(v)
+
+
+def size(u: Any) -> Any:
+    """The length of a vector whose square neither overflows nor vanishes."""
+    return np.sqrt(np.real(u) ** 2 + np.imag(u) ** 2)
+
+
+def direction(y: Any, x: Any) -> Any:
+    """Angle of the vector (x, y), radians in (-pi, pi]."""
+    found = np.arctan2(y, x)
+    behind = found == -math.pi
+    return np.where(behind, math.pi, found) if np.any(behind) else found
+
+
+def components(r: Any, u: Any, v: Any) -> tuple[Any, Any]:
+    """The two real numbers with ``first * u + second * v = r`` (Cramer's rule); inf or NaN when u and v are parallel."""
+    inverse = 1 / cross(u, v)
+    return cross(r, v) * inverse, cross(u, r) * inverse
+
+
+def derivative(
+    arm: Any, unit: Any, length_rates: Sequence[Any], angle_rates: Sequence[Any], order: int
+) -> Any:
+    """The derivative of order 1, 2 or 3 of a vector ``arm`` whose length and angle vary.
+
+    Parameters
+    ----------
+    arm
+        The vector now, complex.
+    unit
+        The direction in which its length grows, a complex unit vector that turns with it.
+    length_rates, angle_rates
+        Time derivatives of the length and of the angle from the first on, as far as known: those that are missing
+        count as zero, so that the terms of lower order alone are had by leaving out the last.
+
+    The second derivative is equation 11 of the course: radial, tangential, centripetal and Coriolis terms.
+    """
+    r1, r2, r3 = (*length_rates, 0.0, 0.0, 0.0)[:3]
+    w1, w2, w3 = (*angle_rates, 0.0, 0.0, 0.0)[:3]
+    if order == 1:
+        return r1 * unit + 1j * w1 * arm
+    if order == 2:
+        return (r2 + 2j * w1 * r1) * unit + (1j * w2 - w1 * w1) * arm
+    if order == 3:
+        turning = 1j * w3 - 3 * w1 * w2 - 1j * w1 * w1 * w1
+        return (r3 + 3j * w1 * r2 + 3 * (1j * w2 - w1 * w1) * r1) * unit + turning * arm
+    raise ValueError(f"derivatives of order 1 to 3 are known, not {order}")
+
+
+def turned(arm: Any, angle_rates: Sequence[Any]) -> tuple[Any, ...]:
+    """Time derivatives of a vector of constant length, one for each rate of its angle."""
+    return tuple(derivative(arm, 0.0, (), angle_rates[:n], n) for n in range(1, len(angle_rates) + 1))

@@ -1,0 +1,152 @@
+"""Slider-crank: piston and rod, their velocities and accelerations, computed and drawn (Figures 20 to 22)."""
+
+import numpy as np
+
+from coursework.degrees import cos, polar, sin
+from coursework.figures import Figure, angle_mark, dimension, ground_pivot, line, link, pin, rail, slider
+from coursework.kinematics.dyads import rrp
+from coursework.model import Exercise, Part, drawn, fixed
+
+
+def rod(r2, r3, e, theta2):
+    """Vector AB."""
+    crank = polar(r2, theta2)
+    return rrp(crank, r3, e) - crank
+
+
+def rates(rod, r2, theta2):
+    """omega3 and r1_dot, over omega2."""
+    omega3 = -r2 * cos(theta2) / rod.real
+    return omega3, -r2 * sin(theta2) - omega3 * rod.imag
+
+
+def accelerations(rates, rod, r2, theta2):
+    """alpha3 and r1_ddot, over omega2 squared, at a constant rate of the crank."""
+    omega3, _ = rates
+    alpha3 = (r2 * sin(theta2) + omega3**2 * rod.imag) / rod.real
+    return alpha3, -r2 * cos(theta2) - alpha3 * rod.imag - omega3**2 * rod.real
+
+
+def largest_offset(r2):
+    """Half of the cranks, those of whole centimetres, are in line with their piston."""
+    return np.where(r2 % 10 == 0, 0.0, 0.5 * r2)
+
+
+def velocity_scale(r2, omega2):
+    """So that the velocity of A is 32 to 80 mm long on paper."""
+    return _round_scale(r2 * abs(omega2) / 80)
+
+
+def acceleration_scale(r2, omega2):
+    """So that the acceleration of A is 32 to 80 mm long on paper."""
+    return _round_scale(r2 * omega2**2 / 80)
+
+
+def _round_scale(least):
+    """The first of 1, 2, 5, 10, 20, 50, … that is not below."""
+    decade = 10.0 ** np.floor(np.log10(least) + 1e-12)
+    return decade * np.select(
+        [least <= 1.0001 * decade, least <= 2 * decade, least <= 5 * decade], [1, 2, 5], 10
+    )
+
+
+def offset_is_none_or_visible(e, r2):
+    return (e == 0) | (abs(e) >= 0.1 * r2)
+
+
+def rod_leans_visibly(rod):
+    return abs(rod.imag) > 0.03 * abs(rod)
+
+
+def rod_turns_visibly(rates, r2, r3):
+    return abs(rates[0]) * r3 > 0.1 * r2
+
+
+def piston_moves_visibly(rates, r2):
+    return abs(rates[1]) > 0.1 * r2
+
+
+def rod_accelerates_visibly(accelerations, r2, r3):
+    return abs(accelerations[0]) * r3 > 0.1 * r2
+
+
+def piston_accelerates_visibly(accelerations, r2):
+    return abs(accelerations[1]) > 0.15 * r2
+
+
+def asks_drawing(alpha2):
+    """The polygons are those of a crank at constant rate."""
+    return alpha2 == 0
+
+
+def figure(rod, r2, e, theta2):
+    O, A = 0j, polar(r2, theta2)
+    B, half_rail = A + rod, 0.5 * r2
+    offset = (dimension(B.real + 1.4 * half_rail, B + 1.4 * half_rail, "e", offset=0),) if e else ()
+    return Figure(
+        rail(B - half_rail, B + half_rail),
+        line(O, B.real + 1.6 * half_rail, dashed=True),
+        *offset,
+        link(O, A, label="r_2"),
+        link(A, B, label="r_3"),
+        slider(B),
+        ground_pivot(O, "O"),
+        pin(A, "A"),
+        pin(B, "B"),
+        angle_mark(O, 0, theta2, r"\theta_2"),
+    )
+
+
+def _drawn_length(quantity):
+    """Measured on paper: a millimetre, or two hundredths of it."""
+    return Part(quantity, unit="mm", points=1, atol=1.0, rtol=0.02, when=asks_drawing)
+
+
+EXERCISE = Exercise(
+    given={
+        "r2": drawn(20, 100, step=5, unit="mm"),
+        "r3": drawn(lambda r2: 2.2 * r2, lambda r2: 5 * r2, step=5, unit="mm", positive=True),
+        "e": drawn(lambda r2: -largest_offset(r2), largest_offset, step=5, unit="mm", default=0),
+        "theta2": drawn(-175, 180, step=5, unit="deg"),
+        "omega2": drawn(-150, 150, step=5, unit="rad/s", nonzero=True),
+        "alpha2": fixed(0, unit="rad/s^2"),
+        "kv": drawn(velocity_scale, velocity_scale, unit="mm/s/mm", positive=True),
+        "ka": drawn(acceleration_scale, acceleration_scale, unit="mm/s^2/mm", positive=True),
+    },
+    helpers=(rod, rates, accelerations),
+    keep=(
+        offset_is_none_or_visible,
+        rod_leans_visibly,
+        rod_turns_visibly,
+        piston_moves_visibly,
+        rod_accelerates_visibly,
+        piston_accelerates_visibly,
+    ),
+    parts=(
+        Part("theta3", unit="deg", kind="angle", points=1),
+        Part("r1", unit="mm", points=1),
+        Part("omega3", unit="rad/s", points=1),
+        Part("r1_dot", unit="mm/s", points=1),
+        Part("alpha3", unit="rad/s^2", points=1),
+        Part("r1_ddot", unit="mm/s^2", points=1),
+        _drawn_length("pv_a"),
+        _drawn_length("pv_b"),
+        _drawn_length("ab"),
+        _drawn_length("pa_a"),
+        _drawn_length("ab_n"),
+        _drawn_length("bb_t"),
+        _drawn_length("pa_b"),
+    ),
+    figure=figure,
+    symbols={
+        "kv": "k_v",
+        "ka": "k_a",
+        "pv_a": "p_v a",
+        "pv_b": "p_v b",
+        "ab": "a b",
+        "pa_a": "p_a a",
+        "ab_n": "a b'",
+        "bb_t": "b' b",
+        "pa_b": "p_a b",
+    },
+)
