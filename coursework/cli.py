@@ -444,7 +444,7 @@ def build_files(
     issues = issuing.issue(course, names, first_seed=seed, count=count, langs=langs, roster=students)
     issued = issuing.json_text(issuing.issued_content(course, issues))
     before = out / "issued.json"
-    if before.exists() and before.read_text("utf-8") != issued:
+    if before.exists() and before.read_bytes() != issued.encode("utf-8"):
         if not overwrite:
             raise BadInput(
                 f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them"

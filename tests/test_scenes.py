@@ -1,0 +1,96 @@
+"""Scenes show the effects called for and compute nothing else."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import numpy as np
+import pytest
+
+from coursework.cli import run
+from coursework.errors import BadCourse, UnknownName, WrongValue
+from coursework.scenes import Scene
+
+GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "omega2": 5.0, "alpha2": 0.0}
+
+
+def scene(course, *effects, name="slotted_mechanism", given=GIVEN):
+    return Scene(course[name], given, effects)
+
+
+def test_without_effects_a_scene_shows_positions_alone(course):
+    table = scene(course).over_cycle(12)
+    assert set(table.columns) == {"theta2", "rA", "theta4"}
+    assert "omega4" not in table.evaluated
+
+
+@pytest.mark.parametrize(
+    ("effects", "shown", "absent"),
+    [
+        (("position",), {"rA", "theta4"}, {"omega4", "rA_dot", "alpha4"}),
+        (("velocity",), {"rA_dot", "omega4"}, {"alpha4", "rA_ddot", "a_coriolis"}),
+        (("coriolis",), {"a_coriolis"}, {"alpha4", "rA_ddot"}),
+        (("position", "acceleration"), {"rA", "theta4", "rA_ddot", "alpha4", "a_centripetal", "a_coriolis"}, set()),
+    ],
+)
+def test_a_scene_that_calls_for_less_runs_less(course, effects, shown, absent):
+    table = scene(course, *effects).over_cycle(12)
+    assert set(table.columns) == {"theta2", *shown}
+    assert not absent & set(table.evaluated)
+
+
+def test_the_angles_of_a_cycle_are_exact_multiples_of_the_step(course):
+    angle = scene(course).over_cycle(360).columns["theta2"]
+    assert angle.tolist() == [float(i) for i in range(361)]
+
+
+def test_a_cycle_closes_and_agrees_with_the_solver(course):
+    table = scene(course, "position", "velocity").over_cycle(8)
+    for name in ("rA", "omega4"):
+        assert table.columns[name][0] == table.columns[name][-1]
+    alone = course["slotted_mechanism"].solve(**GIVEN, theta2=135, only="rA")["rA"]
+    assert table.columns["rA"][3] == pytest.approx(alone, rel=1e-14)
+
+
+def test_speeds_are_the_slopes_of_positions(course):
+    """Central differences of a fine cycle against the scene's own rates."""
+    table = scene(course, "position", "velocity").over_cycle(3600)
+    time = np.radians(0.1) / 5.0
+    slope = (table.columns["rA"][2:] - table.columns["rA"][:-2]) / (2 * time)
+    np.testing.assert_allclose(slope, table.columns["rA_dot"][1:-1], atol=2e-3)
+
+
+def test_where_it_does_not_close_cells_are_empty_and_counted(course):
+    given = {"r1": 200.0, "r2": 150.0, "r3": 120.0, "r4": 100.0}
+    table = scene(course, name="four_bar_positions", given=given).over_cycle(36)
+    empty = [row for row in table.rows() if "" in row.values()]
+    assert 0 < len(empty) < 37
+    assert f"does not close at {len(empty)} of 37" in table.notes[0]
+
+
+def test_misuse_is_told(course):
+    with pytest.raises(UnknownName, match="did you mean 'velocity'"):
+        scene(course, "velocitty")
+    with pytest.raises(WrongValue, match="no Coriolis"):
+        scene(course, "coriolis", name="four_bar_positions")
+    with pytest.raises(BadCourse, match="names no driver"):
+        scene(course, name="ball_reducer", given={}).over_cycle()
+    with pytest.raises(WrongValue, match="needs the effect 'inertia'"):
+        scene(course).in_time(5.0, 1.0)
+
+
+def test_the_command_writes_table_and_plot(tmp_path, capsys):
+    arguments = ["simulate", "slotted_mechanism", "--effects", "velocity", "--set", "r1=0.2286 m", "--out", str(tmp_path)]
+    assert run([*arguments, "--steps", "24"]) == 0
+    with (tmp_path / "slotted_mechanism-cycle.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 25
+    assert list(rows[0]) == ["theta2 [deg]", "rA_dot [mm/s]", "omega4 [rad/s]"]
+    plot = (tmp_path / "slotted_mechanism-cycle.svg").read_bytes()
+    assert run([*arguments, "--steps", "24"]) == 0
+    assert (tmp_path / "slotted_mechanism-cycle.svg").read_bytes() == plot
+    capsys.readouterr()
+    assert run(["simulate", "slotted_mechanism", "--json", "--steps", "4"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["rows"]) == 5
+    assert run(["simulate", "slotted_mechanism", "--drive", "torque=5"]) == 2
