@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -26,10 +27,10 @@ KEY_COLUMNS = ("student", "exercise", "seed", "part", "value", "unit", "toleranc
 
 @dataclass(frozen=True)
 class File:
-    """One file of the result: its path below the output folder, and how to make its bytes."""
+    """One file of the result: its path below the output folder, and how to make its bytes, if any."""
 
     path: Path
-    make: Callable[[], bytes]
+    make: Callable[[], bytes | None]
 
 
 def _text(make: Callable[[], str]) -> Callable[[], bytes]:
@@ -90,13 +91,40 @@ def _with(path: Path, ending: str) -> Path:
     return path.with_name(path.name + ending)
 
 
+def write_tree(
+    out: Path, wanted: Sequence[File], progress: Callable[[Path], None] = lambda path: None
+) -> None:
+    """Make and write a build: it appears whole, in place of the one before, or not at all."""
+    staging = out / ".building"
+    shutil.rmtree(staging, ignore_errors=True)
+    try:
+        write(staging, wanted, progress)
+        for made in sorted(staging.iterdir()):
+            final = out / made.name
+            if final.is_dir():
+                shutil.rmtree(final)
+            made.replace(final)
+    finally:
+        shutil.rmtree(staging, ignore_errors=True)
+
+
 def write(out: Path, wanted: Sequence[File], progress: Callable[[Path], None] = lambda path: None) -> None:
-    """Make and write files, on all processors; each appears whole or not at all."""
+    """Make and write files, on all processors; each appears whole or not at all.
+
+    Raises
+    ------
+    ValueError
+        Two files of the same path.
+    """
+    if len({f.path for f in wanted}) != len(wanted):
+        raise ValueError("two files of a build have the same path")
     for folder in {out / f.path.parent for f in wanted}:
         folder.mkdir(parents=True, exist_ok=True)
 
     def one(file: File) -> None:
-        write_whole(out / file.path, file.make())
+        data = file.make()
+        if data is not None:
+            write_whole(out / file.path, data)
         progress(file.path)
 
     # Threads, not processes: the typesetter releases the lock, and must not be forked.

@@ -436,24 +436,19 @@ def build_files(
     overwrite: bool = False,
 ) -> int:
     """Issue and write a build; gives how many files were written."""
-    import shutil
-
     from coursework import building, issuing
 
     students = issuing.read_roster(roster) if roster else ()
     issues = issuing.issue(course, names, first_seed=seed, count=count, langs=langs, roster=students)
     issued = issuing.json_text(issuing.issued_content(course, issues))
     before = out / "issued.json"
-    if before.exists() and before.read_bytes() != issued.encode("utf-8"):
-        if not overwrite:
-            raise BadInput(
-                f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them"
-            )
-        for folder in ("handouts", "instructor"):
-            shutil.rmtree(out / folder, ignore_errors=True)
+    if before.exists() and before.read_bytes() != issued.encode("utf-8") and not overwrite:
+        raise BadInput(
+            f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them"
+        )
     wanted = list(building.files(course, issues, formats, practice=practice))
     with _progress("building", len(wanted)) as advance:
-        building.write(out, wanted, advance)
+        building.write_tree(out, wanted, advance)
     return len(wanted)
 
 
@@ -508,30 +503,47 @@ def grade_files(course: Course, submissions: Sequence[Path], issued_path: Path, 
     marks = csv_text(gradebook.marks_table(book), gradebook.MARKS_COLUMNS)
     summary = csv_text(gradebook.summary_table(book, issued), gradebook.SUMMARY_COLUMNS)
     rejected = csv_text(gradebook.rejected_table(book), gradebook.REJECTED_COLUMNS)
-    if feedback:
-        with _progress("feedback", None) as advance:
-            _write_feedback(course, book, out / "feedback", advance)
     for name, text in (("marks.csv", marks), ("summary.csv", summary), ("rejected.csv", rejected)):
         write_whole(out / name, text.encode("utf-8"))
+    if feedback:
+        with _progress("feedback", None) as advance:
+            _write_feedback(course, book, issued, out / "feedback", advance)
     return book
 
 
-def _write_feedback(course: Course, book: Any, folder: Path, advance: Callable[..., None]) -> None:
-    """One PDF a student, an exercise after another."""
+def _write_feedback(
+    course: Course, book: Any, issued: Any, folder: Path, advance: Callable[..., None]
+) -> None:
+    """One PDF a student, an exercise after another, called as the student's handouts are.
+
+    A sheet that cannot be printed is a warning, and costs no other.
+    """
+    import shutil
+
     from coursework.building import File, write
     from coursework.gradebook import feedback_sheet
-    from coursework.issuing import Student, file_stems
+    from coursework.issuing import file_stems
 
-    by_student: dict[str, list] = {}
+    by_student: dict[str, list] = {student: [] for student in issued.students}
     for graded in book.graded:
         by_student.setdefault(graded.student, []).append(graded)
-    stems = file_stems([Student(name) for name in by_student])
 
-    def maker(sheets: list) -> Callable[[], bytes]:
-        return lambda: course.renderer.booklet_pdf([feedback_sheet(g) for g in sheets])
+    def maker(student: str, sheets: list) -> Callable[[], bytes | None]:
+        def make() -> bytes | None:
+            try:
+                return course.renderer.booklet_pdf([feedback_sheet(g) for g in sheets])
+            except CourseworkError as fault:
+                book.warnings.append(f"no feedback sheet for {student}: {fault}")
+                return None
 
+        return make
+
+    shutil.rmtree(folder, ignore_errors=True)
+    stems = file_stems(by_student)
     files = [
-        File(Path(f"{stem}.pdf"), maker(mine)) for stem, mine in zip(stems, by_student.values(), strict=True)
+        File(Path(f"{stem}.pdf"), maker(student, mine))
+        for stem, (student, mine) in zip(stems, by_student.items(), strict=True)
+        if mine
     ]
     write(folder, files, advance)
 

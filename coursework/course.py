@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import itertools
+import math
 import sys
 import tomllib
 import traceback
@@ -96,7 +97,7 @@ class Course:
         folder = self.root / "exercises"
         files = {p.stem for p in folder.glob("*.py")}
         folders = {p.parent.name for p in folder.glob("*/__init__.py")}
-        return tuple(sorted(n for n in files | folders if not n.startswith(("_", "."))))
+        return tuple(sorted(n for n in files | folders if n.isidentifier() and not n.startswith("_")))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.names)
@@ -127,7 +128,10 @@ class Course:
 
     def title(self, lang: str) -> str:
         """The course's title in a language; the folder's name when it states none."""
-        return self.settings.get("title", {}).get(lang, self.root.name)
+        titles = self.settings.get("title", {})
+        if not isinstance(titles, dict):
+            raise BadCourse(f'{self.root / "exercises" / "course.toml"}: write [title], then {lang} = "…"')
+        return str(titles.get(lang, self.root.name))
 
     @cached_property
     def template_folders(self) -> tuple[Path, ...]:
@@ -290,6 +294,8 @@ class CourseExercise:
         if only is None and not arrays:
             only = tuple(p.quantity for p in self._asked_of(values))
         wanted = self._wanted(only)
+        if arrays:
+            _check_shapes(values)
         found = self.solution.graph.evaluate(wanted, values, effects)
         if not arrays:
             for name, value in found.items():
@@ -306,28 +312,30 @@ class CourseExercise:
             return self._accept_case(name, spec, value)
         if isinstance(value, str):
             value = self._accept_text(name, value)
-        elif isinstance(value, bool) or value is None:
-            raise WrongValue(f"{name} must be a number; found {value!r}")
-        if isinstance(value, (int, float)):
-            value = float(value)
-            if value != value or value in (np.inf, -np.inf):
-                raise WrongValue(f"{name} must be a finite number; found {value}")
-        elif isinstance(value, (list, tuple, range)):
-            value = np.asarray(value)
-        if isinstance(value, np.ndarray):
-            if value.dtype.kind in "iub":
-                value = value.astype(float)
-            if value.ndim == 0:
-                value = value.item()
-        elif isinstance(value, np.generic):
-            value = value.item()
+        elif type(value) is not float:
+            value = self._accept_numbers(name, value)
+        if isinstance(value, float) and not math.isfinite(value):
+            raise WrongValue(f"{name} must be a finite number; found {value}")
         if spec is not None:
             self._check_domain(name, spec, value)
         return value
 
+    def _accept_numbers(self, name: str, value: Any) -> Any:
+        """A float, a complex number or an array of them from whatever numpy can make one."""
+        try:
+            array = np.asarray(value)
+        except ValueError:
+            array = np.asarray(None)
+        if array.dtype.kind not in "iufc" or isinstance(value, bool):
+            raise WrongValue(f"{name} must be a number or an array of numbers; found {str(value)[:60]!r}")
+        if array.dtype.kind == "c" and name in self.spec.given:
+            raise WrongValue(f"{name} must be a real number; found {str(value)[:60]!r}")
+        if array.dtype.kind in "iu":
+            array = array.astype(float)
+        return array if array.ndim else array.item()
+
     def _accept_case(self, name: str, spec: GivenSpec, value: Any) -> Any:
-        cases = np.unique(np.asarray(value))
-        for case in cases.tolist():
+        for case in np.unique(np.asarray(value, dtype=str)).tolist():
             if case not in spec.choices:
                 raise WrongValue(
                     f"{name} must be one of {', '.join(spec.choices)}; found {case!r}"
@@ -448,6 +456,15 @@ class CourseExercise:
         return self.variant(0, lang).text.title
 
 
+def _check_shapes(values: Mapping[str, Any]) -> None:
+    shapes = {n: v.shape for n, v in values.items() if isinstance(v, np.ndarray)}
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        told = ", ".join(f"{n} {shape}" for n, shape in shapes.items())
+        raise WrongValue(f"the arrays do not broadcast together: {told}") from None
+
+
 def _rounded(value: Any, lang: str) -> str:
     return localise(significant(value), lang) if isinstance(value, (int, float)) else str(value)
 
@@ -502,7 +519,12 @@ class Variant:
 
     def solution(self) -> dict[str, Any]:
         """The asked quantities in canonical units and full precision."""
-        return self.exercise.solve(**self.given, only=self.asked_quantities)
+        return self.exercise.solve(**self.given, only=self.asked_quantities, effects=self.effects)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """The optional effects that the parts call for."""
+        return self.exercise.spec.effects
 
     @property
     def asked_quantities(self) -> tuple[str, ...]:
@@ -539,7 +561,7 @@ class Variant:
             The course folder has no solutions.
         """
         given = {n: v for n, v in self.given.items() if n in self.exercise.quantity_names}
-        found = self.exercise.solution.graph.evaluate_all(self.asked_quantities, given)
+        found = self.exercise.solution.graph.evaluate_all(self.asked_quantities, given, self.effects)
         return {**given, **{n: plain_scalar(v) for n, v in found.items()}}
 
     @cached_property

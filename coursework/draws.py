@@ -84,6 +84,8 @@ def _draw_one(spec: GivenSpec, words: np.ndarray, drawn: Mapping[str, np.ndarray
     count = np.maximum(high - low + 1, 0)
     without_zero = (low <= 0) & (high >= 0) if spec.nonzero else np.zeros_like(count, dtype=bool)
     count = np.where(without_zero, count - 1, count)
+    if count.max(initial=0) >= 2**31:
+        raise BadCourse(f"a range holds {count.max():,} steps of {float(spec.step):g}; make the step coarser")
     k = low + ((high_half * count.astype(np.uint64)) >> np.uint64(32)).astype(np.int64)
     k = np.where(without_zero & (k >= 0), k + 1, k)
     return np.where(count > 0, grid.value(k), np.nan)

@@ -53,6 +53,10 @@ class BadCourse(CourseworkError, ValueError):
     """A course folder, or a file in it, is not what it should be."""
 
 
+class BrokenFunction(BadCourse):
+    """A function of a course fails where it should compute; names the function, its file and line."""
+
+
 class BadStatement(BadCourse):
     """A statement's text cannot be rendered: unknown variable, refused formula."""
 

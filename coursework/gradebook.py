@@ -6,6 +6,7 @@ Every row in comes out once, as a marked row or as a rejected one.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -93,8 +94,9 @@ class Issued:
             try:
                 record, student = item["record"], str(item.get("student", ""))
                 key = (str(record["exercise"]), int(record["seed"]))
-            except (KeyError, TypeError, ValueError) as fault:
-                raise BadInput(f"{source}: an item lacks {fault}") from fault
+                sum(part["points"] for part in record["parts"])
+            except (KeyError, TypeError, ValueError, AttributeError) as fault:
+                raise BadInput(f"{source}: an item is no issued record ({fault})") from fault
             self.records[key] = record
             if student:
                 self.owner[key] = student
@@ -142,10 +144,9 @@ def _place(issued: Issued, row: Row) -> tuple[str, str, int]:
     mine = issued.seeds.get((student.casefold(), row.exercise))
     if not row.seed and mine is not None:
         return student, row.exercise, mine
-    try:
-        seed = int(row.seed) if not row.seed.endswith(".0") else int(float(row.seed))
-    except ValueError:
-        raise _Refused(f"a seed is a whole number; found {row.seed[:40]!r}") from None
+    if not re.fullmatch(r"[0-9]{1,30}(\.0)?", row.seed):
+        raise _Refused(f"a seed is a whole number; found {row.seed[:40]!r}")
+    seed = int(row.seed.removesuffix(".0"))
     if (row.exercise, seed) not in issued.records:
         raise _Refused(f"seed {seed} of {row.exercise} was not issued")
     if issued.has_roster and mine != seed:
@@ -249,6 +250,9 @@ def summary_table(book: Gradebook, issued: Issued) -> Iterator[dict[str, Any]]:
     Points are out of all that a student was issued, or without a roster of all that they answered to.
     """
     sheets: dict[str, list[Graded]] = {student: [] for student in issued.students}
+    issued_to: dict[str, list[tuple[str, int]]] = {}
+    for (name, exercise), seed in issued.seeds.items():
+        issued_to.setdefault(name, []).append((exercise, seed))
     for graded in book.graded:
         sheets.setdefault(graded.student, []).append(graded)
     for student, mine in sheets.items():
@@ -256,8 +260,8 @@ def summary_table(book: Gradebook, issued: Issued) -> Iterator[dict[str, Any]]:
         handed_in = {graded.variant.exercise.name for graded in mine}
         owed = [
             issued.records[exercise, seed]
-            for (name, exercise), seed in issued.seeds.items()
-            if name == student.casefold() and exercise not in handed_in
+            for exercise, seed in issued_to.get(student.casefold(), ())
+            if exercise not in handed_in
         ]
         lost = [part for record in owed for part in record["parts"]]
         verdicts = [m.verdict.partition(":")[0] for m in marks]
@@ -280,14 +284,14 @@ def summary_table(book: Gradebook, issued: Issued) -> Iterator[dict[str, Any]]:
 def feedback_sheet(graded: Graded) -> FeedbackSheet:
     """A student's marks on one exercise, ready to print."""
     from coursework.handout import FeedbackLine, FeedbackSheet
-    from coursework.marking import echo
+    from coursework.marking import localised
 
     handout = graded.variant.handout(graded.student)
     lines = tuple(
         FeedbackLine(
             question=question,
             answer=graded.marking[question.id].answer,
-            read_as=echo(graded.marking[question.id].read_as, graded.variant.lang),
+            read_as=localised(graded.marking[question.id].read_as, graded.variant.lang),
             verdict=graded.marking[question.id].verdict,
             points=graded.marking[question.id].points,
             out_of=graded.marking[question.id].out_of,

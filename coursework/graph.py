@@ -10,11 +10,13 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from coursework.errors import (
+    BrokenFunction,
     CourseworkError,
     Cycle,
     MissingQuantity,
@@ -24,6 +26,13 @@ from coursework.errors import (
 )
 
 Value = Any  #: a float, a complex number, a text, or an array of them
+
+
+def _place(function: Callable[..., Value]) -> str:
+    """Where a function of a course stands, for messages."""
+    code = getattr(function, "__code__", None)
+    name = getattr(function, "__name__", "a function")
+    return f"{name} ({Path(code.co_filename).name}, line {code.co_firstlineno})" if code else name
 
 
 def plain_scalar(value: Value) -> Value:
@@ -210,8 +219,12 @@ class Graph:
                 except CourseworkError:
                     raise
                 except (ArithmeticError, ValueError) as fault:
-                    told = ", ".join(f"{a} = {values[a]}" for a in arguments)
+                    told = ", ".join(f"{a} = {values[a]}" for a in arguments)[:300]
                     raise Undefined(f"{name} does not exist for {told} ({fault})") from fault
+                except Exception as fault:
+                    raise BrokenFunction(
+                        f"{_place(function)} fails: {type(fault).__name__}: {fault}"
+                    ) from fault
         return values
 
     def replacing(self, replacement: Replacement) -> Graph:

@@ -21,6 +21,7 @@ from coursework.gradebook import ISSUED_FORMAT
 from coursework.language import languages
 
 _STUDENT_COLUMNS = ("student", "name", "étudiant", "etudiant", "élève", "eleve", "nom")
+_DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
 _LANG_COLUMNS = ("lang", "language", "langue")
 
 
@@ -135,7 +136,7 @@ def issue(
     """
     issues = []
     students = list(roster) or [Student("")] * count
-    stems = file_stems(students)
+    stems = file_stems(s.name for s in students)
     for name in names:
         exercise = course[name]
         for lang in {*langs, *(s.lang for s in students if s.lang)}:
@@ -150,17 +151,20 @@ def issue(
     return issues
 
 
-def file_stems(students: Sequence[Student]) -> list[str]:
-    """File names from students' names: ASCII, different, stable; empty where there is no name."""
-    taken: dict[str, int] = {}
+def file_stems(names: Iterable[str]) -> list[str]:
+    """File names from students' names: ASCII, short, all different, stable; empty where there is no name."""
+    used: set[str] = set()
     stems = []
-    for student in students:
-        plain = unicodedata.normalize("NFKD", student.name.casefold()).encode("ascii", "ignore").decode()
-        stem = re.sub(r"[^a-z0-9]+", "-", plain).strip("-")
-        stem = stem or ("student" if student.name else "")
-        if stem:
-            taken[stem] = taken.get(stem, 0) + 1
-            stem = stem if taken[stem] == 1 else f"{stem}-{taken[stem]}"
+    for name in names:
+        plain = unicodedata.normalize("NFKD", name.casefold()).encode("ascii", "ignore").decode()
+        plain = re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:60].strip("-")
+        if plain in _DEVICES or (name and not plain):
+            plain = f"student-{plain}".strip("-")
+        stem, number = plain, 1
+        while plain and stem in used:
+            number += 1
+            stem = f"{plain}-{number}"
+        used.add(stem)
         stems.append(stem)
     return stems
 
@@ -235,13 +239,19 @@ def form_rows(issues: Iterable[Issue]) -> Iterator[dict[str, Any]]:
 
 
 def csv_text(rows: Iterable[Mapping[str, Any]], columns: Sequence[str]) -> str:
-    """Rows as CSV with a header."""
+    """Rows as CSV with a header. A text that a spreadsheet would run gets an apostrophe before it."""
     out = io.StringIO()
-    writer = csv.DictWriter(out, columns, lineterminator="\n")
+    writer = csv.DictWriter(out, columns)  # lines end as the format's own description says
     writer.writeheader()
     for row in rows:
-        writer.writerow({c: row[c] for c in columns})
+        writer.writerow({c: _inert(row[c]) for c in columns})
     return out.getvalue()
+
+
+def _inert(cell: Any) -> Any:
+    """The cell, or its text kept from being run: a formula that calls, pipes or reaches elsewhere."""
+    runs = isinstance(cell, str) and cell.lstrip()[:1] in ("=", "+", "-", "@") and set(cell) & set("(|!")
+    return f"'{cell}" if runs else cell
 
 
 def json_text(content: Any) -> str:

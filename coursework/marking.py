@@ -10,13 +10,15 @@ import itertools
 import math
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coursework.errors import CourseworkError, unknown
+from coursework.errors import CourseworkError, WrongValue, unknown
+from coursework.expressions import Equation, parse_equation, same_equation
 from coursework.graph import plain_scalar
 from coursework.language import localise, unit_text, words
 from coursework.model import Part
@@ -102,17 +104,21 @@ class Key:
         return {name: self._wrong(name) for name in self.solution.mistakes}
 
     def _wrong(self, name: str) -> dict[str, Any]:
-        graph = self.solution.mistaken(name)
-        reached = self.solution.graph.descendants(self.solution.mistakes[name].targets)
+        reached = tuple(q for q in self.reference if q in self.solution.reached(name))
+        try:
+            return self._mistaken(name, reached)
+        except CourseworkError:
+            pass  # the wrong way leads nowhere for some quantity of this variant; the others are tried alone
         values = {}
-        for quantity in self.reference:
-            if quantity in reached:
-                try:
-                    value = graph.evaluate((quantity,), self.variant.used)[quantity]
-                except CourseworkError:
-                    continue  # the wrong way leads nowhere on this variant
-                values[quantity] = plain_scalar(value)
+        for quantity in reached:
+            with suppress(CourseworkError):
+                values |= self._mistaken(name, (quantity,))
         return values
+
+    def _mistaken(self, name: str, quantities: tuple[str, ...]) -> dict[str, Any]:
+        graph = self.solution.mistaken(name)
+        found = graph.evaluate(quantities, self.variant.used, self.variant.effects)
+        return {quantity: plain_scalar(value) for quantity, value in found.items()}
 
 
 def read(part: Part, answer: Any, labels: Mapping[str, list[str]]) -> Reading:
@@ -146,12 +152,15 @@ def distance(part: Part, value: Any, reference: Any, along: Any = None) -> float
         case "direction":
             return _off_direction(part, value, reference)
         case "equation":
-            from coursework.expressions import parse_equation, same_equation
-
-            right = parse_equation(reference, part.variables)
-            return 0.0 if same_equation(value, right) else math.inf
+            return 0.0 if same_equation(value, _equation(reference, part.variables)) else math.inf
         case _:
             return 0.0 if value == plain_scalar(reference) else math.inf
+
+
+@lru_cache(maxsize=256)
+def _equation(text: str, variables: tuple[str, ...]) -> Equation:
+    """A reference equation, or a mistaken one, read once."""
+    return parse_equation(text, variables)
 
 
 def _over(gap: float, half_width: float, scale: float) -> float:
@@ -165,6 +174,8 @@ def _over(gap: float, half_width: float, scale: float) -> float:
 
 def _off_line(part: Part, point: Any, reference: Any, along: Any) -> float:
     offset = np.asarray(point, dtype=float) - reference
+    if float(np.max(np.abs(offset))) > 1e100:
+        return math.inf
     axis = np.asarray(along, dtype=float)
     gap = float(np.linalg.norm(np.cross(offset, axis)) / np.linalg.norm(axis))
     size = float(np.linalg.norm(reference))
@@ -173,6 +184,8 @@ def _off_line(part: Part, point: Any, reference: Any, along: Any) -> float:
 
 def _off_direction(part: Part, vector: Any, reference: Any) -> float:
     v, d = np.asarray(vector, dtype=float), np.asarray(reference, dtype=float)
+    largest = float(np.max(np.abs(v)))
+    v = v / largest if largest else v
     size = float(np.linalg.norm(v) * np.linalg.norm(d))
     if size == 0.0:
         return math.inf
@@ -190,6 +203,10 @@ def mark(variant: Variant, answers: Mapping[str, Any]) -> Marking:
         The course folder has no solutions.
     """
     asked = {p.id: p for p in variant.parts}
+    if not isinstance(answers, Mapping):
+        raise WrongValue(
+            f"answers are given by part: {{'{next(iter(asked))}': '12 mm'}}; found {type(answers).__name__}"
+        )
     for part_id in answers:
         if part_id not in asked:
             raise unknown("part", part_id, asked, f"{variant.exercise.name} {variant.seed}")
@@ -293,8 +310,15 @@ def echo(text: str, lang: str) -> str:
     shown = text if len(text) <= ECHO else text[: ECHO - 1] + "…"
     if "=" in shown:
         return "`" + "".join(c for c in shown if c.isprintable() and c not in "`$") + "`"
-    number = re.sub(r"(?<![A-Za-z.])-?\d+(?:\.\d+)?", lambda m: localise(m.group(), lang), shown)
-    return _harmless(number).replace(" °", "°")
+    return _harmless(localised(shown, lang))
+
+
+def localised(read_as: str, lang: str) -> str:
+    """What was read, as the language writes numbers; an equation is left as it is."""
+    if "=" in read_as:
+        return read_as
+    number = re.sub(r"(?<![A-Za-z.])-?\d+(?:\.\d+)?", lambda m: localise(m.group(), lang), read_as)
+    return number.replace(" °", "°")
 
 
 def _say(variant: Variant, part: Part, sentence: str, **pieces: str) -> str:

@@ -189,6 +189,8 @@ class Exercise:
         Groups of part ids that a student may exchange as wholes: two assembly modes.
     driver
         What drives it when it is simulated; none for an exercise that does not move.
+    effects
+        The optional effects that the exercise's own parts call for; a request has only those it names.
     """
 
     given: Mapping[str, GivenSpec]
@@ -200,6 +202,7 @@ class Exercise:
     symbols: Mapping[str, str] = field(default_factory=dict)
     either_order: tuple[tuple[str, ...], ...] = ()
     driver: Driver | None = None
+    effects: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parts", tuple(self.parts))

@@ -128,7 +128,7 @@ def _solution_figure(variant: Variant) -> Figure | None:
         return None
     values = dict(variant.walk)
     more = tuple(n for n in inspect.signature(solution.figure).parameters if n not in values)
-    return _call(solution.figure, {**values, **solution.graph.evaluate(more, variant.used)})
+    return _call(solution.figure, {**values, **solution.graph.evaluate(more, variant.used, variant.effects)})
 
 
 def _symbol(variant: Variant, name: str) -> str:
@@ -176,12 +176,14 @@ def _step(variant: Variant, name: str, values: Mapping[str, Any], text: Any) -> 
 
 
 def _value_latex(variant: Variant, name: str, value: Any) -> str:
-    r"""``\num{319.8}\ \mathrm{mm}``; a case's label or an equation in words; a vector by coordinates."""
+    r"""``\num{319.8}\ \mathrm{mm}``; an equation; a vector by coordinates; nothing for a case or a bundle."""
     exercise = variant.exercise
     part = next((p for p in variant.parts if p.quantity == name), None)
     unit = exercise.units.get(name, "1")
     if isinstance(value, str):
         return equation_latex(variant, value) if part is not None and part.kind == "equation" else ""
+    if isinstance(value, tuple):
+        return ""
     if isinstance(value, np.ndarray):
         inner = r";\ ".join(number_latex(v, "1", PRINTED_DIGITS) for v in value.tolist())
         return rf"\left({inner}\right)" + _unit_latex(unit)

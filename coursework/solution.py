@@ -6,7 +6,8 @@
 * a function marked :func:`mistake` is a wrong way to get a quantity;
 * ``residual`` gives the governing equations, written independently, relative to their terms: 0 when right;
 * ``KNOWN`` lists pairs (given values, expected values); an expected text such as ``"319.80"`` is
-  right to its last printed digit, a number to 1e-9 relative;
+  right to its last printed digit, a number to 1e-9 relative; a third item names the case's effects,
+  where they are not those of the exercise's own parts;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
 * a name that begins with an underscore is the module's own.
 """
@@ -82,7 +83,7 @@ class Solution:
     name: str
     graph: Graph
     mistakes: Mapping[str, Mistake]
-    known: Sequence[tuple[Mapping[str, Any], Mapping[str, Any]]]
+    known: Sequence[tuple[Any, ...]]
     residual: Callable[..., Any] | None
     figure: Callable[..., Any] | None
     units: Mapping[str, str]
@@ -132,6 +133,14 @@ class Solution:
         if name not in self.mistakes:
             raise unknown("mistake", name, self.mistakes, f"solution {self.name}")
         return self._mistaken_graphs[name]
+
+    def reached(self, name: str) -> frozenset[str]:
+        """The quantities that a named mistake can change."""
+        return self._reached[name]
+
+    @cached_property
+    def _reached(self) -> dict[str, frozenset[str]]:
+        return {n: self.graph.descendants(m.targets) for n, m in self.mistakes.items()}
 
     @cached_property
     def _mistaken_graphs(self) -> dict[str, Graph]:

@@ -112,6 +112,8 @@ def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object
         raise BadStatement(f"{path.name}: {fault.message}; a text may use: {names}") from fault
     except jinja2.TemplateError as fault:
         raise BadStatement(f"{path.name}: {fault}") from fault
+    except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as fault:
+        raise BadStatement(f"{path.name}: an expression fails: {fault}") from fault
 
 
 _templates: dict[tuple, object] = {}
@@ -132,4 +134,6 @@ def _template(path: Path, changed: int, folders: tuple[Path, ...]):
             _templates[key] = environment.get_template(path.name)
         except jinja2.TemplateSyntaxError as fault:
             raise BadStatement(f"{path.name}, line {fault.lineno}: {fault.message}") from fault
+        except UnicodeDecodeError as fault:
+            raise BadStatement(f"{path.name} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
     return _templates[key]

@@ -17,6 +17,7 @@ from typing import Any
 COLUMNS = ("student", "exercise", "seed", "part", "answer")
 ENDINGS = (".csv", ".json", ".ipynb")
 MAX_LINES = 20  #: of one quoted answer
+MAX_BYTES = 50_000_000  #: of one file of answers
 
 
 @dataclass(frozen=True)
@@ -67,13 +68,22 @@ def _odd_file(path: Path) -> Rejected:
 
 def read_file(path: Path) -> Iterator[Row | Rejected]:
     """The rows of one file; a file that cannot be read is one rejected row."""
+    reader = {".csv": _read_csv, ".json": _read_json, ".ipynb": _read_notebook}[path.suffix.lower()]
     try:
+        size = path.stat().st_size
+        if size > MAX_BYTES:
+            yield Rejected(str(path), f"{size:,} bytes are too many for answers; the limit is {MAX_BYTES:,}")
+            return
         data = path.read_bytes()
     except OSError as fault:
         yield Rejected(str(path), f"cannot be read: {fault.strerror}")
         return
-    reader = {".csv": _read_csv, ".json": _read_json, ".ipynb": _read_notebook}[path.suffix.lower()]
     yield from reader(data, str(path))
+
+
+def _whole(text: str) -> str:
+    """The text without halves of characters, which no file can hold."""
+    return text.encode("utf-8", "replace").decode("utf-8")
 
 
 # ------------------------------------------------------------------------- text
@@ -125,24 +135,31 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
 def _record(lines: list[str], start: int, delimiter: str, width: int) -> tuple[list[str], int]:
     """The cells of the record at a line, and how many lines it takes.
 
-    A quoted cell may run over a few lines, if the record then has as many cells as the header. A
-    quotation mark that never closes costs its own line and no other.
+    A quoted cell may run over a few lines, if the record is then well formed, has as many cells as the
+    header, and swallows no line that would be a record by itself. Any other quotation mark is a
+    character like another: it costs no row, and is kept.
     """
-    for taken in range(1, min(MAX_LINES, len(lines) - start) + 1):
-        record = "\n".join(lines[start : start + taken])
-        if record.count('"') % 2 == 0:
-            cells = _cells(record, delimiter)
-            if taken == 1 or len(cells) == width:
-                return cells, taken
+    whole = _cells(lines[start], delimiter)
+    if whole is not None:
+        return whole, 1
+    for taken in range(2, min(MAX_LINES, len(lines) - start) + 1):
+        added = lines[start + taken - 1]
+        if len(added.split(delimiter)) >= width:
             break
-    return _cells(lines[start].replace('"', ""), delimiter), 1
+        cells = _cells("\n".join(lines[start : start + taken]), delimiter)
+        if cells is not None and len(cells) == width:
+            return cells, taken
+    return [cell.removeprefix('"') for cell in lines[start].split(delimiter)], 1
 
 
-def _cells(record: str, delimiter: str) -> list[str]:
-    try:
-        return next(csv.reader([record], delimiter=delimiter), [])
-    except csv.Error:  # a cell longer than the reader takes
+def _cells(record: str, delimiter: str) -> list[str] | None:
+    """The cells of a well-formed record; None where a quotation mark does not close as it should."""
+    if '"' not in record:
         return record.split(delimiter)
+    try:
+        return next(csv.reader([record], delimiter=delimiter, strict=True), [])
+    except csv.Error:
+        return None
 
 
 def _csv_row(header: list[str], cells: list[str], place: str, warning: str) -> Iterator[Row | Rejected]:
@@ -161,8 +178,8 @@ def _csv_row(header: list[str], cells: list[str], place: str, warning: str) -> I
 def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected]:
     text, warning = _decode(data)
     try:
-        content = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as fault:
+        content = _load_json(text)
+    except (ValueError, RecursionError) as fault:
         yield Rejected(source, f"not JSON: {_short(fault)}")
         return
     sheets = content if isinstance(content, list) else [content]
@@ -176,26 +193,72 @@ def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected]:
         yield from _sheet_rows(sheet, sheet["answers"], place, warning)
 
 
+class _Repeated(dict):
+    """A JSON object and the pairs that repeat a key of it."""
+
+    repeats: tuple[tuple[Any, Any], ...] = ()
+
+
+def _load_json(text: str) -> Any:
+    """JSON whose objects remember the keys that they repeat; numbers of absurd length stay texts."""
+    return json.loads(text, object_pairs_hook=_object, parse_int=_whole_number)
+
+
+def _whole_number(digits: str) -> Any:
+    return int(digits) if len(digits) < 400 else digits
+
+
+def _object(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
+    first: dict[Any, Any] = {}
+    repeats = []
+    for key, value in pairs:
+        if key in first:
+            repeats.append((key, value))
+        else:
+            first[key] = value
+    if not repeats:
+        return first
+    found = _Repeated(first)
+    found.repeats = tuple(repeats)
+    return found
+
+
 def _sheet_rows(
     about: dict[str, Any], answers: dict[Any, Any], place: str, warning: str
 ) -> Iterator[Row | Rejected]:
     names = {c: _name(about.get(c)) for c in ("student", "exercise", "seed")}
     if not answers:
         yield Rejected(place, "the sheet holds no answer", {**names, "part": "", "answer": ""})
-    for part, answer in answers.items():
-        if isinstance(answer, (list, tuple)):
-            answer = "; ".join(str(a) for a in answer)
+    for key, value in [*answers.items(), *getattr(answers, "repeats", ())]:
+        part, answer = _name(key), _as_answer(value)
+        where = f"{place}, part {part[:40]}"
         if isinstance(answer, (dict, set, bytes)):
-            row = {**names, "part": str(part), "answer": str(answer)[:200]}
-            yield Rejected(f"{place}, part {part}", "an answer is a text or a number", row)
+            row = {**names, "part": part, "answer": _text_of(answer)[:200]}
+            yield Rejected(where, "an answer is a text or a number", row)
             continue
-        yield Row(
-            **names, part=str(part).strip(), answer=answer, source=f"{place}, part {part}", warning=warning
-        )
+        yield Row(**names, part=part, answer=answer, source=where, warning=warning)
+
+
+def _as_answer(answer: Any) -> Any:
+    """An answer as it is marked: coordinates joined, numbers too long for any reader as texts."""
+    if isinstance(answer, (list, tuple)):
+        return "; ".join(_text_of(a) for a in answer)
+    if isinstance(answer, str):
+        return _whole(answer)
+    if isinstance(answer, int) and not isinstance(answer, bool) and abs(answer) >= 10**400:
+        return _text_of(answer)
+    return answer
+
+
+def _text_of(value: Any) -> str:
+    try:
+        return _whole(str(value))
+    except ValueError:  # an integer of too many digits
+        return "a number of very many digits"
 
 
 def _name(value: Any) -> str:
-    return "" if value is None else str(value).strip()
+    return "" if value is None else _text_of(value).strip()
 
 
 def _short(fault: BaseException) -> str:
@@ -208,8 +271,8 @@ def _short(fault: BaseException) -> str:
 def _read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
     text, warning = _decode(data)
     try:
-        notebook = json.loads(text)
-    except (json.JSONDecodeError, RecursionError) as fault:
+        notebook = _load_json(text)
+    except (ValueError, RecursionError) as fault:
         yield Rejected(source, f"not a notebook: {_short(fault)}")
         return
     about = notebook.get("metadata", {}) if isinstance(notebook, dict) else {}
@@ -228,7 +291,21 @@ def _read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
     if isinstance(answers, str):
         yield Rejected(source, f"the answers cell {answers}", _about(about) | {"answer": code[:200]})
         return
+    about, warning = _with_name(about, answers, source, warning)
     yield from _sheet_rows(about, answers, source, warning)
+
+
+def _with_name(
+    about: dict[str, Any], answers: dict[Any, Any], source: str, warning: str
+) -> tuple[dict[str, Any], str]:
+    """A notebook that was nobody's: the name its reader wrote among the answers, or else the file's."""
+    written = _name(answers.pop("student", None))
+    if _name(about.get("student")):
+        return about, warning
+    if written:
+        return {**about, "student": written}, warning
+    note = "a notebook holds no name; its file's name stands for it"
+    return {**about, "student": Path(source).stem}, warning or note
 
 
 def _about(about: dict[str, Any]) -> dict[str, str]:
@@ -260,6 +337,10 @@ def literal_answers(code: str) -> dict[Any, Any] | str:
     if not isinstance(value, ast.Dict):
         return "must hold one dict and nothing else; found code, which is never run"
     try:
-        return ast.literal_eval(value)
+        keys = [ast.literal_eval(key) for key in value.keys if key is not None]
+        values = [ast.literal_eval(item) for item in value.values]
+        if len(keys) != len(values):
+            raise ValueError("** is code")
+        return _object(list(zip(keys, values, strict=True)))
     except (ValueError, TypeError, RecursionError, MemoryError):
         return "must hold texts and numbers only; found code, which is never run"

@@ -140,7 +140,7 @@ EXERCISE = Exercise(
         "axis_30_dir": r"\vec{u}_{30}",
         "axis_31_dir": r"\vec{u}_{31}",
         "axis_32_dir": r"\vec{u}_{32}",
-        "rolling_D": r"\Omega_{32,x}",
-        "spin_D": r"\Omega_{32,z}",
+        "rolling_D": r"\Omega_{3/2,x}",
+        "spin_D": r"\Omega_{3/2,z}",
     },
 )

@@ -5,11 +5,14 @@ import numpy as np
 from coursework.degrees import acos, angle, asin, cos, polar, sin, wrap
 from coursework.figures import (
     Figure,
+    angle_mark,
     arc,
+    centre_line,
     circle,
     ground_pivot,
     line,
     link,
+    note,
     pin,
     rail,
     rotation_arrow,
@@ -166,14 +169,24 @@ def piston_accelerates_visibly(a_C, r2):
     return abs(a_C) > 0.15 * r2
 
 
+def _clearest(*directions):
+    """The direction, by steps of 15 degrees, that is farthest from all of these."""
+    return max(range(0, 360, 15), key=lambda way: min(abs(wrap(way - taken)) for taken in directions))
+
+
 def figure(A, B, C, r1, theta1, r2, omega2):
     O, D = 0j, polar(r1, theta1)
     to_O = angle(O - A)
     corner = wrap(angle(B - A) - to_O)
-    ahead = angle(A) + 90
+    turning = _clearest(
+        0.5 * theta1, 0, theta1, angle(A), angle(B), angle(A + 0.5 * r2 * polar(1, angle(B - A)))
+    )
+    half_turn = 25 if omega2 > 0 else -25
+    around = max(1.5 * r2, 0.4 * r1)
+    marks = (angle_mark(O, 0, theta1, r"\theta_1", radius=around),) if theta1 else ()
     return Figure(
         circle(O, r2, dashed=True),
-        rotation_arrow(O, 1.3 * r2, ahead, ahead + (50 if omega2 > 0 else -50), label=r"\omega_2"),
+        rotation_arrow(O, 1.3 * r2, turning - half_turn, turning + half_turn, label=r"\omega_2"),
         rail(C - 2.2 * r2, C + 2.2 * r2),
         line(O, D, dashed=True, label="r_1"),
         link(O, A, label="r_2"),
@@ -181,6 +194,9 @@ def figure(A, B, C, r1, theta1, r2, omega2):
         link(D, B, label="r_4"),
         link(B, C, label="r_5"),
         arc(A, 0.25 * r2, to_O, to_O + corner),
+        centre_line(O, 1.4 * around, label="x"),
+        *marks,
+        note(C + 1.8 * r2, "y=h"),
         slider(C, 0, label="C"),
         ground_pivot(O, "O"),
         ground_pivot(D, "D"),

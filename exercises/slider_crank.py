@@ -33,21 +33,23 @@ def largest_offset(r2):
 
 
 def velocity_scale(r2, omega2):
-    """So that the velocity of A is 32 to 80 mm long on paper."""
-    return _round_scale(r2 * abs(omega2) / 80)
+    """So that the velocity of A is 40 to 100 mm long on paper."""
+    return _round_scale(r2 * abs(omega2) / 100)
 
 
 def acceleration_scale(r2, omega2):
-    """So that the acceleration of A is 32 to 80 mm long on paper."""
-    return _round_scale(r2 * omega2**2 / 80)
+    """So that the acceleration of A is 40 to 100 mm long on paper."""
+    return _round_scale(r2 * omega2**2 / 100)
 
 
 def _round_scale(least):
     """The first of 1, 2, 5, 10, 20, 50, … that is not below."""
-    decade = 10.0 ** np.floor(np.log10(least) + 1e-12)
-    return decade * np.select(
-        [least <= 1.0001 * decade, least <= 2 * decade, least <= 5 * decade], [1, 2, 5], 10
-    )
+    decade = 10.0 ** np.ceil(np.log10(np.maximum(least, 1.0)))
+    return decade * np.select([5 * least <= decade, 2 * least <= decade], [0.2, 0.5], 1.0)
+
+
+def crank_turns(omega2):
+    return omega2 != 0
 
 
 def offset_is_none_or_visible(e, r2):
@@ -72,6 +74,30 @@ def rod_accelerates_visibly(accelerations, r2, r3):
 
 def piston_accelerates_visibly(accelerations, r2):
     return abs(accelerations[1]) > 0.15 * r2
+
+
+def _told_apart(wrong, right, paper):
+    """Whether a mistake moves a value by two tolerances and more, or not at all: computed, and drawn."""
+    computed = abs(wrong - right) / abs(0.01 * right)
+    drawn = paper * abs(abs(wrong) - abs(right)) / np.maximum(1.0, 0.02 * paper * abs(right))
+    return ((computed > 2) | (computed < 0.25)) & ((drawn > 2) | (drawn < 0.25))
+
+
+def inclination_of_the_rod_tells(rates, accelerations, rod, r2, r3, theta2, omega2, ka):
+    """A rod that falls where it should rise has another acceleration, and so has the piston."""
+    omega3, (alpha3, r1_ddot) = rates[0], accelerations
+    wrong = (r2 * sin(theta2) - omega3**2 * rod.imag) / rod.real
+    of_piston = -r2 * cos(theta2) + wrong * rod.imag - omega3**2 * rod.real
+    paper = omega2**2 / ka
+    return _told_apart(wrong * r3, alpha3 * r3, paper) & _told_apart(of_piston, r1_ddot, paper)
+
+
+def rotation_of_the_rod_tells(rates, accelerations, rod, r2, theta2, omega2, kv, ka):
+    """In the velocity of the piston and, by the normal term, in its acceleration."""
+    omega3, r1_dot = rates
+    without = accelerations[1] + omega3**2 * rod.real
+    in_velocity = _told_apart(-r2 * sin(theta2), r1_dot, abs(omega2) / kv)
+    return in_velocity & _told_apart(without, accelerations[1], omega2**2 / ka)
 
 
 def asks_drawing(alpha2):
@@ -105,22 +131,25 @@ def _drawn_length(quantity):
 EXERCISE = Exercise(
     given={
         "r2": drawn(20, 100, step=5, unit="mm"),
-        "r3": drawn(lambda r2: 2.2 * r2, lambda r2: 5 * r2, step=5, unit="mm", positive=True),
+        "r3": drawn(lambda r2: 2.2 * r2, lambda r2: 4 * r2, step=5, unit="mm", positive=True),
         "e": drawn(lambda r2: -largest_offset(r2), largest_offset, step=5, unit="mm", default=0),
         "theta2": drawn(-175, 180, step=5, unit="deg"),
-        "omega2": drawn(-150, 150, step=5, unit="rad/s", nonzero=True),
+        "omega2": drawn(-150, 150, step=5, unit="rad/s"),
         "alpha2": fixed(0, unit="rad/s^2"),
         "kv": drawn(velocity_scale, velocity_scale, unit="mm/s/mm", positive=True),
         "ka": drawn(acceleration_scale, acceleration_scale, unit="mm/s^2/mm", positive=True),
     },
     helpers=(rod, rates, accelerations),
     keep=(
+        crank_turns,
         offset_is_none_or_visible,
         rod_leans_visibly,
         rod_turns_visibly,
         piston_moves_visibly,
         rod_accelerates_visibly,
         piston_accelerates_visibly,
+        inclination_of_the_rod_tells,
+        rotation_of_the_rod_tells,
     ),
     parts=(
         Part("theta3", unit="deg", kind="angle", points=1),

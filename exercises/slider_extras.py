@@ -121,7 +121,7 @@ def figure(pin_A, pin_B, pin_P, r1, theta2):
     return Figure(
         rail(pin_P - x, pin_P + x),
         line(D, O, dashed=True, label="r_1"),
-        line(D, pin_P - x, dashed=True),
+        line(D, pin_P, dashed=True, label="r_6"),
         link(O, pin_A, label="r_2"),
         link(pin_A, pin_B, label="r_3"),
         link(D, pin_B, label="r_4"),

@@ -1,7 +1,7 @@
 """Slotted mechanism: where is the block on its guide, and how does the guide turn? (chapter 3, exercise 1)."""
 
 from coursework.degrees import angle, cos, polar, sin
-from coursework.figures import Figure, angle_mark, ground_pivot, line, link, slider, slot_link
+from coursework.figures import Figure, angle_mark, ground_pivot, line, link, note, slider, slot_link
 from coursework.model import Driver, Exercise, Part, drawn, fixed
 
 
@@ -47,13 +47,14 @@ def figure(arm, r1, theta1, r2, theta2):
     O4, O2 = 0, polar(r1, theta1)
     beyond = arm / abs(arm) * (r1 + r2) * 1.1
     return Figure(
-        slot_link(O4, beyond, label="4"),
-        line(O4, O2, dashed=True),
+        slot_link(O4, beyond),
+        line(O4, O2, dashed=True, label="r_1"),
         link(O2, arm, label="r_2"),
         slider(arm, angle(arm), label="A"),
         ground_pivot(O4, "O_4"),
         ground_pivot(O2, "O_2"),
         line(O2, O2 + 0.6 * r2, dashed=True),
+        note(1.07 * beyond, "4"),
         angle_mark(O2, 0, theta2, r"\theta_2"),
     )
 
@@ -88,6 +89,12 @@ EXERCISE = Exercise(
         Part("alpha4", unit="rad/s^2", points=1),
     ),
     figure=figure,
-    symbols={"a_radial": "a_r", "a_centripetal": "a_n", "a_tangential": "a_t", "a_coriolis": "a_c"},
+    symbols={
+        "swing": r"\Delta\theta_4",
+        "a_radial": "a_r",
+        "a_centripetal": "a_n",
+        "a_tangential": "a_t",
+        "a_coriolis": "a_c",
+    },
     driver=Driver("theta2", "omega2", "alpha2", output="omega4"),
 )

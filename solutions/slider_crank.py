@@ -5,17 +5,20 @@ taken through the two lengths by which the crank clears its turn, so that no dif
 equal lengths appears where the rod is hardly longer than the crank.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import CannotAssemble
-from coursework.figures import Figure, ground_pivot, link, note, pin, point, rail, slider, vector
+from coursework.figures import Figure, ground_pivot, link, pin, point, rail, slider, vector
 from coursework.kinematics.margins import exact_sum
 from coursework.solution import formula, mistake
 
 UNITS = {"p": "mm", "q": "mm"}
 
 
+@formula(r"<e> - <r2> \sin <theta2>")
 def p(e, r2, theta2):
     """Height of B above A: r3 sin theta3."""
     return e - r2 * sin(theta2)
@@ -150,17 +153,37 @@ def multiplied_by_the_scale(kv, ka):
     return 1 / kv, 1 / ka
 
 
-def figure(r2, r3, e, theta2, omega2, alpha2, r1, theta3, omega3, r1_dot, alpha3, r1_ddot):
+def figure(r2, e, theta2, omega2, alpha2, r3, theta3, omega3, r1_dot, alpha3, r1_ddot):
     """The linkage, and under it the two polygons, each at a scale of its own."""
     A, AB = polar(r2, theta2), polar(r3, theta3)
-    B, half_rail = A + AB, 0.5 * r2
-    polygons = (
-        _polygon(
-            1j * omega2 * A,
-            (1j * omega3 * AB, ("a", "b"), ("V_A", "V_{BA}", "V_B")),
-        ),
+    B, half_rail = A + AB, 0.3 * r2
+    left, right = min(A.real, 0.0), B.real + half_rail
+    width = right - left
+    under = complex(left, min(A.imag, e, 0.0) - 0.12 * width)
+    a_A = (1j * alpha2 - omega2**2) * A
+    velocities = (0j, 1j * omega2 * A, complex(r1_dot))
+    accelerations = (0j, a_A, a_A - omega3**2 * AB, complex(r1_ddot))
+    return Figure(
+        rail(B - half_rail, B + half_rail),
+        link(0, A, label="r_2"),
+        link(A, B, label="r_3"),
+        slider(B),
+        ground_pivot(0, "O"),
+        pin(A, "A"),
+        pin(B, "B"),
+        *_polygon(velocities, ("p_v", "a", "b"), under, width),
+        *_polygon(accelerations, ("p_a", "a", "b'", "b"), under + 0.55 * width, width),
+        paper_mm=(108, 54),
     )
-    return Figure(rail(B - half_rail, B + half_rail), link(0, A), link(A, B), slider(B), ground_pivot(0, "O"), pin(A, "A"), pin(B, "B"))
+
+
+def _polygon(corners, names, top_left, width):
+    """Arrows from corner to corner and from the first, the pole, to the last; under half of the linkage."""
+    x, y = [z.real for z in corners], [z.imag for z in corners]
+    scale = width / max((max(x) - min(x)) / 0.45, (max(y) - min(y)) / 0.35)
+    at = [top_left + scale * (z - complex(min(x), max(y))) for z in corners]
+    sides = [vector(p, q - p) for p, q in pairwise(at)]
+    return (*sides, vector(at[0], at[-1] - at[0]), *map(point, at, names))
 
 
 def residual(r2, r3, e, theta2, omega2, alpha2, theta3, r1, omega3, r1_dot, alpha3, r1_ddot):
@@ -178,4 +201,47 @@ def residual(r2, r3, e, theta2, omega2, alpha2, theta3, r1, omega3, r1_dot, alph
     )
 
 
-KNOWN = ()
+_ROOT3 = 3**0.5
+
+KNOWN = (
+    # Crank upright: a 3-4-5 triangle, the rod in translation at this instant.
+    (
+        {"r2": 30, "r3": 50, "theta2": 90, "omega2": 8, "kv": 4, "ka": 40},
+        {
+            "theta3": "-36.8699", "r1": 40, "omega3": 0, "r1_dot": -240, "alpha3": 48, "r1_ddot": 1440,
+            "pv_a": 60, "pv_b": 60, "ab": 0, "pa_a": 48, "ab_n": 0, "bb_t": 60, "pa_b": 36,
+        },
+    ),
+    # Outer dead centre: crank and rod in line turn opposite ways.
+    (
+        {"r2": 40, "r3": 120, "theta2": 0, "omega2": -6},
+        {"theta3": 0, "r1": 160, "omega3": 2, "r1_dot": 0, "alpha3": 0, "r1_ddot": -1920},
+    ),
+    # Inner dead centre.
+    (
+        {"r2": 40, "r3": 120, "theta2": 180, "omega2": 6},
+        {"theta3": 0, "r1": 80, "omega3": 2, "r1_dot": 0, "alpha3": 0, "r1_ddot": 960},
+    ),
+    # Rod and crank equal: an isosceles triangle, r1 = 2 r2 cos theta2.
+    (
+        {"r2": 100, "r3": 100, "theta2": 60, "omega2": 5},
+        {
+            "theta3": -60, "r1": 100, "omega3": -5, "r1_dot": -500 * _ROOT3, "alpha3": 0, "r1_ddot": -2500,
+        },
+    ),
+    # A is 10 above O and the line 20 below: the rod falls by 30, a 3-4-5 triangle again.
+    (
+        {"r2": 20, "r3": 50, "e": -20, "theta2": 30, "omega2": 4, "kv": 2, "ka": 10},
+        {
+            "theta3": "-36.8699", "r1": 40 + 10 * _ROOT3, "omega3": -_ROOT3, "r1_dot": -40 - 30 * _ROOT3,
+            "alpha3": 1.75, "r1_ddot": -160 * _ROOT3 - 67.5,
+            "pv_a": 40, "pv_b": 20 + 15 * _ROOT3, "ab": 25 * _ROOT3, "pa_a": 32, "ab_n": 15, "bb_t": 8.75,
+            "pa_b": 16 * _ROOT3 + 6.75,
+        },
+    ),
+    # The same place, the crank starting from rest.
+    (
+        {"r2": 20, "r3": 50, "e": -20, "theta2": 30, "omega2": 0, "alpha2": 8},
+        {"omega3": 0, "r1_dot": 0, "alpha3": -2 * _ROOT3, "r1_ddot": -80 - 60 * _ROOT3},
+    ),
+)  # fmt: skip

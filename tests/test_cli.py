@@ -279,6 +279,68 @@ def test_notebooks_come_back_filled(built, cli, tmp_path):
     assert int(summary["Émilie Lefèvre"]["missing"]) > 0
 
 
+def test_what_no_font_draws_and_what_no_file_name_holds_costs_nothing(cli, tmp_path):
+    out = tmp_path / "out"
+    (tmp_path / "class.csv").write_text("student\nZoe\nZoë\nZoe 2\n王小明\n" + "x" * 300 + "\ncon\n", "utf-8")
+    options = ["--roster", tmp_path / "class.csv", "--out", out]
+    assert cli("build", "slotted_mechanism", *options)[0] == 0
+    stems = {p.name.partition(".")[0] for p in (out / "handouts" / "slotted_mechanism").iterdir()}
+    assert len(stems) == 6
+    assert "con" not in stems
+    assert max(map(len, stems)) <= 60
+    rows = filled(out)
+    answers = ["\N{GRINNING FACE}", "a\x01b", '=HYPERLINK("http://x")', "1\r2", "漢字", "**$x$**"]
+    for row, answer in zip(rows, answers, strict=False):
+        row["answer"] = answer
+    sheets = [
+        {**{c: r[c] for c in ("student", "exercise", "seed")}, "answers": {r["part"]: r["answer"]}}
+        for r in rows
+    ]
+    (tmp_path / "a.json").write_text(json.dumps(sheets), "utf-8")
+    assert cli("grade", tmp_path / "a.json", "--issued", out / "issued.json", "--out", tmp_path / "m")[0] == 1
+    marks = table(tmp_path / "m" / "marks.csv")
+    assert len(marks) == len(rows)
+    assert [m["answer"] for m in marks[:6]] == [*answers[:2], "'" + answers[2], *answers[3:]]
+    # Each feedback sheet is called as its student's handout is.
+    assert {p.stem for p in (tmp_path / "m" / "feedback").iterdir()} == stems
+
+
+def test_a_build_that_fails_leaves_what_was_there(built, cli, monkeypatch):
+    before = tree(built)
+    from coursework.errors import BadStatement
+    from coursework.rendering import Renderer
+
+    def fails(self, handout, practice=False):
+        raise BadStatement("no")
+
+    monkeypatch.setattr(Renderer, "notebook", fails)
+    assert cli("build", "slotted_mechanism", "--variants", 2, "--out", built, "--overwrite")[0] == 2
+    assert tree(built) == before
+
+
+def test_a_notebook_that_was_nobodys_is_marked_by_the_name_in_it_or_its_files(cli, tmp_path):
+    out = tmp_path / "out"
+    assert (
+        cli(
+            "build", "slotted_mechanism", "--variants", 2, "--formats", "ipynb", "--lang", "en", "--out", out
+        )[0]
+        == 0
+    )
+    back = tmp_path / "back"
+    back.mkdir()
+    for number, path in enumerate(sorted((out / "handouts" / "slotted_mechanism").iterdir())):
+        text = path.read_text("utf-8")
+        if number == 0:
+            text = text.replace('\\"student\\": \\"\\"', '\\"student\\": \\"Ann\\"')
+        (back / f"returned-{number}.ipynb").write_text(text, "utf-8")
+    status, _, err = cli(
+        "grade", back, "--issued", out / "issued.json", "--out", tmp_path / "m", "--no-feedback"
+    )
+    assert status == 0
+    assert "file's name stands for it" in err
+    assert [s["student"] for s in table(tmp_path / "m" / "summary.csv")] == ["Ann", "returned-1"]
+
+
 def test_without_a_roster_any_name_is_accepted(cli, tmp_path):
     out = tmp_path / "out"
     assert (

@@ -96,6 +96,11 @@ def test_a_step_must_be_a_decimal():
         values("x", exercise_of({"x": ranged(0, 1, step=1 / 3)}), 1)
 
 
+def test_a_step_too_fine_is_told():
+    with pytest.raises(BadCourse, match="make the step coarser"):
+        values("x", exercise_of({"x": ranged(1, 300, step=1e-8)}), 1)
+
+
 def never(x):
     return x > 1000
 

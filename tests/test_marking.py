@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from coursework.errors import NoSolution, UnknownName
+from coursework.errors import NoSolution, UnknownName, WrongValue
 from coursework.marking import distance
 from coursework.model import Part
 
@@ -71,6 +71,12 @@ def test_what_is_not_right_has_its_own_verdict(slotted, answer, expected):
     mark = slotted.grade({"rA": answer})["rA"]
     assert mark.verdict == expected
     assert mark.points == 0
+
+
+def test_answers_that_are_no_answers_are_refused(slotted):
+    for nothing in (None, ["3"], "3"):
+        with pytest.raises(WrongValue, match="by part"):
+            slotted.grade(nothing)
 
 
 def test_the_original_text_is_always_kept(slotted):
@@ -206,7 +212,7 @@ def test_any_point_of_the_line_is_right_and_no_other():
 
 def test_any_nonzero_multiple_of_a_direction_is_right():
     part, reference = Part("d", kind="direction"), np.array([1.0, 0.0, 1.5])
-    for multiple in (1, -1, 1e-6, 250):
+    for multiple in (1, -1, 1e-6, 250, 1e200, 1e-200):
         assert distance(part, tuple(multiple * reference), reference) <= 1
     assert distance(part, (0.0, 0.0, 0.0), reference) > 1
     assert distance(part, (1.0, 0.0, 1.0), reference) > 1

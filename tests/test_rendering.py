@@ -467,7 +467,8 @@ def test_one_cell_of_a_notebook_holds_the_answers_as_a_literal(lang):
     (tagged,) = [cell for cell in book["cells"] if "answers" in cell["metadata"].get("tags", ())]
     (statement,) = ast.parse("".join(tagged["source"])).body
     assert isinstance(statement, ast.Assign)
-    assert ast.literal_eval(statement.value) == {question.id: "" for question in sheet.questions}
+    nobodys = {} if sheet.student else {"student": ""}
+    assert ast.literal_eval(statement.value) == nobodys | {question.id: "" for question in sheet.questions}
 
 
 @every_language
@@ -490,7 +491,8 @@ def test_only_a_practice_notebook_checks_answers(lang):
     plain = RENDERER.notebook(handout(lang))
     assert "grade" not in plain
     assert "import" not in "".join(cells(json.loads(plain), "code"))
-    assert "grade(answers)" in RENDERER.notebook(handout(lang), practice=True)
+    assert "variant.grade({part:" in RENDERER.notebook(handout(lang), practice=True)
+    assert "variant.grade(answers)" in RENDERER.notebook(handout(lang, student="Zoé"), practice=True)
 
 
 @every_language

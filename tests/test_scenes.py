@@ -31,7 +31,11 @@ def test_without_effects_a_scene_shows_positions_alone(course):
         (("position",), {"rA", "theta4"}, {"omega4", "rA_dot", "alpha4"}),
         (("velocity",), {"rA_dot", "omega4"}, {"alpha4", "rA_ddot", "a_coriolis"}),
         (("coriolis",), {"a_coriolis"}, {"alpha4", "rA_ddot"}),
-        (("position", "acceleration"), {"rA", "theta4", "rA_ddot", "alpha4", "a_centripetal", "a_coriolis"}, set()),
+        (
+            ("position", "acceleration"),
+            {"rA", "theta4", "rA_ddot", "alpha4", "a_centripetal", "a_coriolis"},
+            set(),
+        ),
     ],
 )
 def test_a_scene_that_calls_for_less_runs_less(course, effects, shown, absent):
@@ -81,7 +85,16 @@ def test_misuse_is_told(course):
 
 
 def test_the_command_writes_table_and_plot(tmp_path, capsys):
-    arguments = ["simulate", "slotted_mechanism", "--effects", "velocity", "--set", "r1=0.2286 m", "--out", str(tmp_path)]
+    arguments = [
+        "simulate",
+        "slotted_mechanism",
+        "--effects",
+        "velocity",
+        "--set",
+        "r1=0.2286 m",
+        "--out",
+        str(tmp_path),
+    ]
     assert run([*arguments, "--steps", "24"]) == 0
     with (tmp_path / "slotted_mechanism-cycle.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))

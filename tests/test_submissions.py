@@ -201,3 +201,54 @@ def test_folders_are_walked_in_name_order_and_strangers_are_reported(tmp_path):
         True,
         True,
     ]
+
+
+@given(st.lists(st.text("ab1,\"° '", max_size=12), min_size=1, max_size=8))
+@settings(max_examples=200)
+def test_stray_quotation_marks_lose_no_row(tmp_path_factory, answers):
+    """Lines written without any quoting: each line with the right number of cells stays its own row."""
+    import re
+
+    path = tmp_path_factory.mktemp("quotes") / "a.csv"
+    lines = [f"s{i};x;{i};rA;{a.replace(';', '')}" for i, a in enumerate(answers)]
+    path.write_text("student;exercise;seed;part;answer\n" + "\n".join(lines) + "\n", "utf-8")
+    rows = [r for r in read_file(path) if isinstance(r, Row)]
+    assert [r.student for r in rows] == [f"s{i}" for i in range(len(answers))]
+    for row, answer in zip(rows, answers, strict=True):
+        if not re.match(r'\s*"', answer):
+            assert row.answer == answer
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        '{"student": "A", "exercise": "x", "seed": 1, "answers": {"rA": ' + "9" * 5000 + "}}",
+        '{"student": "A", "exercise": "x", "seed": 1, "answers": {"rA": "\\ud800"}}',
+        '{"student": "\\ud800", "exercise": "x", "seed": 1, "answers": {"rA": "1"}}',
+    ],
+)
+def test_absurd_numbers_and_half_characters_are_texts(tmp_path, text):
+    rows, rejected = read(tmp_path, "a.json", text)
+    assert len(rows) == 1
+    assert rejected == []
+    (rows[0].student + str(rows[0].answer)).encode("utf-8")
+
+
+def test_a_hexadecimal_monster_in_a_notebook_is_a_text(tmp_path):
+    rows, _ = read(tmp_path, "a.ipynb", notebook("answers = {'rA': 0x" + "F" * 5000 + "}"))
+    assert isinstance(rows[0].answer, str)
+
+
+def test_an_answer_given_twice_comes_out_twice(tmp_path):
+    rows, _ = read(
+        tmp_path, "a.json", '{"student": "A", "exercise": "x", "seed": 1, "answers": {"rA": "1", "rA": "2"}}'
+    )
+    assert [r.answer for r in rows] == ["1", "2"]
+    rows, _ = read(tmp_path, "a.ipynb", notebook("answers = {'rA': '1', 'rA': '2'}"))
+    assert [r.answer for r in rows] == ["1", "2"]
+
+
+def test_a_file_too_large_is_told(tmp_path, monkeypatch):
+    monkeypatch.setattr("coursework.submissions.MAX_BYTES", 10)
+    _, rejected = read(tmp_path, "a.csv", HEADER)
+    assert "limit" in rejected[0].reason

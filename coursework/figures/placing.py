@@ -18,6 +18,7 @@ _CLEAR = 0.45  #: least white between a label and a line, mm
 _AIRY = 0.8  #: the white a label prefers
 _APART = 0.5  #: least white between two labels, mm
 _LEADER = 4.5  #: a label farther than this from what it names gets a thin line to it, mm
+_AT_ARC = 3.0  #: the same for an angle, from the middle of its arc, mm
 _STEPS = (0.0, 0.5, 1.0, 1.7, 2.5, 3.5, 5.0, 7.0, 9.5, 12.5, 16.0, 20.0, 26.0, 34.0, 45.0, 60.0)
 INSIDE, NAMES, ANGLES, SIDES = range(4)  #: ranks of labels: those with least choice first
 _FRACTIONS = (0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75)
@@ -209,12 +210,15 @@ def _leader(wish: Wish, center: complex, half: complex) -> tuple[complex, comple
     """A thin line from the anchor to the box, when the label is far from what it names."""
     if wish.along and distance(center, *wish.along) <= _support(half, wish.toward) + _LEADER:
         return None
-    way = (center - wish.anchor) / (abs(center - wish.anchor) or 1.0)
-    gap = abs(center - wish.anchor) - _support(half, way)
-    if gap <= wish.start + (_LEADER if wish.rank != ANGLES else _LEADER - 1.5):
+    # An angle is named at its arc: its label may lie on any side of the corner.
+    foot, start, near = (
+        (wish.source, 0.0, _AT_ARC) if wish.rank == ANGLES else (wish.anchor, wish.start, _LEADER)
+    )
+    way = (center - foot) / (abs(center - foot) or 1.0)
+    if abs(center - foot) - _support(half, way) <= start + near:
         return None
     edge = min(half.real / (abs(way.real) or 1e-9), half.imag / (abs(way.imag) or 1e-9))
-    return wish.anchor + way * wish.start, center - way * (edge + _APART)
+    return foot + way * start, center - way * (edge + _APART)
 
 
 def _outside(wish: Wish, text: Text, obstacles: Obstacles) -> Label:

@@ -64,14 +64,14 @@ def half_angle(angle: Any) -> tuple[Any, Any]:
     return np.cos(half), np.sin(half)
 
 
-def half_squares(angle: Any) -> tuple[Any, Any, Any]:
-    """Squares of the cosine and sine of half the angle, and the sine: from one tangent when given radians."""
+def half_products(angle: Any) -> tuple[Any, Any, Any]:
+    """Of half the angle: cosine squared, sine squared, sine times cosine. From one tangent when given radians."""
     if isinstance(angle, Heading):
-        return angle.half_cos**2, angle.half_sin**2, angle.sin
-    tangent = np.tan(np.multiply(angle, 0.5))
-    cos_squared = 1 / (1 + tangent * tangent)
-    sine = tangent * cos_squared
-    return cos_squared, sine * tangent, 2 * sine
+        return angle.half_cos**2, angle.half_sin**2, angle.sin / 2
+    tangent = np.tan(angle * 0.5)
+    squared = tangent * tangent
+    cos_squared = 1 / (1 + squared)
+    return cos_squared, cos_squared * squared, cos_squared * tangent
 
 
 def _halves(abs_cos: Any, sin: Any) -> tuple[Any, Any]:

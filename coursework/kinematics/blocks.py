@@ -11,6 +11,18 @@ import numpy as np
 BLOCK = 8192  #: configurations computed together: about twenty arrays of 64 kB live at a time
 
 
+def _keep_freed_memory() -> None:
+    """Let the C library keep the memory of temporaries instead of handing it back after each of them.
+
+    Otherwise every temporary of a block is paged in anew, at several times the cost of filling it. Freeing one
+    large piece raises the threshold above which memory is handed back (dynamic in glibc, harmless elsewhere).
+    """
+    np.empty(1 << 19)
+
+
+_keep_freed_memory()
+
+
 def in_blocks(kernel: Callable[..., Sequence[np.ndarray]], *inputs: Any) -> tuple[np.ndarray, ...]:
     """``kernel(*inputs)``, evaluated block by block over the broadcast shape of the inputs.
 

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.errors import Undefined, WrongValue
-from coursework.kinematics.angles import Heading, full_angle, half_angle, half_squares
+from coursework.kinematics.angles import Heading, full_angle, half_angle, half_products
 from coursework.kinematics.blocks import in_blocks
 from coursework.kinematics.dyads import out_of_reach, side_of
 from coursework.kinematics.margins import grashof_margins
@@ -63,7 +63,7 @@ class _Turn(NamedTuple):
 
     cos_squared: Any
     sin_squared: Any
-    sine: Any
+    half_sine: Any  # sine of the crank angle, halved
     half_cos: Any = None
     half_sin: Any = None
 
@@ -214,7 +214,7 @@ class FourBar:
     def _failure(self, crank_angle: Any) -> Exception:
         """Why a scalar came out NaN."""
         turn, t = _turn(crank_angle), self._linkage
-        if not math.isfinite(turn.sine):
+        if not math.isfinite(turn.half_sine):
             return WrongValue(f"the crank angle is {crank_angle}, where a finite number is needed")
         m, stretch, fold = (float(x) for x in _reaches(t, turn))
         distance = math.ldexp(math.sqrt(m), int(self._exponent))
@@ -287,12 +287,12 @@ def _linkage(d: Any, a: Any, b: Any, c: Any, side: Any) -> _Linkage:
 
 
 def _turn(angle: Any) -> _Turn:
-    return _Turn(*half_squares(angle))
+    return _Turn(*half_products(angle))
 
 
 def _signed_turn(angle: Any) -> _Turn:
     cos, sin = half_angle(angle)
-    return _Turn(cos * cos, sin * sin, 2 * cos * sin, cos, sin)
+    return _Turn(cos * cos, sin * sin, cos * sin, cos, sin)
 
 
 def _reaches(t: _Linkage, turn: _Turn) -> tuple[Any, Any, Any]:
@@ -319,7 +319,7 @@ def _signed_roots(t: _Linkage, turn: _Turn, stretch: Any, fold: Any) -> tuple[An
 
 def _line(t: _Linkage, turn: _Turn, m: Any) -> tuple[Any, Any]:
     """The vector A -> D. NaN where A lies on D: coupler and rocker have no direction there."""
-    x, y = t.gap + (2 * t.crank) * turn.sin_squared, -t.crank * turn.sine
+    x, y = t.gap + (2 * t.crank) * turn.sin_squared, (-2 * t.crank) * turn.half_sine
     return (np.where(m == 0, np.nan, x) if np.any(t.gap == 0) else x), y
 
 
@@ -401,7 +401,7 @@ def _derivatives(
     along = share * rho[0]
     found = (common + along * rocker, common + along * coupler)
     if order >= 2:
-        swing = share * turn.sine
+        swing = (2 * share) * turn.half_sine
         sides = (2 * a_d) * t.sides
         excess = (t.frame - sides * rho[0]) / m
         common = swing * excess
@@ -424,7 +424,11 @@ def _opening(t: _Linkage, turn: _Turn, stretch: Any, fold: Any, closing: Any, or
     """
     if turn.half_cos is None:
         inverse = closing / (stretch * fold)
-        rho, cos_part, sin_part = turn.sine * inverse, turn.cos_squared * inverse, turn.sin_squared * inverse
+        rho, cos_part, sin_part = (
+            2 * turn.half_sine * inverse,
+            turn.cos_squared * inverse,
+            turn.sin_squared * inverse,
+        )
         of_stretch, of_fold = (t.stretched / stretch, t.folded / fold) if order >= 2 else (None, None)
     else:
         root_p, root_q = _signed_roots(t, turn, stretch, fold)

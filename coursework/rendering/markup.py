@@ -45,16 +45,32 @@ def _no_image(source: str) -> BadStatement:
 _TYPST_MARKS = re.compile(r"([\\`*_$#<>@~=+/\[\]{}\"'|-])")
 
 
+#: Scripts and signs that the typesetter's own fonts draw: Latin, Greek, Cyrillic, punctuation, mathematics.
+_UNDRAWN = re.compile(
+    "[^ -\u024f\u02b0-\u03ff\u0400-\u045f\u1e00-\u1eff\u2000-\u2040\u2070-\u209f\u20a0-\u20bf"
+    "\u2100-\u211e\u2126-\u214f\u2190-\u22ff\u2500-\u25ff\n\t]|[\x7f-\x9f]"
+)
+SUBSTITUTE = "\N{WHITE SQUARE}"  #: stands for a character that no font at hand draws
+
+
+def drawable(text: str) -> str:
+    """The text with a square for each character that a PDF sheet cannot draw."""
+    return _UNDRAWN.sub(SUBSTITUTE, text)
+
+
 def typst_text(text: str, lang: str) -> str:
     """Plain text as Typst markup that prints exactly these characters."""
-    escaped = _TYPST_MARKS.sub(r"\\\1", typeset(text, lang))
+    escaped = _TYPST_MARKS.sub(r"\\\1", typeset(drawable(text), lang))
     # A number with a dot at the head of a line would start a list; three dots would become one sign.
     return re.sub(r"(?<=[\d.])\.(?=\s|\.|$)", r"\\.", escaped)
 
 
 def typst_string(text: str) -> str:
     """A Typst string literal."""
-    return '"' + text.replace("\\", r"\\").replace('"', r"\"").replace("\n", r"\n") + '"'
+    return '"' + drawable(text).replace("\\", r"\\").replace('"', r"\"").replace("\n", r"\n") + '"'
+
+
+_WHOLE = 24  #: characters of a formula written out that a line of text does not cut
 
 
 def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
@@ -63,7 +79,8 @@ def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
     The semicolon ends the call: a parenthesis that follows it in the text is text.
     """
     call = "display-formula" if display else "formula"
-    return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}$);"
+    whole = ", whole: true" if not display and len(to_line(tex, lang)) <= _WHOLE else ""
+    return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${whole});"
 
 
 def to_typst_markup(markdown: str, lang: str) -> str:
@@ -137,9 +154,17 @@ def html_text(text: str, lang: str) -> str:
     return escape(typeset(text, lang))
 
 
+# A browser would send the mark that follows a formula to the next line.
+_MARK_AFTER_FORMULA = re.compile(
+    r'(<math display="inline"(?:(?!</math>).)*</math>)([\u00a0\u202f]?[,.;:!?)]+)', re.DOTALL
+)
+
+
 def to_html(markdown: str, lang: str) -> str:
     """Markdown as an HTML fragment; its headings stand below those of the page."""
-    return _html_reader(lang).render(markdown).strip()
+    return _MARK_AFTER_FORMULA.sub(
+        r'<span class="kept">\1\2</span>', _html_reader(lang).render(markdown).strip()
+    )
 
 
 def html_inline(markdown: str, lang: str) -> str:

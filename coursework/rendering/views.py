@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from coursework.handout import AnswerSheet, FeedbackSheet, Given, Handout, Question, Step
+from coursework.handout import AnswerSheet, FeedbackLine, FeedbackSheet, Given, Handout, Question, Step
 from coursework.language import localise, plain, words
 from coursework.rendering.formula_tree import tokens
 from coursework.rendering.formulas import quantity_formula, to_line
@@ -58,6 +58,17 @@ def points_number(points: float, lang: str) -> str:
 def verdict_word(verdict: str, lang: str) -> str:
     """A verdict in the sheet's language; what follows its colon names a mistake and is not shown."""
     return words(lang)["verdicts"][verdict.partition(":")[0]]
+
+
+def feedback_note(line: FeedbackLine, lang: str) -> str:
+    """What a line of feedback says beyond its verdict; a right or a missing answer needs no sentence."""
+    if line.verdict == "missing":
+        return ""
+    if line.verdict != "correct":
+        return line.says
+    usual = words(lang)["marking"]["correct"].rpartition("}")[2]
+    said, mark, more = line.says.partition(usual)
+    return more.strip() if mark else said
 
 
 def given_formula(given: Given) -> str:

@@ -1,0 +1,184 @@
+"""Four-bar linkage: positions, velocities and accelerations at one instant (Figures 18, 19 and 23)."""
+
+import numpy as np
+
+from coursework.degrees import cos, polar
+from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
+from coursework.kinematics.dyads import rrr, side_of
+from coursework.model import Exercise, Part, chosen, drawn
+
+
+def bars(r1, r2, r3, r4, theta2, mode):
+    """Vectors OA, AB and CB."""
+    A, C = polar(r2, theta2), r1 + 0j
+    B = rrr(A, C, r3, r4, side_of(mode))
+    return A, B - A, B - C
+
+
+def motion(bars, omega2, alpha2):
+    crank, coupler, rocker = bars
+    area = _cross(rocker, coupler)
+    omega3, omega4 = omega2 * _cross(crank, rocker) / area, omega2 * _cross(crank, coupler) / area
+    return omega3, omega4, *_accelerations(bars, omega2, alpha2, omega3, omega4)
+
+
+def _accelerations(bars, omega2, alpha2, omega3, omega4):
+    """alpha3 and alpha4 that go with these rates."""
+    crank, coupler, rocker = bars
+    along = (omega2**2 - 1j * alpha2) * crank + omega3**2 * coupler - omega4**2 * rocker
+    area = _cross(coupler, rocker)
+    return _dot(along, rocker) / area, _dot(along, coupler) / area
+
+
+def _cross(u, v):
+    return u.real * v.imag - u.imag * v.real
+
+
+def _dot(u, v):
+    return u.real * v.real + u.imag * v.imag
+
+
+def crank_turns(r1, r2, r3, r4):
+    """The crank is the shortest bar, and clears both of its aligned positions."""
+    return (r2 < np.minimum(np.minimum(r1, r3), r4)) & (abs(r3 - r4) < r1 - r2) & (r1 + r2 < r3 + r4)
+
+
+def transmission_angle_from_30_to_150(r1, r2, r3, r4):
+    """Its extremes are those of AC, by the law of cosines."""
+    around, slack = r3**2 + r4**2, 2 * r3 * r4 * cos(30)
+    return ((r1 - r2) ** 2 >= around - slack) & ((r1 + r2) ** 2 <= around + slack)
+
+
+def crank_off_the_frame(theta2):
+    """In line with it, coupler and rocker turn alike, and in both modes."""
+    return theta2 % 180 != 0
+
+
+def crank_turns_visibly(omega2):
+    return abs(omega2) >= 2
+
+
+def crank_accelerates(alpha2):
+    return alpha2 != 0
+
+
+def links_turn_visibly(motion, omega2):
+    return (abs(motion[0]) > 0.05 * abs(omega2)) & (abs(motion[1]) > 0.05 * abs(omega2))
+
+
+def links_accelerate_visibly(motion, omega2):
+    return (abs(motion[2]) > 0.03 * omega2**2) & (abs(motion[3]) > 0.03 * omega2**2)
+
+
+def _tells(wrong, right):
+    """Whether a mistake moves every answer by two tolerances of 1 % and more, or not at all."""
+    apart = [
+        abs(mistaken - value) / abs(0.01 * value)
+        for mistaken, value in zip(_answers(wrong), _answers(right), strict=True)
+    ]
+    return np.all([(gap > 2) | (gap < 0.25) for gap in apart], axis=0)
+
+
+def _answers(motion):
+    """What is asked, but for constant factors."""
+    omega3, omega4, alpha3, alpha4 = motion
+    return omega3, omega4, abs(omega3), abs(omega4), omega3**2, alpha3, alpha4, abs(alpha4 + 1j * omega4**2)
+
+
+def crank_acceleration_tells(motion, bars, omega2):
+    return _tells((*motion[:2], *_accelerations(bars, omega2, 0.0, *motion[:2])), motion)
+
+
+def normal_terms_tell(motion, omega2, alpha2):
+    omega3, omega4, *_ = motion
+    return _tells((omega3, omega4, omega3 / omega2 * alpha2, omega4 / omega2 * alpha2), motion)
+
+
+def exchange_of_the_rates_tells(motion, bars, omega2, alpha2):
+    exchanged = motion[1], motion[0]
+    return _tells((*exchanged, *_accelerations(bars, omega2, alpha2, *exchanged)), motion)
+
+
+def difference_of_the_angles_tells(motion, bars, omega2, alpha2):
+    """From their sum, in the sine that divides the rates."""
+    _, coupler, rocker = bars
+    factor = _cross(coupler, rocker) / _cross(coupler.conjugate(), rocker)
+    summed = motion[0] * factor, motion[1] * factor
+    return _tells((*summed, *_accelerations(bars, omega2, alpha2, *summed)), motion)
+
+
+def motion_of_other_mode(bars, r1, omega2, alpha2):
+    """B mirrored in the line AC."""
+    crank, coupler, _ = bars
+    line = r1 - crank
+    mirrored = line * (coupler / line).conjugate()
+    return motion((crank, mirrored, mirrored - line), omega2, alpha2)
+
+
+def mode_tells(motion, motion_of_other_mode):
+    return _tells(motion_of_other_mode, motion)
+
+
+def figure(bars, r1, r2, theta2):
+    O, A, C = 0j, bars[0], complex(r1)
+    B = A + bars[1]
+    return Figure(
+        line(O, C, dashed=True, label="r_1"),
+        link(O, A, label="r_2"),
+        link(A, B, label="r_3"),
+        link(C, B, label="r_4"),
+        ground_pivot(O, "O"),
+        ground_pivot(C, "C"),
+        pin(A, "A"),
+        pin(B, "B"),
+        angle_mark(O, 0, theta2, r"\theta_2"),
+    )
+
+
+EXERCISE = Exercise(
+    given={
+        "r1": drawn(120, 260, step=5, unit="mm"),
+        "r2": drawn(30, 90, step=5, unit="mm"),
+        "r3": drawn(120, 260, step=5, unit="mm"),
+        "r4": drawn(80, 200, step=5, unit="mm"),
+        "theta2": drawn(-175, 180, step=5, unit="deg"),
+        "omega2": drawn(-20, 20, unit="rad/s"),
+        "alpha2": drawn(-40, 40, unit="rad/s^2", default=0),
+        "mode": chosen("open", "crossed"),
+    },
+    helpers=(bars, motion, motion_of_other_mode),
+    keep=(
+        crank_turns,
+        transmission_angle_from_30_to_150,
+        crank_off_the_frame,
+        crank_turns_visibly,
+        crank_accelerates,
+        links_turn_visibly,
+        links_accelerate_visibly,
+        crank_acceleration_tells,
+        normal_terms_tell,
+        exchange_of_the_rates_tells,
+        difference_of_the_angles_tells,
+        mode_tells,
+    ),
+    parts=(
+        Part("theta3", unit="deg", kind="angle", points=2),
+        Part("theta4", unit="deg", kind="angle", points=1),
+        Part("omega3", unit="rad/s", points=1),
+        Part("omega4", unit="rad/s", points=1),
+        Part("alpha3", unit="rad/s^2", points=2),
+        Part("alpha4", unit="rad/s^2", points=2),
+        Part("v_B", unit="mm/s", points=1),
+        Part("a_B", unit="mm/s^2", points=1),
+        Part("v_BA", unit="mm/s", points=1),
+        Part("a_BA_n", unit="mm/s^2", points=1),
+        Part("a_BA_t", unit="mm/s^2", points=1),
+    ),
+    figure=figure,
+    symbols={
+        "v_B": "v_B",
+        "v_BA": "v_{BA}",
+        "a_BA_n": "a_{BA}^n",
+        "a_BA_t": "a_{BA}^t",
+    },
+)

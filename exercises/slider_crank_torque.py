@@ -1,0 +1,198 @@
+"""Slider-crank: what torque turns the crank, and what do its joints bear?"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.degrees import polar
+from coursework.figures import (
+    Figure,
+    angle_mark,
+    dimension,
+    ground_pivot,
+    line,
+    link,
+    pin,
+    point,
+    rail,
+    rotation_arrow,
+    slider,
+    vector,
+)
+from coursework.kinematics.dyads import rrp
+from coursework.model import Driver, Exercise, Part, drawn
+
+WEIGHT = 9.81j  #: N/kg, upwards: what a body at rest is held by
+
+
+class _Scene(NamedTuple):
+    """Vectors OA and AB in mm; what acts on piston and rod besides their joints, N and N*m."""
+
+    crank: Any
+    rod: Any
+    piston: Any
+    at_G: Any
+    moment: Any
+    on_crank: Any
+    friction: Any
+    s3: Any
+
+
+def rod(r2, r3, e, theta2):
+    """Vector AB."""
+    crank = polar(r2, theta2)
+    return rrp(crank, r3, e) - crank
+
+
+def scene(rod, r2, theta2, omega2, alpha2, s3, m3, J3, m4, J2, F, f):
+    crank = polar(r2, theta2)
+    omega3 = -omega2 * crank.real / rod.real
+    of_A = (1j * alpha2 - omega2**2) * crank
+    alpha3 = (omega3**2 * rod.imag - of_A.imag) / rod.real
+    of_B = of_A + (1j * alpha3 - omega3**2) * rod
+    of_G = (1 - s3) * of_A + s3 * of_B
+    speed = -omega2 * crank.imag - omega3 * rod.imag
+    return _Scene(
+        crank,
+        rod,
+        piston=F - m4 * (of_B.real / 1000 + WEIGHT),
+        at_G=-m3 * (of_G / 1000 + WEIGHT),
+        moment=-J3 * alpha3,
+        on_crank=-J2 * alpha2,
+        friction=f * np.sign(speed),
+        s3=s3,
+    )
+
+
+def _cross(u, v):
+    return u.real * v.imag - u.imag * v.real
+
+
+def _answers(scene):
+    """Torque, N_guide, R_A and R_B, along a first axis."""
+    push = _cross(scene.piston + scene.s3 * scene.at_G, scene.rod) - 1000 * scene.moment
+    guide = push / (scene.rod.real + np.sign(push) * scene.friction * scene.rod.imag)
+    at_B = scene.friction * abs(guide) - 1j * guide - scene.piston
+    at_A = at_B - scene.at_G
+    torque = _cross(scene.crank, at_A) / 1000 - scene.on_crank
+    return np.stack([torque, guide, abs(at_A), abs(at_B)])
+
+
+def answers(scene):
+    return _answers(scene)
+
+
+def _told_apart(right, wrong):
+    """Whether a mistake moves every answer by two tolerances and more, or not at all."""
+    moved = abs(wrong / right - 1)
+    return ((moved > 0.022) | (moved < 0.002)).all(axis=0)
+
+
+def load_is_visible(F):
+    return abs(F) >= 50
+
+
+def rod_leans_visibly(rod):
+    return abs(rod.imag) > 0.12 * abs(rod)
+
+
+def piston_moves_visibly(scene, rod):
+    crank_alone = -scene.crank.imag
+    return abs(crank_alone + rod.imag * scene.crank.real / rod.real) > 0.1 * abs(scene.crank)
+
+
+def answers_are_no_small_differences(answers, scene):
+    forces = abs(scene.piston) + abs(scene.at_G)
+    torque = abs(answers[0]) > 0.1 * (abs(scene.crank) * forces / 1000 + abs(scene.on_crank))
+    return torque & (abs(answers[1:]) > 0.1 * forces).all(axis=0)
+
+
+def friction_tells(answers, scene):
+    without, other_way = (_answers(scene._replace(friction=f)) for f in (0, -scene.friction))
+    return _told_apart(answers, without) & _told_apart(answers, other_way)
+
+
+def weight_of_the_rod_tells(answers, scene, m3):
+    return _told_apart(answers, _answers(scene._replace(at_G=scene.at_G + m3 * WEIGHT)))
+
+
+def inertia_of_the_rod_tells(answers, scene):
+    """In the torque and on the guide; less in the pins."""
+    return _told_apart(answers[:2], _answers(scene._replace(moment=0))[:2])
+
+
+def inertia_of_the_crank_tells(answers, scene):
+    return _told_apart(answers, _answers(scene._replace(on_crank=0)))
+
+
+def figure(rod, r2, e, theta2, omega2, s3, F):
+    O, A = 0j, polar(r2, theta2)
+    B, half_rail = A + rod, 0.5 * r2
+    behind, pull = theta2 + 180, 0.65 * r2
+    turn = 35 if omega2 > 0 else -35
+    to_B, aside = B + 0.4 * r2, B.real + 1.2 * r2
+    above = 1j * r2 if e >= 0 else -0.5j * r2
+    offset = (dimension(aside, B + 1.2 * r2, "e", offset=0),) if e else ()
+    return Figure(
+        rail(B - half_rail, B + half_rail),
+        line(O, aside + 0.2 * r2, dashed=True),
+        *offset,
+        link(O, A, label="r_2"),
+        link(A, B, label="r_3"),
+        slider(B),
+        vector(to_B, pull, "F") if F > 0 else vector(to_B + pull, -pull, "F"),
+        vector(to_B + 0.4 * r2 + above, -0.5j * r2, "g"),
+        ground_pivot(O, "O"),
+        pin(A, "A"),
+        pin(B, "B"),
+        point(A + s3 * rod, "G"),
+        angle_mark(O, 0, theta2, r"\theta_2"),
+        rotation_arrow(O, 0.6 * r2, behind - turn, behind + turn, label=r"\omega_2"),
+    )
+
+
+EXERCISE = Exercise(
+    given={
+        "r2": drawn(100, 250, step=5, unit="mm"),
+        "r3": drawn(lambda r2: 2.2 * r2, lambda r2: 3.5 * r2, step=5, unit="mm", positive=True),
+        "e": drawn(lambda r2: -0.5 * r2, lambda r2: 0.5 * r2, step=5, unit="mm", default=0),
+        "theta2": drawn(-175, 180, step=5, unit="deg"),
+        "omega2": drawn(4, 12, unit="rad/s", positive=False),
+        "alpha2": drawn(-60, 60, step=5, unit="rad/s^2", default=0),
+        "s3": drawn(0.3, 0.45, step=0.05),
+        "m3": drawn(8, 18, step=0.5, unit="kg"),
+        "J3": drawn(
+            lambda m3, r3: 0.1 * m3 * (r3 / 1000) ** 2,
+            lambda m3, r3: 0.16 * m3 * (r3 / 1000) ** 2,
+            step=0.01,
+            unit="kg*m^2",
+            positive=True,
+        ),
+        "m4": drawn(4, 12, step=0.5, unit="kg"),
+        "J2": drawn(0.1, 0.6, step=0.05, unit="kg*m^2"),
+        "F": drawn(-300, 300, step=10, unit="N"),
+        "f": drawn(0.15, 0.35, step=0.05),
+    },
+    helpers=(rod, scene, answers),
+    keep=(
+        load_is_visible,
+        rod_leans_visibly,
+        piston_moves_visibly,
+        answers_are_no_small_differences,
+        friction_tells,
+        weight_of_the_rod_tells,
+        inertia_of_the_rod_tells,
+        inertia_of_the_crank_tells,
+    ),
+    parts=(
+        Part("torque", unit="N*m", points=3),
+        Part("N_guide", unit="N", points=2),
+        Part("R_A", unit="N", points=1),
+        Part("R_B", unit="N", points=1),
+        Part("R_O", unit="N", points=1),
+    ),
+    effects=("load", "gravity", "inertia", "friction"),
+    figure=figure,
+    symbols={"torque": r"\Gamma", "N_guide": "N"},
+    driver=Driver("theta2", "omega2", "alpha2", effort="torque", output="r1_dot"),
+)

@@ -1,0 +1,433 @@
+"""Slider-crank: the crank's torque and the forces in the joints, from the effects that are called for.
+
+Each effect is a bundle of forces and moments on the bodies, inertia among them by d'Alembert's principle;
+their sum is balanced body by body from the piston back to the crank. Without effects nothing pulls.
+
+The guide bears on one side of the piston only, and friction follows the side. The force without friction
+tells the side; with friction it must not turn over, or the mechanism jams. Past f |tan theta3| = 1 the
+other side may balance too: it is not reached from a state without friction, and is left out.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.degrees import atan2, cos, sin, sqrt
+from coursework.errors import CannotAssemble, Undefined
+from coursework.kinematics.margins import exact_sum
+from coursework.solution import formula, mistake
+
+GRAVITY = 9.81  #: m/s^2, along -y
+
+UNITS = {
+    "p": "mm",
+    "q": "mm",
+    "theta3": "deg",
+    "r1": "mm",
+    "omega3": "rad/s",
+    "r1_dot": "mm/s",
+    "alpha3": "rad/s^2",
+    "r1_ddot": "mm/s^2",
+    "a_G_x": "mm/s^2",
+    "a_G_y": "mm/s^2",
+    "X4": "N",
+    "Y4": "N",
+    "X3": "N",
+    "Y3": "N",
+    "M2": "N*m",
+    "M_A": "N*m",
+    "friction_force": "N",
+    "R_B_x": "N",
+    "R_B_y": "N",
+    "R_A_x": "N",
+    "R_A_y": "N",
+}
+SYMBOLS = {"side": r"\sigma", "friction": "f_s", "friction_force": "T"}
+
+
+class _Loads(NamedTuple):
+    """What acts on the bodies besides the joints: forces X4, Y4 on the piston and X3, Y3 on the rod, in N;
+    moments M_A on the rod about A and M2 on the crank about O, in N*m."""
+
+    X4: Any = 0.0
+    Y4: Any = 0.0
+    X3: Any = 0.0
+    Y3: Any = 0.0
+    M_A: Any = 0.0
+    M2: Any = 0.0
+
+
+_NONE = _Loads()
+
+
+def p(e, r2, theta2):
+    """Height of B above A: r3 sin theta3."""
+    return e - r2 * sin(theta2)
+
+
+@formula(r"\sqrt{<r3>^2 - <p>^2}")
+def q(r2, r3, e, theta2):
+    """How far B lies to the right of A: r3 cos theta3, positive; by the two clearances of the crank."""
+    below = exact_sum(r3, -r2, e) + 2 * r2 * sin(45 - theta2 / 2) ** 2
+    above = exact_sum(r3, -r2, -e) + 2 * r2 * cos(45 - theta2 / 2) ** 2
+    if isinstance(below, float) and min(below, above) < 0:
+        raise CannotAssemble(
+            f"the linkage does not close: the piston's line is {abs(e - r2 * sin(theta2)):.6g} from the crank pin, "
+            f"but the rod reaches only {r3:.6g} (gap {-min(below, above):.3g})"
+        )
+    return sqrt(below * above)
+
+
+@formula(r"\arcsin \frac{<p>}{<r3>}")
+def theta3(p, q):
+    """Direction of AB, between -90 and 90 degrees."""
+    return atan2(p, q)
+
+
+@formula(r"<r2> \cos <theta2> + <q>")
+def r1(r2, theta2, q):
+    return r2 * cos(theta2) + q
+
+
+@formula(r"-\frac{<r2> \times <omega2> \times \cos <theta2>}{<q>}")
+def omega3(r2, omega2, theta2, q):
+    """The piston keeps to its line: no velocity across it."""
+    return -r2 * omega2 * cos(theta2) / q
+
+
+@formula(r"-<r2> \times <omega2> \times \sin <theta2> - <p> \times <omega3>")
+def r1_dot(r2, omega2, theta2, p, omega3):
+    """Velocity of the piston, positive to the right."""
+    return -r2 * omega2 * sin(theta2) - p * omega3
+
+
+@formula(
+    r"\frac{<r2> \times <omega2>^2 \times \sin <theta2> - <r2> \times <alpha2> \times \cos <theta2>"
+    r" + <p> \times <omega3>^2}{<q>}"
+)
+def alpha3(r2, omega2, alpha2, theta2, p, q, omega3):
+    """No acceleration across the line either."""
+    return (r2 * omega2**2 * sin(theta2) - r2 * alpha2 * cos(theta2) + p * omega3**2) / q
+
+
+@formula(
+    r"-<r2> \times <alpha2> \times \sin <theta2> - <r2> \times <omega2>^2 \times \cos <theta2>"
+    r" - <p> \times <alpha3> - <q> \times <omega3>^2"
+)
+def r1_ddot(r2, omega2, alpha2, theta2, p, q, omega3, alpha3):
+    """Acceleration of the piston, positive to the right."""
+    return -r2 * alpha2 * sin(theta2) - r2 * omega2**2 * cos(theta2) - p * alpha3 - q * omega3**2
+
+
+@formula(
+    r"-<r2> \times <alpha2> \times \sin <theta2> - <r2> \times <omega2>^2 \times \cos <theta2>"
+    r" - <s3> \times \left(<p> \times <alpha3> + <q> \times <omega3>^2\right)"
+)
+def a_G_x(r2, omega2, alpha2, theta2, s3, p, q, omega3, alpha3):
+    """Acceleration of A, and the share s3 of that of B about A."""
+    return -r2 * alpha2 * sin(theta2) - r2 * omega2**2 * cos(theta2) - s3 * (p * alpha3 + q * omega3**2)
+
+
+@formula(
+    r"<r2> \times <alpha2> \times \cos <theta2> - <r2> \times <omega2>^2 \times \sin <theta2>"
+    r" + <s3> \times \left(<q> \times <alpha3> - <p> \times <omega3>^2\right)"
+)
+def a_G_y(r2, omega2, alpha2, theta2, s3, p, q, omega3, alpha3):
+    return r2 * alpha2 * cos(theta2) - r2 * omega2**2 * sin(theta2) + s3 * (q * alpha3 - p * omega3**2)
+
+
+def load(F):
+    """The force on the piston."""
+    return _Loads(X4=F)
+
+
+def gravity(m3, m4, s3, q):
+    """The weights of rod and piston; that of the balanced crank passes through O."""
+    weight = -m3 * GRAVITY
+    return _Loads(Y4=-m4 * GRAVITY, Y3=weight, M_A=s3 * q * weight / 1000)
+
+
+def inertia(m3, J3, m4, J2, s3, p, q, r1_ddot, a_G_x, a_G_y, alpha3, alpha2):
+    """The forces and moments of inertia, opposed to the accelerations."""
+    X3, Y3 = -m3 * a_G_x / 1000, -m3 * a_G_y / 1000
+    return _Loads(
+        X4=-m4 * r1_ddot / 1000,
+        X3=X3,
+        Y3=Y3,
+        M_A=s3 * (q * Y3 - p * X3) / 1000 - J3 * alpha3,
+        M2=-J2 * alpha2,
+    )
+
+
+@formula(r"<f> \times \operatorname{sgn}\left(<r1_dot>\right)")
+def friction(f, r1_dot):
+    """The coefficient with the sign of the motion; a piston at rest is given no friction."""
+    return f * np.sign(r1_dot)
+
+
+def applied(inertia=_NONE, gravity=_NONE, load=_NONE):
+    """The effects called for, added up."""
+    return _Loads(*(a + b + c for a, b, c in zip(inertia, gravity, load, strict=True)))
+
+
+@formula(r"<F> - <m4> \times \frac{<r1_ddot>}{\num{1000}}")
+def X4(applied):
+    return applied.X4
+
+
+@formula(r"-<m4> \times \num{9.81}")
+def Y4(applied):
+    return applied.Y4
+
+
+@formula(r"-<m3> \times \frac{<a_G_x>}{\num{1000}}")
+def X3(applied):
+    return applied.X3
+
+
+@formula(r"-<m3> \times \left(\num{9.81} + \frac{<a_G_y>}{\num{1000}}\right)")
+def Y3(applied):
+    return applied.Y3
+
+
+@formula(r"-<J2> \times <alpha2>")
+def M2(applied):
+    return applied.M2
+
+
+@formula(
+    r"-\frac{<s3> \times <m3>}{\num{1000}} \times \left(<q> \times \left(\num{9.81} + \frac{<a_G_y>}{\num{1000}}\right)"
+    r" - <p> \times \frac{<a_G_x>}{\num{1000}}\right) - <J3> \times <alpha3>"
+)
+def M_A(applied):
+    """Moment about A of what acts on the rod, without its joints."""
+    return applied.M_A
+
+
+@formula(r"\operatorname{sgn}\left(<p> \times <X4> - <q> \times <Y4> - \num{1000} \times <M_A>\right)")
+def side(p, q, X4, Y4, M_A):
+    """The side of the guide that bears, +1 under the piston: where it would bear without friction."""
+    return np.sign(_push(p, q, X4, Y4, M_A))
+
+
+def _push(p, q, X4, Y4, M_A):
+    """Moment about A of what acts on rod and piston, turned over; N*mm."""
+    return p * X4 - q * Y4 - 1000 * M_A
+
+
+@formula(
+    r"\frac{<p> \times <X4> - <q> \times <Y4> - \num{1000} \times <M_A>}"
+    r"{<q> + <side> \times <friction> \times <p>}"
+)
+def N_guide(p, q, X4, Y4, M_A, side, friction=0.0):
+    """Force of the guide on the piston: rod and piston balance about A.
+
+    Raises
+    ------
+    Undefined
+        Scalars only: no side of the guide is consistent. NaN in arrays.
+    """
+    push, arm = _push(p, q, X4, Y4, M_A), q + side * friction * p
+    if not isinstance(arm, float):
+        return np.where(arm > 0, push / arm, np.nan)
+    if not arm > 0:
+        raise Undefined(
+            f"the mechanism jams: with friction {abs(friction):.6g} the guide can hold the piston on neither "
+            f"side, the rod being inclined by tan theta3 = {p:.6g}/{q:.6g}"
+        )
+    return push / arm
+
+
+@formula(r"-<friction> \times \left|<N_guide>\right|")
+def friction_force(N_guide, friction=0.0):
+    """Along +x, on the piston."""
+    return -friction * abs(N_guide)
+
+
+@formula(r"-\left(<X4> + <friction_force>\right)")
+def R_B_x(X4, friction_force):
+    """Force of the rod on the piston."""
+    return -(X4 + friction_force)
+
+
+@formula(r"-\left(<Y4> + <N_guide>\right)")
+def R_B_y(Y4, N_guide):
+    return -(Y4 + N_guide)
+
+
+@formula(r"<R_B_x> - <X3>")
+def R_A_x(R_B_x, X3):
+    """Force of the crank on the rod."""
+    return R_B_x - X3
+
+
+@formula(r"<R_B_y> - <Y3>")
+def R_A_y(R_B_y, Y3):
+    return R_B_y - Y3
+
+
+@formula(
+    r"\frac{<r2> \times \left(<R_A_y> \times \cos <theta2> - <R_A_x> \times \sin <theta2>\right)}{\num{1000}} - <M2>"
+)
+def torque(r2, theta2, R_A_x, R_A_y, M2):
+    """The crank balances about O under the drive, the rod and its own inertia."""
+    return r2 * (R_A_y * cos(theta2) - R_A_x * sin(theta2)) / 1000 - M2
+
+
+@formula(r"\sqrt{<R_A_x>^2 + <R_A_y>^2}")
+def R_A(R_A_x, R_A_y):
+    return np.hypot(R_A_x, R_A_y)
+
+
+@formula(r"\sqrt{<R_B_x>^2 + <R_B_y>^2}")
+def R_B(R_B_x, R_B_y):
+    return np.hypot(R_B_x, R_B_y)
+
+
+@formula(r"<R_A>")
+def R_O(R_A):
+    """The balanced crank bears no force but those of its two pins."""
+    return R_A
+
+
+@mistake("load", share=0.5)
+def load_sign(F):
+    return _Loads(X4=-F)
+
+
+@mistake("friction", share=0.5)
+def friction_wrong_way(friction):
+    return -friction
+
+
+@mistake("friction")
+def friction_forgotten(friction):
+    return 0 * friction
+
+
+@mistake("gravity")
+def weights_forgotten(gravity):
+    return _Loads(*(0 * part for part in gravity))
+
+
+@mistake("gravity")
+def rod_weight_forgotten(m4):
+    return _Loads(Y4=-m4 * GRAVITY)
+
+
+@mistake("inertia", share=0.5)
+def inertia_sign(inertia):
+    return _Loads(*(-part for part in inertia))
+
+
+@mistake("inertia")
+def inertia_forgotten(inertia):
+    return _Loads(*(0 * part for part in inertia))
+
+
+@mistake("inertia")
+def rod_inertia_forgotten(J3, alpha3, inertia):
+    return inertia._replace(M_A=inertia.M_A + J3 * alpha3)
+
+
+@mistake("m3", "J3")
+def rod_massless():
+    return 0.0, 0.0
+
+
+@mistake("J2")
+def crank_inertia_forgotten():
+    return 0.0
+
+
+@mistake("torque")
+def rod_obliquity_forgotten(r2, theta2, F):
+    return r2 * F * sin(theta2) / 1000
+
+
+@mistake("torque", share=0.5)
+def torque_of_the_rod_on_the_crank(torque):
+    return -torque
+
+
+def residual(
+    r2, r3, e, theta2, omega2, alpha2, s3, m3, J3, m4, J2, F, f, theta3, r1, omega3, r1_dot, alpha3, r1_ddot,
+    N_guide, R_A_x, R_A_y, torque, R_A, R_B, R_O,
+):  # fmt: skip
+    """The closed loop and its derivatives; rod and piston together, the piston alone, the crank alone, about O."""
+    crank, rod = r2 * np.exp(1j * np.radians(theta2)), r3 * np.exp(1j * np.radians(theta3))
+    of_A, of_B = (1j * alpha2 - omega2**2) * crank, (1j * alpha3 - omega3**2) * rod
+    position, velocity = crank + rod - r1 - 1j * e, 1j * (omega2 * crank + omega3 * rod) - r1_dot
+
+    at_A = R_A_x + 1j * R_A_y
+    guide = 1j * N_guide - f * abs(N_guide) * np.sign(r1_dot)
+    on_piston, on_rod = F + guide - 9.81j * m4, -9.81j * m3
+    momentum_4, momentum_3 = m4 * r1_ddot / 1000, m3 * (of_A + s3 * of_B) / 1000
+    forces = at_A + on_piston + on_rod - momentum_4 - momentum_3
+
+    def about_O(place, force):
+        return (np.conj(place) * force).imag / 1000
+
+    G, B = crank + s3 * rod, r1 + 1j * e
+    moments = (
+        about_O(crank, at_A)
+        + about_O(B, on_piston - momentum_4)
+        + about_O(G, on_rod - momentum_3)
+        - J3 * alpha3
+    )
+    sum_of_forces = R_A + abs(on_piston) + abs(on_rod) + abs(momentum_4) + abs(momentum_3)
+    return (
+        abs(position) / (r2 + r3),
+        abs(velocity) / (r2 * abs(omega2) + r3 * abs(omega3)),
+        abs(of_A + of_B - r1_ddot) / (abs(of_A) + abs(of_B)),
+        abs(forces) / sum_of_forces,
+        abs(moments) / (sum_of_forces * (r2 + r3) / 1000),
+        abs(torque - about_O(crank, at_A) - J2 * alpha2) / (abs(torque) + J2 * abs(alpha2)),
+        abs(R_B - abs(on_piston - momentum_4)) / sum_of_forces,
+        abs(R_A - abs(at_A)) / R_A,
+        abs(R_O - R_A) / R_A,
+    )
+
+
+_UPRIGHT = {"r2": 30, "r3": 50, "theta2": 90}
+
+KNOWN = (
+    # Crank upright, a 3-4-5 triangle: the load of 400 N makes 500 N in the rod, and 12 N*m to hold.
+    (
+        {**_UPRIGHT, "F": -400},
+        {"torque": -12, "N_guide": 300, "R_A": 500, "R_B": 500, "R_O": 500},
+        ("load",),
+    ),
+    # Friction of coefficient 1/2 helps to hold: 400 = R (4/5 + 3/5 / 2), with R in the rod.
+    (
+        {**_UPRIGHT, "F": -400, "f": 0.5, "omega2": 2},
+        {"torque": -96 / 11, "N_guide": 2400 / 11, "R_A": 4000 / 11},
+        ("load", "friction"),
+    ),
+    # The other way round, the rod presses the piston harder onto the guide: 400 = R (4/5 - 3/5 / 2).
+    (
+        {**_UPRIGHT, "F": -400, "f": 0.5, "omega2": -2},
+        {"torque": -19.2, "N_guide": 480, "R_A": 800},
+        ("load", "friction"),
+    ),
+    # Crank and rod level: a quarter of the rod's weight rests on the piston, the rest on the crank pin.
+    (
+        {"r2": 40, "r3": 120, "theta2": 0, "s3": 0.25, "m3": 2, "m4": 1},
+        {"torque": 0.5886, "N_guide": 14.715, "R_A": 14.715, "R_B": 4.905},
+        ("gravity",),
+    ),
+    # Outer dead centre at a constant rate: the piston is held back at 1.92 m/s^2, G at 1.68 m/s^2.
+    (
+        {"r2": 40, "r3": 120, "theta2": 0, "omega2": 6, "s3": 0.5, "m3": 2, "J3": 1, "m4": 1, "J2": 1},
+        {"torque": 0, "N_guide": 0, "R_A": 5.28, "R_B": 1.92},
+        ("inertia",),
+    ),
+    # Starting from rest with the crank upright: rod and piston begin to move as one mass of 3 kg.
+    (
+        {**_UPRIGHT, "omega2": 0, "alpha2": 10, "s3": 0.5, "m3": 2, "J3": 1, "m4": 1, "J2": 0.05},
+        {"torque": 0.5 + 3 * 0.3 * 0.03, "N_guide": -0.45, "R_A": 0.45 * 5**0.5, "R_B": 0.15 * 13**0.5},
+        ("inertia",),
+    ),
+    # Nothing called for, nothing borne.
+    (_UPRIGHT, {"torque": 0, "N_guide": 0, "R_A": 0, "R_B": 0, "R_O": 0}, ()),
+)
