@@ -88,13 +88,13 @@ class Scene:
         levels = [e for e in self.effects if e in LEVELS]
         if not self.effects:
             levels = ["position"]
-        units = {u for level in levels for u in LEVELS[level]} | (set(EFFORTS) if self._own else set())
+        wanted = [LEVELS[level] for level in levels] + ([EFFORTS] if self._own else [])
         moving = self._moving()
-        shown = [
-            p.quantity
-            for p in self.exercise.spec.parts
-            if p.quantity in moving and p.kind in ("number", "angle") and p.unit in units
-        ]
+        asked = {p.quantity: p.unit for p in self.exercise.spec.parts if p.kind in ("number", "angle")}
+        shown: list[str] = []
+        for units in wanted:
+            # An exercise on forces asks no position, yet has them.
+            shown += _of_units(asked, units, moving) or _of_units(self.exercise.solution.units, units, moving)
         if "coriolis" in levels:
             shown.append(CORIOLIS)
         if not shown:
@@ -180,6 +180,10 @@ class Scene:
     def _units(self, names: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
         known = {"t": "s", **self.exercise.units}
         return {n: known.get(n, "1") for n in names}
+
+
+def _of_units(quantities: Mapping[str, str], units: Sequence[str], moving: frozenset[str]) -> list[str]:
+    return [name for name, unit in quantities.items() if name in moving and unit in units]
 
 
 class _Motion:

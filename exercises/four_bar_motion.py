@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
 from coursework.kinematics.dyads import rrr, side_of
-from coursework.model import Exercise, Part, chosen, drawn
+from coursework.model import Driver, Exercise, Part, chosen, drawn
 
 
 def bars(r1, r2, r3, r4, theta2, mode):
@@ -181,4 +181,5 @@ EXERCISE = Exercise(
         "a_BA_n": "a_{BA}^n",
         "a_BA_t": "a_{BA}^t",
     },
+    driver=Driver("theta2", "omega2", "alpha2", output="omega4"),
 )

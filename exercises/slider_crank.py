@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import cos, polar, sin
 from coursework.figures import Figure, angle_mark, dimension, ground_pivot, line, link, pin, rail, slider
 from coursework.kinematics.dyads import rrp
-from coursework.model import Exercise, Part, drawn, fixed
+from coursework.model import Driver, Exercise, Part, drawn, fixed
 
 
 def rod(r2, r3, e, theta2):
@@ -178,4 +178,5 @@ EXERCISE = Exercise(
         "bb_t": "b' b",
         "pa_b": "p_a b",
     },
+    driver=Driver("theta2", "omega2", "alpha2", output="r1_dot"),
 )

@@ -79,6 +79,7 @@ def _answers(scene):
 
 
 def answers(scene):
+    """With every effect, as they are asked."""
     return _answers(scene)
 
 

@@ -107,3 +107,60 @@ def test_the_command_writes_table_and_plot(tmp_path, capsys):
     assert run(["simulate", "slotted_mechanism", "--json", "--steps", "4"]) == 0
     assert len(json.loads(capsys.readouterr().out)["rows"]) == 5
     assert run(["simulate", "slotted_mechanism", "--drive", "torque=5"]) == 2
+
+
+TORQUE = "slider_crank_torque"
+
+
+def torque_scene(course, *effects, **changes):
+    return Scene(course[TORQUE], {**course[TORQUE].variant(3).used, **changes}, effects)
+
+
+def test_a_scene_of_forces_needs_no_acceleration_unless_inertia_is_called(course):
+    light = set(torque_scene(course, "load").over_cycle(4).evaluated)
+    assert not {"r1_ddot", "alpha3", "inertia", "gravity", "friction"} & light
+    heavy = set(torque_scene(course, "load", "inertia").over_cycle(4).evaluated)
+    assert {"r1_ddot", "alpha3", "inertia"} <= heavy
+    assert light < heavy
+
+
+def test_effects_add_up_without_friction(course):
+    def torque(*effects):
+        return torque_scene(course, *effects).over_cycle(24).columns["torque"]
+
+    together = torque("load", "gravity", "inertia")
+    np.testing.assert_allclose(together, torque("load") + torque("gravity") + torque("inertia"), atol=1e-10)
+
+
+def test_an_exercise_that_asks_forces_still_shows_its_positions(course):
+    table = torque_scene(course, "position").over_cycle(6)
+    assert {"theta3", "r1"} <= set(table.columns)
+    assert "torque" not in table.evaluated
+
+
+@pytest.mark.parametrize(
+    "effects", [("inertia",), ("load", "gravity", "inertia"), ("load", "inertia", "friction")]
+)
+def test_a_motion_in_time_keeps_its_energy_balance(course, effects):
+    table = torque_scene(course, *effects).in_time(2.0, 0.15, count=60)
+    assert table.balance < 1e-6
+    assert (np.diff(table.columns["t"]) > 0).all()
+
+
+def test_a_free_flywheel_slows_and_speeds_about_the_same_energy_and_positions_close(course):
+    """No drive, inertia alone: the kinetic energy is that of the start, and r1 is where the rod reaches."""
+    scene = torque_scene(course, "inertia", "position", alpha2=0.0)
+    table = scene.in_time(0.0, 0.4, count=80)
+    columns, given = table.columns, scene.given
+    y = given["e"] - given["r2"] * np.sin(np.radians(columns["theta2"]))
+    x = columns["r1"] - given["r2"] * np.cos(np.radians(columns["theta2"]))
+    np.testing.assert_allclose(np.hypot(x, y), given["r3"], rtol=1e-12)
+
+
+def test_dead_centres_are_rows_where_the_piston_stands_still(course):
+    scene = torque_scene(course, "inertia", "velocity", omega2=30.0)
+    table = scene.in_time(0.0, 0.5, count=40)
+    dead = table.columns["dead_centre"] == 1
+    assert 3 <= dead.sum() <= 6  # two a turn, about two and a half turns
+    fastest = np.abs(table.columns["r1_dot"]).max()
+    assert np.abs(table.columns["r1_dot"][dead]).max() < 1e-6 * fastest

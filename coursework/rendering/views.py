@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import keyword
 import re
+import sys
 from collections.abc import Sequence
 from typing import TypeAlias
 
@@ -11,6 +12,7 @@ from coursework.handout import AnswerSheet, FeedbackLine, FeedbackSheet, Given, 
 from coursework.language import localise, plain, words
 from coursework.rendering.formula_tree import tokens
 from coursework.rendering.formulas import quantity_formula, to_line
+from coursework.rendering.markup import to_text
 
 Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 
@@ -186,7 +188,8 @@ def answer_comment(question: Question, lang: str) -> str:
     """What a notebook says beside an answer: its unit, the keys of a choice, or the form it takes."""
     said = words(lang)
     if question.choices:
-        keys = ", ".join(f"{key} ({label})" if key != label else key for key, label in question.choices)
+        labels = ((key, to_text(label, lang, sys.maxsize)) for key, label in question.choices)
+        keys = ", ".join(f"{key} ({label})" if key != label else key for key, label in labels)
         note = said["notebook"]["one_of"].format(keys)
     else:
         note = ", ".join(filter(None, (said["hints"].get(question.kind, ""), question.unit)))

@@ -1,4 +1,4 @@
-"""Slider-crank: against fifty digits, energy-like identities, the drawing, and the misprint of the notes."""
+"""Slider-crank: against fifty digits, on paper, next to where it stands upright, and against the notes."""
 
 import mpmath
 import numpy as np
