@@ -38,6 +38,7 @@ from coursework.model import Exercise, GivenSpec, Part
 from coursework.solution import Solution
 
 if TYPE_CHECKING:
+    from coursework.figures import Figure
     from coursework.handout import AnswerSheet, Handout
     from coursework.marking import Key, Marking
     from coursework.rendering import Renderer
@@ -598,6 +599,13 @@ class Variant:
         from coursework.marking import mark
 
         return mark(self, answers)
+
+    @cached_property
+    def figure(self) -> Figure | None:
+        """The figure to scale: laid out once, shown on every sheet of the variant."""
+        from coursework.sheets import figure
+
+        return figure(self)
 
     def handout(self, student: str = "") -> Handout:
         """What the student's sheet shows."""

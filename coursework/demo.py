@@ -21,8 +21,10 @@ from coursework.gradebook import Issued
 from coursework.language import languages, significant
 from coursework.marking import Key
 from coursework.model import Part
+from coursework.rendering.markup import to_text
 
-ROSTER = Path(__file__).parent / "class_of_twelve" / "roster.csv"
+CLASS = Path(__file__).parent / "class_of_twelve"
+ROSTER = CLASS / "roster.csv"
 FIRST_SEED = 2024
 
 Habit = Callable[[Variant, Key, Part, int], Any]  #: variant, key, part, its place -> what the student writes
@@ -32,7 +34,7 @@ def _right(variant: Variant, key: Key, part: Part, digits: int = 5) -> str:
     """The right answer as a careful student writes it, without unit."""
     value = key.reference[part.quantity]
     if part.kind == "choice":
-        return variant.text.label(part.id, str(value))
+        return " ".join(to_text(variant.text.label(part.id, str(value)), variant.lang).split())
     if part.kind == "equation":
         return str(value)
     if isinstance(value, np.ndarray):
@@ -143,15 +145,14 @@ def class_of_twelve(
     ``build`` and ``grade`` write the files: the command line's own.
     """
     course = open_course()
+    names = (CLASS / "exercises.txt").read_text("utf-8").split()
     formats = ("pdf", "ipynb", "html")
-    written = build(
-        course, course.names, 1, FIRST_SEED, ROSTER, formats, languages()[:1], out, overwrite=True
-    )
+    written = build(course, names, 1, FIRST_SEED, ROSTER, formats, languages()[:1], out, overwrite=True)
     issued = Issued.read(out / "issued.json")
     _hand_in(course, issued, out)
     book = grade(course, [out / "submissions"], out / "issued.json", out / "marks", feedback=True)
     rows = []
-    for name in course.names:
+    for name in names:
         marks = [m.mark for g in book.graded if g.variant.exercise.name == name for m in g.marked]
         verdicts = Counter(m.verdict.partition(":")[0] for m in marks)
         points, out_of = sum(m.points for m in marks), sum(m.out_of for m in marks)

@@ -43,7 +43,7 @@ def handout(variant: Variant, student: str = "") -> Handout:
         title=text.title,
         statement=text.opening,
         given=tuple(_given(variant, name) for name in variant.given),
-        figure=_figure(variant),
+        figure=variant.figure,
         figure_alt=" ".join(text.section("figure").text.split()) if exercise.spec.figure else "",
         questions=tuple(_question(variant, n, p) for n, p in enumerate(variant.parts, start=1)),
         record=variant.record,
@@ -98,7 +98,8 @@ def _call(function: Any, values: Mapping[str, Any], helpers: tuple = ()) -> Any:
     return graph.evaluate(("figure",), {n: v for n, v in values.items() if n in graph.leaves})["figure"]
 
 
-def _figure(variant: Variant) -> Figure | None:
+def figure(variant: Variant) -> Figure | None:
+    """The exercise's figure for this variant, to scale."""
     spec = variant.exercise.spec
     return None if spec.figure is None else _call(spec.figure, variant.given, tuple(spec.helpers))
 
