@@ -272,7 +272,8 @@ class CourseExercise:
 
         Returns
         -------
-        A dict of floats, or of arrays of the broadcast shape.
+        A dict of floats, or of arrays of the shape that each quantity's own arguments broadcast to: what
+        does not vary stays a scalar, and a vector has one axis more.
 
         Raises
         ------

@@ -74,5 +74,5 @@ def unit_text(unit: str, lang: str) -> str:
 def with_unit(number: str, unit: str, lang: str) -> str:
     """A number and its unit as running text: ``228,6 mm``, ``135°``."""
     shown = unit_text(unit, lang)
-    space = "" if not shown or shown == "°" else NARROW_SPACE if lang == "fr" else "\N{NO-BREAK SPACE}"
+    space = "" if not shown or shown == "°" else words(lang)["numbers"]["unit_space"]
     return localise(number, lang) + space + shown

@@ -121,8 +121,8 @@ class Key:
         return {quantity: plain_scalar(value) for quantity, value in found.items()}
 
 
-def read(part: Part, answer: Any, labels: Mapping[str, list[str]]) -> Reading:
-    """Read an answer as the part's kind asks."""
+def read(part: Part, answer: Any, labels: Mapping[str, list[str]], reference: Any) -> Reading:
+    """Read an answer as the part's kind asks; a vector has as many coordinates as its reference."""
     match part.kind:
         case "number" | "angle":
             return read_number(answer, part.unit)
@@ -133,7 +133,7 @@ def read(part: Part, answer: Any, labels: Mapping[str, list[str]]) -> Reading:
         case "equation":
             return read_equation(answer, part.variables)
         case _:
-            return read_point(answer, part.unit, 3)
+            return read_point(answer, part.unit, len(reference))
 
 
 def distance(part: Part, value: Any, reference: Any, along: Any = None) -> float:
@@ -211,7 +211,9 @@ def mark(variant: Variant, answers: Mapping[str, Any]) -> Marking:
         if part_id not in asked:
             raise unknown("part", part_id, asked, f"{variant.exercise.name} {variant.seed}")
     key = variant.key
-    readings = {i: read(p, answers.get(i), variant.labels(p)) for i, p in asked.items()}
+    readings = {
+        i: read(p, answers.get(i), variant.labels(p), key.reference[p.quantity]) for i, p in asked.items()
+    }
     target = _targets(variant, readings, key)
     marks = {i: _mark_part(variant, key, p, answers.get(i), readings[i], target[i]) for i, p in asked.items()}
     if any(target[i] != i for i in target):
