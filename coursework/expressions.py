@@ -534,7 +534,7 @@ class _Parser:
         if self.comma_separates and "," in text:
             text = text[: text.index(",")]
         digits = text.replace(" ", "").replace("'", "").replace(",", ".")
-        if not any(c.isdigit() for c in digits):
+        if not digits.lstrip(".")[:1].isdigit():
             raise self.fail("a number is missing", "not_a_number")
         self.at += len(text)
         return _Node("number", digits)
@@ -688,13 +688,27 @@ def _quiet(expression: Expression, values: Mapping[str, np.ndarray]) -> Value:
         return math.nan
 
 
-def same_equation(a: Equation, b: Equation, *, rng_points: int = 32) -> bool:
-    """Whether two equations differ by a constant factor only, judged by value at scattered points.
+def same_equation(a: Equation, b: Equation, *, parameters: Iterable[str] = (), rng_points: int = 32) -> bool:
+    """Whether two equations differ by a factor only, judged by value at scattered points.
 
-    Points outside a domain (a negative square root) are left out. An equation that holds everywhere
-    says nothing and equals only another such.
+    The factor is a number, or an expression in the ``parameters`` alone (lengths, where angles and rates are
+    the unknowns): ``omega = -(R + r)*phi_dot/r`` is ``r*omega + (R + r)*phi_dot = 0``. Points outside a domain (a
+    negative square root) are left out. An equation that holds everywhere says nothing and equals only
+    another such.
     """
-    values = {name: _points(name, rng_points) for name in sorted(a.variables | b.variables)}
+    names = sorted(a.variables | b.variables)
+    held = [name for name in names if name in set(parameters)]
+    draws = 4 if held else 1
+    for draw in range(draws):
+        values = {name: _points(name, rng_points) for name in names}
+        values |= {name: np.full(rng_points, _points(name, draws)[draw]) for name in held}
+        if not _proportional(a, b, values, rng_points):
+            return False
+    return True
+
+
+def _proportional(a: Equation, b: Equation, values: Mapping[str, np.ndarray], rng_points: int) -> bool:
+    """Whether the two differences keep one ratio, finite and not zero, over these points."""
     with np.errstate(all="ignore"):
         (da, sa), (db, sb) = (_sides(e, values, rng_points) for e in (a, b))
         kept = np.isfinite(da) & np.isfinite(db)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coursework.errors import BadInput, nearest
+from coursework.errors import BadInput, CourseworkError, nearest
 from coursework.submissions import COLUMNS, Rejected, Row
 
 if TYPE_CHECKING:
@@ -200,7 +200,14 @@ def grade(
         sheet[row.part] = row
     for done, ((student, exercise, seed), answered) in enumerate(sheets.items(), start=1):
         variant = variants[exercise, seed]
-        marking = variant.grade({part: row.answer for part, row in answered.items()})
+        try:
+            marking = variant.grade({part: row.answer for part, row in answered.items()})
+        except CourseworkError:
+            raise  # the course cannot mark: no row is at fault
+        except Exception as fault:  # a sheet that the reader did not foresee costs itself alone
+            reason = f"cannot be marked, somebody must look at it ({type(fault).__name__}: {str(fault)[:80]})"
+            book.rejected += [Rejected(row.source, reason, _as_texts(row)) for row in answered.values()]
+            continue
         marked = tuple(MarkedRow(row, student, seed, marking[part]) for part, row in answered.items())
         book.graded.append(Graded(student, variant, marking, marked))
         progress(done, len(sheets))

@@ -152,7 +152,8 @@ def distance(part: Part, value: Any, reference: Any, along: Any = None) -> float
         case "direction":
             return _off_direction(part, value, reference)
         case "equation":
-            return 0.0 if same_equation(value, _equation(reference, part.variables)) else math.inf
+            right = _equation(reference, part.variables)
+            return 0.0 if same_equation(value, right, parameters=part.parameters) else math.inf
         case _:
             return 0.0 if value == plain_scalar(reference) else math.inf
 

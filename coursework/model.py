@@ -100,8 +100,9 @@ class Part:
     ``kind`` is ``number``, ``angle`` (compared modulo 360), ``integer``, ``choice`` (of ``choices``),
     ``point_on_line`` (a point of the line through the reference along the quantity ``along``),
     ``direction`` (any non-zero multiple of the reference vector) or ``equation`` (in the exercise's
-    symbols, up to a factor). A numeric answer is right within max(``atol``, ``rtol`` · |reference|),
-    by default 1 %, or 1° for what is measured in degrees. ``when``, a function of given quantities,
+    symbols ``variables``, up to a factor, which may hold those of them that are ``parameters``: lengths).
+    A numeric answer is right within max(``atol``, ``rtol`` · |reference|), by default 1 %, or 1° for what
+    is measured in degrees. ``when``, a function of given quantities,
     says whether a variant asks the part.
     """
 
@@ -115,6 +116,7 @@ class Part:
     choices: tuple[str, ...] = ()
     along: str = ""
     variables: tuple[str, ...] = ()
+    parameters: tuple[str, ...] = ()
     when: Callable[..., Any] | None = None
 
     def __post_init__(self) -> None:

@@ -79,7 +79,7 @@ def figure(R, r):
 
 
 def _no_slip(point):
-    return Part(f"no_slip_{point}", kind="equation", variables=NO_SLIP_SYMBOLS, points=1)
+    return Part(f"no_slip_{point}", kind="equation", variables=NO_SLIP_SYMBOLS, parameters=("R", "r"))
 
 
 def _axis(motion):

@@ -136,8 +136,11 @@ def figure(pin_A, pin_B, pin_P, r1, theta2):
     )
 
 
+LENGTHS = ("r1", "r2", "r3", "r4", "r5")
+
+
 def _equation(quantity):
-    return Part(quantity, kind="equation", variables=SYMBOLS_OF_THE_LOOPS, points=1)
+    return Part(quantity, kind="equation", variables=SYMBOLS_OF_THE_LOOPS, parameters=LENGTHS)
 
 
 EXERCISE = Exercise(

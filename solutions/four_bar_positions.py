@@ -42,10 +42,20 @@ def _longest(r1, r2, r3, r4):
     return np.maximum(np.maximum(r1, r2), np.maximum(r3, r4))
 
 
-def _grashof_excess(r1, r2, r3, r4):
-    """Of p + q over s + l; zero when it is less than the rounding of four printed lengths to doubles."""
-    excess = exact_sum(r1, r2, r3, r4, -2 * _shortest(r1, r2, r3, r4), -2 * _longest(r1, r2, r3, r4))
+def _exactly(excess, r1, r2, r3, r4):
+    """A signed sum of the lengths; zero when it is less than the rounding of four printed lengths to doubles."""
     return np.where(abs(excess) <= 2.0**-53 * (r1 + r2 + r3 + r4), 0.0, excess)
+
+
+def _grashof_excess(r1, r2, r3, r4):
+    """Of p + q over s + l."""
+    excess = exact_sum(r1, r2, r3, r4, -2 * _shortest(r1, r2, r3, r4), -2 * _longest(r1, r2, r3, r4))
+    return _exactly(excess, r1, r2, r3, r4)
+
+
+def _closing_excess(r1, r2, r3, r4):
+    """Of s + p + q over l: the linkage closes somewhere when it is positive."""
+    return _exactly(exact_sum(r1, r2, r3, r4, -2 * _longest(r1, r2, r3, r4)), r1, r2, r3, r4)
 
 
 def _type_by_shortest(r1, r2, r3, r4):
@@ -62,7 +72,7 @@ def linkage_type(r1, r2, r3, r4):
     """Can it close at all; does s + l reach p + q; and if not, which bar is the shortest?"""
     excess = _grashof_excess(r1, r2, r3, r4)
     return np.select(
-        [2 * _longest(r1, r2, r3, r4) >= r1 + r2 + r3 + r4, excess == 0, excess < 0],
+        [_closing_excess(r1, r2, r3, r4) <= 0, excess == 0, excess < 0],
         ["impossible", "change-point", "triple-rocker"],
         _type_by_shortest(r1, r2, r3, r4),
     )

@@ -244,6 +244,30 @@ def test_every_damaged_row_is_reported_and_nothing_else_is_lost(built, cli, tmp_
     assert "rejected.csv" in err or "Zoé" in err
 
 
+def test_a_sheet_that_nothing_foresaw_costs_itself_alone(built, cli, tmp_path, monkeypatch):
+    import coursework.marking
+
+    read = coursework.marking.read
+
+    def breaks(part, answer, *others):
+        if answer == "surprise":
+            raise RuntimeError("unforeseen")
+        return read(part, answer, *others)
+
+    monkeypatch.setattr(coursework.marking, "read", breaks)
+    rows = filled(built)
+    rows[0]["answer"] = "surprise"
+    path = write_rows(tmp_path / "a.csv", rows)
+    assert (
+        cli("grade", path, "--issued", built / "issued.json", "--out", tmp_path / "m", "--no-feedback")[0]
+        == 1
+    )
+    marks, rejected = table(tmp_path / "m" / "marks.csv"), table(tmp_path / "m" / "rejected.csv")
+    assert len(marks) + len(rejected) == len(rows)
+    assert {r["student"] for r in rejected} == {rows[0]["student"]}
+    assert "unforeseen" in rejected[0]["reason"]
+
+
 def test_a_name_is_known_whatever_its_case_and_spaces(built, cli, tmp_path):
     rows = filled(built, lambda r: {**r, "student": f"  {r['student'].upper()} "})
     path = write_rows(tmp_path / "a.csv", rows)

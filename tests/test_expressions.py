@@ -251,3 +251,36 @@ def test_the_latex_of_an_equation_reads_back_as_the_same_equation():
     for text in (LOOP, "2*(R + r)*psi_dot = -R/(2*r)", "r1^2 - (r2 - r3) = 0.5*sqrt(r4)"):
         again = parse_equation(latex_of_equation(text, SYMBOLS), NAMES)
         assert same_equation(again, parse_equation(text, NAMES))
+
+
+ROCKER = "r4*sin(theta4) = r5*sin(theta5)"
+LOOP_NAMES = ("r4", "r5", "theta4", "theta5")
+
+
+@pytest.mark.parametrize(
+    ("text", "same"),
+    [
+        ("sin(theta5) = r4/r5*sin(theta4)", True),
+        ("r4^2*sin(theta4) - r4*r5*sin(theta5) = 0", True),
+        ("sin(theta4)/r5 = sin(theta5)/r4", True),
+        ("sin(theta5) = r5/r4*sin(theta4)", False),
+        ("sin(theta5) = -r4/r5*sin(theta4)", False),
+        ("r4*sin(theta4)*sin(theta5) = r5*sin(theta5)^2", False),
+        ("r4*0 = 0", False),
+        ("r4 = r5", False),
+    ],
+)
+def test_a_factor_may_hold_lengths_where_they_are_declared(text, same):
+    one, other = parse_equation(text, LOOP_NAMES), parse_equation(ROCKER, LOOP_NAMES)
+    assert same_equation(one, other, parameters=("r4", "r5")) is same
+
+
+def test_a_factor_holds_no_length_where_none_is_declared():
+    one = parse_equation("sin(theta5) = r4/r5*sin(theta4)", LOOP_NAMES)
+    assert not same_equation(one, parse_equation(ROCKER, LOOP_NAMES))
+
+
+@pytest.mark.parametrize("text", [".E0", ".", ".e", "-.E+3"])
+def test_an_exponent_without_digits_before_it_is_no_number(text):
+    with pytest.raises(Unreadable):
+        parse_expression(text)

@@ -146,3 +146,14 @@ def test_margins_are_zero_only_where_the_bars_line_up():
     stretched, folded = grashof_margins(np.array([100.0, 60.0]), 50.0, 70.0, np.array([80.0 + 1e-13, 60.0]))
     assert stretched[0] == pytest.approx(300 * (80.0 + 1e-13 - 80.0), rel=1e-12)
     assert folded[1] == 0.0
+
+
+def test_a_linkage_that_just_cannot_close_is_impossible_in_every_order_of_its_bars(course):
+    """l = s + p + q on the printed decimals, whose doubles do not add up."""
+    import itertools
+
+    solve = course["four_bar_positions"].solve
+    for lengths in ((0.1, 0.2, 0.3, 0.6), (8.93, 9.8, 28.61, 9.88), (0.7, 0.1, 0.1, 0.5)):
+        for order in itertools.permutations(lengths):
+            given = dict(zip(("r1", "r2", "r3", "r4"), order, strict=True))
+            assert solve(**given, only="linkage_type") == {"linkage_type": "impossible"}
