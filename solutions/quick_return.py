@@ -47,7 +47,13 @@ def _refuse_negative(message, *margins):
 
 @formula(r"\sqrt{<r2>^2 + <r3>^2 - 2 \times <r2> \times <r3> \times \cos <angle_OAB>}")
 def OB(r2, r3, angle_OAB):
-    """The law of cosines in triangle OAB, as a sum of two squares."""
+    """The law of cosines in triangle OAB, as a sum of two squares; its angle at A is from 0 to 180."""
+    inside = (angle_OAB >= 0) & (angle_OAB <= 180)
+    if isinstance(inside, bool):
+        if not inside:
+            raise Undefined(f"the angle OAB of a triangle lies from 0 to 180 deg; found {angle_OAB:g}")
+    else:
+        angle_OAB = np.where(inside, angle_OAB, np.nan)
     return sqrt((r3 - r2) ** 2 + 4 * r2 * r3 * sin(angle_OAB / 2) ** 2)
 
 

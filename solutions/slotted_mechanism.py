@@ -6,7 +6,8 @@ lengths appears: the block may pass as near to O4 as it likes.
 
 import numpy as np
 
-from coursework.degrees import asin, atan, atan2, cos, polar, sin, sqrt, wrap
+from coursework.degrees import atan, atan2, cos, polar, sin, sqrt, wrap
+from coursework.errors import Undefined
 from coursework.solution import formula, mistake
 
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
@@ -29,18 +30,27 @@ def rA(r1, r2, delta):
     r"<r1> \cos <theta1> + <r2> \cos <theta2>\right)"
 )
 def theta4(r1, r2, theta1, delta):
-    """Direction of the guide, by its quadrant."""
-    return wrap(theta1 + atan2(r2 * sin(delta), (r1 - r2) + 2 * r2 * cos(delta / 2) ** 2))
+    """Direction of the guide, by its quadrant; none when A lies on O4."""
+    across, along = r2 * sin(delta), (r1 - r2) + 2 * r2 * cos(delta / 2) ** 2
+    nowhere = (across == 0) & (along == 0)
+    if isinstance(nowhere, bool):
+        if nowhere:
+            raise Undefined("A lies on O4: the guide may point anywhere")
+        return wrap(theta1 + atan2(across, along))
+    return np.where(nowhere, np.nan, wrap(theta1 + atan2(across, along)))
 
 
 def guide(r1, r2):
-    """The guide turns fully when O4 lies inside the circle of A."""
-    return np.where(r2 > r1, "rotates", "oscillates")
+    """The guide turns fully when O4 lies inside the circle of A; on it, A passes through O4."""
+    if isinstance(r1, float) and isinstance(r2, float) and r1 == r2:
+        raise Undefined("A passes through O4 when r2 = r1: the guide neither oscillates nor turns fully")
+    return np.select([r2 > r1, r2 < r1], ["rotates", "oscillates"], "")
 
 
+@formula(r"2 \times \arcsin \frac{<r2>}{<r1>}")
 def swing(r1, r2):
     """Between the two directions tangent to the circle of A, when O4 lies outside it."""
-    return 2 * asin(r2 / r1)
+    return 2 * atan2(r2, sqrt((r1 - r2) * (r1 + r2)))
 
 
 @formula(r"<r2> \times <omega2> \times \sin\left(<theta4> - <theta2>\right)")

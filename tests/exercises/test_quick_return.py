@@ -233,3 +233,15 @@ def test_scalars_and_rows_agree():
     for i, given in enumerate(drawn):
         for name, value in EXERCISE.solve(**given).items():
             assert row[name][i] == pytest.approx(value, rel=1e-12, abs=1e-12), name
+
+
+def test_an_angle_that_no_triangle_has_is_refused(course):
+    exercise = course["quick_return"]
+    given = dict(exercise.variant(1).given)
+    for angle in (-90, -0.1, 180.1, 200):
+        with pytest.raises(Undefined, match="from 0 to 180"):
+            exercise.solve(**{**given, "angle_OAB": angle}, only="theta4")
+    both = np.array([given["angle_OAB"], 200.0])
+    found = exercise.solve(**{**given, "angle_OAB": both}, only=("theta2", "theta3", "v_C"))
+    for name, values in found.items():
+        np.testing.assert_array_equal(np.isnan(values), [False, True], err_msg=name)

@@ -1,0 +1,87 @@
+"""Slotted mechanism against 50 digits, its hard places, and the misprint of the course."""
+
+from __future__ import annotations
+
+import mpmath
+import numpy as np
+import pytest
+
+import coursework
+from coursework.errors import Undefined
+
+EXERCISE = coursework.open_course()["slotted_mechanism"]
+
+
+def reference(given):
+    """Every quantity from the vector O4A alone; rates by differentiating it in time at 50 digits."""
+    with mpmath.workdps(50):
+        r1, r2, omega2, alpha2 = (mpmath.mpf(given[n]) for n in ("r1", "r2", "omega2", "alpha2"))
+        start, frame = (mpmath.mpf(given[n]) * mpmath.pi / 180 for n in ("theta2", "theta1"))
+
+        def arm(t):
+            crank = start + omega2 * t + alpha2 * t * t / 2
+            return r1 * mpmath.expj(frame) + r2 * mpmath.expj(crank)
+
+        direction = mpmath.arg(arm(0))
+
+        def length(t):
+            return abs(arm(t))
+
+        def angle(t):
+            return mpmath.arg(arm(t) * mpmath.expj(-direction))
+
+        step = {"h": mpmath.mpf(10) ** -12}
+        rates = {
+            "rA": length(0),
+            "theta4": direction * 180 / mpmath.pi,
+            "rA_dot": mpmath.diff(length, 0, 1, **step),
+            "omega4": mpmath.diff(angle, 0, 1, **step),
+            "rA_ddot": mpmath.diff(length, 0, 2, **step),
+            "alpha4": mpmath.diff(angle, 0, 2, **step),
+        }
+        rates["a_centripetal"] = -rates["rA"] * rates["omega4"] ** 2
+        rates["a_coriolis"] = 2 * rates["omega4"] * rates["rA_dot"]
+        rates["a_tangential"] = rates["rA"] * rates["alpha4"]
+        rates["a_radial"] = rates["rA_ddot"]
+        return rates
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_every_quantity_agrees_with_fifty_digits(seed):
+    given = dict(EXERCISE.variant(seed).given)
+    exact = reference(given)
+    found = EXERCISE.solve(**given, only=tuple(exact))
+    size = {"alpha4": given["omega2"] ** 2, "rA_ddot": given["r2"] * given["omega2"] ** 2}
+    for name, value in found.items():
+        assert abs(value - exact[name]) <= 1e-13 * max(abs(exact[name]), size.get(name, 0)), name
+
+
+def test_the_guide_turns_at_half_speed_wherever_it_is_when_frame_and_crank_are_equal():
+    theta2 = np.concatenate([np.linspace(-89, 269, 300), -90 + np.logspace(-9, -1, 30)])
+    omega4 = EXERCISE.solve(r1=200, r2=200, theta2=theta2, omega2=3, only="omega4")["omega4"]
+    np.testing.assert_allclose(omega4, 1.5, rtol=1e-14)
+
+
+def test_on_the_pivot_the_guide_has_no_direction():
+    with pytest.raises(Undefined, match="A lies on O4"):
+        EXERCISE.solve(r1=200, r2=200, theta2=-90, only="theta4")
+    found = EXERCISE.solve(r1=200, r2=200, theta2=np.array([-90.0, 0.0]), only="theta4")["theta4"]
+    np.testing.assert_array_equal(np.isnan(found), [True, False])
+    with pytest.raises(Undefined, match="neither oscillates nor turns"):
+        EXERCISE.solve(r1=200, r2=200, only="guide")
+
+
+@pytest.mark.parametrize("gap", [1e-3, 1e-9, 1e-12])
+def test_the_swing_is_exact_as_the_crank_nears_the_frame(gap):
+    r1, r2 = 200.0, 200.0 * (1 - gap)
+    with mpmath.workdps(50):
+        exact = 2 * mpmath.asin(mpmath.mpf(r2) / r1) * 180 / mpmath.pi
+    assert EXERCISE.solve(r1=r1, r2=r2, only="swing")["swing"] == pytest.approx(float(exact), rel=1e-15)
+
+
+def test_the_misprinted_length_of_the_course_is_no_mistake_of_ours():
+    """The notes print 2286 m for O4O2; with it the position that they give does not come out."""
+    right = EXERCISE.solve(r1="228.6 mm", r2="114.3 mm", theta2=135, only=("rA", "theta4"))
+    assert (round(right["rA"], 2), round(right["theta4"], 2)) == (319.80, 104.64)
+    printed = EXERCISE.solve(r1="2286 m", r2="114.3 mm", theta2=135, only=("rA", "theta4"))
+    assert abs(printed["rA"] - 319.80) > 1e6
