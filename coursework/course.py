@@ -7,12 +7,13 @@ course imports its Python, as any import does, under a private package name; ``s
 from __future__ import annotations
 
 import importlib
+import inspect
 import itertools
 import math
 import sys
 import tomllib
 import traceback
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache, cached_property
 from pathlib import Path
 from types import MappingProxyType, ModuleType
@@ -244,6 +245,12 @@ class CourseExercise:
         return frozenset(graph.quantities) | graph.leaves
 
     @cached_property
+    def _looked_at(self) -> frozenset[str]:
+        """Given quantities that are not any number: their values are looked at one by one."""
+        specs = self.spec.given.items()
+        return frozenset(n for n, s in specs if s.positive or s.nonzero or s.is_choice)
+
+    @cached_property
     def _defaults(self) -> Mapping[str, float | str]:
         return {
             n: float(s.default) if not isinstance(s.default, str) else s.default
@@ -291,7 +298,9 @@ class CourseExercise:
                 if name in self.spec.given:
                     continue
                 raise unknown("quantity", name, names | self.spec.given.keys(), self.name)
-            values[name] = self._accept(name, value)
+            # The usual case at once: a plain number that nothing forbids.
+            plainly = type(value) is float and value - value == 0 and name not in self._looked_at
+            values[name] = value if plainly else self._accept(name, value)
         arrays = any(isinstance(v, np.ndarray) for v in values.values())
         if only is None and not arrays:
             only = tuple(p.quantity for p in self._asked_of(values))
@@ -301,7 +310,8 @@ class CourseExercise:
         found = self.solution.graph.evaluate(wanted, values, effects)
         if not arrays:
             for name, value in found.items():
-                found[name] = value = plain_scalar(value)
+                if type(value) is not float:
+                    found[name] = value = plain_scalar(value)
                 if isinstance(value, float) and value != value:
                     told = ", ".join(f"{n} = {values[n]}" for n in given if n in values)
                     raise Undefined(f"{self.name}: {name} does not exist for {told}")
@@ -310,6 +320,8 @@ class CourseExercise:
     def _accept(self, name: str, value: Any) -> Any:
         """A given value as a float, an array or a case's name, in the canonical unit, within its domain."""
         spec = self.spec.given.get(name)
+        if type(value) is float and value > 0 and value < math.inf and (spec is None or not spec.choices):
+            return value
         if spec is not None and spec.is_choice:
             return self._accept_case(name, spec, value)
         if isinstance(value, str):
@@ -471,11 +483,15 @@ def _rounded(value: Any, lang: str) -> str:
     return localise(significant(value), lang) if isinstance(value, (int, float)) else str(value)
 
 
-def _holds(part: Part, given: Mapping[str, Any]) -> bool:
-    import inspect
+@cache
+def _parameters(function: Callable[..., Any]) -> tuple[str, ...]:
+    return tuple(inspect.signature(function).parameters)
 
-    names = inspect.signature(part.when).parameters
-    if not set(names) <= set(given):
+
+def _holds(part: Part, given: Mapping[str, Any]) -> bool:
+    """Whether a part is asked with these values; so too when they do not tell."""
+    names = _parameters(part.when)
+    if any(n not in given for n in names):
         return True
     return bool(part.when(*[given[n] for n in names]))
 
