@@ -43,7 +43,7 @@ def heading_after_turns(turns: Any, angle: Any) -> Heading:
 
 def heading_of(cos: Any, sin: Any) -> Heading:
     """Heading of direction cosines (of a unit vector), the angle taken in (-pi, pi]."""
-    larger, smaller = _halves(np.abs(cos), sin)
+    larger, smaller = halves(np.abs(cos), sin)
     ahead = np.greater_equal(cos, 0)
     half_cos, half_sin = np.sqrt(np.where(ahead, larger, smaller)), np.sqrt(np.where(ahead, smaller, larger))
     return Heading(cos, sin, half_cos[()], np.copysign(half_sin, sin)[()])
@@ -64,18 +64,8 @@ def half_angle(angle: Any) -> tuple[Any, Any]:
     return np.cos(half), np.sin(half)
 
 
-def half_products(angle: Any) -> tuple[Any, Any, Any]:
-    """Of half the angle: cosine squared, sine squared, sine times cosine. From one tangent when given radians."""
-    if isinstance(angle, Heading):
-        return angle.half_cos**2, angle.half_sin**2, angle.sin / 2
-    tangent = np.tan(angle * 0.5)
-    squared = tangent * tangent
-    cos_squared = 1 / (1 + squared)
-    return cos_squared, cos_squared * squared, cos_squared * tangent
-
-
-def _halves(abs_cos: Any, sin: Any) -> tuple[Any, Any]:
-    """The larger and the smaller of (1 + cos)/2 and (1 - cos)/2, neither a difference."""
+def halves(abs_cos: Any, sin: Any) -> tuple[Any, Any]:
+    """The larger and the smaller of (1 + cos)/2 and (1 - cos)/2, neither a difference; also with the roles exchanged."""
     larger = (1 + abs_cos) / 2
     return larger, np.multiply(sin, sin) / (4 * larger)
 

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-BLOCK = 8192  #: configurations computed together: about twenty arrays of 64 kB live at a time
+BLOCK = 16384  #: configurations computed together: what the calls cost and what the cache holds, in balance
 
 
 def _keep_freed_memory() -> None:
@@ -17,7 +17,7 @@ def _keep_freed_memory() -> None:
     Otherwise every temporary of a block is paged in anew, at several times the cost of filling it. Freeing one
     large piece raises the threshold above which memory is handed back (dynamic in glibc, harmless elsewhere).
     """
-    np.empty(1 << 19)
+    np.empty(31 << 17)
 
 
 _keep_freed_memory()

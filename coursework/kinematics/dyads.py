@@ -1,20 +1,30 @@
-"""Assour groups of two bodies, in closed form.
+"""Assour groups of two bodies in closed form, in any orientation, and the drivers that move them.
 
 Points are complex numbers, angles radians, lengths one common unit; every argument is a scalar or
-an array and all broadcast. What does not close raises :class:`CannotAssemble` when every argument is
-a scalar, and is NaN there and only there in arrays.
+an array and all broadcast. A line is a point and a complex unit vector along it.
+
+What does not close raises :class:`CannotAssemble` when every argument is a scalar, and is NaN there and only there in
+arrays. Positions come first; each group has its ``..._rates``, for velocities, accelerations and jerks: give it the
+known time derivatives from the first to the order wanted, and nothing beyond is computed. All orders
+share one 2x2 matrix, singular at a dead point: :class:`Undefined` for scalars, NaN in arrays.
 """
 
 from __future__ import annotations
 
-import math
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
-from coursework.errors import CannotAssemble
+from coursework.errors import CannotAssemble, CourseworkError, Undefined
+from coursework.kinematics.angles import full_angle
+from coursework.kinematics.blocks import in_blocks
+from coursework.kinematics.scaling import exponent_of, scaled
+from coursework.kinematics.vectors import components, cross, derivative, dot, size
 
 OPEN, CROSSED = 1, -1  #: sides of the inner joint: left of the directed line P -> Q, or right
+
+Rates = Sequence[Any]  #: time derivatives of a point (complex) or of an angle, from the first on
 
 
 def side_of(mode: Any) -> Any:
@@ -22,6 +32,20 @@ def side_of(mode: Any) -> Any:
     if isinstance(mode, str):
         return {"open": OPEN, "left": OPEN, "crossed": CROSSED, "right": CROSSED}[mode]
     return np.where(np.isin(mode, ("open", "left")), OPEN, CROSSED)
+
+
+def rotating(pivot: Any, length: Any, angle: Any) -> Any:
+    """The end of a crank about ``pivot``; ``angle`` in radians or a :class:`Heading`.
+
+    Its derivatives are :func:`vectors.turned` of the vector from the pivot.
+    """
+    cos, sin = full_angle(angle)
+    return pivot + length * (cos + 1j * sin)
+
+
+def sliding(point: Any, along: Any, distance: Any) -> Any:
+    """The pin of a driven slider, ``distance`` from ``point`` in the direction ``along``."""
+    return point + along * distance
 
 
 def rrr(p: Any, q: Any, p_length: Any, q_length: Any, side: Any = OPEN) -> Any:
@@ -44,30 +68,158 @@ def rrr(p: Any, q: Any, p_length: Any, q_length: Any, side: Any = OPEN) -> Any:
     ------
     CannotAssemble
         Scalars only: the circles do not meet, with the gap in figures.
+    Undefined
+        Scalars only: p and q coincide and the lengths are equal, so that B may be anywhere on a circle.
 
     Source
     ------
     Intersection of two circles. The triangle's area is the product of its four margins (Heron), so
-    that it is exactly zero where the bodies line up.
+    that it is exactly zero where the bodies line up. A four-bar from its own lengths: :class:`four_bar.FourBar`.
     """
-    line = q - p
-    distance = abs(line)
-    longer, shorter, inner = (
-        p_length + q_length - distance,
-        distance - p_length + q_length,
-        distance + p_length - q_length,
-    )
-    product = (p_length + q_length + distance) * longer * shorter * inner
-    if isinstance(product, float):
-        if distance == 0.0 or product < 0.0:
-            raise out_of_reach(distance, p_length, q_length)
-        height = math.sqrt(product) / 2
-    else:
-        with np.errstate(invalid="ignore", divide="ignore"):
-            height = np.sqrt(product) / 2
-    along = (distance * distance + (p_length - q_length) * (p_length + q_length)) / 2
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return p + line * (along + 1j * side * height) / (distance * distance)
+    return _solved(_rrr, _rrr_failure, p, q, p_length, q_length, side)
+
+
+def rrp(p: Any, length: Any, line: Any, side: Any = 1, along: Any = 1.0) -> Any:
+    """Slider pinned to a rod: the point of a line at ``length`` from the rod's other pin ``p``.
+
+    ``line`` is a point of the line if complex; a real number is the ordinate of a horizontal line. ``along`` is its
+    direction, a complex unit vector. ``side`` is +1 when the slider lies ahead of ``p`` along it, -1 when behind.
+    Complex, of the broadcast shape.
+
+    Raises
+    ------
+    CannotAssemble
+        Scalars only: the rod is shorter than the distance of ``p`` from the line.
+    """
+    point = line if np.iscomplexobj(line) else 1j * np.asarray(line)[()]
+    return _solved(_rrp, _rrp_failure, p, length, point, side, along)
+
+
+def rpr(p: Any, q: Any, offset: Any = 0.0, side: Any = 1) -> tuple[Any, Any]:
+    """Block pinned at ``p`` that slides on a guide pinned at ``q``: the guide's direction and the slide.
+
+    The slot runs parallel to the guide's own direction u, ``offset`` to the left of q: p = q + (slide + i offset) u. Returns u,
+    a complex unit vector, and the slide, whose sign is ``side``.
+
+    Raises
+    ------
+    CannotAssemble
+        Scalars only: p is nearer to q than the offset.
+    Undefined
+        Scalars only: p lies on q and there is no offset.
+    """
+    return _solved(_rpr, _rpr_failure, p, q, offset, side)
+
+
+def prp(first_point: Any, first_along: Any, second_point: Any, second_along: Any) -> Any:
+    """Pin of two blocks, each on its own line: where the lines meet. One assembly only.
+
+    Raises
+    ------
+    CannotAssemble
+        Scalars only: the lines are parallel.
+    """
+    return _solved(_prp, _prp_failure, first_point, first_along, second_point, second_along)
+
+
+def rpp(p: Any, point: Any, along: Any, across: Any) -> tuple[Any, Any]:
+    """Body pinned at ``p`` that slides in the direction ``across`` on a block, which slides ``along`` a line.
+
+    p = point + first * along + second * across; returns both slides. One assembly only.
+
+    Raises
+    ------
+    CannotAssemble
+        Scalars only: the two directions are parallel.
+    """
+    return _solved(_rpp, _rpp_failure, p, point, along, across)
+
+
+def rrr_rates(p_arm: Any, q_arm: Any, p_rates: Rates, q_rates: Rates) -> tuple[tuple, tuple]:
+    """Derivatives of the angles of both bodies of an RRR dyad.
+
+    ``p_arm`` = B - p and ``q_arm`` = B - q now; ``p_rates`` and ``q_rates`` the derivatives of p and q from the first
+    on, of equal number. The point B itself moves by ``p_rates`` plus :func:`vectors.turned` of ``p_arm``.
+    """
+
+    def known(n: int, p_turn: list, q_turn: list) -> Any:
+        apart = q_rates[n - 1] - p_rates[n - 1]
+        return apart + derivative(q_arm, 0.0, (), q_turn, n) - derivative(p_arm, 0.0, (), p_turn, n)
+
+    return _rates(known, 1j * np.asarray(p_arm), -1j * np.asarray(q_arm), len(p_rates))
+
+
+def rrp_rates(
+    arm: Any, along: Any, p_rates: Rates, point_rates: Rates = (), slide: Any = 0.0, line_rates: Rates = ()
+) -> tuple[tuple, tuple]:
+    """Derivatives of the rod's angle and of the slide along the line, of an RRP dyad.
+
+    ``arm`` = B - p now. A line that moves has the derivatives ``point_rates`` of its point and ``line_rates`` of its angle,
+    and ``slide`` = distance from that point to B now; a fixed line needs none of them.
+    """
+    count = len(p_rates)
+    carried = _padded(point_rates, count)
+
+    def known(n: int, turn: list, slid: list) -> Any:
+        by_line = carried[n - 1] + derivative(slide * along, along, slid, line_rates[:n], n)
+        return by_line - p_rates[n - 1] - derivative(arm, 0.0, (), turn, n)
+
+    return _rates(known, 1j * np.asarray(arm), -np.asarray(along), count)
+
+
+def rpr_rates(arm: Any, unit: Any, p_rates: Rates, q_rates: Rates = ()) -> tuple[tuple, tuple]:
+    """Derivatives of the slide and of the guide's angle, of an RPR dyad.
+
+    ``arm`` = p - q and ``unit`` the guide's direction now. The second derivative holds the Coriolis term.
+    """
+    carried = _padded(q_rates, len(p_rates))
+
+    def known(n: int, slid: list, turn: list) -> Any:
+        return p_rates[n - 1] - carried[n - 1] - derivative(arm, unit, slid, turn, n)
+
+    return _rates(known, np.asarray(unit), 1j * np.asarray(arm), len(p_rates))
+
+
+def prp_rates(
+    first_along: Any,
+    second_along: Any,
+    first_rates: Rates,
+    second_rates: Rates,
+    slides: tuple[Any, Any] = (0.0, 0.0),
+    line_rates: tuple[Rates, Rates] = ((), ()),
+) -> tuple[tuple, tuple]:
+    """Derivatives of both slides of a PRP dyad.
+
+    ``first_rates`` and ``second_rates`` are the derivatives of the lines' points; lines that turn have the derivatives ``line_rates`` of
+    their angles, and ``slides`` = the distances from these points to the pin now.
+    """
+
+    def known(n: int, first: list, second: list) -> Any:
+        on_first = derivative(slides[0] * first_along, first_along, first, line_rates[0][:n], n)
+        on_second = derivative(slides[1] * second_along, second_along, second, line_rates[1][:n], n)
+        return second_rates[n - 1] + on_second - first_rates[n - 1] - on_first
+
+    return _rates(known, np.asarray(first_along), -np.asarray(second_along), len(first_rates))
+
+
+def rpp_rates(
+    along: Any,
+    across: Any,
+    p_rates: Rates,
+    point_rates: Rates = (),
+    slides: tuple[Any, Any] = (0.0, 0.0),
+    line_rates: Rates = (),
+) -> tuple[tuple, tuple]:
+    """Derivatives of both slides of an RPP dyad; both directions turn with the line, by ``line_rates``."""
+    count = len(p_rates)
+    carried = _padded(point_rates, count)
+
+    def known(n: int, first: list, second: list) -> Any:
+        by_first = derivative(slides[0] * along, along, first, line_rates[:n], n)
+        by_second = derivative(slides[1] * across, across, second, line_rates[:n], n)
+        return p_rates[n - 1] - carried[n - 1] - by_first - by_second
+
+    return _rates(known, np.asarray(along), np.asarray(across), count)
 
 
 def out_of_reach(
@@ -82,28 +234,109 @@ def out_of_reach(
     )
 
 
-def rrp(p: Any, length: Any, y: Any, side: Any = 1) -> Any:
-    """Slider pinned to a rod: the point of the horizontal line ``y`` at ``length`` from ``p``.
+def _solved(kernel: Callable, failure: Callable[..., CourseworkError], *given: Any) -> Any:
+    """The kernel in blocks; of scalars, plain numbers or the error that says why there are none."""
+    given = tuple(np.asarray(x)[()] for x in given)
+    found = in_blocks(kernel, *given)
+    if not np.ndim(found[0]):
+        found = tuple(value.item() for value in found)
+        if any(value != value for value in found):
+            with np.errstate(all="ignore"):
+                raise failure(*given)
+    return found if len(found) > 1 else found[0]
 
-    ``side`` is +1 when the slider lies to the right of ``p`` (+x), -1 to the left. Complex, of the
-    broadcast shape.
 
-    Raises
-    ------
-    CannotAssemble
-        Scalars only: the rod is shorter than the distance of ``p`` from the line.
-    """
-    px, py = (p.real, p.imag)
-    rise = y - py
-    product = (length - rise) * (length + rise)
-    if isinstance(product, float):
-        if product < 0.0:
-            raise CannotAssemble(
-                f"the linkage does not close: the line is {abs(rise):.6g} away from the pin, but the rod "
-                f"reaches only {length:.6g} (gap {abs(rise) - length:.3g})"
-            )
-        run = math.sqrt(product)
-    else:
-        with np.errstate(invalid="ignore"):
-            run = np.sqrt(product)
-    return px + side * run + 1j * y
+def _rates(known: Callable, first: Any, second: Any, count: int) -> tuple[tuple, tuple]:
+    """Order after order: ``first * x + second * y`` = what is known of that order."""
+    xs, ys = [], []
+    with np.errstate(all="ignore"):
+        for n in range(1, count + 1):
+            x, y = components(known(n, xs, ys), first, second)
+            xs.append(x)
+            ys.append(y)
+    if xs and not np.ndim(xs[0]) and not (np.isfinite(xs[0]) and np.isfinite(ys[0])):
+        raise Undefined("the two bodies are in line: at a dead point the rates do not exist")
+    return tuple(xs), tuple(ys)
+
+
+def _padded(rates: Rates, count: int) -> tuple:
+    return (*rates, *(0.0,) * (count - len(rates)))
+
+
+def _rrr(p: Any, q: Any, p_length: Any, q_length: Any, side: Any) -> tuple[Any]:
+    exponent = exponent_of(p_length, q_length)
+    line, b, c = (scaled(x, -exponent) for x in (q - p, p_length, q_length))
+    squared = line.real**2 + line.imag**2
+    distance = np.sqrt(squared)
+    fold = (distance - b + c) * (distance + b - c)
+    area = np.sqrt((b + c + distance) * (b + c - distance) * fold)
+    # distance^2 + b^2 - c^2, without its cancellation when the bodies fold onto the line.
+    along = fold + 2 * b * (b - c)
+    squared = np.where(squared == 0, np.nan, squared)
+    return (p + scaled(line * (along + 1j * (side * area)) / (2 * squared), exponent),)
+
+
+def _rrr_failure(p: Any, q: Any, p_length: Any, q_length: Any, _: Any) -> CourseworkError:
+    distance = float(np.hypot(np.real(q - p), np.imag(q - p)))
+    if distance == 0 and p_length == q_length:
+        return Undefined(
+            f"the two bodies are both {p_length:.6g} long and their far pins coincide: they may point anywhere"
+        )
+    return out_of_reach(distance, float(p_length), float(q_length))
+
+
+def _rrp(p: Any, length: Any, point: Any, side: Any, along: Any) -> tuple[Any]:
+    exponent = exponent_of(length)
+    to_point = point - p
+    rise, reach = scaled(cross(along, to_point), -exponent), scaled(length, -exponent)
+    run = scaled(side * np.sqrt((reach - rise) * (reach + rise)), exponent)
+    return (point + along * (run - dot(along, to_point)),)
+
+
+def _rrp_failure(p: Any, length: Any, point: Any, _: Any, along: Any) -> CannotAssemble:
+    away = abs(float(cross(along, point - p)))
+    return CannotAssemble(
+        f"the linkage does not close: the line is {away:.6g} away from the pin, but the rod "
+        f"reaches only {length:.6g} (gap {away - length:.3g})"
+    )
+
+
+def _rpr(p: Any, q: Any, offset: Any, side: Any) -> tuple[Any, Any]:
+    arm = p - q
+    exponent = exponent_of(np.real(arm), np.imag(arm), offset)
+    arm, aside = scaled(arm, -exponent), scaled(offset, -exponent)
+    distance = size(arm)
+    slide = side * np.sqrt((distance - aside) * (distance + aside))
+    unit = arm / (slide + 1j * aside)
+    return unit / size(unit), scaled(slide, exponent)
+
+
+def _rpr_failure(p: Any, q: Any, offset: Any, _: Any) -> CourseworkError:
+    distance = float(np.hypot(np.real(p - q), np.imag(p - q)))
+    if distance >= abs(offset):
+        return Undefined("the block lies on the guide's pivot: the guide has no direction there")
+    return CannotAssemble(
+        f"the linkage does not close: the block is {distance:.6g} from the guide's pivot, but the slot passes "
+        f"{abs(offset):.6g} away (gap {abs(offset) - distance:.3g})"
+    )
+
+
+def _prp(first_point: Any, first_along: Any, second_point: Any, second_along: Any) -> tuple[Any]:
+    first, _ = components(second_point - first_point, first_along, -second_along)
+    return (first_point + first_along * np.where(np.isfinite(first), first, np.nan),)
+
+
+def _prp_failure(first_point: Any, first_along: Any, second_point: Any, _: Any) -> CannotAssemble:
+    apart = abs(float(cross(first_along, second_point - first_point)))
+    return CannotAssemble(f"the linkage does not close: the lines are parallel (gap {apart:.3g})")
+
+
+def _rpp(p: Any, point: Any, along: Any, across: Any) -> tuple[Any, Any]:
+    first, second = components(p - point, along, across)
+    exists = np.isfinite(first) & np.isfinite(second)
+    return np.where(exists, first, np.nan), np.where(exists, second, np.nan)
+
+
+def _rpp_failure(p: Any, point: Any, along: Any, _: Any) -> CannotAssemble:
+    apart = abs(float(cross(along, p - point)))
+    return CannotAssemble(f"the linkage does not close: the two slides are parallel (gap {apart:.3g})")

@@ -21,8 +21,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.errors import Undefined, WrongValue
-from coursework.kinematics.angles import Heading, full_angle, half_angle, half_products
+from coursework.kinematics.angles import Heading, full_angle
 from coursework.kinematics.blocks import in_blocks
+from coursework.kinematics.closing import Closing, Sweep, closing, in_time, opening, signed_sweep, sweep
 from coursework.kinematics.dyads import out_of_reach, side_of
 from coursework.kinematics.margins import grashof_margins
 from coursework.kinematics.scaling import exponent_of, scaled
@@ -50,22 +51,14 @@ class _Linkage(NamedTuple):
     reach: Any  # 4 a d
     gap: Any  # d - a
     crank: Any  # a
+    twice_ground: Any  # 2 d
+    twice_crank_gap: Any  # 2 a (d - a)
     coupler: Any  # 2 b (b - c)
     rocker: Any  # 2 c (b - c)
-    frame: Any  # d^2 - a^2
-    sides: Any  # b^2 - c^2
+    twice_frame: Any  # 2 (d^2 - a^2)
+    twice_sides: Any  # 2 (b^2 - c^2)
     twice_bc: Any  # 2 b c
     side: Any  # +1 open, -1 crossed
-
-
-class _Turn(NamedTuple):
-    """What the formulas need of the crank angle; the signed halves for smooth continuation only."""
-
-    cos_squared: Any
-    sin_squared: Any
-    half_sine: Any  # sine of the crank angle, halved
-    half_cos: Any = None
-    half_sin: Any = None
 
 
 class FourBar:
@@ -169,8 +162,7 @@ class FourBar:
         A pair (coupler, rocker) for each order from 1 to ``order`` (at most 3): the first holds the ratios
         omega3/omega2 and omega4/omega2. They need no inverse trigonometry. Errors as in :meth:`motion`.
         """
-        found = self._evaluate(_coefficients, crank_angle, order=order)
-        return tuple(zip(found[::2], found[1::2], strict=True))
+        return _pairs(self._evaluate(_coefficients, crank_angle, order=order))
 
     def pins(self, crank_angle: Any) -> tuple[Any, Any]:
         """The points A and B, complex, in the linkage's unit of length. Errors as in :meth:`angles`."""
@@ -194,29 +186,34 @@ class FourBar:
         # A numpy number where the angle is one: its quotient by zero is NaN, not an error.
         heading = tuple(np.asarray(part, dtype=float)[()] for part in heading)
         rates = tuple(np.asarray(rate, dtype=float)[()] for rate in rates)
-        turn = _signed_turn if self.smooth else _turn
+        sweeping = signed_sweep if self.smooth else sweep
         last = len(_Linkage._fields)
         extra = {} if order is None else {"order": order}
 
         def kernel(*inputs: Any) -> tuple:
             linkage, angle = _Linkage(*inputs[:last]), inputs[last : last + len(heading)]
             angle = Heading(*angle) if len(angle) > 1 else angle[0]
-            return formula(linkage, turn(angle), angle, *inputs[last + len(heading) :], **extra)
+            return formula(
+                linkage, sweeping(angle, linkage.reach), angle, *inputs[last + len(heading) :], **extra
+            )
 
         found = in_blocks(kernel, *self._linkage, *heading, *rates)
         if np.ndim(found[0]):
             return found
         found = tuple(value.item() for value in found)
         if any(value != value for value in found):
-            raise self._failure(crank_angle)
+            with np.errstate(all="ignore"):
+                raise self._failure(crank_angle)
         return found
 
     def _failure(self, crank_angle: Any) -> Exception:
         """Why a scalar came out NaN."""
-        turn, t = _turn(crank_angle), self._linkage
-        if not math.isfinite(turn.half_sine):
+        t = self._linkage
+        swept = sweep(crank_angle, t.reach)
+        if not math.isfinite(swept.both):
             return WrongValue(f"the crank angle is {crank_angle}, where a finite number is needed")
-        m, stretch, fold = (float(x) for x in _reaches(t, turn))
+        close, m = closing(t.stretched, t.folded, t.side, swept), float(_squared_line(t, swept))
+        stretch, fold = float(close.stretch), float(close.fold)
         distance = math.ldexp(math.sqrt(m), int(self._exponent))
         _, _, coupler, rocker = (float(x) for x in self.lengths)
         if min(stretch, fold) < 0:
@@ -277,175 +274,103 @@ def _linkage(d: Any, a: Any, b: Any, c: Any, side: Any) -> _Linkage:
         reach=4 * a * d,
         gap=d - a,
         crank=a,
+        twice_ground=2 * d,
+        twice_crank_gap=2 * a * (d - a),
         coupler=2 * b * (b - c),
         rocker=2 * c * (b - c),
-        frame=(d - a) * (d + a),
-        sides=(b - c) * (b + c),
+        twice_frame=2 * (d - a) * (d + a),
+        twice_sides=2 * (b - c) * (b + c),
         twice_bc=2 * b * c,
         side=side,
     )
 
 
-def _turn(angle: Any) -> _Turn:
-    return _Turn(*half_products(angle))
+def _squared_line(t: _Linkage, swept: Sweep) -> Any:
+    """m = AD^2."""
+    return t.gap * t.gap + swept.sin_squared
 
 
-def _signed_turn(angle: Any) -> _Turn:
-    cos, sin = half_angle(angle)
-    return _Turn(cos * cos, sin * sin, cos * sin, cos, sin)
+def _pose(t: _Linkage, swept: Sweep) -> tuple[Any, Closing, Any, Any]:
+    """m, the closing, and X3 = m + b^2 - c^2, X4 = -m + b^2 - c^2 without cancellation."""
+    close = closing(t.stretched, t.folded, t.side, swept)
+    return _squared_line(t, swept), close, t.coupler + close.fold, t.rocker - close.fold
 
 
-def _reaches(t: _Linkage, turn: _Turn) -> tuple[Any, Any, Any]:
-    """m, P and Q."""
-    swept = t.reach * turn.sin_squared
-    return t.gap * t.gap + swept, t.stretched + t.reach * turn.cos_squared, t.folded + swept
-
-
-def _closing(t: _Linkage, turn: _Turn, stretch: Any, fold: Any) -> Any:
-    """S. Continued smoothly, sqrt(P) at E+ = 0 is the signed 2 sqrt(a d) cos(crank / 2), and likewise for Q."""
-    if turn.half_cos is None:
-        return t.side * np.sqrt(stretch * fold)
-    root_p, root_q = _signed_roots(t, turn, stretch, fold)
-    return t.side * root_p * root_q
-
-
-def _signed_roots(t: _Linkage, turn: _Turn, stretch: Any, fold: Any) -> tuple[Any, Any]:
-    root_reach = np.sqrt(t.reach)
-    return (
-        np.where(t.stretched == 0, root_reach * turn.half_cos, np.sqrt(stretch)),
-        np.where(t.folded == 0, root_reach * turn.half_sin, np.sqrt(fold)),
+def _directions(t: _Linkage, swept: Sweep, m: Any, s: Any, coupler: Any, rocker: Any) -> tuple[Any, Any]:
+    """Coupler and rocker turn from A -> D by the angles of X3 + i S and X4 + i S."""
+    # A -> D times 2 d is x - i y.
+    x, y = t.twice_ground * t.gap + swept.sin_squared, swept.both
+    x = np.where(m == 0, np.nan, x) if np.any(t.gap == 0) else x
+    along, across = x * s, y * s
+    return direction(along - y * coupler, x * coupler + across), direction(
+        along - y * rocker, x * rocker + across
     )
 
 
-def _line(t: _Linkage, turn: _Turn, m: Any) -> tuple[Any, Any]:
-    """The vector A -> D. NaN where A lies on D: coupler and rocker have no direction there."""
-    x, y = t.gap + (2 * t.crank) * turn.sin_squared, (-2 * t.crank) * turn.half_sine
-    return (np.where(m == 0, np.nan, x) if np.any(t.gap == 0) else x), y
+def _angles(t: _Linkage, swept: Sweep, _: Any) -> tuple[Any, Any]:
+    m, close, coupler, rocker = _pose(t, swept)
+    return _directions(t, swept, m, close.determinant, coupler, rocker)
 
 
-def _directions(t: _Linkage, turn: _Turn, m: Any, fold: Any, closing: Any) -> tuple[Any, Any]:
-    """Coupler and rocker turn from A -> D by the angles of X3 + i S and X4 + i S, with
-    X3 = m + b^2 - c^2 and X4 = -m + b^2 - c^2 written without cancellation."""
-    x, y = _line(t, turn, m)
-    coupler, rocker = t.coupler + fold, t.rocker - fold
-    x_closing, y_closing = x * closing, y * closing
-    return (
-        direction(x_closing + y * coupler, x * coupler - y_closing),
-        direction(x_closing + y * rocker, x * rocker - y_closing),
-    )
-
-
-def _angles(t: _Linkage, turn: _Turn, _: Any) -> tuple[Any, Any]:
-    m, stretch, fold = _reaches(t, turn)
-    return _directions(t, turn, m, fold, _closing(t, turn, stretch, fold))
-
-
-def _pins(t: _Linkage, turn: _Turn, angle: Any) -> tuple[Any, Any]:
-    m, stretch, fold = _reaches(t, turn)
-    x, y = _line(t, turn, m)
+def _pins(t: _Linkage, swept: Sweep, angle: Any) -> tuple[Any, Any]:
+    m, close, coupler, _ = _pose(t, swept)
     cos, sin = full_angle(angle)
     crank_pin = t.crank * (cos + 1j * sin)
-    closing = _closing(t, turn, stretch, fold)
-    return crank_pin, crank_pin + (x + 1j * y) * ((t.coupler + fold) + 1j * closing) / (2 * m)
+    line = t.gap + (swept.sin_squared - 1j * swept.both) / t.twice_ground
+    return crank_pin, crank_pin + line * (coupler + 1j * close.determinant) / (2 * m)
 
 
-def _transmission_angle(t: _Linkage, turn: _Turn, _: Any) -> tuple[Any]:
-    _, stretch, fold = _reaches(t, turn)
-    return (2 * np.arctan2(np.sqrt(fold), np.sqrt(stretch)),)
+def _transmission_angle(t: _Linkage, swept: Sweep, _: Any) -> tuple[Any]:
+    close = closing(t.stretched, t.folded, t.side, swept)
+    return (2 * np.arctan2(np.sqrt(close.fold), np.sqrt(close.stretch)),)
 
 
-def _conditioning(t: _Linkage, turn: _Turn, _: Any) -> tuple[Any]:
-    _, stretch, fold = _reaches(t, turn)
-    return (t.twice_bc / np.sqrt(stretch * fold),)
+def _conditioning(t: _Linkage, swept: Sweep, _: Any) -> tuple[Any]:
+    return (t.twice_bc / np.sqrt(closing(t.stretched, t.folded, t.side, swept).product),)
 
 
-def _motion(t: _Linkage, turn: _Turn, _: Any, *rates: Any) -> tuple:
-    m, stretch, fold = _reaches(t, turn)
-    closing = _closing(t, turn, stretch, fold)
-    found = _directions(t, turn, m, fold, closing)
+def _motion(t: _Linkage, swept: Sweep, _: Any, *rates: Any) -> tuple:
+    m, close, coupler, rocker = _pose(t, swept)
+    found = _directions(t, swept, m, close.determinant, coupler, rocker)
     order = len(rates)
     if order == 0:
         return found
-    # Chain rule through the crank angle.
-    g = _derivatives(t, turn, m, stretch, fold, closing, order)
-    rate = rates[0]
-    found += g[0] * rate, g[1] * rate
-    if order >= 2:
-        squared, acceleration = rate * rate, rates[1]
-        found += tuple(g[2 + i] * squared + g[i] * acceleration for i in (0, 1))
-    if order >= 3:
-        both = 3 * rate * acceleration
-        found += tuple(g[4 + i] * (squared * rate) + g[2 + i] * both + g[i] * rates[2] for i in (0, 1))
-    return found
+    return found + in_time(_pairs(_derivatives(t, swept, m, close, coupler, rocker, order)), rates)
 
 
-def _coefficients(t: _Linkage, turn: _Turn, _: Any, *, order: int) -> tuple:
-    m, stretch, fold = _reaches(t, turn)
-    return _derivatives(t, turn, m, stretch, fold, _closing(t, turn, stretch, fold), order)
+def _pairs(values: tuple) -> tuple[tuple[Any, Any], ...]:
+    return tuple(zip(values[::2], values[1::2], strict=True))
+
+
+def _coefficients(t: _Linkage, swept: Sweep, _: Any, *, order: int) -> tuple:
+    m, close, coupler, rocker = _pose(t, swept)
+    return _derivatives(t, swept, m, close, coupler, rocker, order)
 
 
 def _derivatives(
-    t: _Linkage, turn: _Turn, m: Any, stretch: Any, fold: Any, closing: Any, order: int
+    t: _Linkage, swept: Sweep, m: Any, close: Closing, coupler: Any, rocker: Any, order: int
 ) -> tuple:
     """Derivatives of both angles by the crank angle, in pairs.
 
     The direction of A -> D has the derivative (a^2 - a d cos)/m, and coupler and rocker turn against it at
-    (a d / m) X4 rho and (a d / m) X3 rho, where rho = sin(crank) / S stays finite at a change point. Written
+    rho X4/(2 m) and rho X3/(2 m), where rho = 2 a d sin(crank)/S stays finite at a change point. Written
     so, the higher derivatives share all but one term, and no term grows where the sum does not.
     """
-    rho = _opening(t, turn, stretch, fold, closing, order)
-    a_d = t.reach * 0.25
-    share = a_d / m
-    coupler, rocker = t.coupler + fold, t.rocker - fold
-    common = (t.reach * 0.5 * turn.sin_squared - t.crank * t.gap) / m
-    along = share * rho[0]
+    rho = opening(close, swept, order)
+    half = 0.5 / m
+    common = (swept.sin_squared - t.twice_crank_gap) * half
+    along = rho[0] * half
     found = (common + along * rocker, common + along * coupler)
     if order >= 2:
-        swing = (2 * share) * turn.half_sine
-        sides = (2 * a_d) * t.sides
-        excess = (t.frame - sides * rho[0]) / m
+        swing = swept.both * half
+        excess = (t.twice_frame - t.twice_sides * rho[0]) * half
         common = swing * excess
-        along = share * rho[1]
+        along = rho[1] * half
         found += (common + along * rocker, common + along * coupler)
     if order >= 3:
-        cosine = turn.cos_squared - turn.sin_squared
-        common = share * cosine * excess - 4 * swing * common - swing * sides * rho[1] / m
-        both = share * rho[2] - 2 * swing * along
-        apart = 2 * swing * a_d * rho[1]
+        turning = 0.5 * (swept.cos_squared - swept.sin_squared)
+        common = half * (turning * excess - swing * t.twice_sides * rho[1]) - 4 * swing * common
+        both = rho[2] * half - 2 * swing * along
+        apart = swing * rho[1]
         found += (common + both * rocker - apart, common + both * coupler + apart)
-    return found
-
-
-def _opening(t: _Linkage, turn: _Turn, stretch: Any, fold: Any, closing: Any, order: int) -> list:
-    """rho = sin(crank) / S and its derivatives by the crank angle, ``order`` of them in all.
-
-    NaN where S is 0, except for the smooth policy at a change point, where the factor that vanishes is
-    divided out.
-    """
-    if turn.half_cos is None:
-        inverse = closing / (stretch * fold)
-        rho, cos_part, sin_part = (
-            2 * turn.half_sine * inverse,
-            turn.cos_squared * inverse,
-            turn.sin_squared * inverse,
-        )
-        of_stretch, of_fold = (t.stretched / stretch, t.folded / fold) if order >= 2 else (None, None)
-    else:
-        root_p, root_q = _signed_roots(t, turn, stretch, fold)
-        flat_p, flat_q = t.stretched == 0, t.folded == 0
-        # Where a root is a multiple of the half angle's cosine or sine, their quotient is a constant.
-        cos_p = np.where(flat_p, 1 / np.sqrt(t.reach), turn.half_cos / root_p)
-        sin_q = np.where(flat_q, 1 / np.sqrt(t.reach), turn.half_sin / root_q)
-        rho = 2 * t.side * cos_p * sin_q
-        of_stretch, of_fold = np.where(flat_p, 0, t.stretched / stretch), np.where(flat_q, 0, t.folded / fold)
-        cos_part = t.side * cos_p * np.where(flat_q, 0, turn.half_cos / root_q)
-        sin_part = t.side * sin_q * np.where(flat_p, 0, turn.half_sin / root_p)
-    found = [rho]
-    if order >= 2:
-        found.append(of_fold * cos_part - of_stretch * sin_part)
-    if order >= 3:
-        thrice = 3 * t.reach
-        stretching = of_stretch * (1 + np.where(of_stretch == 0, 0, thrice * turn.sin_squared / stretch))
-        folding = of_fold * (1 + np.where(of_fold == 0, 0, thrice * turn.cos_squared / fold))
-        found.append(-0.25 * rho * (stretching + folding + 2 * of_stretch * of_fold))
     return found

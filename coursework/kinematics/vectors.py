@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from coursework.kinematics.scaling import exponent_of, scaled
+
 _QUARTER = math.pi / 2
 
 
@@ -34,14 +36,18 @@ def direction(y: Any, x: Any) -> Any:
     turn -= np.copysign(_QUARTER, quotient)
     found = np.arctan(quotient)
     found += turn
-    behind = found == -math.pi
-    return np.where(behind, math.pi, found) if np.any(behind) else found
+    if np.min(found, initial=math.inf) > -math.pi:
+        return found
+    return np.where(found == -math.pi, math.pi, found)
 
 
 def components(r: Any, u: Any, v: Any) -> tuple[Any, Any]:
     """The two real numbers with ``first * u + second * v = r`` (Cramer's rule); inf or NaN when u and v are parallel."""
-    inverse = 1 / cross(u, v)
-    return cross(r, v) * inverse, cross(u, r) * inverse
+    # Vectors of lengths far from 1 are scaled: their product would overflow or vanish.
+    of_u, of_v = exponent_of(np.real(u), np.imag(u)), exponent_of(np.real(v), np.imag(v))
+    u, v = scaled(u, -of_u), scaled(v, -of_v)
+    inverse = np.divide(1.0, cross(u, v))
+    return scaled(cross(r, v) * inverse, -of_u)[()], scaled(cross(u, r) * inverse, -of_v)[()]
 
 
 def derivative(

@@ -1,0 +1,316 @@
+"""Any closed chain, triads and beyond, by Newton's method on its loop-closure equations.
+
+A loop is a list of vectors ``sign * length * e^{i (angle + turn)}`` whose sum is zero; a length or an angle is a number or
+a name, and a name is known or unknown. The Jacobian is exact: a vector turned by a quarter for its angle, its unit
+vector for its length. Which of the assemblies is found is decided by the start, so that it must be near the one that is
+meant; every answer comes with a certificate.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.errors import CannotAssemble, Undefined, WrongValue
+from coursework.kinematics.angles import Heading, full_angle
+from coursework.kinematics.blocks import in_blocks
+from coursework.kinematics.scaling import exponent_of, scaled
+from coursework.kinematics.vectors import derivative
+
+_STEPS = 60  #: Newton needs about six from a good start; damped steps may need more
+_HALVINGS = 12
+_EPS = np.finfo(float).eps
+
+
+class Vector(NamedTuple):
+    """One vector of a loop. ``turn`` is a constant angle added to a named one: that of a ternary link."""
+
+    length: str | float
+    angle: str | float
+    sign: int = 1
+    turn: float = 0.0
+
+
+class Pose(NamedTuple):
+    """Unknowns by name, and how far to trust them.
+
+    ``residual``: the largest loop gap, in units of length. ``condition``: of the Jacobian by its singular values, lengths
+    measured by the longest known one, so that the unit does not matter; infinite at a dead point. ``converged``: whether the
+    gap is rounding.
+    """
+
+    values: dict[str, Any]
+    residual: Any
+    condition: Any
+    converged: Any
+
+
+class Chain:
+    """Loops to close, and the names to find: two unknowns a loop.
+
+    Raises
+    ------
+    WrongValue
+        The number of unknowns is not twice that of the loops, or an unknown is in no loop or is a length and an angle.
+    """
+
+    def __init__(self, loops: Sequence[Sequence[Vector]], unknowns: Sequence[str]) -> None:
+        self.loops = tuple(tuple(loop) for loop in loops)
+        self.unknowns = tuple(unknowns)
+        vectors = [vector for loop in self.loops for vector in loop]
+        self._lengths = {v.length for v in vectors if isinstance(v.length, str)}
+        self._angles = {v.angle for v in vectors if isinstance(v.angle, str)}
+        if len(self.unknowns) != 2 * len(self.loops):
+            raise WrongValue(
+                f"{len(self.loops)} loops fix {2 * len(self.loops)} unknowns; {len(self.unknowns)} are asked"
+            )
+        for name in self.unknowns:
+            if (name in self._lengths) == (name in self._angles):
+                raise WrongValue(f"the unknown {name!r} must be a length or an angle of some vector")
+        self.known = tuple(sorted((self._lengths | self._angles) - set(self.unknowns)))
+        self._measures = [v.length for v in vectors if not isinstance(v.length, str)]
+
+    def solve(self, known: Mapping[str, Any], start: Mapping[str, Any]) -> Pose:
+        """Close the loops.
+
+        Parameters
+        ----------
+        known
+            Values by name, scalars or arrays that broadcast; angles in radians or as :class:`Heading`.
+        start
+            A first guess of each unknown, scalars or arrays that broadcast with the known values.
+
+        Returns
+        -------
+        Unknown angles in (-pi, pi] and lengths, of the broadcast shape, with their certificate.
+
+        Raises
+        ------
+        CannotAssemble
+            Scalars only: no closed pose was reached from this start; says what gap is left. In arrays such a place is
+            NaN and not ``converged``.
+        """
+        directions = {name: known[name] for name in self.known if name in self._angles}
+        directions = {
+            name: value
+            if isinstance(value, Heading)
+            else Heading(*full_angle(np.asarray(value, float)), 0.0, 0.0)
+            for name, value in directions.items()
+        }
+        lengths = {name: np.asarray(known[name], float) for name in self.known if name in self._lengths}
+        exponent = exponent_of(*lengths.values(), *self._measures, 0.0)
+        guesses = [
+            scaled(start[name], -exponent) if name in self._lengths else np.asarray(start[name], float)
+            for name in self.unknowns
+        ]
+        inputs = [
+            exponent,
+            *[scaled(value, -exponent) for value in lengths.values()],
+            *[part for value in directions.values() for part in (value.cos, value.sin)],
+            *guesses,
+        ]
+
+        def kernel(exponent: Any, *given: Any) -> tuple:
+            given = np.broadcast_arrays(exponent, *given)
+            shape = given[0].shape
+            exponents, *flat = (np.ravel(x) for x in given)
+            values = dict(zip(lengths, flat, strict=False))
+            rest = flat[len(lengths) :]
+            for i, name in enumerate(directions):
+                values[name] = rest[2 * i] + 1j * rest[2 * i + 1]
+            found = self._newton(values, np.stack(rest[2 * len(directions) :], axis=1), exponents)
+            return tuple(x.reshape(shape) for x in found)
+
+        *found, residual, condition, converged = in_blocks(kernel, *inputs)
+        for i, name in enumerate(self.unknowns):
+            if name in self._lengths:
+                found[i] = scaled(found[i], exponent)
+        residual, converged = scaled(residual, exponent), converged == 1.0
+        if not residual.ndim:
+            found, residual, condition = [x.item() for x in found], residual.item(), condition.item()
+            converged = bool(converged)
+            if not converged:
+                raise CannotAssemble(
+                    f"the loops do not close from this start: a gap of {residual:.3g} is left; another start, "
+                    "nearer to the pose that is meant, may close, or none exists"
+                )
+        return Pose(dict(zip(self.unknowns, found, strict=True)), residual, condition, converged)
+
+    def rates(
+        self, values: Mapping[str, Any], known_rates: Mapping[str, Sequence[Any]], *, order: int = 1
+    ) -> dict[str, tuple]:
+        """Time derivatives of the unknowns, from the first to ``order`` (at most 3), by name.
+
+        ``values`` holds the known values and the unknowns of a closed pose; ``known_rates`` the derivatives of the known names
+        that vary. All orders share the Jacobian.
+
+        Raises
+        ------
+        Undefined
+            Scalars only: a dead point, where the Jacobian is singular. Not finite in arrays.
+        """
+        exponent = exponent_of(
+            *[np.asarray(values[name], float) for name in sorted(self._lengths)], *self._measures, 0.0
+        )
+        values = {
+            name: scaled(value, -exponent) if name in self._lengths else _unit_of(value)
+            for name, value in values.items()
+            if name in self._lengths or name in self._angles
+        }
+        rates = {
+            name: tuple(scaled(x, -exponent) if name in self._lengths else x for x in given)
+            for name, given in known_rates.items()
+        }
+        rates |= dict.fromkeys(self.unknowns, ())
+        jacobian = self._jacobian(values, exponent)
+        for n in range(1, order + 1):
+            sums = [
+                sum(self._vector_rate(v, values, rates, exponent, n) for v in loop) for loop in self.loops
+            ]
+            right = np.stack(
+                np.broadcast_arrays(*[x for z in sums for x in (-np.real(z), -np.imag(z))]), axis=-1
+            )
+            shape = np.broadcast_shapes(jacobian.shape[:-1], right.shape)
+            found = _steps(
+                np.broadcast_to(jacobian, (*shape, shape[-1])), np.broadcast_to(right, shape), np.nan
+            )
+            rates |= {name: (*rates[name], found[..., i]) for i, name in enumerate(self.unknowns)}
+        found = {
+            name: tuple((scaled(x, exponent) if name in self._lengths else x)[()] for x in rates[name])
+            for name in self.unknowns
+        }
+        if any(not np.ndim(x) and not np.isfinite(x) for given in found.values() for x in given):
+            raise Undefined(
+                "the chain is at a dead point: its Jacobian is singular and the rates do not exist"
+            )
+        return found
+
+    def _newton(self, values: dict[str, Any], x: np.ndarray, exponents: np.ndarray) -> tuple:
+        """Damped Newton steps on rows of unknowns, each until its own gap is rounding or will not shrink."""
+        x = x.copy()
+        gaps, size = self._gaps(values, x, exponents)
+        best = _norm(gaps)
+        working = np.flatnonzero(best > 0)
+        for _ in range(_STEPS):
+            if not len(working):
+                break
+            own = {name: value[working] for name, value in values.items()}
+            scale = exponents[working]
+            jacobian = self._jacobian(own | self._named(x[working]), scale)
+            step = _steps(jacobian, -gaps[working], 0.0)
+            trial, trial_gaps, trial_best, share = (
+                x[working],
+                gaps[working],
+                best[working],
+                np.ones(len(working)),
+            )
+            pending = np.ones(len(working), dtype=bool)
+            for _ in range(_HALVINGS):
+                moved = x[working] + share[:, None] * step
+                moved_gaps, _ = self._gaps(own, moved, scale)
+                better = pending & (_norm(moved_gaps) < best[working])
+                trial = np.where(better[:, None], moved, trial)
+                trial_gaps = np.where(better[:, None], moved_gaps, trial_gaps)
+                trial_best = np.where(better, _norm(moved_gaps), trial_best)
+                # A gap that is rounding is not worth a shorter step.
+                pending &= ~better & (best[working] > 8 * _EPS * size[working])
+                if not pending.any():
+                    break
+                share = np.where(pending, share / 2, share)
+            improved = trial_best < best[working]
+            x[working], gaps[working], best[working] = trial, trial_gaps, trial_best
+            working = working[improved & (trial_best > 0)]
+        converged = best <= 32 * _EPS * size
+        x = np.where(converged[:, None], x, np.nan)
+        condition = _condition(self._jacobian(values | self._named(x), exponents))
+        for i, name in enumerate(self.unknowns):
+            if name in self._angles:
+                x[:, i] = _wrapped(x[:, i])
+        return *x.T, best, condition, converged.astype(float)
+
+    def _named(self, x: np.ndarray) -> dict[str, Any]:
+        """Rows of unknowns by name, an angle as its unit vector."""
+        return {
+            name: x[:, i] if name in self._lengths else np.cos(x[:, i]) + 1j * np.sin(x[:, i])
+            for i, name in enumerate(self.unknowns)
+        }
+
+    def _gaps(self, values: dict[str, Any], x: np.ndarray, exponents: np.ndarray) -> tuple:
+        """The sum of each loop, real and imaginary parts in turn, and the size of what was added."""
+        values = values | self._named(x)
+        parts, size = [], np.zeros(len(x))
+        for loop in self.loops:
+            vectors = [self._vector(v, values, exponents)[0] for v in loop]
+            total = sum(vectors)
+            parts += [np.real(total), np.imag(total)]
+            size = np.maximum(size, sum(abs(z) for z in vectors))
+        return np.stack(np.broadcast_arrays(*parts, np.zeros(len(x)))[:-1], axis=1), size
+
+    def _vector(self, v: Vector, values: Mapping[str, Any], exponents: Any) -> tuple[Any, Any]:
+        """The vector and its unit vector, signed."""
+        length = values[v.length] if isinstance(v.length, str) else scaled(v.length, -exponents)
+        if isinstance(v.angle, str):
+            unit = v.sign * values[v.angle]
+            unit = unit * complex(math.cos(v.turn), math.sin(v.turn)) if v.turn else unit
+        else:
+            unit = v.sign * complex(math.cos(v.angle + v.turn), math.sin(v.angle + v.turn))
+        return length * unit, unit
+
+    def _vector_rate(self, v: Vector, values: Mapping, rates: Mapping, exponents: Any, n: int) -> Any:
+        arm, unit = self._vector(v, values, exponents)
+        of_length = rates.get(v.length, ()) if isinstance(v.length, str) else ()
+        of_angle = rates.get(v.angle, ()) if isinstance(v.angle, str) else ()
+        return derivative(arm, unit, of_length[:n], of_angle[:n], n)
+
+    def _jacobian(self, values: Mapping[str, Any], exponents: Any) -> np.ndarray:
+        """Shape ``(..., 2 loops, unknowns)``; lengths are scaled, so that every column is of size 1 or so."""
+        rows = []
+        for loop in self.loops:
+            columns = dict.fromkeys(self.unknowns, 0.0)
+            for v in loop:
+                arm, unit = self._vector(v, values, exponents)
+                if v.length in columns:
+                    columns[v.length] = columns[v.length] + unit
+                if v.angle in columns:
+                    columns[v.angle] = columns[v.angle] + 1j * arm
+            rows += [[np.real(c) for c in columns.values()], [np.imag(c) for c in columns.values()]]
+        flat = np.broadcast_arrays(*[entry for row in rows for entry in row])
+        return np.stack(flat, axis=-1).reshape(*flat[0].shape, len(rows), len(self.unknowns))
+
+
+def _unit_of(angle: Any) -> Any:
+    cos, sin = full_angle(angle)
+    return cos + 1j * sin
+
+
+def _norm(gaps: np.ndarray) -> np.ndarray:
+    found = abs(gaps).max(axis=-1)
+    return np.where(np.isnan(found), np.inf, found)
+
+
+def _wrapped(angles: np.ndarray) -> np.ndarray:
+    """The same directions in (-pi, pi]; those that are there already keep all their digits."""
+    inside = (angles > -math.pi) & (angles <= math.pi)
+    return np.where(inside, angles, math.pi - np.mod(math.pi - angles, 2 * math.pi))
+
+
+def _steps(jacobian: np.ndarray, right: np.ndarray, otherwise: float) -> np.ndarray:
+    """Solutions of many linear systems; ``otherwise`` where a matrix is singular to rounding or not finite."""
+    finite = np.isfinite(jacobian).all(axis=(-1, -2)) & np.isfinite(right).all(axis=-1)
+    identity = np.eye(jacobian.shape[-1])
+    regular = finite & (abs(np.linalg.det(np.where(finite[..., None, None], jacobian, 0.0))) > 0)
+    found = np.linalg.solve(
+        np.where(regular[..., None, None], jacobian, identity),
+        np.where(regular[..., None], right, 0.0)[..., None],
+    )
+    return np.where(regular[..., None], found[..., 0], otherwise)
+
+
+def _condition(jacobian: np.ndarray) -> np.ndarray:
+    """Largest over least singular value; NaN where the matrix is not finite."""
+    finite = np.isfinite(jacobian).all(axis=(-1, -2))
+    sizes = np.linalg.svd(np.where(finite[..., None, None], jacobian, 0.0), compute_uv=False)
+    return np.where(finite, np.divide(sizes[..., 0], sizes[..., -1]), np.nan)

@@ -1,0 +1,135 @@
+"""How two margins decide whether a loop closes, and how fast it opens with its crank.
+
+The four-bar and the slider-crank close by the same two margins of an angle t,
+
+    P = E+ + w cos^2(t / 2),    Q = E- + w sin^2(t / 2),    S = side * sqrt(P Q),
+
+where E+, E- and w are numbers of the linkage and S is, up to a constant factor, the determinant of its
+velocities. S and sin(t) vanish together at a change point (E+ or E- exactly 0); rho = w sin(t) / (2 S) does not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.kinematics.angles import Heading, half_angle
+
+
+class Sweep(NamedTuple):
+    """Of half the angle, times w: cosine squared, sine squared, cosine times sine. Then the signed cosine and sine times
+    sqrt(w), for a linkage that is continued smoothly through a change point; None when it keeps its mode."""
+
+    cos_squared: Any
+    sin_squared: Any
+    both: Any
+    cos: Any = None
+    sin: Any = None
+
+
+def sweep(angle: Any, w: Any) -> Sweep:
+    """For radians or a :class:`Heading`; radians cost one tangent."""
+    if isinstance(angle, Heading):
+        return Sweep(w * angle.half_cos**2, w * angle.half_sin**2, (0.5 * w) * angle.sin)
+    tangent = np.tan(angle * 0.5)
+    squared = tangent * tangent
+    cos_squared = w / (1 + squared)
+    squared = squared * cos_squared
+    return Sweep(cos_squared, squared, tangent * cos_squared)
+
+
+def signed_sweep(angle: Any, w: Any) -> Sweep:
+    """The same with the signed cosine and sine."""
+    cos, sin = half_angle(angle)
+    cos, sin = np.sqrt(w) * cos, np.sqrt(w) * sin
+    return Sweep(cos * cos, sin * sin, cos * sin, cos, sin)
+
+
+def in_time(by_angle: Sequence[tuple[Any, ...]], rates: Sequence[Any]) -> tuple[Any, ...]:
+    """Time derivatives of quantities that depend on a crank angle, order after order (chain rule).
+
+    ``by_angle`` holds, for each order, the derivatives of all quantities by the angle; ``rates`` the time derivatives of the
+    angle, as many.
+    """
+    first, rate = by_angle[0], rates[0]
+    found = tuple(g * rate for g in first)
+    if len(rates) >= 2:
+        squared, acceleration = rate * rate, rates[1]
+        second = tuple(g * squared for g in by_angle[1])
+        # At constant speed, by far the most common case, the other term is zero.
+        constant = np.ndim(acceleration) == 0 and acceleration == 0
+        found += (
+            second if constant else tuple(s + g * acceleration for s, g in zip(second, first, strict=True))
+        )
+    if len(rates) >= 3:
+        cubed, both = squared * rate, 3 * rate * acceleration
+        found += tuple(
+            g3 * cubed + g2 * both + g1 * rates[2] for g1, g2, g3 in zip(*by_angle[:3], strict=True)
+        )
+    return found
+
+
+class Closing(NamedTuple):
+    """E+, E-, the side, and P, Q, PQ, S of a configuration."""
+
+    stretched: Any
+    folded: Any
+    side: Any
+    stretch: Any
+    fold: Any
+    product: Any
+    determinant: Any
+
+
+def closing(stretched: Any, folded: Any, side: Any, swept: Sweep) -> Closing:
+    """P, Q and S. Continued smoothly, sqrt(P) at E+ = 0 is the signed sqrt(w) cos(t / 2); likewise for Q."""
+    stretch, fold = stretched + swept.cos_squared, folded + swept.sin_squared
+    product = stretch * fold
+    if swept.cos is None:
+        determinant = side * np.sqrt(product)
+    else:
+        root_p = np.where(stretched == 0, swept.cos, np.sqrt(stretch))
+        root_q = np.where(folded == 0, swept.sin, np.sqrt(fold))
+        determinant = side * root_p * root_q
+    return Closing(stretched, folded, side, stretch, fold, product, determinant)
+
+
+def opening(c: Closing, swept: Sweep, order: int) -> list[Any]:
+    """rho = w sin(t) / (2 S) and its derivatives by t, ``order`` of them in all.
+
+    NaN where S is 0, except for the smooth policy at a change point, where the factor that vanishes is
+    divided out.
+    """
+    smooth = swept.cos is not None
+    flat_p, flat_q = (c.stretched == 0, c.folded == 0) if smooth else (False, False)
+    if smooth:
+        # Where a root is the cosine or the sine itself, their quotient is 1.
+        root_p, root_q = np.sqrt(c.stretch), np.sqrt(c.fold)
+        cos_p = np.where(flat_p, 1.0, swept.cos / root_p)
+        sin_q = c.side * np.where(flat_q, 1.0, swept.sin / root_q)
+        found = [cos_p * sin_q]
+    else:
+        inverse = c.determinant / c.product
+        found = [inverse * swept.both]
+    if order == 1:
+        return found
+    of_stretch = _share(c.stretched, c.stretch, flat_p)
+    of_fold = _share(c.folded, c.fold, flat_q)
+    if smooth:
+        cos_part = c.side * cos_p * np.where(flat_q, 0.0, swept.cos / root_q)
+        sin_part = sin_q * np.where(flat_p, 0.0, swept.sin / root_p)
+        found.append(0.5 * (of_fold * cos_part - of_stretch * sin_part))
+    else:
+        found.append((of_fold * swept.cos_squared - of_stretch * swept.sin_squared) * (0.5 * inverse))
+    if order >= 3:
+        stretching = of_stretch * (1 + 3 * _share(swept.sin_squared, c.stretch, flat_p))
+        folding = of_fold * (1 + 3 * _share(swept.cos_squared, c.fold, flat_q))
+        found.append(-0.25 * found[0] * (stretching + folding + 2 * of_stretch * of_fold))
+    return found
+
+
+def _share(part: Any, whole: Any, flat: Any) -> Any:
+    """part / whole, and 0 where a smooth change point has divided it out."""
+    return part / whole if flat is False else np.where(flat, 0.0, part / whole)

@@ -1,0 +1,303 @@
+"""The slider-crank moved by its crank, exact to the last digits at its hard places too.
+
+The crank r turns about O = (0, 0), the rod l joins the crank pin A to the slider B = (x, e) on a line parallel to x.
+The rod's angle is that of A -> B. A mechanism along another axis is this one, turned.
+
+With p = r sin(crank) - e, the rod reaches while l - p and l + p are positive. Written as E + r (1 -+ sin), with
+E = l - r +- e free of rounding, neither is a difference of nearly equal lengths when the crank turns fully, and the
+loop closes as a four-bar does at the complement of the crank angle (:mod:`closing`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.errors import CannotAssemble, Undefined, WrongValue
+from coursework.kinematics.angles import Heading, full_angle, half_angle, halves
+from coursework.kinematics.blocks import in_blocks
+from coursework.kinematics.closing import Closing, Sweep, closing, in_time, opening
+from coursework.kinematics.margins import exact_sum
+from coursework.kinematics.scaling import exponent_of, scaled
+from coursework.kinematics.vectors import direction
+
+
+class SliderCrankMotion(NamedTuple):
+    """The rod's angle (radians) and the slider's abscissa, then as many time derivatives as were asked for."""
+
+    rod_angle: Any
+    position: Any
+    rod_rate: Any = None
+    velocity: Any = None
+    rod_acceleration: Any = None
+    acceleration: Any = None
+    rod_jerk: Any = None
+    jerk: Any = None
+
+
+class _Linkage(NamedTuple):
+    """Lengths scaled to at most 1; the first four as in :mod:`closing`."""
+
+    stretched: Any  # l - r - e
+    folded: Any  # l - r + e
+    reach: Any  # 2 r
+    side: Any
+    crank: Any
+    rod: Any
+    offset: Any
+
+
+class SliderCrank:
+    """One slider-crank, or an array of them.
+
+    Parameters
+    ----------
+    crank, rod, offset
+        Lengths r and l, positive, and the ordinate e of the slider's line; scalars or arrays that broadcast.
+    side
+        +1: the slider lies to the right of the crank pin (the rod's cosine is positive); -1: to the left.
+    smooth
+        What happens when the two sides meet, at rod = crank + |offset| exactly: by default the slider keeps its side
+        and its velocity jumps; if true it passes to the other side as a moving body would, and ``side`` is
+        that of the crank angle 0. A rod that is longer has no such place and moves alike under both.
+
+    Raises
+    ------
+    WrongValue
+        Scalars only: a length that is not positive and finite. In arrays such a linkage is NaN.
+    """
+
+    def __init__(
+        self, crank: Any, rod: Any, offset: Any = 0.0, side: Any = 1, *, smooth: bool = False
+    ) -> None:
+        self.lengths = _lengths(crank, rod, offset)
+        self.smooth = smooth
+        self._exponent = exponent_of(*self.lengths)
+        r, l, e = (_plain(scaled(x, -self._exponent)) for x in self.lengths)
+        self._linkage = _Linkage(
+            exact_sum(l, -r, -e), exact_sum(l, -r, e), 2 * r, _plain(np.asarray(side, dtype=float)), r, l, e
+        )
+
+    def turns_fully(self) -> Any:
+        """Whether the crank can make a whole turn: rod >= crank + |offset|, decided exactly."""
+        return (self._linkage.stretched >= 0) & (self._linkage.folded >= 0)
+
+    def motion(
+        self,
+        crank_angle: Any,
+        crank_rate: Any = 1.0,
+        crank_acceleration: Any = 0.0,
+        crank_jerk: Any = 0.0,
+        *,
+        order: int = 0,
+    ) -> SliderCrankMotion:
+        """Rod angle and slider position, with their time derivatives up to ``order`` (0 to 3), nothing beyond.
+
+        ``crank_angle`` is in radians or a :class:`Heading`, of any shape that broadcasts with the lengths.
+
+        Raises
+        ------
+        CannotAssemble
+            Scalars only: the rod does not reach the line; says by how much. NaN in arrays.
+        Undefined
+            Scalars only, order 1 or more: the rod stands square to the line, where the rates do not exist
+            (but see ``smooth``). NaN in arrays.
+        """
+        given = (crank_rate, crank_acceleration, crank_jerk)[:order]
+        found = list(self._evaluate(_motion, crank_angle, *given))
+        found[1::2] = [self._restored(value) for value in found[1::2]]
+        return SliderCrankMotion(*found)
+
+    def position(self, crank_angle: Any) -> Any:
+        """The slider's abscissa alone. Errors as in :meth:`motion`."""
+        return self._restored(self._evaluate(_position, crank_angle)[0])
+
+    def displacement(self, crank_angle: Any) -> Any:
+        """How far the slider is from its outer dead centre, to the last digits there too; at least 0 while
+        the slider is on the side +1. Errors as in :meth:`motion`.
+        """
+        return self._restored(self._evaluate(_displacement, crank_angle)[0])
+
+    def pressure_angle(self, crank_angle: Any) -> Any:
+        """The angle between rod and line, in [0, pi/2]; the conditioning of the slider is its 1/cos."""
+        return self._evaluate(_pressure_angle, crank_angle)[0]
+
+    def conditioning(self, crank_angle: Any) -> Any:
+        """1 / |cos(rod angle)|: how much larger an error of the rod comes out at the slider; inf where it is square."""
+        return self._evaluate(_conditioning, crank_angle)[0]
+
+    def stroke(self) -> Any:
+        """Distance between the two dead centres, of a crank that turns fully: no difference of two distances."""
+        outer, inner = self._dead_centres()
+        t = self._linkage
+        with np.errstate(all="ignore"):
+            return self._restored(4 * t.rod * t.crank / (outer + inner))
+
+    def quick_return(self) -> Any:
+        """The crank angle by which the longer of the two strokes exceeds half a turn, radians, signed as the offset.
+
+        The strokes take pi + this and pi - this: see :func:`time_ratio`.
+        """
+        outer, inner = self._dead_centres()
+        t = self._linkage
+        with np.errstate(all="ignore"):
+            stroke = 4 * t.rod * t.crank / (outer + inner)
+            return np.arctan2(t.offset * stroke, t.offset * t.offset + outer * inner)[()]
+
+    def _dead_centres(self) -> tuple[Any, Any]:
+        """Distances from O to the slider where rod and crank are in line, scaled."""
+        t = self._linkage
+        with np.errstate(all="ignore"):
+            inner = np.sqrt((t.rod - t.crank - t.offset) * (t.rod - t.crank + t.offset))
+            return _outer(t), np.where(t.rod >= t.crank, inner, np.nan)[()]
+
+    def _restored(self, length: Any) -> Any:
+        found = scaled(length, self._exponent)
+        return found if found.ndim else float(found)
+
+    def _evaluate(self, formula: Any, crank_angle: Any, *rates: Any) -> tuple:
+        heading = crank_angle if isinstance(crank_angle, Heading) else (crank_angle,)
+        heading = tuple(np.asarray(part, dtype=float)[()] for part in heading)
+        rates = tuple(np.asarray(rate, dtype=float)[()] for rate in rates)
+        sweeping = _signed_sweep if self.smooth else _sweep
+        last = len(_Linkage._fields)
+
+        def kernel(*inputs: Any) -> tuple:
+            angle = inputs[last : last + len(heading)]
+            angle = Heading(*angle) if len(angle) > 1 else angle[0]
+            cos, sin = full_angle(angle)
+            linkage = _Linkage(*inputs[:last])
+            return formula(
+                linkage,
+                sweeping(angle, cos, sin, linkage.reach),
+                cos,
+                sin,
+                angle,
+                *inputs[last + len(heading) :],
+            )
+
+        found = in_blocks(kernel, *self._linkage, *heading, *rates)
+        if np.ndim(found[0]):
+            return found
+        found = tuple(value.item() for value in found)
+        if any(value != value for value in found):
+            with np.errstate(all="ignore"):
+                raise self._failure(crank_angle)
+        return found
+
+    def _failure(self, crank_angle: Any) -> Exception:
+        """Why a scalar came out NaN."""
+        cos, sin = full_angle(crank_angle)
+        if not math.isfinite(sin):
+            return WrongValue(f"the crank angle is {crank_angle}, where a finite number is needed")
+        close = _closing(self._linkage, _sweep(crank_angle, cos, sin, self._linkage.reach))
+        least = float(min(close.stretch, close.fold))
+        crank, rod, offset = self.lengths
+        away = abs(crank * sin - offset)
+        if least < 0:
+            gap = math.ldexp(-least, int(self._exponent))
+            return CannotAssemble(
+                f"the linkage does not close: the line is {away:.6g} away from the crank pin, but the rod reaches "
+                f"only {rod:.6g} (gap {gap:.3g})"
+            )
+        return Undefined(f"the rod, {rod:.6g}, stands square to the slider's line: the rates do not exist")
+
+
+def time_ratio(excess: Any) -> Any:
+    """Longer stroke's time over the shorter's, of strokes of pi + excess and pi - excess of crank angle."""
+    return 1 + time_ratio_excess(excess)
+
+
+def time_ratio_excess(excess: Any) -> Any:
+    """The time ratio minus 1, without loss of digits when the strokes are nearly equal."""
+    return 2 * np.abs(excess) / (math.pi - np.abs(excess))
+
+
+def _lengths(crank: Any, rod: Any, offset: Any) -> tuple[Any, Any, Any]:
+    if all(np.ndim(x) == 0 for x in (crank, rod, offset)):
+        for name, length in (("crank", crank), ("rod", rod)):
+            if not 0 < length < math.inf:
+                raise WrongValue(f"the length of the {name} is {length}, where a positive number is needed")
+        return float(crank), float(rod), float(offset)
+    r, l, e = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in (crank, rod, offset)))
+    return *(np.where((x > 0) & (x < math.inf), x, math.nan) for x in (r, l)), e
+
+
+def _plain(value: Any) -> Any:
+    return value if value.ndim else float(value)
+
+
+def _sweep(_: Any, cos: Any, sin: Any, w: Any) -> Sweep:
+    """The half angle of the complement: (1 + sin)/2, (1 - sin)/2 and half the cosine."""
+    larger, smaller = halves(np.abs(sin), cos)
+    up = sin >= 0
+    return Sweep(w * np.where(up, larger, smaller), w * np.where(up, smaller, larger), (0.5 * w) * cos)
+
+
+def _signed_sweep(angle: Any, cos: Any, sin: Any, w: Any) -> Sweep:
+    swept = _sweep(angle, cos, sin, w)
+    half_cos, half_sin = half_angle(angle)
+    return swept._replace(
+        cos=np.copysign(np.sqrt(swept.cos_squared), half_cos + half_sin),
+        sin=np.copysign(np.sqrt(swept.sin_squared), half_cos - half_sin),
+    )
+
+
+def _closing(t: _Linkage, swept: Sweep) -> Closing:
+    """P = l + p, Q = l - p; S is how far the slider is to the right of the crank pin."""
+    return closing(t.stretched, t.folded, t.side, swept)
+
+
+def _position(t: _Linkage, swept: Sweep, cos: Any, *_: Any) -> tuple[Any]:
+    return (t.crank * cos + _closing(t, swept).determinant,)
+
+
+def _motion(t: _Linkage, swept: Sweep, cos: Any, sin: Any, _: Any, *rates: Any) -> tuple:
+    close = _closing(t, swept)
+    run, r_cos, r_sin = close.determinant, t.crank * cos, t.crank * sin
+    rise = t.offset - r_sin
+    found = (direction(rise, run), r_cos + run)
+    order = len(rates)
+    if order == 0:
+        return found
+    # Derivatives by the crank angle: the rod's is -rho = -r cos / run, the run's is rho rise.
+    rho = opening(close, swept, order)
+    # It is a function of the complement, so that its odd derivatives change sign.
+    by_angle = [(-rho[0], rho[0] * rise - r_sin)]
+    if order >= 2:
+        by_angle.append((rho[1], -(rho[1] * rise + (1 + rho[0]) * r_cos)))
+    if order >= 3:
+        by_angle.append((-rho[2], rho[2] * rise + 2 * rho[1] * r_cos + (1 + rho[0]) * r_sin))
+    return found + in_time(by_angle, rates)
+
+
+def _displacement(t: _Linkage, swept: Sweep, cos: Any, sin: Any, angle: Any) -> tuple[Any]:
+    """Differences of cosines and of square roots as products: each is zero with the angle from dead centre."""
+    half_cos, half_sin = half_angle(angle)
+    outer = _outer(t)
+    at_centre = 0.5 * np.arctan2(t.offset, outer)
+    c, s = np.cos(at_centre), np.sin(at_centre)
+    past, mean_sin, mean_cos = (
+        half_sin * c - half_cos * s,
+        half_sin * c + half_cos * s,
+        half_cos * c - half_sin * s,
+    )
+    total = t.crank + t.rod
+    rises = (t.offset - t.crank * sin) + t.rod * t.offset / total
+    runs = _closing(t, swept).determinant + t.rod * outer / total
+    return (2 * t.crank * past * (mean_sin - mean_cos * rises / runs),)
+
+
+def _outer(t: _Linkage) -> Any:
+    total = t.rod + t.crank
+    return np.sqrt((total - t.offset) * (total + t.offset))
+
+
+def _pressure_angle(t: _Linkage, swept: Sweep, cos: Any, sin: Any, _: Any) -> tuple[Any]:
+    return (np.arctan2(np.abs(t.offset - t.crank * sin), np.abs(_closing(t, swept).determinant)),)
+
+
+def _conditioning(t: _Linkage, swept: Sweep, *_: Any) -> tuple[Any]:
+    return (t.rod / np.abs(_closing(t, swept).determinant),)
