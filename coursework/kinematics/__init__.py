@@ -4,14 +4,14 @@ Plane xy, x to the right, angles in radians from +x, anticlockwise positive; len
 unit; points are complex numbers. Every argument is a scalar or an array and all broadcast. A
 function computes what it is asked for and nothing beyond: rates only when rates are asked.
 
-``angles``        crank angles as exact sines and cosines (degrees, turns)
-``margins``       by how much a four-bar closes, without rounding
 ``four_bar``      the cranked four-bar: positions, rates, accelerations, jerks, transmission angle
 ``slider_crank``  the same for the slider-crank, with strokes and quick return
 ``slotted_guide`` a crank pin in a turning slot
 ``dyads``         the Assour groups RRR, RRP, RPR, PRP, RPP in any orientation, and the drivers
 ``chains``        any closed chain, by Newton's method with a certificate
 ``cycle``         turning points over one turn
-``blocks``        long arrays in pieces that fit the cache
-``scaling``       exact powers of two
+
+They rest on ``angles`` (crank angles as exact sines and cosines), ``margins`` and ``closing`` (by how
+much a loop closes, without rounding), ``vectors``, ``scaling`` (exact powers of two) and ``blocks`` (long
+arrays in pieces that fit the cache).
 """

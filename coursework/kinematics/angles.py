@@ -65,7 +65,8 @@ def half_angle(angle: Any) -> tuple[Any, Any]:
 
 
 def halves(abs_cos: Any, sin: Any) -> tuple[Any, Any]:
-    """The larger and the smaller of (1 + cos)/2 and (1 - cos)/2, neither a difference; also with the roles exchanged."""
+    """The larger and the smaller of (1 + cos)/2 and (1 - cos)/2, neither a difference; also with the
+    roles exchanged."""
     larger = (1 + abs_cos) / 2
     return larger, np.multiply(sin, sin) / (4 * larger)
 

@@ -1,4 +1,5 @@
-"""Long arrays in pieces that fit the processor's cache: a million configurations cost a piece what ten thousand do."""
+"""Long arrays in pieces that fit the processor's cache: a million configurations cost a piece what ten
+thousand do."""
 
 from __future__ import annotations
 
@@ -14,8 +15,9 @@ BLOCK = 16384  #: configurations computed together: what the calls cost and what
 def _keep_freed_memory() -> None:
     """Let the C library keep the memory of temporaries instead of handing it back after each of them.
 
-    Otherwise every temporary of a block is paged in anew, at several times the cost of filling it. Freeing one
-    large piece raises the threshold above which memory is handed back (dynamic in glibc, harmless elsewhere).
+    Otherwise every temporary of a block is paged in anew, at several times the cost of filling it.
+    Freeing one large piece raises the threshold above which memory is handed back (dynamic in glibc,
+    harmless elsewhere).
     """
     np.empty(31 << 17)
 

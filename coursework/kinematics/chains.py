@@ -1,9 +1,9 @@
 """Any closed chain, triads and beyond, by Newton's method on its loop-closure equations.
 
-A loop is a list of vectors ``sign * length * e^{i (angle + turn)}`` whose sum is zero; a length or an angle is a number or
-a name, and a name is known or unknown. The Jacobian is exact: a vector turned by a quarter for its angle, its unit
-vector for its length. Which of the assemblies is found is decided by the start, so that it must be near the one that is
-meant; every answer comes with a certificate.
+A loop is a list of vectors ``sign * length * e^{i (angle + turn)}`` whose sum is zero; a length or an
+angle is a number or a name, and a name is known or unknown. The Jacobian is exact: a vector turned by a
+quarter for its angle, its unit vector for its length. Which of the assemblies is found is decided by the
+start, so that it must be near the one that is meant; every answer comes with a certificate.
 """
 
 from __future__ import annotations
@@ -37,9 +37,9 @@ class Vector(NamedTuple):
 class Pose(NamedTuple):
     """Unknowns by name, and how far to trust them.
 
-    ``residual``: the largest loop gap, in units of length. ``condition``: of the Jacobian by its singular values, lengths
-    measured by the longest known one, so that the unit does not matter; infinite at a dead point. ``converged``: whether the
-    gap is rounding.
+    ``residual``: the largest loop gap, in units of length. ``condition``: of the Jacobian by its singular
+    values, lengths measured by the longest known one, so that the unit does not matter; infinite at a
+    dead point. ``converged``: whether the gap is rounding.
     """
 
     values: dict[str, Any]
@@ -54,7 +54,8 @@ class Chain:
     Raises
     ------
     WrongValue
-        The number of unknowns is not twice that of the loops, or an unknown is in no loop or is a length and an angle.
+        The number of unknowns is not twice that of the loops, or an unknown is in no loop or is a length
+        and an angle.
     """
 
     def __init__(self, loops: Sequence[Sequence[Vector]], unknowns: Sequence[str]) -> None:
@@ -90,8 +91,8 @@ class Chain:
         Raises
         ------
         CannotAssemble
-            Scalars only: no closed pose was reached from this start; says what gap is left. In arrays such a place is
-            NaN and not ``converged``.
+            Scalars only: no closed pose was reached from this start; says what gap is left. In arrays
+            such a place is NaN and not ``converged``.
         """
         directions = {name: known[name] for name in self.known if name in self._angles}
         directions = {
@@ -144,8 +145,8 @@ class Chain:
     ) -> dict[str, tuple]:
         """Time derivatives of the unknowns, from the first to ``order`` (at most 3), by name.
 
-        ``values`` holds the known values and the unknowns of a closed pose; ``known_rates`` the derivatives of the known names
-        that vary. All orders share the Jacobian.
+        ``values`` holds the known values and the unknowns of a closed pose; ``known_rates`` the
+        derivatives of the known names that vary. All orders share the Jacobian.
 
         Raises
         ------
@@ -298,7 +299,8 @@ def _wrapped(angles: np.ndarray) -> np.ndarray:
 
 
 def _steps(jacobian: np.ndarray, right: np.ndarray, otherwise: float) -> np.ndarray:
-    """Solutions of many linear systems; ``otherwise`` where a matrix is singular to rounding or not finite."""
+    """Solutions of many linear systems; ``otherwise`` where a matrix is singular to rounding or not
+    finite."""
     finite = np.isfinite(jacobian).all(axis=(-1, -2)) & np.isfinite(right).all(axis=-1)
     identity = np.eye(jacobian.shape[-1])
     regular = finite & (abs(np.linalg.det(np.where(finite[..., None, None], jacobian, 0.0))) > 0)

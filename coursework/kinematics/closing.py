@@ -5,7 +5,8 @@ The four-bar and the slider-crank close by the same two margins of an angle t,
     P = E+ + w cos^2(t / 2),    Q = E- + w sin^2(t / 2),    S = side * sqrt(P Q),
 
 where E+, E- and w are numbers of the linkage and S is, up to a constant factor, the determinant of its
-velocities. S and sin(t) vanish together at a change point (E+ or E- exactly 0); rho = w sin(t) / (2 S) does not.
+velocities. S and sin(t) vanish together at a change point (E+ or E- exactly 0); rho = w sin(t) / (2 S)
+does not.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ from coursework.kinematics.angles import Heading, half_angle
 
 
 class Sweep(NamedTuple):
-    """Of half the angle, times w: cosine squared, sine squared, cosine times sine. Then the signed cosine and sine times
-    sqrt(w), for a linkage that is continued smoothly through a change point; None when it keeps its mode."""
+    """Of half the angle, times w: cosine squared, sine squared, cosine times sine. Then the signed cosine
+    and sine times sqrt(w), for a linkage that is continued smoothly through a change point; None when it
+    keeps its mode."""
 
     cos_squared: Any
     sin_squared: Any
@@ -50,8 +52,8 @@ def signed_sweep(angle: Any, w: Any) -> Sweep:
 def in_time(by_angle: Sequence[tuple[Any, ...]], rates: Sequence[Any]) -> tuple[Any, ...]:
     """Time derivatives of quantities that depend on a crank angle, order after order (chain rule).
 
-    ``by_angle`` holds, for each order, the derivatives of all quantities by the angle; ``rates`` the time derivatives of the
-    angle, as many.
+    ``by_angle`` holds, for each order, the derivatives of all quantities by the angle; ``rates`` the time
+    derivatives of the angle, as many.
     """
     first, rate = by_angle[0], rates[0]
     found = tuple(g * rate for g in first)

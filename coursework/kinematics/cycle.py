@@ -69,7 +69,8 @@ def _turning_points(
 
 
 def _dips(slope: Slope, parameters: list[np.ndarray], theta: np.ndarray, seen: np.ndarray) -> list[tuple]:
-    """Brackets of two zeros between neighbouring samples of one sign: the slope dips through zero and back."""
+    """Brackets of two zeros between neighbouring samples of one sign: the slope dips through zero and
+    back."""
     before, after = np.roll(seen, 1, axis=1), np.roll(seen, -1, axis=1)
     sign = np.where(seen < 0, -1.0, 1.0)
     bend = sign * (before + after - 2 * seen)

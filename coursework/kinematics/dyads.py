@@ -3,10 +3,11 @@
 Points are complex numbers, angles radians, lengths one common unit; every argument is a scalar or
 an array and all broadcast. A line is a point and a complex unit vector along it.
 
-What does not close raises :class:`CannotAssemble` when every argument is a scalar, and is NaN there and only there in
-arrays. Positions come first; each group has its ``..._rates``, for velocities, accelerations and jerks: give it the
-known time derivatives from the first to the order wanted, and nothing beyond is computed. All orders
-share one 2x2 matrix, singular at a dead point: :class:`Undefined` for scalars, NaN in arrays.
+What does not close raises :class:`CannotAssemble` when every argument is a scalar, and is NaN there and
+only there in arrays. Positions come first; each group has its ``..._rates``, for velocities,
+accelerations and jerks: give it the known time derivatives from the first to the order wanted, and
+nothing beyond is computed. All orders share one 2x2 matrix, singular at a dead point: :class:`Undefined`
+for scalars, NaN in arrays.
 """
 
 from __future__ import annotations
@@ -74,7 +75,8 @@ def rrr(p: Any, q: Any, p_length: Any, q_length: Any, side: Any = OPEN) -> Any:
     Source
     ------
     Intersection of two circles. The triangle's area is the product of its four margins (Heron), so
-    that it is exactly zero where the bodies line up. A four-bar from its own lengths: :class:`four_bar.FourBar`.
+    that it is exactly zero where the bodies line up. A four-bar from its own lengths:
+    :class:`four_bar.FourBar`.
     """
     return _solved(_rrr, _rrr_failure, p, q, p_length, q_length, side)
 
@@ -82,9 +84,9 @@ def rrr(p: Any, q: Any, p_length: Any, q_length: Any, side: Any = OPEN) -> Any:
 def rrp(p: Any, length: Any, line: Any, side: Any = 1, along: Any = 1.0) -> Any:
     """Slider pinned to a rod: the point of a line at ``length`` from the rod's other pin ``p``.
 
-    ``line`` is a point of the line if complex; a real number is the ordinate of a horizontal line. ``along`` is its
-    direction, a complex unit vector. ``side`` is +1 when the slider lies ahead of ``p`` along it, -1 when behind.
-    Complex, of the broadcast shape.
+    ``line`` is a point of the line if complex; a real number is the ordinate of a horizontal line.
+    ``along`` is its direction, a complex unit vector. ``side`` is +1 when the slider lies ahead of ``p``
+    along it, -1 when behind. Complex, of the broadcast shape.
 
     Raises
     ------
@@ -98,8 +100,8 @@ def rrp(p: Any, length: Any, line: Any, side: Any = 1, along: Any = 1.0) -> Any:
 def rpr(p: Any, q: Any, offset: Any = 0.0, side: Any = 1) -> tuple[Any, Any]:
     """Block pinned at ``p`` that slides on a guide pinned at ``q``: the guide's direction and the slide.
 
-    The slot runs parallel to the guide's own direction u, ``offset`` to the left of q: p = q + (slide + i offset) u. Returns u,
-    a complex unit vector, and the slide, whose sign is ``side``.
+    The slot runs parallel to the guide's own direction u, ``offset`` to the left of q: p = q + (slide + i
+    offset) u. Returns u, a complex unit vector, and the slide, whose sign is ``side``.
 
     Raises
     ------
@@ -138,8 +140,9 @@ def rpp(p: Any, point: Any, along: Any, across: Any) -> tuple[Any, Any]:
 def rrr_rates(p_arm: Any, q_arm: Any, p_rates: Rates, q_rates: Rates) -> tuple[tuple, tuple]:
     """Derivatives of the angles of both bodies of an RRR dyad.
 
-    ``p_arm`` = B - p and ``q_arm`` = B - q now; ``p_rates`` and ``q_rates`` the derivatives of p and q from the first
-    on, of equal number. The point B itself moves by ``p_rates`` plus :func:`vectors.turned` of ``p_arm``.
+    ``p_arm`` = B - p and ``q_arm`` = B - q now; ``p_rates`` and ``q_rates`` the derivatives of p and q
+    from the first on, of equal number. The point B itself moves by ``p_rates`` plus
+    :func:`vectors.turned` of ``p_arm``.
     """
 
     def known(n: int, p_turn: list, q_turn: list) -> Any:
@@ -154,8 +157,9 @@ def rrp_rates(
 ) -> tuple[tuple, tuple]:
     """Derivatives of the rod's angle and of the slide along the line, of an RRP dyad.
 
-    ``arm`` = B - p now. A line that moves has the derivatives ``point_rates`` of its point and ``line_rates`` of its angle,
-    and ``slide`` = distance from that point to B now; a fixed line needs none of them.
+    ``arm`` = B - p now. A line that moves has the derivatives ``point_rates`` of its point and
+    ``line_rates`` of its angle, and ``slide`` = distance from that point to B now; a fixed line needs
+    none of them.
     """
     count = len(p_rates)
     carried = _padded(point_rates, count)
@@ -190,8 +194,9 @@ def prp_rates(
 ) -> tuple[tuple, tuple]:
     """Derivatives of both slides of a PRP dyad.
 
-    ``first_rates`` and ``second_rates`` are the derivatives of the lines' points; lines that turn have the derivatives ``line_rates`` of
-    their angles, and ``slides`` = the distances from these points to the pin now.
+    ``first_rates`` and ``second_rates`` are the derivatives of the lines' points; lines that turn have
+    the derivatives ``line_rates`` of their angles, and ``slides`` = the distances from these points to
+    the pin now.
     """
 
     def known(n: int, first: list, second: list) -> Any:

@@ -8,9 +8,9 @@ the rocker reach from A to D,
 
     P = (b + c)^2 - m = E+ + 4 a d cos^2(crank / 2),    Q = m - (b - c)^2 = E- + 4 a d sin^2(crank / 2),
 
-where E+ and E- are the Grashof margins (:func:`margins.grashof_margins`), free of rounding. A crank that turns
-fully has E+, E- >= 0: then nothing is a difference of nearly equal lengths, at a change point neither.
-S = side * sqrt(P Q) = 2 b c sin(transmission angle) is twice the determinant of the velocities.
+where E+ and E- are the Grashof margins (:func:`margins.grashof_margins`), free of rounding. A crank that
+turns fully has E+, E- >= 0: then nothing is a difference of nearly equal lengths, at a change point
+neither. S = side * sqrt(P Q) = 2 b c sin(transmission angle) is twice the determinant of the velocities.
 """
 
 from __future__ import annotations
@@ -67,16 +67,16 @@ class FourBar:
     Parameters
     ----------
     ground, crank, coupler, rocker
-        Lengths d, a, b, c, positive, in one common unit; scalars or arrays that broadcast, also with the crank
-        angles given later (``n`` linkages of shape ``(n, 1)`` at ``m`` angles give ``(n, m)``).
+        Lengths d, a, b, c, positive, in one common unit; scalars or arrays that broadcast, also with the
+        crank angles given later (``n`` linkages of shape ``(n, 1)`` at ``m`` angles give ``(n, m)``).
     mode
         ``open`` (or +1): B to the left of the directed line A -> D; ``crossed`` (or -1): to the right.
     smooth
-        What a linkage does at a change point, where E+ or E- is exactly 0 and its two modes meet. By default it
-        keeps its mode, and its rates jump. If true it passes through as a moving body would, with continuous
-        rates: ``mode`` then is its mode at crank angles from 0 to half a turn, and it takes two turns to come back.
-        A parallelogram that starts ``open`` stays a parallelogram. Other linkages have no change
-        point and move alike under both.
+        What a linkage does at a change point, where E+ or E- is exactly 0 and its two modes meet. By
+        default it keeps its mode, and its rates jump. If true it passes through as a moving body would,
+        with continuous rates: ``mode`` then is its mode at crank angles from 0 to half a turn, and it
+        takes two turns to come back. A parallelogram that starts ``open`` stays a parallelogram. Other
+        linkages have no change point and move alike under both.
 
     Raises
     ------
@@ -95,7 +95,8 @@ class FourBar:
 
     @property
     def margins(self) -> tuple[Any, Any]:
-        """E+ and E-, in squared units of length: both positive when the crank turns fully, 0 at a change point."""
+        """E+ and E-, in squared units of length: both positive when the crank turns fully, 0 at a change
+        point."""
         return grashof_margins(*self.lengths)
 
     def turns_fully(self) -> Any:
@@ -109,7 +110,8 @@ class FourBar:
         """
         t = self._linkage
         with np.errstate(all="ignore"):
-            # cos^2 of half the greatest angle is -E+/(4 a d); 4 a d + E+ = (b + c)^2 - (d - a)^2 is a product.
+            # cos^2 of half the greatest angle is -E+/(4 a d); 4 a d + E+ = (b + c)^2 - (d - a)^2 is a
+            # product.
             d, a, b, c = self._scaled_lengths()
             beyond = (b + c - d + a) * (b + c + d - a)
             before = (d + a - b + c) * (d + a + b - c)
@@ -150,8 +152,8 @@ class FourBar:
         Raises
         ------
         Undefined
-            Scalars only, order 1 or more: a dead point, or a change point at which the mode is kept. There the
-            angles exist and their rates do not. NaN in arrays.
+            Scalars only, order 1 or more: a dead point, or a change point at which the mode is kept.
+            There the angles exist and their rates do not. NaN in arrays.
         """
         given = (crank_rate, crank_acceleration, crank_jerk)[:order]
         return FourBarMotion(*self._evaluate(_motion, crank_angle, *given))
@@ -174,7 +176,8 @@ class FourBar:
         return self._evaluate(_transmission_angle, crank_angle)[0]
 
     def conditioning(self, crank_angle: Any) -> Any:
-        """1 / |sin(transmission angle)|: how much larger an error of the lengths comes out at B; inf at a dead point."""
+        """1 / |sin(transmission angle)|: how much larger an error of the lengths comes out at B; inf at a
+        dead point."""
         return self._evaluate(_conditioning, crank_angle)[0]
 
     def _scaled_lengths(self) -> list[Any]:
@@ -234,8 +237,9 @@ class FourBar:
 
 
 def grashof_type(ground: Any, crank: Any, coupler: Any, rocker: Any) -> str:
-    """Which links turn: ``impossible``, ``change-point``, ``crank-rocker``, ``rocker-crank``, ``double-crank``,
-    ``double-rocker`` or ``triple-rocker``; decided exactly on the numbers given (scalars).
+    """Which links turn: ``impossible``, ``change-point``, ``crank-rocker``, ``rocker-crank``,
+    ``double-crank``, ``double-rocker`` or ``triple-rocker``; decided exactly on the numbers given
+    (scalars).
     """
     d, a, b, c = _lengths(ground, crank, coupler, rocker)
     s, p, q, l = sorted((d, a, b, c))
@@ -296,11 +300,10 @@ def _pose(t: _Linkage, swept: Sweep) -> tuple[Any, Closing, Any, Any]:
     return _squared_line(t, swept), close, t.coupler + close.fold, t.rocker - close.fold
 
 
-def _directions(t: _Linkage, swept: Sweep, m: Any, s: Any, coupler: Any, rocker: Any) -> tuple[Any, Any]:
+def _directions(t: _Linkage, swept: Sweep, s: Any, coupler: Any, rocker: Any) -> tuple[Any, Any]:
     """Coupler and rocker turn from A -> D by the angles of X3 + i S and X4 + i S."""
-    # A -> D times 2 d is x - i y.
+    # A -> D times 2 d is x - i y; where A lies on D the zero vector makes both directions NaN.
     x, y = t.twice_ground * t.gap + swept.sin_squared, swept.both
-    x = np.where(m == 0, np.nan, x) if np.any(t.gap == 0) else x
     along, across = x * s, y * s
     return direction(along - y * coupler, x * coupler + across), direction(
         along - y * rocker, x * rocker + across
@@ -308,8 +311,8 @@ def _directions(t: _Linkage, swept: Sweep, m: Any, s: Any, coupler: Any, rocker:
 
 
 def _angles(t: _Linkage, swept: Sweep, _: Any) -> tuple[Any, Any]:
-    m, close, coupler, rocker = _pose(t, swept)
-    return _directions(t, swept, m, close.determinant, coupler, rocker)
+    _, close, coupler, rocker = _pose(t, swept)
+    return _directions(t, swept, close.determinant, coupler, rocker)
 
 
 def _pins(t: _Linkage, swept: Sweep, angle: Any) -> tuple[Any, Any]:
@@ -331,7 +334,7 @@ def _conditioning(t: _Linkage, swept: Sweep, _: Any) -> tuple[Any]:
 
 def _motion(t: _Linkage, swept: Sweep, _: Any, *rates: Any) -> tuple:
     m, close, coupler, rocker = _pose(t, swept)
-    found = _directions(t, swept, m, close.determinant, coupler, rocker)
+    found = _directions(t, swept, close.determinant, coupler, rocker)
     order = len(rates)
     if order == 0:
         return found

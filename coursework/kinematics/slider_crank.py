@@ -1,11 +1,11 @@
 """The slider-crank moved by its crank, exact to the last digits at its hard places too.
 
-The crank r turns about O = (0, 0), the rod l joins the crank pin A to the slider B = (x, e) on a line parallel to x.
-The rod's angle is that of A -> B. A mechanism along another axis is this one, turned.
+The crank r turns about O = (0, 0), the rod l joins the crank pin A to the slider B = (x, e) on a line
+parallel to x. The rod's angle is that of A -> B. A mechanism along another axis is this one, turned.
 
-With p = r sin(crank) - e, the rod reaches while l - p and l + p are positive. Written as E + r (1 -+ sin), with
-E = l - r +- e free of rounding, neither is a difference of nearly equal lengths when the crank turns fully, and the
-loop closes as a four-bar does at the complement of the crank angle (:mod:`closing`).
+With p = r sin(crank) - e, the rod reaches while l - p and l + p are positive. Written as E + r (1 -+
+sin), with E = l - r +- e free of rounding, neither is a difference of nearly equal lengths when the crank
+turns fully, and the loop closes as a four-bar does at the complement of the crank angle (:mod:`closing`).
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ from coursework.kinematics.vectors import direction
 
 
 class SliderCrankMotion(NamedTuple):
-    """The rod's angle (radians) and the slider's abscissa, then as many time derivatives as were asked for."""
+    """The rod's angle (radians) and the slider's abscissa, then as many time derivatives as were asked
+    for."""
 
     rod_angle: Any
     position: Any
@@ -59,9 +60,10 @@ class SliderCrank:
     side
         +1: the slider lies to the right of the crank pin (the rod's cosine is positive); -1: to the left.
     smooth
-        What happens when the two sides meet, at rod = crank + |offset| exactly: by default the slider keeps its side
-        and its velocity jumps; if true it passes to the other side as a moving body would, and ``side`` is
-        that of the crank angle 0. A rod that is longer has no such place and moves alike under both.
+        What happens when the two sides meet, at rod = crank + |offset| exactly: by default the slider
+        keeps its side and its velocity jumps; if true it passes to the other side as a moving body would,
+        and ``side`` is that of the crank angle 0. A rod that is longer has no such place and moves alike
+        under both.
 
     Raises
     ------
@@ -91,9 +93,10 @@ class SliderCrank:
         crank_acceleration: Any = 0.0,
         crank_jerk: Any = 0.0,
         *,
-        order: int = 0,
+        order: int = 2,
     ) -> SliderCrankMotion:
-        """Rod angle and slider position, with their time derivatives up to ``order`` (0 to 3), nothing beyond.
+        """Rod angle and slider position, with their time derivatives up to ``order`` (0 to 3), nothing
+        beyond.
 
         ``crank_angle`` is in radians or a :class:`Heading`, of any shape that broadcasts with the lengths.
 
@@ -125,18 +128,21 @@ class SliderCrank:
         return self._evaluate(_pressure_angle, crank_angle)[0]
 
     def conditioning(self, crank_angle: Any) -> Any:
-        """1 / |cos(rod angle)|: how much larger an error of the rod comes out at the slider; inf where it is square."""
+        """1 / |cos(rod angle)|: how much larger an error of the rod comes out at the slider; inf where it
+        is square."""
         return self._evaluate(_conditioning, crank_angle)[0]
 
     def stroke(self) -> Any:
-        """Distance between the two dead centres, of a crank that turns fully: no difference of two distances."""
+        """Distance between the two dead centres, of a crank that turns fully: no difference of two
+        distances."""
         outer, inner = self._dead_centres()
         t = self._linkage
         with np.errstate(all="ignore"):
             return self._restored(4 * t.rod * t.crank / (outer + inner))
 
     def quick_return(self) -> Any:
-        """The crank angle by which the longer of the two strokes exceeds half a turn, radians, signed as the offset.
+        """The crank angle by which the longer of the two strokes exceeds half a turn, radians, signed as
+        the offset.
 
         The strokes take pi + this and pi - this: see :func:`time_ratio`.
         """
@@ -274,7 +280,8 @@ def _motion(t: _Linkage, swept: Sweep, cos: Any, sin: Any, _: Any, *rates: Any) 
 
 
 def _displacement(t: _Linkage, swept: Sweep, cos: Any, sin: Any, angle: Any) -> tuple[Any]:
-    """Differences of cosines and of square roots as products: each is zero with the angle from dead centre."""
+    """Differences of cosines and of square roots as products: each is zero with the angle from dead
+    centre."""
     half_cos, half_sin = half_angle(angle)
     outer = _outer(t)
     at_centre = 0.5 * np.arctan2(t.offset, outer)

@@ -1,7 +1,8 @@
 """A crank pin that slides in the slot of a guide: the guide turns, or swings.
 
-The guide turns about O4 = (0, 0), the crank r about O2 = (d, 0); angles are measured from the direction O4 -> O2, so that
-0 is the position in line with the pin farthest away. The arm is the vector from O4 to the crank pin A; its length is positive.
+The guide turns about O4 = (0, 0), the crank r about O2 = (d, 0); angles are measured from the direction
+O4 -> O2, so that 0 is the position in line with the pin farthest away. The arm is the vector from O4 to
+the crank pin A; its length is positive.
 
     |arm|^2 = (r - d)^2 + 4 r d cos^2(crank / 2)
 
@@ -44,7 +45,7 @@ def motion(
     crank_acceleration: Any = 0.0,
     crank_jerk: Any = 0.0,
     *,
-    order: int = 0,
+    order: int = 2,
 ) -> SlottedGuideMotion:
     """Guide and sliding pin, with time derivatives up to ``order`` (0 to 3), nothing beyond.
 
@@ -94,7 +95,8 @@ def motion(
 
 
 def swing(ground: Any, crank: Any) -> Any:
-    """The angle between the extreme positions of a guide that swings (crank <= ground), radians; NaN if it turns.
+    """The angle between the extreme positions of a guide that swings (crank <= ground), radians; NaN if
+    it turns.
 
     It is also the crank angle by which the slow stroke exceeds half a turn.
     """

@@ -29,7 +29,8 @@ def size(u: Any) -> Any:
 
 
 def direction(y: Any, x: Any) -> Any:
-    """Angle of the vector (x, y), radians in (-pi, pi], for arrays faster than ``arctan2``; NaN for the zero vector."""
+    """Angle of the vector (x, y), radians in (-pi, pi], for arrays faster than ``arctan2``; NaN for the
+    zero vector."""
     quotient = np.divide(y, x)
     # Half a turn where x < 0, towards the side of y: there the quotient has the other sign.
     turn = np.copysign(_QUARTER, y)
@@ -42,7 +43,8 @@ def direction(y: Any, x: Any) -> Any:
 
 
 def components(r: Any, u: Any, v: Any) -> tuple[Any, Any]:
-    """The two real numbers with ``first * u + second * v = r`` (Cramer's rule); inf or NaN when u and v are parallel."""
+    """The two real numbers with ``first * u + second * v = r`` (Cramer's rule); inf or NaN when u and v
+    are parallel."""
     # Vectors of lengths far from 1 are scaled: their product would overflow or vanish.
     of_u, of_v = exponent_of(np.real(u), np.imag(u)), exponent_of(np.real(v), np.imag(v))
     u, v = scaled(u, -of_u), scaled(v, -of_v)
@@ -62,8 +64,8 @@ def derivative(
     unit
         The direction in which its length grows, a complex unit vector that turns with it.
     length_rates, angle_rates
-        Time derivatives of the length and of the angle from the first on, as far as known: those that are missing
-        count as zero, so that the terms of lower order alone are had by leaving out the last.
+        Time derivatives of the length and of the angle from the first on, as far as known: those that are
+        missing count as zero, so that the terms of lower order alone are had by leaving out the last.
 
     The second derivative is equation 11 of the course: radial, tangential, centripetal and Coriolis terms.
     """

@@ -20,7 +20,8 @@ FOUR_BAR = Chain(
 LENGTHS = {"d": 100.0, "a": 40.0, "b": 80.0, "c": 70.0}
 NEAR = {"coupler": 0.5, "rocker": 1.5}
 
-# An Assour group of class III: a plate held at its three pins by three bars, the first of them led by a crank.
+# An Assour group of class III: a plate held at its three pins by three bars, the first of them led by a
+# crank.
 TRIAD = Chain(
     [
         [
@@ -115,6 +116,19 @@ def test_what_cannot_close_raises_or_is_nan_and_not_converged():
     assert np.array_equal(np.isnan(pose.values["coupler"]), [False, True, False])
     assert pose.residual[1] > 100
     assert np.isnan(pose.condition[1])
+
+
+def test_a_loop_that_misses_by_little_is_not_closed():
+    bodies = {"d": 3.0 + 1e-9, "a": 1.0, "b": 1.0, "c": 1.0, "crank": 0.0}
+    with pytest.raises(CannotAssemble, match="gap of 1e-09"):
+        FOUR_BAR.solve(bodies, {"coupler": 0.01, "rocker": 3.13})
+
+
+def test_angles_come_out_within_half_a_turn_whatever_the_start():
+    far = FOUR_BAR.solve(
+        LENGTHS | {"crank": 1.0}, {"coupler": 0.5 + 4 * math.pi, "rocker": 1.5 - 6 * math.pi}
+    )
+    assert list(far.values.values()) == pytest.approx(FourBar(100, 40, 80, 70).angles(1.0), abs=1e-14)
 
 
 def test_a_dead_point_shows_in_the_condition_and_has_no_rates():

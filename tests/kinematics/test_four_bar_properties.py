@@ -1,4 +1,5 @@
-"""What holds for every four-bar that turns fully: closure, symmetry, unit, roles, and rates against differences of positions."""
+"""What holds for every four-bar that turns fully: closure, symmetry, unit, roles, and rates against
+differences of positions."""
 
 import math
 
@@ -19,7 +20,8 @@ side = st.sampled_from([1, -1])
 
 @st.composite
 def cranked(draw):
-    """A linkage whose crank turns fully, by its margins: the crank, two links that exceed it, and a ground that fits."""
+    """A linkage whose crank turns fully, by its margins: the crank, two links that exceed it, and a
+    ground that fits."""
     a = draw(st.floats(0.01, 100.0))
     b, c = a * (1 + draw(st.floats(1e-6, 50.0))), a * (1 + draw(st.floats(1e-6, 50.0)))
     least, most = abs(b - c) + a, b + c - a

@@ -1,4 +1,5 @@
-"""Four-bars where textbook formulas lose their digits, against fifty digits. Lengths: ground, crank, coupler, rocker."""
+"""Four-bars where textbook formulas lose their digits, against fifty digits. Lengths: ground, crank,
+coupler, rocker."""
 
 import math
 
@@ -9,6 +10,7 @@ from reference import away, four_bar, mp, relative
 from coursework.errors import CannotAssemble, Undefined, WrongValue
 from coursework.kinematics.angles import heading_after_turns, heading_in_degrees
 from coursework.kinematics.four_bar import FourBar, grashof_type
+from coursework.kinematics.margins import exact_sum
 
 EPS = 2.0**-52
 CHANGE_POINT = (100.0, 50.0, 70.0, 80.0)
@@ -136,6 +138,33 @@ def test_the_error_does_not_grow_as_the_margin_shrinks(margin):
         assert position_error(lengths, theta) <= 4 * EPS
 
 
+@pytest.mark.parametrize("beyond", [1, 2, 5, 40])
+def test_lengths_of_many_digits_have_an_exact_margin_too(beyond):
+    # The ground is a few last digits short of b + c - a, of which no partial sum is exact.
+    crank, coupler, rocker = 50.1, 70.3, 80.7
+    ground = coupler + rocker - crank
+    for _ in range(beyond):
+        ground = math.nextafter(ground, 0)
+    assert 0 < math.fsum((coupler, rocker, -ground, -crank)) < 1e-12
+    for theta in (math.pi, math.pi - 1e-9, math.pi - 1e-7):
+        assert position_error((ground, crank, coupler, rocker), theta) <= 4 * EPS
+    alone = FourBar(ground, crank, coupler, rocker)
+    assert FourBar(np.array([ground, 100.0]), crank, coupler, rocker).margins[0][0] == alone.margins[0]
+
+
+def test_the_sum_of_an_array_is_as_exact_as_that_of_a_number():
+    a, b = 0.1 * np.arange(1, 200), 1e3 / np.arange(1, 200)
+    c, d = 1e-17 * np.arange(200, 1, -1), 1e9 * np.sqrt(np.arange(1, 200))
+    terms = np.stack([d, a, -b, c, -d, b, -a])
+    assert np.array_equal(exact_sum(*terms), [math.fsum(column) for column in terms.T])
+
+
+@pytest.mark.parametrize("theta", [1e-7, 1e-5, 1e-3])
+def test_pins_that_almost_meet_cost_no_digit(theta):
+    # AD is a hundred thousand times shorter than the bodies it carries.
+    assert position_error((60.001, 60.0, 100.0, 100.0005), theta) <= 8 * EPS
+
+
 DOUBLE_ROCKER = (90.0, 70.0, 40.0, 50.0)
 
 
@@ -229,6 +258,13 @@ def test_the_sine_of_the_transmission_angle_is_right_near_half_a_turn():
 def test_the_transmission_angle_grows_with_the_diagonal():
     theta = np.concatenate([np.geomspace(1e-12, 1e-2, 60), np.linspace(0.02, math.pi, 200)])
     assert (np.diff(FourBar(1 + 1e-12, 1.0, 1.5, 1.5).transmission_angle(theta)) > 0).all()
+
+
+def test_whole_turns_count_for_a_smooth_change_point():
+    smooth = FourBar(*CHANGE_POINT, smooth=True)
+    for turns in (0, 1, 2, 7):
+        expected = FourBar(*CHANGE_POINT, "crossed" if turns % 2 else "open").angles(2.0)
+        assert smooth.angles(heading_after_turns(turns, 2.0)) == pytest.approx(expected, abs=1e-14)
 
 
 @pytest.mark.parametrize("turns", [1, 2, 10**9, 10**15 + 1])

@@ -94,9 +94,23 @@ def test_the_error_of_an_offset_slider_does_not_grow_as_the_margin_shrinks(margi
     r, l, e = 0.75, 1.0 + margin, 0.25
     for theta in (-math.pi / 2, -math.pi / 2 + 1e-9, -math.pi / 2 - 1e-4):
         expected = slider_crank(r, l, e, theta)
-        found = SliderCrank(r, l, e).motion(theta)
+        found = SliderCrank(r, l, e).motion(theta, order=0)
         assert abs(found.position - expected[1]) < 4 * EPS
         assert away(found.rod_angle, expected[0]) < 8 * EPS
+
+
+@pytest.mark.parametrize("beyond", [0, 1, 3, 30])
+def test_lengths_of_many_digits_have_exact_margins_too(beyond):
+    r, e = 0.1003, 0.7001
+    l = r + e
+    while math.fsum((l, -r, -e)) < 0:
+        l = math.nextafter(l, 1)
+    for _ in range(beyond):
+        l = math.nextafter(l, 1)
+    for theta in (-math.pi / 2, -math.pi / 2 + 1e-8):
+        # The loop is exact in the lengths; the angle's sine is not known better than its last digit.
+        expected = slider_crank(r, l, e, theta)[1]
+        assert abs(SliderCrank(r, l, e).position(theta) - expected) < 4 * EPS
 
 
 def test_a_slider_that_does_not_reach_says_by_how_much_and_is_nan_in_arrays():
@@ -158,9 +172,11 @@ def test_a_guide_whose_crank_equals_its_ground_turns_at_half_the_rate(theta):
 
 def test_a_guide_with_the_pin_on_its_pivot_is_undefined():
     with pytest.raises(Undefined, match="pivot"):
-        slotted_guide.motion(0.3, 0.3, heading_in_degrees(180))
-    found = slotted_guide.motion(0.3, 0.3, heading_in_degrees(np.array([179.0, 180.0])))
+        slotted_guide.motion(0.3, 0.3, heading_in_degrees(180), order=0)
+    found = slotted_guide.motion(0.3, 0.3, heading_in_degrees(np.array([179.0, 180.0])), order=0)
     assert np.array_equal(np.isnan(found.guide_angle), [False, True])
+    rates = slotted_guide.motion(0.3, 0.3, heading_in_degrees(np.array([179.0, 180.0])), 1.0, order=1)
+    assert rates.guide_rate.tolist() == [0.5, 0.5]
 
 
 def test_the_peak_of_a_whitworth_guide_is_a_quotient_of_lengths():
