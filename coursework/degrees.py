@@ -91,6 +91,11 @@ def acos(x: Any) -> Angle:
     return math.degrees(math.acos(x)) if _is_scalar(x) else np.degrees(np.arccos(x))
 
 
+def from_radians(theta: Any) -> Angle:
+    """Degrees of an angle in radians; (-pi, pi] becomes (-180, 180]."""
+    return theta * (180.0 / math.pi)
+
+
 def sqrt(x: Any) -> Any:
     """Square root; NaN below zero in arrays, an error on a scalar."""
     return math.sqrt(x) if _is_scalar(x) else np.sqrt(x)

@@ -1,20 +1,29 @@
 """The quantity graph: plain functions whose names are quantities and whose parameters are what they need.
 
 A request for some quantities is resolved into exactly the functions it needs, in order, and each is
-called once, on scalars or on arrays that broadcast. A parameter with a default is an *optional
-effect*: it is absent (the default holds) unless its value is given or the request calls for it.
+called once, on scalars or on arrays that broadcast; long arrays go through the whole request piece
+by piece. A parameter with a default is an *optional effect*: it is absent (the default holds) unless its
+value is given or the request calls for it.
+
+A function may carry a second, *stable* one (:func:`coursework.solution.stable`): the same quantity, by a way
+that keeps its digits everywhere but passes over quantities that the first one needs. It is taken unless
+one of those is given or mistaken, so that what a request gives always counts.
+
+A name that begins with an underscore is hidden: a function may need it, a request cannot name it.
 """
 
 from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from coursework.blocks import pieces
 from coursework.errors import (
     BrokenFunction,
     CourseworkError,
@@ -53,12 +62,28 @@ class Node:
     function: Callable[..., Value]
     arguments: tuple[str, ...]
     defaults: Mapping[str, Value]
+    stable: Node | None = None  #: the same quantity by a way that keeps its digits everywhere
 
     @staticmethod
     def of(function: Callable[..., Value]) -> Node:
         parameters = inspect.signature(function).parameters
         defaults = {p.name: p.default for p in parameters.values() if p.default is not p.empty}
-        return Node(function, tuple(parameters), defaults)
+        stable = getattr(function, "__stable__", None)
+        return Node(function, tuple(parameters), defaults, None if stable is None else Node.of(stable))
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """The names that either function takes."""
+        return frozenset(self.arguments) | (self.stable.needs if self.stable else frozenset())
+
+    def renamed(self, names: Mapping[str, str]) -> Node:
+        """With arguments of other names."""
+        return Node(
+            self.function,
+            tuple(names.get(a, a) for a in self.arguments),
+            {names.get(a, a): v for a, v in self.defaults.items()},
+            self.stable and self.stable.renamed(names),
+        )
 
 
 @dataclass(frozen=True)
@@ -71,6 +96,39 @@ class Replacement:
 
     targets: tuple[str, ...]
     function: Callable[..., Value]
+
+
+def _is_hidden(name: str) -> bool:
+    return name.startswith("_")
+
+
+def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
+    """Call the functions of a plan in order, and put what they give among the values."""
+    for name, function, arguments in steps:
+        try:
+            values[name] = function(*[values[a] for a in arguments])
+        except CourseworkError:
+            raise
+        except (ArithmeticError, ValueError) as fault:
+            told = ", ".join(f"{a} = {values[a]}" for a in arguments)[:300]
+            raise Undefined(f"{name} does not exist for {told} ({fault})") from fault
+        except Exception as fault:
+            raise BrokenFunction(f"{_place(function)} fails: {type(fault).__name__}: {fault}") from fault
+
+
+def _put(values: dict[str, Value], name: str, place: slice, piece: Value, length: int) -> None:
+    """A quantity of one piece at its place in the whole; what does not vary stays as it is."""
+    piece = np.asarray(piece) if isinstance(piece, (np.ndarray, np.generic)) else piece
+    if not isinstance(piece, np.ndarray) or not piece.ndim:
+        values[name] = piece
+        return
+    whole = values.get(name)
+    if whole is None:
+        whole = np.empty((length, *piece.shape[1:]), dtype=piece.dtype)
+    elif whole.dtype != piece.dtype:
+        whole = whole.astype(np.promote_types(whole.dtype, piece.dtype))
+    whole[place] = piece
+    values[name] = whole
 
 
 class Graph:
@@ -87,14 +145,38 @@ class Graph:
         self._nodes = dict(nodes)
         self._shadowed = shadowed
         self._plans: dict[object, tuple[tuple[str, ...], list, dict]] = {}
-        leaves = {a for node in nodes.values() for a in node.arguments} - set(nodes)
+        leaves = {a for node in nodes.values() for a in node.needs} - set(nodes)
         self._leaves = frozenset(leaves)
-        self._known = frozenset(nodes) | leaves
+        self._known = frozenset(n for n in nodes if not _is_hidden(n)) | leaves
+        self._passed_over = {
+            name: self._ancestors(node.arguments) - self._ancestors(node.stable.arguments)
+            for name, node in nodes.items()
+            if node.stable is not None
+        }
+
+    def _ancestors(self, names: Iterable[str]) -> frozenset[str]:
+        """The names and all that they need, by the first of each node's functions."""
+        found: set[str] = set()
+        waiting = list(names)
+        while waiting:
+            name = waiting.pop()
+            if name not in found:
+                found.add(name)
+                waiting.extend(self._nodes[name].arguments if name in self._nodes else ())
+        return frozenset(found)
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """The names that have a function, in the order they were defined."""
-        return tuple(self._nodes)
+        """The names that have a function, in the order they were defined; not the hidden ones."""
+        return tuple(n for n in self._nodes if not _is_hidden(n))
+
+    @cached_property
+    def textbook(self) -> Graph:
+        """The same graph, every quantity by the first of its functions."""
+        graph = Graph.__new__(Graph)
+        nodes = {name: replace(node, stable=None) for name, node in self._nodes.items()}
+        graph._build(nodes, self._shadowed, self._effects)
+        return graph
 
     @property
     def leaves(self) -> frozenset[str]:
@@ -152,6 +234,8 @@ class Graph:
                 raise Cycle(f"quantities need each other: {loop}; give one of them a value")
             path.append(name)
             node = self._nodes[name]
+            if node.stable is not None and not self._passed_over[name] & given:
+                node = node.stable
             arguments = []
             for argument in node.arguments:
                 if argument in node.defaults and argument not in given and argument not in effects:
@@ -165,8 +249,8 @@ class Graph:
             order[name] = (node.function, tuple(arguments))
 
         for name in wanted:
-            if name not in self._nodes and name not in given and name not in self._leaves:
-                raise unknown("quantity", name, self._nodes)
+            if name not in self._known and name not in given:
+                raise unknown("quantity", name, self.quantities)
             visit(name)
         steps = [(name, function, arguments) for name, (function, arguments) in order.items()]
         return tuple(order), steps, constants
@@ -177,7 +261,8 @@ class Graph:
         """The wanted quantities, from the given ones.
 
         A given quantity is used as it is, whether or not a function could compute it. Values are
-        scalars or arrays that broadcast; nothing is copied or checked but names.
+        scalars or arrays that broadcast; nothing is copied or checked but names. A function must give at
+        each place of an array what it would give for the values there alone.
 
         Raises
         ------
@@ -192,10 +277,9 @@ class Graph:
     def evaluate_all(
         self, wanted: Sequence[str], given: Mapping[str, Value], effects: Iterable[str] = ()
     ) -> dict[str, Value]:
-        """As :meth:`evaluate`, with every quantity met on the way, in the order of the plan."""
-        wanted = tuple(wanted)
-        values = self._values(wanted, given, effects)
-        return {name: values[name] for name in self.plan(wanted, self._renamed(given), effects)}
+        """As :meth:`evaluate`, with every quantity that the textbook way meets, in its order."""
+        met = self.textbook.plan(tuple(wanted), self._renamed(given), effects)
+        return self.evaluate([name for name in met if not _is_hidden(name)], given, effects)
 
     def _renamed(self, given: Mapping[str, Value]) -> Mapping[str, Value]:
         if not self._shadowed:
@@ -213,19 +297,30 @@ class Graph:
         _, steps, constants = self._plan(wanted, names, frozenset(effects))
         values = {**given, **constants}
         with np.errstate(all="ignore"):
-            for name, function, arguments in steps:
-                try:
-                    values[name] = function(*[values[a] for a in arguments])
-                except CourseworkError:
-                    raise
-                except (ArithmeticError, ValueError) as fault:
-                    told = ", ".join(f"{a} = {values[a]}" for a in arguments)[:300]
-                    raise Undefined(f"{name} does not exist for {told} ({fault})") from fault
-                except Exception as fault:
-                    raise BrokenFunction(
-                        f"{_place(function)} fails: {type(fault).__name__}: {fault}"
-                    ) from fault
+            long = pieces(given)
+            if long is None:
+                _run(steps, values)
+                return values
+            cut, places = long
+            moving = self._moving(steps, cut)
+            _run([step for step in steps if step[0] not in moving], values)
+            steps = [step for step in steps if step[0] in moving]
+            kept = moving.intersection(wanted)
+            for place in places:
+                piece = values | {name: given[name][place] for name in cut}
+                _run(steps, piece)
+                for name in kept:
+                    _put(values, name, place, piece[name], len(given[cut[0]]))
         return values
+
+    @staticmethod
+    def _moving(steps: Sequence[tuple], cut: Iterable[str]) -> set[str]:
+        """The quantities of a plan that depend on some names, by the functions of the plan."""
+        reached = set(cut)
+        for name, _, arguments in steps:
+            if reached.intersection(arguments):
+                reached.add(name)
+        return reached.difference(cut)
 
     def replacing(self, replacement: Replacement) -> Graph:
         """The same graph with some quantities computed by another function.
@@ -239,17 +334,16 @@ class Graph:
         for target in targets:
             if target not in self._known:
                 raise unknown("quantity", target, self._known)
-        nodes = dict(self._nodes)
+        # A way that passes over a target would not see the mistake.
+        nodes = {
+            name: replace(node, stable=None) if self._passed_over.get(name, set()) & set(targets) else node
+            for name, node in self._nodes.items()
+        }
         # The right value of a target is that of the right graph, all the way up.
         touched = self.descendants(targets)
         for name in touched & self._nodes.keys():
-            node = self._nodes[name]
-            arguments = tuple(_right(a) if a in touched else a for a in node.arguments)
-            defaults = {_right(a) if a in touched else a: v for a, v in node.defaults.items()}
-            nodes[_right(name)] = Node(node.function, arguments, defaults)
-        wrong = Node.of(replacement.function)
-        arguments = tuple(_right(a) if a in targets else a for a in wrong.arguments)
-        wrong = Node(wrong.function, arguments, wrong.defaults)
+            nodes[_right(name)] = self._nodes[name].renamed({n: _right(n) for n in touched})
+        wrong = Node.of(replacement.function).renamed({n: _right(n) for n in targets})
         if len(targets) == 1:
             nodes[targets[0]] = wrong
         else:
@@ -266,7 +360,7 @@ class Graph:
         found = set(names)
         grown = True
         while grown:
-            more = {n for n, node in self._nodes.items() if found.intersection(node.arguments)} - found
+            more = {n for n, node in self._nodes.items() if found & node.needs} - found
             found |= more
             grown = bool(more)
         return frozenset(found)

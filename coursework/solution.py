@@ -9,7 +9,8 @@
   right to its last printed digit, a number to 1e-9 relative; a third item names the case's effects,
   where they are not those of the exercise's own parts;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
-* a name that begins with an underscore is the module's own.
+* a name that begins with an underscore is the module's own; a function of such a name is computed once
+  a request when a quantity takes it as a parameter, and is no quantity that one could ask for.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from types import ModuleType
 from typing import Any
 
 from coursework.errors import BadCourse, CourseworkError, unknown
-from coursework.graph import Graph, Replacement
+from coursework.graph import Graph, Node, Replacement
 
 
 @dataclass(frozen=True)
@@ -76,6 +77,26 @@ def formula(latex: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     return mark
 
 
+def stable(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Say how a quantity is computed where its textbook formula would lose digits.
+
+    The decorated function is the formula of the course: it is what the worked solution prints, and what
+    computes when one of its own arguments is given or mistaken. ``function`` gives the same
+    quantity from other quantities, or from hidden ones of the module, whose names begin with an underscore:
+
+        def _linkage(r1, r2, r3, r4, theta2, mode): ...
+
+        @stable(lambda _linkage: _linkage.rocker_angle)
+        def theta4(phi, psi): return phi - psi
+    """
+
+    def mark(formula: Callable[..., Any]) -> Callable[..., Any]:
+        formula.__stable__ = function  # type: ignore[attr-defined]
+        return formula
+
+    return mark
+
+
 @dataclass(frozen=True)
 class Solution:
     """A loaded solution."""
@@ -111,6 +132,7 @@ class Solution:
         functions = {k: f for k, f in own.items() if k not in special and k not in mistakes}
         if not functions:
             raise BadCourse(f"solutions/{name}.py defines no quantity; a quantity is a function of its name")
+        functions |= _hidden(functions, module)
         graph = Graph(functions)
         for wrong in mistakes.values():
             try:
@@ -158,3 +180,15 @@ class Solution:
         if self.residual is None:
             raise BadCourse(f"solutions/{self.name}.py states no residual; write the governing equations")
         return self.graph.with_functions({"residual": self.residual})
+
+
+def _hidden(functions: Mapping[str, Callable[..., Any]], module: ModuleType) -> dict[str, Callable[..., Any]]:
+    """The module's functions of hidden names that quantities take as parameters."""
+    found: dict[str, Callable[..., Any]] = {}
+    waiting = list(functions.values())
+    while waiting:
+        for name in Node.of(waiting.pop()).needs:
+            if name.startswith("_") and name not in found and callable(getattr(module, name, None)):
+                found[name] = getattr(module, name)
+                waiting.append(found[name])
+    return found

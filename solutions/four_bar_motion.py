@@ -1,23 +1,29 @@
 """Four-bar linkage, velocities and accelerations: solution. The loop O, A, B, C and its two derivatives.
 
-Angles come from the triangle A, B, C; its closing is read from the Grashof margins, where no difference of
-nearly equal lengths appears. Rates are those of the numeric core, which keeps its digits near a dead
-point; the formulas printed beside them are the course's.
+The formulas are the course's. What they give near a dead point or a change point is taken from the numeric
+core instead, which keeps its digits there.
 """
 
 import numpy as np
 
-from coursework.degrees import angle, atan2, cos, polar, sin, sqrt, wrap
-from coursework.errors import Undefined
+from coursework.degrees import acos, angle, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
-from coursework.kinematics.angles import heading_in_degrees
-from coursework.kinematics.dyads import out_of_reach, side_of
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
-from coursework.kinematics.margins import grashof_margins
-from coursework.solution import formula, mistake
+from coursework.solution import formula, mistake, stable
 
 UNITS = {"AC": "mm", "phi": "deg", "psi": "deg", "side": "1"}
 SYMBOLS = {"AC": "AC", "phi": r"\varphi", "psi": r"\psi", "side": r"\varepsilon"}
+
+
+def _bars(r1, r2, r3, r4, side):
+    return FourBar(r1, r2, r3, r4, side)
+
+
+def _linkage(_bars, theta2):
+    """The linkage at its crank angle, by the numeric core."""
+    return _bars.at(Degrees(theta2))
 
 
 @formula(r"\sqrt{<r1>^2 + <r2>^2 - 2 \times <r1> \times <r2> \times \cos <theta2>}")
@@ -29,24 +35,14 @@ def AC(r1, r2, theta2):
 @formula(r"\operatorname{atan2}\left(-<r2> \sin <theta2>;\ <r1> - <r2> \cos <theta2>\right)")
 def phi(r1, r2, theta2):
     """Direction of AC."""
-    x, y = (r1 - r2) + 2 * r2 * sin(theta2 / 2) ** 2, -r2 * sin(theta2)
-    nowhere = (x == 0) & (y == 0)
-    if isinstance(nowhere, bool):
-        if nowhere:
-            raise Undefined("A lies on C: coupler and rocker may point anywhere, so theta3 is not determined")
-        return atan2(y, x)
-    return np.where(nowhere, np.nan, atan2(y, x))
+    return atan2(-r2 * sin(theta2), (r1 - r2) + 2 * r2 * sin(theta2 / 2) ** 2)
 
 
 @formula(r"\arccos \frac{<AC>^2 + <r3>^2 - <r4>^2}{2 \times <AC> \times <r3>}")
-def psi(r1, r2, r3, r4, theta2, AC):
-    """Angle CAB of the triangle, by its sine and cosine together."""
-    stretched, folded = grashof_margins(r1, r2, r3, r4)
-    stretched = stretched + 4 * r1 * r2 * cos(theta2 / 2) ** 2
-    folded = folded + 4 * r1 * r2 * sin(theta2 / 2) ** 2
-    if isinstance(stretched, float) and min(stretched, folded) < 0:
-        raise out_of_reach(AC, r3, r4)
-    return atan2(sqrt(stretched * folded), 2 * r3 * (r3 - r4) + folded)
+@stable(lambda _linkage: from_radians(_linkage.corner))
+def psi(r3, r4, AC):
+    """Angle CAB, by the law of cosines."""
+    return acos((AC**2 + r3**2 - r4**2) / (2 * AC * r3))
 
 
 def side(mode):
@@ -54,7 +50,7 @@ def side(mode):
     return side_of(mode)
 
 
-@formula(r"<phi> + <side> \times <psi>")
+@stable(lambda _linkage: from_radians(_linkage.coupler_angle))
 def theta3(psi, phi, side):
     return wrap(phi + side * psi)
 
@@ -63,37 +59,22 @@ def theta3(psi, phi, side):
     r"\operatorname{atan2}\left(<r2> \sin <theta2> + <r3> \sin <theta3>;\ "
     r"<r2> \cos <theta2> + <r3> \cos <theta3> - <r1>\right)"
 )
+@stable(lambda _linkage: from_radians(_linkage.rocker_angle))
 def theta4(r1, r2, theta2, r3, theta3):
     """Direction of CB, by its quadrant."""
     return angle(polar(r2, theta2) + polar(r3, theta3) - r1)
 
 
-def _motion(r1, r2, r3, r4, theta2, side, omega2, alpha2=0.0, *, order):
-    rates = (omega2, alpha2)[:order]
-    return FourBar(r1, r2, r3, r4, side).motion(heading_in_degrees(theta2), *rates, order=order)
-
-
-@formula(
-    r"\frac{<r2> \times <omega2> \times \sin\left(<theta2> - <theta4>\right)}"
-    r"{<r3> \times \sin\left(<theta4> - <theta3>\right)}"
-)
-def omega3(r1, r2, r3, r4, theta2, side, omega2):
+@stable(lambda omega2, _linkage: _linkage.coupler_ratio * omega2)
+def omega3(r2, omega2, r3, theta2, theta3, theta4):
     """Along the rocker, B has no velocity."""
-    return _motion(r1, r2, r3, r4, theta2, side, omega2, order=1).coupler_rate
+    return r2 * omega2 * sin(theta2 - theta4) / (r3 * sin(theta4 - theta3))
 
 
-@formula(
-    r"\frac{<r2> \times <omega2> \times \sin\left(<theta2> - <theta3>\right)}"
-    r"{<r4> \times \sin\left(<theta4> - <theta3>\right)}"
-)
-def omega4(r1, r2, r3, r4, theta2, side, omega2):
+@stable(lambda omega2, _linkage: _linkage.rocker_ratio * omega2)
+def omega4(r2, omega2, r4, theta2, theta3, theta4):
     """Along the coupler, A and B have the same velocity."""
-    return _motion(r1, r2, r3, r4, theta2, side, omega2, order=1).rocker_rate
-
-
-def _normal_surplus(r3, r4, omega3, omega4, own):
-    """What angular velocities other than the linkage's own add to the normal accelerations of coupler and rocker."""
-    return r3 * (omega3**2 - own.coupler_rate**2), r4 * (omega4**2 - own.rocker_rate**2)
+    return r2 * omega2 * sin(theta2 - theta3) / (r4 * sin(theta4 - theta3))
 
 
 @formula(
@@ -103,12 +84,15 @@ def _normal_surplus(r3, r4, omega3, omega4, own):
     r" + \frac{<r3> \times <omega3>^2 \times \cos\left(<theta4> - <theta3>\right) - <r4> \times <omega4>^2}"
     r"{<r3> \times \sin\left(<theta4> - <theta3>\right)}"
 )
-def alpha3(r1, r2, r3, r4, theta2, theta3, theta4, side, omega2, alpha2, omega3, omega4):
+@stable(lambda omega2, alpha2, _linkage: _linkage.coupler_gain * omega2**2 + _linkage.coupler_ratio * alpha2)
+def alpha3(r2, omega2, alpha2, theta2, r3, omega3, theta3, r4, omega4, theta4):
     """The accelerations of B by the coupler and by the rocker have the same projection along the rocker."""
-    own = _motion(r1, r2, r3, r4, theta2, side, omega2, alpha2, order=2)
-    coupler, rocker = _normal_surplus(r3, r4, omega3, omega4, own)
-    surplus = coupler * cos(theta4 - theta3) - rocker
-    return own.coupler_acceleration + surplus / (r3 * sin(theta4 - theta3))
+    return (
+        r2 * alpha2 * sin(theta2 - theta4)
+        + r2 * omega2**2 * cos(theta2 - theta4)
+        + r3 * omega3**2 * cos(theta4 - theta3)
+        - r4 * omega4**2
+    ) / (r3 * sin(theta4 - theta3))
 
 
 @formula(
@@ -118,12 +102,15 @@ def alpha3(r1, r2, r3, r4, theta2, theta3, theta4, side, omega2, alpha2, omega3,
     r" + \frac{<r3> \times <omega3>^2 - <r4> \times <omega4>^2 \times \cos\left(<theta4> - <theta3>\right)}"
     r"{<r4> \times \sin\left(<theta4> - <theta3>\right)}"
 )
-def alpha4(r1, r2, r3, r4, theta2, theta3, theta4, side, omega2, alpha2, omega3, omega4):
+@stable(lambda omega2, alpha2, _linkage: _linkage.rocker_gain * omega2**2 + _linkage.rocker_ratio * alpha2)
+def alpha4(r2, omega2, alpha2, theta2, r3, omega3, theta3, r4, omega4, theta4):
     """They have the same projection along the coupler."""
-    own = _motion(r1, r2, r3, r4, theta2, side, omega2, alpha2, order=2)
-    coupler, rocker = _normal_surplus(r3, r4, omega3, omega4, own)
-    surplus = coupler - rocker * cos(theta4 - theta3)
-    return own.rocker_acceleration + surplus / (r4 * sin(theta4 - theta3))
+    return (
+        r2 * alpha2 * sin(theta2 - theta3)
+        + r2 * omega2**2 * cos(theta2 - theta3)
+        + r3 * omega3**2
+        - r4 * omega4**2 * cos(theta4 - theta3)
+    ) / (r4 * sin(theta4 - theta3))
 
 
 def v_B(r4, omega4):

@@ -1,37 +1,30 @@
 """Four-bar linkage, positions: solution. Both assemblies close the triangle A, B, C.
 
 The loop's projections, with theta4 eliminated, leave a cos(theta3) + b sin(theta3) = c. Its
-discriminant a^2 + b^2 - c^2 is the product of the two margins by which the triangle closes; taken
-so, it loses nothing at a dead point.
+discriminant a^2 + b^2 - c^2 is the product of the two margins by which the triangle closes: the numeric core
+takes it so, and loses nothing at a dead point.
 """
 
 import numpy as np
 
-from coursework.degrees import atan, atan2, cos, polar, sin, sqrt, wrap
-from coursework.errors import CannotAssemble, Undefined
+from coursework.degrees import acos, atan, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin
-from coursework.kinematics.dyads import out_of_reach
-from coursework.kinematics.margins import exact_sum, grashof_margins
-from coursework.solution import formula, mistake
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.four_bar import FourBar
+from coursework.kinematics.margins import exact_sum
+from coursework.solution import formula, mistake, stable
 
 UNITS = {"phi": "deg", "psi": "deg", "AC": "mm"}
 SYMBOLS = {"phi": r"\varphi", "psi": r"\psi", "AC": "AC"}
 
 
-def _triangle_margins(r1, r2, r3, r4, theta2):
-    """(r3 + r4)^2 - AC^2 and AC^2 - (r3 - r4)^2, each a sum of terms that do not cancel."""
-    stretched, folded = grashof_margins(r1, r2, r3, r4)
-    return stretched + 4 * r1 * r2 * cos(theta2 / 2) ** 2, folded + 4 * r1 * r2 * sin(theta2 / 2) ** 2
+def _open(r1, r2, r3, r4, theta2):
+    """The linkage at its crank angle, by the numeric core."""
+    return FourBar(r1, r2, r3, r4, "open").at(Degrees(theta2))
 
 
-def _closed(stretched, folded, r1, r2, r3, r4, theta2):
-    """Refuse a scalar configuration that does not close; arrays say NaN by their square roots."""
-    if isinstance(stretched, float) and min(stretched, folded) < 0:
-        raise out_of_reach(AC(r1, r2, theta2), r3, r4)
-
-
-def _of_the_data(r1, r2, r3, r4, theta2):
-    return a(r1, r2, r3, theta2), b(r2, r3, theta2), c(r1, r2, r3, r4, theta2)
+def _crossed(r1, r2, r3, r4, theta2):
+    return FourBar(r1, r2, r3, r4, "crossed").at(Degrees(theta2))
 
 
 def _shortest(r1, r2, r3, r4):
@@ -99,36 +92,23 @@ def c(r1, r2, r3, r4, theta2):
 @formula(r"\operatorname{atan2}\left(<b>;\ <a>\right)")
 def phi(a, b):
     """Direction of C towards A, in which a and b are the components."""
-    nowhere = (a == 0) & (b == 0)
-    if isinstance(nowhere, bool):
-        if nowhere:
-            raise Undefined("A lies on C: coupler and rocker may point anywhere, so theta3 is not determined")
-        return atan2(b, a)
-    return np.where(nowhere, np.nan, atan2(b, a))
+    return atan2(b, a)
 
 
 @formula(r"\arccos \left(\frac{<c>}{\sqrt{<a>^2 + <b>^2}}\right)")
-def psi(a, b, c, r1, r2, r3, r4, theta2):
-    """Angle between the coupler and the direction phi, by its sine and cosine together."""
-    stretched, folded = _triangle_margins(r1, r2, r3, r4, theta2)
-    a0, b0, c0 = _of_the_data(r1, r2, r3, r4, theta2)
-    # Coefficients that are not those of the data (given, or a student's) change the discriminant.
-    change = (a - a0) * (a + a0) + (b - b0) * (b + b0) - (c - c0) * (c + c0)
-    if isinstance(change, float) and change == 0.0:
-        _closed(stretched, folded, r1, r2, r3, r4, theta2)
-    discriminant = stretched * folded + change
-    if isinstance(discriminant, float) and discriminant < 0:
-        raise CannotAssemble(
-            f"no angle: |c| = {abs(c):.6g} exceeds the root of a^2 + b^2, {abs(a + 1j * b):.6g}"
-        )
-    return atan2(sqrt(discriminant), c)
+@stable(lambda _open: 180.0 - from_radians(_open.corner))
+def psi(a, b, c):
+    """Angle between the coupler and the direction phi."""
+    return acos(c / sqrt(a**2 + b**2))
 
 
+@stable(lambda _open: from_radians(_open.coupler_angle))
 def theta3_open(phi, psi):
     """Inner joint B to the left of the line from A to C."""
     return wrap(phi - psi)
 
 
+@stable(lambda _crossed: from_radians(_crossed.coupler_angle))
 def theta3_crossed(phi, psi):
     """Inner joint B to the right of the line from A to C."""
     return wrap(phi + psi)
@@ -146,12 +126,14 @@ _ROCKER = (
 
 
 @formula(_ROCKER.replace("MODE", "theta3_open"))
+@stable(lambda _open: from_radians(_open.rocker_angle))
 def theta4_open(r1, r2, r3, theta2, theta3_open):
     """Direction from C to B, by its quadrant."""
     return _rocker(r1, r2, r3, theta2, theta3_open)
 
 
 @formula(_ROCKER.replace("MODE", "theta3_crossed"))
+@stable(lambda _crossed: from_radians(_crossed.rocker_angle))
 def theta4_crossed(r1, r2, r3, theta2, theta3_crossed):
     """Direction from C to B, by its quadrant."""
     return _rocker(r1, r2, r3, theta2, theta3_crossed)
@@ -164,14 +146,10 @@ def AC(r1, r2, theta2):
 
 
 @formula(r"\arccos \left(\frac{<r3>^2 + <r4>^2 - <AC>^2}{2 \times <r3> \times <r4>}\right)")
-def mu(AC, r1, r2, r3, r4, theta2):
-    """Angle CBA at B, by its half: what coupler and rocker lack to be in line, either way."""
-    stretched, folded = _triangle_margins(r1, r2, r3, r4, theta2)
-    exact = (r1 - r2) ** 2 + 4 * r1 * r2 * sin(theta2 / 2) ** 2
-    # As in psi: a diagonal that is not that of the data moves both margins.
-    change = (AC - sqrt(exact)) * (AC + sqrt(exact))
-    _closed(stretched - change, folded + change, r1, r2, r3, r4, theta2)
-    return 2 * atan2(sqrt(folded + change), sqrt(stretched - change))
+@stable(lambda _open: from_radians(_open.transmission_angle))
+def mu(AC, r3, r4):
+    """Angle CBA at B, by the law of cosines."""
+    return acos((r3**2 + r4**2 - AC**2) / (2 * r3 * r4))
 
 
 @mistake("c")

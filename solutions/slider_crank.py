@@ -1,8 +1,7 @@
 """Slider-crank: solution. The rod's vector is what is left from the crank pin to the piston's line.
 
 Its two projections p and q carry everything: sin theta3 = p / r3, cos theta3 = q / r3. The root q is
-taken through the two lengths by which the crank clears its turn, so that no difference of nearly
-equal lengths appears where the rod is hardly longer than the crank.
+taken from the numeric core, which keeps its digits where the rod is hardly longer than the crank.
 """
 
 from itertools import pairwise
@@ -10,10 +9,10 @@ from itertools import pairwise
 import numpy as np
 
 from coursework.degrees import atan2, cos, polar, sin, sqrt
-from coursework.errors import CannotAssemble
 from coursework.figures import Figure, ground_pivot, link, pin, point, rail, slider, vector
-from coursework.kinematics.margins import exact_sum
-from coursework.solution import formula, mistake
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.slider_crank import SliderCrank
+from coursework.solution import formula, mistake, stable
 
 UNITS = {"p": "mm", "q": "mm"}
 
@@ -24,17 +23,10 @@ def p(e, r2, theta2):
     return e - r2 * sin(theta2)
 
 
-@formula(r"\sqrt{<r3>^2 - <p>^2}")
-def q(r2, r3, e, theta2):
+@stable(lambda r2, r3, e, theta2: SliderCrank(r2, r3, e).run(Degrees(theta2)))
+def q(r3, p):
     """How far B lies to the right of A: r3 cos theta3, positive."""
-    below = exact_sum(r3, -r2, e) + 2 * r2 * sin(45 - theta2 / 2) ** 2
-    above = exact_sum(r3, -r2, -e) + 2 * r2 * cos(45 - theta2 / 2) ** 2
-    if isinstance(below, float) and min(below, above) < 0:
-        raise CannotAssemble(
-            f"the linkage does not close: the piston's line is {abs(e - r2 * sin(theta2)):.6g} from the crank pin, "
-            f"but the rod reaches only {r3:.6g} (gap {-min(below, above):.3g})"
-        )
-    return sqrt(below * above)
+    return sqrt(r3**2 - p**2)
 
 
 @formula(r"\arcsin \frac{<e> - <r2> \sin <theta2>}{<r3>}")

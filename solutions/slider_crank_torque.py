@@ -13,9 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.degrees import atan2, cos, sin, sqrt
-from coursework.errors import CannotAssemble, Undefined
-from coursework.kinematics.margins import exact_sum
-from coursework.solution import formula, mistake
+from coursework.errors import Undefined
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.slider_crank import SliderCrank
+from coursework.solution import formula, mistake, stable
 
 GRAVITY = 9.81  #: m/s^2, along -y
 
@@ -65,17 +66,10 @@ def p(e, r2, theta2):
     return e - r2 * sin(theta2)
 
 
-@formula(r"\sqrt{<r3>^2 - <p>^2}")
-def q(r2, r3, e, theta2):
-    """How far B lies to the right of A: r3 cos theta3, positive; by the two clearances of the crank."""
-    below = exact_sum(r3, -r2, e) + 2 * r2 * sin(45 - theta2 / 2) ** 2
-    above = exact_sum(r3, -r2, -e) + 2 * r2 * cos(45 - theta2 / 2) ** 2
-    if isinstance(below, float) and min(below, above) < 0:
-        raise CannotAssemble(
-            f"the linkage does not close: the piston's line is {abs(e - r2 * sin(theta2)):.6g} from the crank pin, "
-            f"but the rod reaches only {r3:.6g} (gap {-min(below, above):.3g})"
-        )
-    return sqrt(below * above)
+@stable(lambda r2, r3, e, theta2: SliderCrank(r2, r3, e).run(Degrees(theta2)))
+def q(r3, p):
+    """How far B lies to the right of A: r3 cos theta3, positive."""
+    return sqrt(r3**2 - p**2)
 
 
 @formula(r"\arcsin \frac{<p>}{<r3>}")

@@ -1,17 +1,20 @@
 """Six links, two loops: solution. Eliminate theta4 from the first loop, then theta5 from the second.
 
 The rocker turns about D, the origin; the crank about O = i r1. Both loops are solved by their own
-second-degree equation, and each is then derived twice.
+second-degree equation, and each is then derived twice. The first loop is a four-bar linkage whose frame OD
+points down: what its formulas give near a dead point is taken from the numeric core.
 """
 
 import math
 
 import numpy as np
 
-from coursework.degrees import acos, angle, atan, atan2, cos, polar, sin, sqrt, tan, wrap
+from coursework.degrees import acos, angle, atan, atan2, cos, from_radians, polar, sin, sqrt, tan, wrap
 from coursework.errors import CannotAssemble
+from coursework.kinematics.angles import Degrees
 from coursework.kinematics.dyads import side_of
-from coursework.solution import formula, mistake
+from coursework.kinematics.four_bar import FourBar
+from coursework.solution import formula, mistake, stable
 
 UNITS = {"A": "1", "side": "1"}
 SYMBOLS = {"side": r"\varepsilon"}
@@ -45,6 +48,7 @@ def a(r2, r3, theta2):
     return 2 * r2 * r3 * cos(theta2)
 
 
+@stable(lambda r1, r2, r3, theta2: 2 * r3 * ((r1 - r2) + 2 * r2 * sin(45 + theta2 / 2) ** 2))
 def b(r1, r2, r3, theta2):
     return 2 * r2 * r3 * sin(theta2) + 2 * r1 * r3
 
@@ -58,27 +62,26 @@ def side(mode):
     return side_of(mode)
 
 
-def _real_root(square, what):
-    if isinstance(square, float) and square < 0:
-        raise CannotAssemble(f"the linkage does not close: {what} ({square:.3g} under the root)")
-    return sqrt(square)
+def _bars(r1, r2, r3, r4, side):
+    return FourBar(r1, r2, r3, r4, side)
 
 
-@formula(
-    r"\operatorname{atan2}\left(<b>;\ <a>\right) "
-    r"- <side> \times \arccos \frac{<c>}{\sqrt{<a>^2 + <b>^2}}"
-)
+def _linkage(_bars, theta2):
+    """The linkage O, A, B, D at its crank angle, counted from the direction O -> D."""
+    return _bars.at(Degrees.between(-90.0, theta2))
+
+
+@stable(lambda _linkage: wrap(from_radians(_linkage.coupler_angle) - 90))
 def theta3(a, b, c, side):
     """The root of a cos + b sin = c that puts B on its side: (a, b) points from D to A."""
-    size = abs(a + 1j * b)
-    root = _real_root((size - c) * (size + c), "coupler and rocker do not reach from A to D")
-    return wrap(atan2(b, a) - side * atan2(root, c))
+    return wrap(atan2(b, a) - side * acos(c / sqrt(a**2 + b**2)))
 
 
 @formula(
     r"\operatorname{atan2}\left(<r1> + <r2> \sin <theta2> + <r3> \sin <theta3>;\ "
     r"<r2> \cos <theta2> + <r3> \cos <theta3>\right)"
 )
+@stable(lambda _linkage: wrap(from_radians(_linkage.rocker_angle) - 90))
 def theta4(r1, r2, theta2, r3, theta3):
     """Direction of B seen from D, by its quadrant."""
     return angle(1j * r1 + polar(r2, theta2) + polar(r3, theta3))
@@ -98,11 +101,20 @@ def C(r4, r5):
     return (r4 - r5) * (r4 + r5)
 
 
-@formula(r"\frac{-<B> + \sqrt{<B>^2 - 4 \times <A> \times <C>}}{2 \times <A>}")
-def r6(A, B, C):
-    """The larger root, without a difference of nearly equal lengths."""
-    total = abs(B) + _real_root(B**2 - 4 * A * C, "the rod does not reach the axis")
+def _larger_root(A, B, C):
+    """Without a difference of nearly equal lengths."""
+    square = B**2 - 4 * A * C
+    if isinstance(square, float) and square < 0:
+        raise CannotAssemble(
+            f"the linkage does not close: the rod does not reach the axis (gap {sqrt(-square) / 2:.3g})"
+        )
+    total = abs(B) + sqrt(square)
     return np.where(B > 0, -2 * C / total, total / (2 * A))[()]
+
+
+@stable(_larger_root)
+def r6(A, B, C):
+    return (-B + sqrt(B**2 - 4 * A * C)) / (2 * A)
 
 
 @formula(r"\operatorname{atan2}\left(<r4> \sin <theta4>;\ <r4> \cos <theta4> - <r6>\right)")
@@ -111,10 +123,12 @@ def theta5(r4, theta4, r6):
     return atan2(r4 * sin(theta4), r4 * cos(theta4) - r6)
 
 
+@stable(lambda omega2, _linkage: _linkage.coupler_ratio * omega2)
 def omega3(r2, omega2, r3, theta2, theta3, theta4):
     return r2 * omega2 * sin(theta2 - theta4) / (r3 * sin(theta4 - theta3))
 
 
+@stable(lambda omega2, _linkage: _linkage.rocker_ratio * omega2)
 def omega4(r2, omega2, r4, theta2, theta3, theta4):
     return r2 * omega2 * sin(theta2 - theta3) / (r4 * sin(theta4 - theta3))
 
@@ -127,6 +141,7 @@ def r6_dot(r4, omega4, theta4, r5, omega5, theta5):
     return r5 * omega5 * sin(theta5) - r4 * omega4 * sin(theta4)
 
 
+@stable(lambda omega2, _linkage: _linkage.coupler_gain * omega2**2)
 def alpha3(r2, omega2, theta2, r3, omega3, theta3, r4, omega4, theta4):
     """The accelerations of B by the coupler and by the rocker have the same projection along the rocker."""
     return (
@@ -134,6 +149,7 @@ def alpha3(r2, omega2, theta2, r3, omega3, theta3, r4, omega4, theta4):
     ) / (r3 * sin(theta4 - theta3))
 
 
+@stable(lambda omega2, _linkage: _linkage.rocker_gain * omega2**2)
 def alpha4(r2, omega2, theta2, r3, omega3, theta3, r4, omega4, theta4):
     """They have the same projection along the coupler."""
     return (

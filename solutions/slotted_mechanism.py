@@ -1,17 +1,25 @@
 """Slotted mechanism: solution. The vector of the guide is the frame's plus the crank's.
 
-Everything is measured from the frame's direction theta1, where no difference of nearly equal
-lengths appears: the block may pass as near to O4 as it likes.
+The formulas are the course's; their values come from the numeric core, which measures everything from the
+frame's direction theta1. There no difference of nearly equal lengths appears: the block may pass as near
+to O4 as it likes.
 """
 
 import numpy as np
 
-from coursework.degrees import atan, atan2, cos, polar, sin, sqrt, wrap
+from coursework.degrees import atan, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.errors import Undefined
-from coursework.solution import formula, mistake
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.slotted_guide import SlottedGuidePose
+from coursework.solution import formula, mistake, stable
 
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
 SYMBOLS = {"delta": r"\delta"}
+
+
+def _arm(r1, r2, theta1, theta2):
+    """The guide at its crank angle, by the numeric core."""
+    return SlottedGuidePose(r1, r2, Degrees.between(theta1, theta2))
 
 
 def delta(theta1, theta2):
@@ -19,25 +27,16 @@ def delta(theta1, theta2):
     return wrap(theta2 - theta1)
 
 
-@formula(r"\sqrt{<r1>^2 + <r2>^2 + 2 \times <r1> \times <r2> \times \cos <delta>}")
+@stable(lambda _arm: _arm.arm)
 def rA(r1, r2, delta):
-    """Distance O4A: the law of cosines, as a sum of two squares."""
-    return sqrt((r2 - r1) ** 2 + 4 * r1 * r2 * cos(delta / 2) ** 2)
+    """Distance O4A, by the law of cosines."""
+    return sqrt(r1**2 + r2**2 + 2 * r1 * r2 * cos(delta))
 
 
-@formula(
-    r"\operatorname{atan2}\left(<r1> \sin <theta1> + <r2> \sin <theta2>;\ "
-    r"<r1> \cos <theta1> + <r2> \cos <theta2>\right)"
-)
-def theta4(r1, r2, theta1, delta):
+@stable(lambda theta1, _arm: wrap(theta1 + from_radians(_arm.guide_angle)))
+def theta4(r1, r2, theta1, theta2):
     """Direction of the guide, by its quadrant; none when A lies on O4."""
-    across, along = r2 * sin(delta), (r1 - r2) + 2 * r2 * cos(delta / 2) ** 2
-    nowhere = (across == 0) & (along == 0)
-    if isinstance(nowhere, bool):
-        if nowhere:
-            raise Undefined("A lies on O4: the guide may point anywhere")
-        return wrap(theta1 + atan2(across, along))
-    return np.where(nowhere, np.nan, wrap(theta1 + atan2(across, along)))
+    return atan2(r1 * sin(theta1) + r2 * sin(theta2), r1 * cos(theta1) + r2 * cos(theta2))
 
 
 def guide(r1, r2):
@@ -53,16 +52,16 @@ def swing(r1, r2):
     return 2 * atan2(r2, sqrt((r1 - r2) * (r1 + r2)))
 
 
-@formula(r"<r2> \times <omega2> \times \sin\left(<theta4> - <theta2>\right)")
-def rA_dot(r1, r2, omega2, delta, rA):
+@stable(lambda omega2, _arm: _arm.sliding_ratio * omega2)
+def rA_dot(r2, omega2, theta2, theta4):
     """Component of the velocity of A along the guide."""
-    return -r1 * r2 * omega2 * sin(delta) / rA
+    return r2 * omega2 * sin(theta4 - theta2)
 
 
-@formula(r"\frac{<r2> \times <omega2> \times \cos\left(<theta2> - <theta4>\right)}{<rA>}")
-def omega4(r1, r2, omega2, delta, rA):
+@stable(lambda omega2, _arm: _arm.guide_ratio * omega2)
+def omega4(r2, omega2, theta2, theta4, rA):
     """Component of the velocity of A across the guide, over its distance."""
-    return r2 * omega2 * ((r2 - r1) + 2 * r1 * cos(delta / 2) ** 2) / rA**2
+    return r2 * omega2 * cos(theta2 - theta4) / rA
 
 
 def a_centripetal(rA, omega4):
@@ -73,11 +72,13 @@ def a_coriolis(rA_dot, omega4):
     return 2 * omega4 * rA_dot
 
 
+@stable(lambda omega2, alpha2, _arm: _arm.sliding_gain * omega2**2 + _arm.sliding_ratio * alpha2)
 def rA_ddot(r2, alpha2, omega2, theta2, theta4, a_centripetal):
     """Component of the acceleration of A along the guide, less the centripetal term."""
     return -r2 * alpha2 * sin(theta2 - theta4) - r2 * omega2**2 * cos(theta2 - theta4) - a_centripetal
 
 
+@stable(lambda omega2, alpha2, _arm: _arm.guide_gain * omega2**2 + _arm.guide_ratio * alpha2)
 def alpha4(r2, alpha2, omega2, theta2, theta4, a_coriolis, rA):
     """Component of the acceleration of A across the guide, less the Coriolis term."""
     return (r2 * alpha2 * cos(theta2 - theta4) - r2 * omega2**2 * sin(theta2 - theta4) - a_coriolis) / rA

@@ -157,3 +157,99 @@ def test_the_right_value_keeps_the_effects_that_are_called():
     given = {**BOX, "slope": 0.5}
     assert wrong.evaluate(("cost",), given, ("friction",)) == {"cost": 73.0}
     assert wrong.evaluate(("cost",), given) == {"cost": 49.0}
+
+
+def _chord(radius, turn):
+    return radius * turn
+
+
+def stable_slope(_chord, radius):
+    return _chord / radius
+
+
+def slope(rise, run):
+    return rise / run
+
+
+def rise(radius, turn):
+    return radius * turn + 1e9 - 1e9
+
+
+def run(radius):
+    return radius
+
+
+def grade(slope):
+    return 100 * slope
+
+
+slope.__stable__ = stable_slope
+HIDDEN = Graph({"_chord": _chord, **{f.__name__: f for f in (slope, rise, run, grade)}})
+ARC = {"radius": 2.0, "turn": 1e-9}
+
+
+def test_the_stable_way_is_taken_where_nothing_given_lies_on_the_other():
+    assert HIDDEN.plan(("grade",), ARC) == ("_chord", "slope", "grade")
+    assert HIDDEN.evaluate(("grade",), ARC) == {"grade": 100 * 1e-9}
+    assert HIDDEN.textbook.evaluate(("slope",), ARC)["slope"] != 1e-9
+
+
+def test_what_a_request_gives_counts_even_where_the_stable_way_passes_over_it():
+    assert HIDDEN.evaluate(("grade",), {**ARC, "rise": 3.0}) == {"grade": 150.0}
+    assert HIDDEN.evaluate(("grade",), {**ARC, "run": 4.0, "rise": 1.0}) == {"grade": 25.0}
+
+
+def test_a_mistake_counts_even_where_the_stable_way_passes_over_it():
+    wrong = HIDDEN.replacing(Replacement(("rise",), lambda rise: rise + 4.0))
+    assert wrong.evaluate(("slope",), ARC)["slope"] == pytest.approx(2.0)
+    right = HIDDEN.replacing(Replacement(("grade",), lambda slope: slope))
+    assert right.evaluate(("grade",), ARC) == {"grade": 1e-9}
+    earlier = HIDDEN.replacing(Replacement(("turn",), lambda turn: 2 * turn))
+    assert earlier.evaluate(("slope",), ARC) == {"slope": 2e-9}
+
+
+def test_the_walk_shows_the_textbook_way_with_the_stable_values():
+    walk = HIDDEN.evaluate_all(("grade",), ARC)
+    assert list(walk) == ["rise", "run", "slope", "grade"]
+    assert walk["slope"] == 1e-9
+
+
+def test_hidden_quantities_cannot_be_named_by_a_request():
+    assert "_chord" not in HIDDEN.quantities
+    for request in (
+        lambda: HIDDEN.evaluate(("_chord",), ARC),
+        lambda: HIDDEN.plan(("grade",), {"_chord": 1.0}),
+    ):
+        with pytest.raises((UnknownName, MissingQuantity)):
+            request()
+    with pytest.raises(UnknownName):
+        HIDDEN.evaluate(("grade",), {**ARC, "_chord": 1.0})
+
+
+@pytest.mark.parametrize(
+    "shapes", [((100_000,), ()), ((3, 1), (50_000,)), ((50_000, 1), (3,)), ((1, 90_000), (1, 1))]
+)
+def test_long_arrays_give_what_their_places_give_alone(shapes):
+    calls = []
+
+    def whole(depth):
+        calls.append(depth)
+        return depth + 1
+
+    def pair(area, whole):
+        return np.stack([area, whole * np.ones_like(area)], axis=-1)
+
+    def case(area):
+        return np.where(area > 2, "large", "small")
+
+    graph = GRAPH.with_functions({"whole": whole, "pair": pair, "case": case})
+    rng = np.random.default_rng(0)
+    given = {"width": rng.uniform(1, 2, shapes[0]), "height": rng.uniform(1, 2, shapes[1]), "depth": 3.0}
+    found = graph.evaluate(("volume", "whole", "pair", "case"), given)
+    area = given["width"] * given["height"]
+    assert np.array_equal(found["volume"], area * 3.0)
+    assert np.array_equal(found["pair"], np.stack([area, np.full_like(area, 4.0)], axis=-1))
+    assert np.array_equal(found["case"], np.where(area > 2, "large", "small"))
+    # What does not vary is computed once and stays a number.
+    assert found["whole"] == 4.0
+    assert calls == [3.0]

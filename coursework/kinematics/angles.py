@@ -7,6 +7,8 @@ crank angle takes radians or a :class:`Heading` made here.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,11 +29,80 @@ class Heading(NamedTuple):
     half_sin: Any
 
 
-def heading_in_degrees(angle: Any) -> Heading:
+class Degrees(NamedTuple):
+    """A heading by its angle in degrees, reduced exactly: at 180 the sine and the half cosine are 0.
+
+    Its four numbers are computed when they are asked for. ``rest`` is what rounding took from the angle.
+    """
+
+    angle: Any
+    rest: Any = 0.0
+
+    @staticmethod
+    def between(start: Any, end: Any) -> Degrees:
+        """From one direction to another, ``end - start``, without rounding."""
+        angle = end - start
+        part = angle + start
+        return Degrees(angle, (end - part) - (start - (part - angle)))
+
+    @property
+    def cos(self) -> Any:
+        return degrees.cos(self.angle) - degrees.sin(self.angle) * (self.rest * _DEGREE)
+
+    @property
+    def sin(self) -> Any:
+        return degrees.sin(self.angle) + degrees.cos(self.angle) * (self.rest * _DEGREE)
+
+    @property
+    def half_cos(self) -> Any:
+        return degrees.cos(self._half) - degrees.sin(self._half) * (self.rest * (0.5 * _DEGREE))
+
+    @property
+    def half_sin(self) -> Any:
+        return degrees.sin(self._half) + degrees.cos(self._half) * (self.rest * (0.5 * _DEGREE))
+
+    @property
+    def half_squares(self) -> tuple[Any, Any, Any]:
+        """Of half the angle: cosine squared, sine squared, cosine times sine. One tangent for the three."""
+        quarters = np.rint(np.multiply(self.angle, 1 / 180))
+        beyond = np.multiply(self.angle, 0.5) - 90.0 * quarters
+        if np.ndim(self.rest) or self.rest:
+            beyond = beyond + np.multiply(self.rest, 0.5)
+        tangent = np.tan(beyond * _DEGREE)
+        squared = tangent * tangent
+        cos_squared = 1 / (1 + squared)
+        sin_squared = squared * cos_squared
+        both = tangent * cos_squared
+        # A quarter more exchanges cosine and sine, and turns the sign of their product.
+        whole = quarters * 0.5
+        odd = whole != np.rint(whole)
+        return (
+            np.where(odd, sin_squared, cos_squared),
+            np.where(odd, cos_squared, sin_squared),
+            np.where(odd, -both, both),
+        )
+
+    @property
+    def _half(self) -> Any:
+        return self.angle / 2 if isinstance(self.angle, (int, float)) else np.asarray(self.angle, float) / 2
+
+
+_DEGREE = math.pi / 180
+
+
+def heading_in_degrees(angle: Any) -> Degrees:
     """Heading of an angle in degrees, reduced exactly: at 180 the sine and the half cosine are 0."""
-    return Heading(
-        degrees.cos(angle), degrees.sin(angle), degrees.cos(_half(angle)), degrees.sin(_half(angle))
-    )
+    return Degrees(angle)
+
+
+def taken_apart(angle: Any) -> tuple[Callable[..., Any], tuple[Any, ...]]:
+    """The arrays that make up radians or a heading, and what makes it from them again."""
+    make, parts = (type(angle), angle) if isinstance(angle, (Heading, Degrees)) else (_radians, (angle,))
+    return make, tuple(np.asarray(part, dtype=float)[()] for part in parts)
+
+
+def _radians(angle: Any) -> Any:
+    return angle
 
 
 def heading_after_turns(turns: Any, angle: Any) -> Heading:
@@ -51,14 +122,14 @@ def heading_of(cos: Any, sin: Any) -> Heading:
 
 def full_angle(angle: Any) -> tuple[Any, Any]:
     """Cosine and sine of radians or of a heading."""
-    if isinstance(angle, Heading):
+    if isinstance(angle, (Heading, Degrees)):
         return angle.cos, angle.sin
     return np.cos(angle), np.sin(angle)
 
 
 def half_angle(angle: Any) -> tuple[Any, Any]:
     """Cosine and sine of half the angle, signed; each is accurate to the last digits where it is small."""
-    if isinstance(angle, Heading):
+    if isinstance(angle, (Heading, Degrees)):
         return angle.half_cos, angle.half_sin
     half = np.multiply(angle, 0.5)
     return np.cos(half), np.sin(half)
@@ -69,7 +140,3 @@ def halves(abs_cos: Any, sin: Any) -> tuple[Any, Any]:
     roles exchanged."""
     larger = (1 + abs_cos) / 2
     return larger, np.multiply(sin, sin) / (4 * larger)
-
-
-def _half(angle: Any) -> Any:
-    return angle / 2 if isinstance(angle, (int, float)) else np.asarray(angle, dtype=float) / 2

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from coursework.blocks import in_blocks
 from coursework.errors import CannotAssemble, Undefined, WrongValue
-from coursework.kinematics.angles import Heading, full_angle
-from coursework.kinematics.blocks import in_blocks
+from coursework.kinematics.angles import Degrees, Heading, full_angle
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import derivative
 
@@ -97,7 +97,7 @@ class Chain:
         directions = {name: known[name] for name in self.known if name in self._angles}
         directions = {
             name: value
-            if isinstance(value, Heading)
+            if isinstance(value, (Heading, Degrees))
             else Heading(*full_angle(np.asarray(value, float)), 0.0, 0.0)
             for name, value in directions.items()
         }

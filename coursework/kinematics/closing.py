@@ -12,11 +12,12 @@ does not.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.kinematics.angles import Heading, half_angle
+from coursework.kinematics.angles import Degrees, Heading, half_angle
 
 
 class Sweep(NamedTuple):
@@ -32,7 +33,10 @@ class Sweep(NamedTuple):
 
 
 def sweep(angle: Any, w: Any) -> Sweep:
-    """For radians or a :class:`Heading`; radians cost one tangent."""
+    """For radians or a heading; radians and degrees cost one tangent."""
+    if isinstance(angle, Degrees):
+        cos_squared, sin_squared, both = angle.half_squares
+        return Sweep(w * cos_squared, w * sin_squared, w * both)
     if isinstance(angle, Heading):
         return Sweep(w * angle.half_cos**2, w * angle.half_sin**2, (0.5 * w) * angle.sin)
     tangent = np.tan(angle * 0.5)
@@ -85,9 +89,14 @@ class Closing(NamedTuple):
     determinant: Any
 
 
-def closing(stretched: Any, folded: Any, side: Any, swept: Sweep) -> Closing:
-    """P, Q and S. Continued smoothly, sqrt(P) at E+ = 0 is the signed sqrt(w) cos(t / 2); likewise for Q."""
+def closing(stretched: Any, folded: Any, side: Any, swept: Sweep, direct: Any = None) -> Closing:
+    """P, Q and S. Continued smoothly, sqrt(P) at E+ = 0 is the signed sqrt(w) cos(t / 2); likewise for Q.
+
+    ``direct`` is P where it is known better than by its sum, NaN elsewhere.
+    """
     stretch, fold = stretched + swept.cos_squared, folded + swept.sin_squared
+    if direct is not None:
+        stretch = np.where(np.isnan(direct), stretch, direct)[()]
     product = stretch * fold
     if swept.cos is None:
         determinant = side * np.sqrt(product)
@@ -98,38 +107,71 @@ def closing(stretched: Any, folded: Any, side: Any, swept: Sweep) -> Closing:
     return Closing(stretched, folded, side, stretch, fold, product, determinant)
 
 
-def opening(c: Closing, swept: Sweep, order: int) -> list[Any]:
-    """rho = w sin(t) / (2 S) and its derivatives by t, ``order`` of them in all.
+class Opening:
+    """rho = w sin(t) / (2 S) and its first two derivatives by t, each computed when it is asked for.
 
     NaN where S is 0, except for the smooth policy at a change point, where the factor that vanishes is
     divided out.
     """
-    smooth = swept.cos is not None
-    flat_p, flat_q = (c.stretched == 0, c.folded == 0) if smooth else (False, False)
-    if smooth:
+
+    def __init__(self, close: Closing, swept: Sweep):
+        self._close, self._swept = close, swept
+        self._smooth = swept.cos is not None
+        self._flat_p, self._flat_q = (
+            (close.stretched == 0, close.folded == 0) if self._smooth else (False, False)
+        )
+
+    @cached_property
+    def rho(self) -> Any:
+        if self._smooth:
+            return self._cos_p * self._sin_q
+        return self._inverse * self._swept.both
+
+    @cached_property
+    def first(self) -> Any:
+        swept = self._swept
+        if self._smooth:
+            cos_part = self._close.side * self._cos_p * np.where(self._flat_q, 0.0, swept.cos / self._root_q)
+            sin_part = self._sin_q * np.where(self._flat_p, 0.0, swept.sin / self._root_p)
+            return 0.5 * (self._of_fold * cos_part - self._of_stretch * sin_part)
+        change = self._of_fold * swept.cos_squared - self._of_stretch * swept.sin_squared
+        return change * (0.5 * self._inverse)
+
+    @cached_property
+    def second(self) -> Any:
+        close, swept = self._close, self._swept
+        stretching = self._of_stretch * (1 + 3 * _share(swept.sin_squared, close.stretch, self._flat_p))
+        folding = self._of_fold * (1 + 3 * _share(swept.cos_squared, close.fold, self._flat_q))
+        return -0.25 * self.rho * (stretching + folding + 2 * self._of_stretch * self._of_fold)
+
+    @cached_property
+    def _inverse(self) -> Any:
+        return self._close.determinant / self._close.product
+
+    @cached_property
+    def _root_p(self) -> Any:
+        return np.sqrt(self._close.stretch)
+
+    @cached_property
+    def _root_q(self) -> Any:
+        return np.sqrt(self._close.fold)
+
+    @cached_property
+    def _cos_p(self) -> Any:
         # Where a root is the cosine or the sine itself, their quotient is 1.
-        root_p, root_q = np.sqrt(c.stretch), np.sqrt(c.fold)
-        cos_p = np.where(flat_p, 1.0, swept.cos / root_p)
-        sin_q = c.side * np.where(flat_q, 1.0, swept.sin / root_q)
-        found = [cos_p * sin_q]
-    else:
-        inverse = c.determinant / c.product
-        found = [inverse * swept.both]
-    if order == 1:
-        return found
-    of_stretch = _share(c.stretched, c.stretch, flat_p)
-    of_fold = _share(c.folded, c.fold, flat_q)
-    if smooth:
-        cos_part = c.side * cos_p * np.where(flat_q, 0.0, swept.cos / root_q)
-        sin_part = sin_q * np.where(flat_p, 0.0, swept.sin / root_p)
-        found.append(0.5 * (of_fold * cos_part - of_stretch * sin_part))
-    else:
-        found.append((of_fold * swept.cos_squared - of_stretch * swept.sin_squared) * (0.5 * inverse))
-    if order >= 3:
-        stretching = of_stretch * (1 + 3 * _share(swept.sin_squared, c.stretch, flat_p))
-        folding = of_fold * (1 + 3 * _share(swept.cos_squared, c.fold, flat_q))
-        found.append(-0.25 * found[0] * (stretching + folding + 2 * of_stretch * of_fold))
-    return found
+        return np.where(self._flat_p, 1.0, self._swept.cos / self._root_p)
+
+    @cached_property
+    def _sin_q(self) -> Any:
+        return self._close.side * np.where(self._flat_q, 1.0, self._swept.sin / self._root_q)
+
+    @cached_property
+    def _of_stretch(self) -> Any:
+        return _share(self._close.stretched, self._close.stretch, self._flat_p)
+
+    @cached_property
+    def _of_fold(self) -> Any:
+        return _share(self._close.folded, self._close.fold, self._flat_q)
 
 
 def _share(part: Any, whole: Any, flat: Any) -> Any:

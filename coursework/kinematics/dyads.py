@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
+from coursework.blocks import in_blocks
 from coursework.errors import CannotAssemble, CourseworkError, Undefined
 from coursework.kinematics.angles import full_angle
-from coursework.kinematics.blocks import in_blocks
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import components, cross, derivative, dot, size
 
@@ -228,14 +228,14 @@ def rpp_rates(
 
 
 def out_of_reach(
-    distance: float, p_length: float, q_length: float, gap: float | None = None
+    distance: float, p_length: float, q_length: float, gap: float | None = None, what: str = "the two bodies"
 ) -> CannotAssemble:
     """The error for two bodies that do not span the distance between their pins, with the gap."""
     least, most = abs(p_length - q_length), p_length + q_length
     gap = max(distance - most, least - distance) if gap is None else gap
     return CannotAssemble(
-        f"the linkage does not close: the pins are {distance:.6g} apart, but the two bodies "
-        f"{p_length:.6g} and {q_length:.6g} reach only {least:.6g} to {most:.6g} (gap {gap:.3g})"
+        f"the linkage does not close: the pins are {distance:.6g} apart, but {what}, "
+        f"{p_length:.6g} and {q_length:.6g} long, reach only {least:.6g} to {most:.6g} (gap {gap:.3g})"
     )
 
 

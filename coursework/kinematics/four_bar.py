@@ -15,15 +15,17 @@ neither. S = side * sqrt(P Q) = 2 b c sin(transmission angle) is twice the deter
 
 from __future__ import annotations
 
+import itertools
 import math
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from coursework.blocks import in_blocks
 from coursework.errors import Undefined, WrongValue
-from coursework.kinematics.angles import Heading, full_angle
-from coursework.kinematics.blocks import in_blocks
-from coursework.kinematics.closing import Closing, Sweep, closing, in_time, opening, signed_sweep, sweep
+from coursework.kinematics.angles import full_angle, taken_apart
+from coursework.kinematics.closing import Closing, Opening, Sweep, closing, in_time, signed_sweep, sweep
 from coursework.kinematics.dyads import out_of_reach, side_of
 from coursework.kinematics.margins import grashof_margins
 from coursework.kinematics.scaling import exponent_of, scaled
@@ -58,6 +60,7 @@ class _Linkage(NamedTuple):
     twice_frame: Any  # 2 (d^2 - a^2)
     twice_sides: Any  # 2 (b^2 - c^2)
     twice_bc: Any  # 2 b c
+    squared_reach: Any  # (b + c)^2
     side: Any  # +1 open, -1 crossed
 
 
@@ -125,7 +128,7 @@ class FourBar:
     def angles(self, crank_angle: Any) -> tuple[Any, Any]:
         """Angles of coupler and rocker, radians in (-pi, pi].
 
-        ``crank_angle`` is in radians or a :class:`Heading`, any shape that broadcasts with the lengths.
+        ``crank_angle`` is in radians or a heading (:mod:`angles`), any shape that broadcasts with the lengths.
 
         Raises
         ------
@@ -164,7 +167,15 @@ class FourBar:
         A pair (coupler, rocker) for each order from 1 to ``order`` (at most 3): the first holds the ratios
         omega3/omega2 and omega4/omega2. They need no inverse trigonometry. Errors as in :meth:`motion`.
         """
-        return _pairs(self._evaluate(_coefficients, crank_angle, order=order))
+        found = self._evaluate(_coefficients, crank_angle, order=order)
+        return tuple(zip(found[::2], found[1::2], strict=True))
+
+    def at(self, crank_angle: Any) -> FourBarPose:
+        """The linkage at a crank angle, from which angles and derivatives are had as they are asked for.
+
+        Arrays are computed whole: for long ones asked for at once, :meth:`motion` is faster.
+        """
+        return FourBarPose(self, crank_angle)
 
     def pins(self, crank_angle: Any) -> tuple[Any, Any]:
         """The points A and B, complex, in the linkage's unit of length. Errors as in :meth:`angles`."""
@@ -185,22 +196,19 @@ class FourBar:
         return [x if x.ndim else float(x) for x in found]
 
     def _evaluate(self, formula: Any, crank_angle: Any, *rates: Any, order: int | None = None) -> tuple:
-        heading = crank_angle if isinstance(crank_angle, Heading) else (crank_angle,)
         # A numpy number where the angle is one: its quotient by zero is NaN, not an error.
-        heading = tuple(np.asarray(part, dtype=float)[()] for part in heading)
+        heading, parts = taken_apart(crank_angle)
         rates = tuple(np.asarray(rate, dtype=float)[()] for rate in rates)
         sweeping = signed_sweep if self.smooth else sweep
         last = len(_Linkage._fields)
         extra = {} if order is None else {"order": order}
 
         def kernel(*inputs: Any) -> tuple:
-            linkage, angle = _Linkage(*inputs[:last]), inputs[last : last + len(heading)]
-            angle = Heading(*angle) if len(angle) > 1 else angle[0]
-            return formula(
-                linkage, sweeping(angle, linkage.reach), angle, *inputs[last + len(heading) :], **extra
-            )
+            linkage, angle = _Linkage(*inputs[:last]), heading(*inputs[last : last + len(parts)])
+            pose = _Pose(linkage, sweeping(angle, linkage.reach))
+            return formula(pose, angle, *inputs[last + len(parts) :], **extra)
 
-        found = in_blocks(kernel, *self._linkage, *heading, *rates)
+        found = in_blocks(kernel, *self._linkage, *parts, *rates)
         if np.ndim(found[0]):
             return found
         found = tuple(value.item() for value in found)
@@ -212,11 +220,11 @@ class FourBar:
     def _failure(self, crank_angle: Any) -> Exception:
         """Why a scalar came out NaN."""
         t = self._linkage
-        swept = sweep(crank_angle, t.reach)
-        if not math.isfinite(swept.both):
+        heading, parts = taken_apart(crank_angle)
+        pose = _Pose(t, sweep(heading(*parts), t.reach))
+        if not math.isfinite(pose.swept.both):
             return WrongValue(f"the crank angle is {crank_angle}, where a finite number is needed")
-        close, m = closing(t.stretched, t.folded, t.side, swept), float(_squared_line(t, swept))
-        stretch, fold = float(close.stretch), float(close.fold)
+        m, stretch, fold = float(pose.squared_line), float(pose.close.stretch), float(pose.close.fold)
         distance = math.ldexp(math.sqrt(m), int(self._exponent))
         _, _, coupler, rocker = (float(x) for x in self.lengths)
         if min(stretch, fold) < 0:
@@ -225,7 +233,7 @@ class FourBar:
                 scaled(coupler + rocker if stretch < 0 else coupler - rocker, -self._exponent)
             )
             gap = math.ldexp(-min(stretch, fold) / float(reach), int(self._exponent))
-            return out_of_reach(distance, coupler, rocker, gap)
+            return out_of_reach(distance, coupler, rocker, gap, "coupler and rocker")
         if m == 0.0:
             return Undefined(
                 f"coupler and rocker are both {coupler:.6g} long and their far pins coincide: they may point anywhere"
@@ -234,6 +242,74 @@ class FourBar:
             f"coupler and rocker are in line (pins {distance:.6g} apart, lengths {coupler:.6g} and {rocker:.6g}): "
             "at a dead point the rates do not exist"
         )
+
+
+class FourBarPose:
+    """A four-bar linkage at its crank angle. Nothing is computed before it is asked for, nor twice.
+
+    Angles are in radians; derivatives are by the crank angle. Errors are those of
+    :meth:`FourBar.motion`, raised by the property whose value does not exist.
+    """
+
+    def __init__(self, linkage: FourBar, crank_angle: Any):
+        heading, parts = taken_apart(crank_angle)
+        sweeping = signed_sweep if linkage.smooth else sweep
+        self._linkage, self._crank_angle = linkage, crank_angle
+        with np.errstate(all="ignore"):
+            swept = sweeping(heading(*parts), linkage._linkage.reach)
+            self._pose = _Pose(linkage._linkage, swept)
+
+    @property
+    def coupler_angle(self) -> Any:
+        return self._said("angles", 0)
+
+    @property
+    def rocker_angle(self) -> Any:
+        return self._said("angles", 1)
+
+    @property
+    def coupler_ratio(self) -> Any:
+        """First derivative: the coupler's rate over the crank's."""
+        return self._said("first", 0)
+
+    @property
+    def rocker_ratio(self) -> Any:
+        return self._said("first", 1)
+
+    @property
+    def coupler_gain(self) -> Any:
+        """Second derivative of the coupler's angle."""
+        return self._said("second", 0)
+
+    @property
+    def rocker_gain(self) -> Any:
+        return self._said("second", 1)
+
+    @property
+    def corner(self) -> Any:
+        """The angle from A -> D to the coupler, in [0, pi]: that of the triangle A, B, D at A."""
+        pose = self._pose
+        with np.errstate(all="ignore"):
+            return self._checked(np.arctan2(np.abs(pose.close.determinant), pose.of_coupler))
+
+    @property
+    def transmission_angle(self) -> Any:
+        """The angle CBA at B between coupler and rocker, in [0, pi]."""
+        with np.errstate(all="ignore"):
+            return self._checked(_transmission_angle(self._pose, None)[0])
+
+    def _said(self, name: str, link: int) -> Any:
+        with np.errstate(all="ignore"):
+            return self._checked(getattr(self._pose, name)[link])
+
+    def _checked(self, value: Any) -> Any:
+        if np.ndim(value):
+            return value
+        value = float(value)
+        if value != value:
+            with np.errstate(all="ignore"):
+                raise self._linkage._failure(self._crank_angle)
+        return value
 
 
 def grashof_type(ground: Any, crank: Any, coupler: Any, rocker: Any) -> str:
@@ -285,95 +361,118 @@ def _linkage(d: Any, a: Any, b: Any, c: Any, side: Any) -> _Linkage:
         twice_frame=2 * (d - a) * (d + a),
         twice_sides=2 * (b - c) * (b + c),
         twice_bc=2 * b * c,
+        squared_reach=(b + c) ** 2,
         side=side,
     )
 
 
-def _squared_line(t: _Linkage, swept: Sweep) -> Any:
-    """m = AD^2."""
-    return t.gap * t.gap + swept.sin_squared
+class _Pose:
+    """A linkage at a crank angle; each thing is computed when it is asked for, and once."""
+
+    def __init__(self, linkage: _Linkage, swept: Sweep):
+        self.linkage, self.swept = linkage, swept
+        t = linkage
+        # Sides much shorter than ground and crank: the margin is then the difference that loses nothing.
+        short = -t.stretched > t.squared_reach
+        direct = np.where(short, t.squared_reach - self.squared_line, np.nan) if np.any(short) else None
+        self.close: Closing = closing(t.stretched, t.folded, t.side, swept, direct)
+        # X3 = m + b^2 - c^2 and X4 = -m + b^2 - c^2 without cancellation.
+        self.of_coupler, self.of_rocker = linkage.coupler + self.close.fold, linkage.rocker - self.close.fold
+
+    @cached_property
+    def squared_line(self) -> Any:
+        """m = AD^2."""
+        return self.linkage.gap * self.linkage.gap + self.swept.sin_squared
+
+    @cached_property
+    def angles(self) -> tuple[Any, Any]:
+        """Coupler and rocker turn from A -> D by the angles of X3 + i S and X4 + i S."""
+        t, s = self.linkage, self.close.determinant
+        # A -> D times 2 d is x - i y; where A lies on D the zero vector makes both directions NaN.
+        x, y = t.twice_ground * t.gap + self.swept.sin_squared, self.swept.both
+        along, across = x * s, y * s
+        return (
+            direction(along - y * self.of_coupler, x * self.of_coupler + across),
+            direction(along - y * self.of_rocker, x * self.of_rocker + across),
+        )
+
+    # Derivatives of both angles by the crank angle. The direction of A -> D has the derivative
+    # (a^2 - a d cos)/m, and coupler and rocker turn against it at rho X4/(2 m) and rho X3/(2 m), where rho
+    # stays finite at a change point. Written so, the higher derivatives share all but one term, and no term
+    # grows where the sum does not.
+
+    @cached_property
+    def first(self) -> tuple[Any, Any]:
+        common = (self.swept.sin_squared - self.linkage.twice_crank_gap) * self._half
+        along = self._opening.rho * self._half
+        return common + along * self.of_rocker, common + along * self.of_coupler
+
+    @cached_property
+    def second(self) -> tuple[Any, Any]:
+        return self._common + self._along * self.of_rocker, self._common + self._along * self.of_coupler
+
+    @cached_property
+    def third(self) -> tuple[Any, Any]:
+        turning = 0.5 * (self.swept.cos_squared - self.swept.sin_squared)
+        pull = self._swing * self.linkage.twice_sides * self._opening.first
+        common = self._half * (turning * self._excess - pull) - 4 * self._swing * self._common
+        both = self._opening.second * self._half - 2 * self._swing * self._along
+        apart = self._swing * self._opening.first
+        return common + both * self.of_rocker - apart, common + both * self.of_coupler + apart
+
+    def derivatives(self, order: int) -> tuple:
+        """Those of the first ``order`` orders, in pairs."""
+        return tuple(getattr(self, name) for name in ("first", "second", "third")[:order])
+
+    @cached_property
+    def _opening(self) -> Opening:
+        return Opening(self.close, self.swept)
+
+    @cached_property
+    def _half(self) -> Any:
+        return 0.5 / self.squared_line
+
+    @cached_property
+    def _swing(self) -> Any:
+        return self.swept.both * self._half
+
+    @cached_property
+    def _excess(self) -> Any:
+        return (self.linkage.twice_frame - self.linkage.twice_sides * self._opening.rho) * self._half
+
+    @cached_property
+    def _common(self) -> Any:
+        return self._swing * self._excess
+
+    @cached_property
+    def _along(self) -> Any:
+        return self._opening.first * self._half
 
 
-def _pose(t: _Linkage, swept: Sweep) -> tuple[Any, Closing, Any, Any]:
-    """m, the closing, and X3 = m + b^2 - c^2, X4 = -m + b^2 - c^2 without cancellation."""
-    close = closing(t.stretched, t.folded, t.side, swept)
-    return _squared_line(t, swept), close, t.coupler + close.fold, t.rocker - close.fold
+def _angles(pose: _Pose, _: Any) -> tuple[Any, Any]:
+    return pose.angles
 
 
-def _directions(t: _Linkage, swept: Sweep, s: Any, coupler: Any, rocker: Any) -> tuple[Any, Any]:
-    """Coupler and rocker turn from A -> D by the angles of X3 + i S and X4 + i S."""
-    # A -> D times 2 d is x - i y; where A lies on D the zero vector makes both directions NaN.
-    x, y = t.twice_ground * t.gap + swept.sin_squared, swept.both
-    along, across = x * s, y * s
-    return direction(along - y * coupler, x * coupler + across), direction(
-        along - y * rocker, x * rocker + across
-    )
-
-
-def _angles(t: _Linkage, swept: Sweep, _: Any) -> tuple[Any, Any]:
-    _, close, coupler, rocker = _pose(t, swept)
-    return _directions(t, swept, close.determinant, coupler, rocker)
-
-
-def _pins(t: _Linkage, swept: Sweep, angle: Any) -> tuple[Any, Any]:
-    m, close, coupler, _ = _pose(t, swept)
+def _pins(pose: _Pose, angle: Any) -> tuple[Any, Any]:
+    t, swept = pose.linkage, pose.swept
     cos, sin = full_angle(angle)
     crank_pin = t.crank * (cos + 1j * sin)
     line = t.gap + (swept.sin_squared - 1j * swept.both) / t.twice_ground
-    return crank_pin, crank_pin + line * (coupler + 1j * close.determinant) / (2 * m)
+    turned = (pose.of_coupler + 1j * pose.close.determinant) / (2 * pose.squared_line)
+    return crank_pin, crank_pin + line * turned
 
 
-def _transmission_angle(t: _Linkage, swept: Sweep, _: Any) -> tuple[Any]:
-    close = closing(t.stretched, t.folded, t.side, swept)
-    return (2 * np.arctan2(np.sqrt(close.fold), np.sqrt(close.stretch)),)
+def _transmission_angle(pose: _Pose, _: Any) -> tuple[Any]:
+    return (2 * np.arctan2(np.sqrt(pose.close.fold), np.sqrt(pose.close.stretch)),)
 
 
-def _conditioning(t: _Linkage, swept: Sweep, _: Any) -> tuple[Any]:
-    return (t.twice_bc / np.sqrt(closing(t.stretched, t.folded, t.side, swept).product),)
+def _conditioning(pose: _Pose, _: Any) -> tuple[Any]:
+    return (pose.linkage.twice_bc / np.sqrt(pose.close.product),)
 
 
-def _motion(t: _Linkage, swept: Sweep, _: Any, *rates: Any) -> tuple:
-    m, close, coupler, rocker = _pose(t, swept)
-    found = _directions(t, swept, close.determinant, coupler, rocker)
-    order = len(rates)
-    if order == 0:
-        return found
-    return found + in_time(_pairs(_derivatives(t, swept, m, close, coupler, rocker, order)), rates)
+def _motion(pose: _Pose, _: Any, *rates: Any) -> tuple:
+    return pose.angles + (in_time(pose.derivatives(len(rates)), rates) if rates else ())
 
 
-def _pairs(values: tuple) -> tuple[tuple[Any, Any], ...]:
-    return tuple(zip(values[::2], values[1::2], strict=True))
-
-
-def _coefficients(t: _Linkage, swept: Sweep, _: Any, *, order: int) -> tuple:
-    m, close, coupler, rocker = _pose(t, swept)
-    return _derivatives(t, swept, m, close, coupler, rocker, order)
-
-
-def _derivatives(
-    t: _Linkage, swept: Sweep, m: Any, close: Closing, coupler: Any, rocker: Any, order: int
-) -> tuple:
-    """Derivatives of both angles by the crank angle, in pairs.
-
-    The direction of A -> D has the derivative (a^2 - a d cos)/m, and coupler and rocker turn against it at
-    rho X4/(2 m) and rho X3/(2 m), where rho = 2 a d sin(crank)/S stays finite at a change point. Written
-    so, the higher derivatives share all but one term, and no term grows where the sum does not.
-    """
-    rho = opening(close, swept, order)
-    half = 0.5 / m
-    common = (swept.sin_squared - t.twice_crank_gap) * half
-    along = rho[0] * half
-    found = (common + along * rocker, common + along * coupler)
-    if order >= 2:
-        swing = swept.both * half
-        excess = (t.twice_frame - t.twice_sides * rho[0]) * half
-        common = swing * excess
-        along = rho[1] * half
-        found += (common + along * rocker, common + along * coupler)
-    if order >= 3:
-        turning = 0.5 * (swept.cos_squared - swept.sin_squared)
-        common = half * (turning * excess - swing * t.twice_sides * rho[1]) - 4 * swing * common
-        both = rho[2] * half - 2 * swing * along
-        apart = swing * rho[1]
-        found += (common + both * rocker - apart, common + both * coupler + apart)
-    return found
+def _coefficients(pose: _Pose, _: Any, *, order: int) -> tuple:
+    return tuple(itertools.chain.from_iterable(pose.derivatives(order)))

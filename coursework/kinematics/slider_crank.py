@@ -15,10 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from coursework.blocks import in_blocks
 from coursework.errors import CannotAssemble, Undefined, WrongValue
-from coursework.kinematics.angles import Heading, full_angle, half_angle, halves
-from coursework.kinematics.blocks import in_blocks
-from coursework.kinematics.closing import Closing, Sweep, closing, in_time, opening
+from coursework.kinematics.angles import full_angle, half_angle, halves, taken_apart
+from coursework.kinematics.closing import Closing, Opening, Sweep, closing, in_time
 from coursework.kinematics.margins import exact_sum
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import direction
@@ -98,7 +98,7 @@ class SliderCrank:
         """Rod angle and slider position, with their time derivatives up to ``order`` (0 to 3), nothing
         beyond.
 
-        ``crank_angle`` is in radians or a :class:`Heading`, of any shape that broadcasts with the lengths.
+        ``crank_angle`` is in radians or a heading, of any shape that broadcasts with the lengths.
 
         Raises
         ------
@@ -116,6 +116,11 @@ class SliderCrank:
     def position(self, crank_angle: Any) -> Any:
         """The slider's abscissa alone. Errors as in :meth:`motion`."""
         return self._restored(self._evaluate(_position, crank_angle)[0])
+
+    def run(self, crank_angle: Any) -> Any:
+        """How far the slider is to the right of the crank pin: the rod's projection on the line. Errors as in
+        :meth:`motion`."""
+        return self._restored(self._evaluate(_run, crank_angle)[0])
 
     def displacement(self, crank_angle: Any) -> Any:
         """How far the slider is from its outer dead centre, to the last digits there too; at least 0 while
@@ -164,15 +169,13 @@ class SliderCrank:
         return found if found.ndim else float(found)
 
     def _evaluate(self, formula: Any, crank_angle: Any, *rates: Any) -> tuple:
-        heading = crank_angle if isinstance(crank_angle, Heading) else (crank_angle,)
-        heading = tuple(np.asarray(part, dtype=float)[()] for part in heading)
+        heading, parts = taken_apart(crank_angle)
         rates = tuple(np.asarray(rate, dtype=float)[()] for rate in rates)
         sweeping = _signed_sweep if self.smooth else _sweep
         last = len(_Linkage._fields)
 
         def kernel(*inputs: Any) -> tuple:
-            angle = inputs[last : last + len(heading)]
-            angle = Heading(*angle) if len(angle) > 1 else angle[0]
+            angle = heading(*inputs[last : last + len(parts)])
             cos, sin = full_angle(angle)
             linkage = _Linkage(*inputs[:last])
             return formula(
@@ -181,10 +184,10 @@ class SliderCrank:
                 cos,
                 sin,
                 angle,
-                *inputs[last + len(heading) :],
+                *inputs[last + len(parts) :],
             )
 
-        found = in_blocks(kernel, *self._linkage, *heading, *rates)
+        found = in_blocks(kernel, *self._linkage, *parts, *rates)
         if np.ndim(found[0]):
             return found
         found = tuple(value.item() for value in found)
@@ -260,6 +263,10 @@ def _position(t: _Linkage, swept: Sweep, cos: Any, *_: Any) -> tuple[Any]:
     return (t.crank * cos + _closing(t, swept).determinant,)
 
 
+def _run(t: _Linkage, swept: Sweep, *_: Any) -> tuple[Any]:
+    return (_closing(t, swept).determinant,)
+
+
 def _motion(t: _Linkage, swept: Sweep, cos: Any, sin: Any, _: Any, *rates: Any) -> tuple:
     close = _closing(t, swept)
     run, r_cos, r_sin = close.determinant, t.crank * cos, t.crank * sin
@@ -269,13 +276,16 @@ def _motion(t: _Linkage, swept: Sweep, cos: Any, sin: Any, _: Any, *rates: Any) 
     if order == 0:
         return found
     # Derivatives by the crank angle: the rod's is -rho = -r cos / run, the run's is rho rise.
-    rho = opening(close, swept, order)
+    opening = Opening(close, swept)
+    rho = opening.rho
     # It is a function of the complement, so that its odd derivatives change sign.
-    by_angle = [(-rho[0], rho[0] * rise - r_sin)]
+    by_angle = [(-rho, rho * rise - r_sin)]
     if order >= 2:
-        by_angle.append((rho[1], -(rho[1] * rise + (1 + rho[0]) * r_cos)))
+        first = opening.first
+        by_angle.append((first, -(first * rise + (1 + rho) * r_cos)))
     if order >= 3:
-        by_angle.append((-rho[2], rho[2] * rise + 2 * rho[1] * r_cos + (1 + rho[0]) * r_sin))
+        second = opening.second
+        by_angle.append((-second, second * rise + 2 * first * r_cos + (1 + rho) * r_sin))
     return found + in_time(by_angle, rates)
 
 

@@ -12,13 +12,14 @@ is a sum: neither it nor the ratio of the rates loses digits where A passes near
 from __future__ import annotations
 
 import math
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from coursework.blocks import in_blocks
 from coursework.errors import Undefined, WrongValue
-from coursework.kinematics.angles import Heading
-from coursework.kinematics.blocks import in_blocks
+from coursework.kinematics.angles import taken_apart
 from coursework.kinematics.closing import in_time, sweep
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import direction
@@ -54,7 +55,7 @@ def motion(
     ground, crank
         Lengths d = O4 O2 and r, positive, one unit. The guide turns fully when r > d, and swings when r < d.
     crank_angle
-        Radians or a :class:`Heading`, from the direction O4 -> O2.
+        Radians or a heading (:mod:`angles`), from the direction O4 -> O2.
 
     Returns
     -------
@@ -68,29 +69,19 @@ def motion(
     WrongValue
         Scalars only: a length that is not positive and finite.
     """
-    d, r = (np.asarray(x, dtype=float)[()] for x in (ground, crank))
-    if np.ndim(d) == np.ndim(r) == 0 and not (0 < d < math.inf and 0 < r < math.inf):
-        raise WrongValue(
-            f"the lengths of ground and crank are {d} and {r}, where positive numbers are needed"
-        )
-    exponent = exponent_of(d, r)
-    d, r = scaled(d, -exponent)[()], scaled(r, -exponent)[()]
-    heading = crank_angle if isinstance(crank_angle, Heading) else (crank_angle,)
-    heading = tuple(np.asarray(part, dtype=float)[()] for part in heading)
+    d, r, exponent = _scaled_lengths(ground, crank)
+    heading, parts = taken_apart(crank_angle)
     rates = tuple(
         np.asarray(x, dtype=float)[()] for x in (crank_rate, crank_acceleration, crank_jerk)[:order]
     )
 
     def kernel(d: Any, r: Any, *inputs: Any) -> tuple:
-        angle = inputs[: len(heading)]
-        return _motion(d, r, Heading(*angle) if len(angle) > 1 else angle[0], *inputs[len(heading) :])
+        return _motion(_Pose(d, r, heading(*inputs[: len(parts)])), *inputs[len(parts) :])
 
-    found = list(in_blocks(kernel, d, r, *heading, *rates))
+    found = list(in_blocks(kernel, d, r, *parts, *rates))
     found[1::2] = [scaled(value, exponent) for value in found[1::2]]
     if not np.ndim(found[0]):
-        found = [value.item() for value in found]
-        if any(value != value for value in found):
-            raise Undefined("the crank pin lies on the guide's pivot: the guide has no direction there")
+        found = _defined([value.item() for value in found])
     return SlottedGuideMotion(*found)
 
 
@@ -104,24 +95,119 @@ def swing(ground: Any, crank: Any) -> Any:
         return 2 * np.arcsin(np.divide(crank, ground))
 
 
-def _motion(d: Any, r: Any, angle: Any, *rates: Any) -> tuple:
-    gap, swept = r - d, sweep(angle, 4 * r * d)
-    squared = gap * gap + swept.cos_squared
-    arm = np.sqrt(squared)
-    found = (direction(swept.both, swept.cos_squared - 2 * d * gap), arm)
-    order = len(rates)
-    if order == 0:
-        return found
-    # With r = d the pin's approach to the pivot divides out.
-    ratio = np.where(gap == 0, 0.5, (r * gap + 0.5 * swept.cos_squared) / squared)
-    pull = 0.5 * swept.both / arm
-    by_angle = [(ratio, -pull)]
-    if order >= 2:
-        turning = np.where(gap == 0, 0.0, gap * (r + d) / (squared * squared))
-        along = 0.25 * (swept.cos_squared - swept.sin_squared)
-        by_angle.append((turning * (0.5 * swept.both), -(along + pull * pull) / arm))
-    if order >= 3:
-        by_angle.append(
-            (turning * (along + 4 * pull * pull), pull * (1 - 3 * (along + pull * pull) / squared))
+class SlottedGuidePose:
+    """The guide at a crank angle. Nothing is computed before it is asked for, nor twice.
+
+    Angles in radians; derivatives by the crank angle. Parameters, frame and errors are those of :func:`motion`;
+    arrays are computed whole.
+    """
+
+    def __init__(self, ground: Any, crank: Any, crank_angle: Any):
+        d, r, self._exponent = _scaled_lengths(ground, crank)
+        heading, parts = taken_apart(crank_angle)
+        with np.errstate(all="ignore"):
+            self._pose = _Pose(d, r, heading(*parts))
+
+    @property
+    def guide_angle(self) -> Any:
+        return self._said(0, 0)
+
+    @property
+    def arm(self) -> Any:
+        return self._said(0, 1)
+
+    @property
+    def guide_ratio(self) -> Any:
+        """First derivative: the guide's rate over the crank's."""
+        return self._said(1, 0)
+
+    @property
+    def sliding_ratio(self) -> Any:
+        """First derivative of the arm's length."""
+        return self._said(1, 1)
+
+    @property
+    def guide_gain(self) -> Any:
+        """Second derivative of the guide's angle."""
+        return self._said(2, 0)
+
+    @property
+    def sliding_gain(self) -> Any:
+        return self._said(2, 1)
+
+    def _said(self, order: int, which: int) -> Any:
+        with np.errstate(all="ignore"):
+            value = getattr(self._pose, _Pose.ORDERS[order])[which]
+        if which:
+            value = scaled(value, self._exponent)[()]
+        return value if np.ndim(value) else _defined([float(value)])[0]
+
+
+def _defined(values: list[float]) -> list[float]:
+    if any(value != value for value in values):
+        raise Undefined("the crank pin lies on the guide's pivot: the guide may point anywhere")
+    return values
+
+
+def _scaled_lengths(ground: Any, crank: Any) -> tuple[Any, Any, Any]:
+    d, r = (np.asarray(x, dtype=float)[()] for x in (ground, crank))
+    if np.ndim(d) == np.ndim(r) == 0 and not (0 < d < math.inf and 0 < r < math.inf):
+        raise WrongValue(
+            f"the lengths of ground and crank are {d} and {r}, where positive numbers are needed"
         )
-    return found + in_time(by_angle, rates)
+    exponent = exponent_of(d, r)
+    return scaled(d, -exponent)[()], scaled(r, -exponent)[()], exponent
+
+
+class _Pose:
+    """Guide angle and arm with their derivatives by the crank angle, lengths scaled."""
+
+    ORDERS = ("position", "first", "second", "third")
+
+    def __init__(self, d: Any, r: Any, angle: Any):
+        self.d, self.r, self.gap, self.swept = d, r, r - d, sweep(angle, 4 * r * d)
+        self.squared = self.gap * self.gap + self.swept.cos_squared
+
+    @cached_property
+    def arm(self) -> Any:
+        return np.sqrt(self.squared)
+
+    @cached_property
+    def position(self) -> tuple[Any, Any]:
+        return direction(self.swept.both, self.swept.cos_squared - 2 * self.d * self.gap), self.arm
+
+    @cached_property
+    def first(self) -> tuple[Any, Any]:
+        # With r = d the pin's approach to the pivot divides out.
+        ratio = (self.r * self.gap + 0.5 * self.swept.cos_squared) / self.squared
+        return np.where(self.gap == 0, 0.5, ratio), -self._pull
+
+    @cached_property
+    def second(self) -> tuple[Any, Any]:
+        turned = self._turning * (0.5 * self.swept.both)
+        return turned, -(self._along + self._pull * self._pull) / self.arm
+
+    @cached_property
+    def third(self) -> tuple[Any, Any]:
+        pull, along = self._pull, self._along
+        turned = self._turning * (along + 4 * pull * pull)
+        return turned, pull * (1 - 3 * (along + pull * pull) / self.squared)
+
+    @cached_property
+    def _pull(self) -> Any:
+        return 0.5 * self.swept.both / self.arm
+
+    @cached_property
+    def _turning(self) -> Any:
+        return np.where(self.gap == 0, 0.0, self.gap * (self.r + self.d) / (self.squared * self.squared))
+
+    @cached_property
+    def _along(self) -> Any:
+        return 0.25 * (self.swept.cos_squared - self.swept.sin_squared)
+
+
+def _motion(pose: _Pose, *rates: Any) -> tuple:
+    if not rates:
+        return pose.position
+    by_angle = [getattr(pose, name) for name in _Pose.ORDERS[1 : 1 + len(rates)]]
+    return pose.position + in_time(by_angle, rates)

@@ -78,7 +78,7 @@ def test_two_equal_assemblies_are_told_apart_beside_a_kite_s_fold():
 
 def test_a_on_c_leaves_the_coupler_undetermined():
     kite = {"r1": 100.0, "r2": 100.0, "r3": 60.0, "r4": 60.0, "theta2": 0.0}
-    with pytest.raises(Undefined, match="A lies on C"):
+    with pytest.raises(Undefined, match="far pins coincide"):
         EXERCISE.solve(**kite, only="theta3_open")
     assert EXERCISE.solve(**kite, only="mu")["mu"] == 0.0
 
@@ -157,3 +157,19 @@ def test_a_linkage_that_just_cannot_close_is_impossible_in_every_order_of_its_ba
         for order in itertools.permutations(lengths):
             given = dict(zip(("r1", "r2", "r3", "r4"), order, strict=True))
             assert solve(**given, only="linkage_type") == {"linkage_type": "impossible"}
+
+
+def test_coupler_and_rocker_far_shorter_than_crank_and_frame_keep_their_digits():
+    """A is near C; the margin (r3 + r4)^2 - AC^2 is then no difference of squares of long bars."""
+    given = {"r1": 100.0, "r2": 100.0, "r3": 3e-5, "r4": 2e-5, "theta2": 2e-5}
+    answers = EXERCISE.solve(**given)
+    for name, reference in exact(given).items():
+        assert off(answers[name], reference, name.startswith("theta")) < 1e-14, name
+
+
+def test_a_students_own_coefficients_count():
+    given = EXERCISE.variant(3).given
+    right = EXERCISE.solve(**given, only=("c", "psi", "theta3_open"))
+    own = EXERCISE.solve(**given, c=1.01 * right["c"], only=("psi", "theta3_open"))
+    assert own["psi"] != right["psi"]
+    assert own["theta3_open"] - right["theta3_open"] == pytest.approx(right["psi"] - own["psi"], abs=1e-9)

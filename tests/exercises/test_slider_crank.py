@@ -129,7 +129,7 @@ def test_centred_and_offset_cranks_are_both_issued():
 
 
 def test_a_rod_that_does_not_reach_its_line_is_said_with_the_gap():
-    with pytest.raises(CannotAssemble, match=r"40 from the crank pin.*only 30 \(gap 10\)"):
+    with pytest.raises(CannotAssemble, match=r"40 away from the crank pin.*only 30 \(gap 10\)"):
         EXERCISE.solve(r2=40, r3=30, theta2=90, omega2=1, only="omega3")
     row = EXERCISE.solve(r2=40, r3=30, theta2=np.array([90.0, 20.0]), omega2=1, only=("theta3", "r1_ddot"))
     for values in row.values():

@@ -149,3 +149,23 @@ def test_known_cases(case):
     found = EXERCISE.solve(**given, only=tuple(expected))
     for name, value in expected.items():
         assert found[name] == pytest.approx(value, rel=1e-12, abs=1e-12), name
+
+
+@pytest.mark.parametrize("beside", [1e-1, 1e-4, 1e-7])
+@pytest.mark.parametrize("mode", ["open", "crossed"])
+def test_nothing_is_lost_beside_a_change_point(beside, mode):
+    """r1 + r2 = r3 + r4: crank and frame stretch coupler and rocker out where the crank points down."""
+    given = {**LENGTHS, "r1": 120.0, "r2": 40.0, "r3": 70.0, "r4": 90.0, "r5": 300.0, "mode": mode}
+    given["theta2"] = 90.0 - beside
+    reference, answers = exact(given), EXERCISE.solve(**given)
+    # The rocker points up there: what hangs on its cosine is left out, since theta4 in degrees cannot say it.
+    for name in ("theta3", "theta4", "omega3", "omega4", "alpha3", "alpha4", "a", "b", "c", "r6"):
+        scale = {"theta": 180, "alpha": given["omega2"] ** 2}.get(name[:5], abs(reference[name]))
+        assert abs(mpmath.mpf(float(answers[name])) - reference[name]) < 2e-14 * scale, name
+
+
+def test_a_near_D_keeps_the_digits_of_b():
+    given = {**LENGTHS, "r1": 100.0, "r2": 100.0, "theta2": -90.0 + 1e-5}
+    with mpmath.workdps(50):
+        right = 2 * mpmath.mpf(120) * 100 * (1 + mpmath.sin(mpmath.mpf(given["theta2"]) * mpmath.pi / 180))
+    assert EXERCISE.solve(**given, only="b")["b"] == pytest.approx(float(right), rel=1e-10)

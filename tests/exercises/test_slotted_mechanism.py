@@ -63,7 +63,7 @@ def test_the_guide_turns_at_half_speed_wherever_it_is_when_frame_and_crank_are_e
 
 
 def test_on_the_pivot_the_guide_has_no_direction():
-    with pytest.raises(Undefined, match="A lies on O4"):
+    with pytest.raises(Undefined, match="lies on the guide's pivot"):
         EXERCISE.solve(r1=200, r2=200, theta2=-90, only="theta4")
     found = EXERCISE.solve(r1=200, r2=200, theta2=np.array([-90.0, 0.0]), only="theta4")["theta4"]
     np.testing.assert_array_equal(np.isnan(found), [True, False])
@@ -85,3 +85,34 @@ def test_the_misprinted_length_of_the_course_is_no_mistake_of_ours():
     assert (round(right["rA"], 2), round(right["theta4"], 2)) == (319.80, 104.64)
     printed = EXERCISE.solve(r1="2286 m", r2="114.3 mm", theta2=135, only=("rA", "theta4"))
     assert abs(printed["rA"] - 319.80) > 1e6
+
+
+def _exact_motion(r1, r2, theta1, theta2, omega2, alpha2):
+    """Arm, direction and their derivatives from the vector of A itself, in fifty digits."""
+    with mpmath.workdps(60):
+        r1, r2, theta1, theta2, omega2, alpha2 = map(mpmath.mpf, (r1, r2, theta1, theta2, omega2, alpha2))
+        crank = r2 * mpmath.expjpi(theta2 / 180)
+        arm = r1 * mpmath.expjpi(theta1 / 180) + crank
+        unit = arm / abs(arm)
+        v = 1j * omega2 * crank / unit
+        a = (1j * alpha2 - omega2**2) * crank / unit
+        rate, slide = v.imag / abs(arm), v.real
+        return {
+            "rA": abs(arm),
+            "rA_dot": slide,
+            "omega4": rate,
+            "rA_ddot": a.real + abs(arm) * rate**2,
+            "alpha4": (a.imag - 2 * slide * rate) / abs(arm),
+        }
+
+
+@pytest.mark.parametrize(
+    ("r1", "r2", "theta2"),
+    [(200.0, 200.0001, -90 + 1e-8), (200.0, 100.0, -90 + 1e-9), (1e-6, 200.0, 30.0), (250.0, 0.001, 100.0)],
+)
+def test_rates_keep_their_digits_where_the_formulas_lose_them(r1, r2, theta2):
+    """The block beside O4, and a crank far longer or far shorter than the frame."""
+    given = {"r1": r1, "r2": r2, "theta1": 90.0, "theta2": theta2, "omega2": 3.0, "alpha2": 2.0}
+    found = EXERCISE.solve(**given, only=("rA", "rA_dot", "omega4", "rA_ddot", "alpha4"))
+    for name, right in _exact_motion(**given).items():
+        assert found[name] == pytest.approx(float(right), rel=2e-13), name

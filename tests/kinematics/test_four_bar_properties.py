@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference import away, four_bar, mp, turned
 
-from coursework.kinematics.blocks import BLOCK
+from coursework.blocks import BLOCK
 from coursework.kinematics.four_bar import FourBar
 
 EPS = 2.0**-52

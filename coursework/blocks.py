@@ -4,12 +4,12 @@ thousand do."""
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-BLOCK = 16384  #: configurations computed together: what the calls cost and what the cache holds, in balance
+BLOCK = 32768  #: configurations computed together: what the calls cost and what the cache holds, in balance
 
 
 def _keep_freed_memory() -> None:
@@ -56,6 +56,21 @@ def in_blocks(kernel: Callable[..., Sequence[np.ndarray]], *inputs: Any) -> tupl
             for result, part in zip(results, parts, strict=True):
                 result[place] = part
     return results
+
+
+def pieces(named: Mapping[str, Any]) -> tuple[list[str], list[slice]] | None:
+    """How to go through long arrays piece by piece along their first axis: which to cut, and where.
+
+    The arrays broadcast. Those that vary along the first axis of their common shape are cut; the others are
+    to be used whole with each piece. None when there are few elements or nothing to cut.
+    """
+    arrays = {name: given for name, given in named.items() if isinstance(given, np.ndarray) and given.ndim}
+    shape = np.broadcast_shapes(*{given.shape for given in arrays.values()})
+    if math.prod(shape) <= BLOCK or shape[0] == 1:
+        return None
+    cut = [n for n, given in arrays.items() if given.ndim == len(shape) and given.shape[0] > 1]
+    step = max(1, BLOCK // math.prod(shape[1:]))
+    return cut, [slice(start, start + step) for start in range(0, shape[0], step)]
 
 
 def _whole(part: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
