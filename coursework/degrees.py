@@ -1,7 +1,8 @@
 """Trigonometry in degrees, exact where degrees are: ``sin(180)`` is 0 and ``cos(60 + 360 k)`` is ``cos(60)``.
 
 Solutions write the formulas of the course with these functions. Each takes a scalar or an array and
-gives the same shape. Angles that come out lie in (-180, 180] unless said otherwise.
+gives the same shape. Arrays of single or extended precision keep it, and numbers of mpmath keep their digits.
+Angles that come out lie in (-180, 180] unless said otherwise.
 """
 
 from __future__ import annotations
@@ -19,6 +20,20 @@ def _is_scalar(*values: Any) -> bool:
     return all(isinstance(v, (float, int, complex)) for v in values)
 
 
+def _digits_of(*values: Any) -> Any:
+    """The mpmath context of the first number that has one: it computes with as many digits as it is told."""
+    for value in values:
+        context = getattr(value, "context", None)
+        if context is not None:
+            return context
+    return None
+
+
+def _floating(values: Any) -> np.ndarray:
+    values = np.asarray(values)
+    return values if values.dtype.kind == "f" else values.astype(float)
+
+
 def _sine_of_quarters(theta: Angle, quarters: int) -> Angle:
     """Sine of ``theta + 90 quarters``, the quarters of a turn taken out exactly first."""
     if isinstance(theta, (float, int)):
@@ -30,12 +45,16 @@ def _sine_of_quarters(theta: Angle, quarters: int) -> Angle:
         turns = (turns + quarters) % 4
         value = math.cos(rest) if turns % 2 else math.sin(rest)
         return -value if turns >= 2 else value + 0.0
-    theta = np.asarray(theta, dtype=float)
+    mp = _digits_of(theta)
+    if mp is not None:
+        return mp.sinpi(theta / 180 + mp.mpf(quarters) / 2)
+    theta = _floating(theta)
     turns = np.rint(theta / 90.0)
     rest = np.deg2rad(theta - 90.0 * turns)
-    turns = np.mod(turns + quarters, 4.0)
-    value = np.sin(rest + np.where(turns % 2.0 == 1.0, math.pi / 2, 0.0))
-    return np.where(turns >= 2.0, -value, value) + 0.0
+    turns = turns + quarters
+    quarter = np.arctan2(theta.dtype.type(1), theta.dtype.type(0))
+    value = np.sin(rest + quarter * (turns - 2.0 * np.floor(turns / 2.0)))
+    return np.where(turns - 4.0 * np.floor(turns / 4.0) >= 2.0, -value, value) + theta.dtype.type(0)
 
 
 def sin(theta: Angle) -> Angle:
@@ -63,8 +82,11 @@ def angle(vector: Any) -> Angle:
     if _is_scalar(vector):
         found = math.degrees(cmath.phase(vector))
         return 180.0 if found == -180.0 else found
+    mp = _digits_of(vector)
+    if mp is not None:
+        return mp.degrees(mp.arg(vector))
     found = np.degrees(np.angle(vector))
-    return np.where(found == -180.0, 180.0, found)
+    return np.where(found == -180.0, -found, found)
 
 
 def atan2(y: Any, x: Any) -> Angle:
@@ -72,23 +94,35 @@ def atan2(y: Any, x: Any) -> Angle:
     if _is_scalar(y, x):
         found = math.degrees(math.atan2(y, x))
         return 180.0 if found == -180.0 else found
+    mp = _digits_of(y, x)
+    if mp is not None:
+        return mp.degrees(mp.atan2(y, x))
     found = np.degrees(np.arctan2(y, x))
-    return np.where(found == -180.0, 180.0, found)
+    return np.where(found == -180.0, -found, found)
 
 
 def atan(x: Any) -> Angle:
     """Arctangent, in (-90, 90): loses the quadrant of a quotient."""
-    return math.degrees(math.atan(x)) if _is_scalar(x) else np.degrees(np.arctan(x))
+    return _inverse("atan", x)
 
 
 def asin(x: Any) -> Angle:
     """Arcsine, in [-90, 90]."""
-    return math.degrees(math.asin(x)) if _is_scalar(x) else np.degrees(np.arcsin(x))
+    return _inverse("asin", x)
 
 
 def acos(x: Any) -> Angle:
     """Arccosine, in [0, 180]."""
-    return math.degrees(math.acos(x)) if _is_scalar(x) else np.degrees(np.arccos(x))
+    return _inverse("acos", x)
+
+
+def _inverse(name: str, x: Any) -> Angle:
+    if _is_scalar(x):
+        return math.degrees(getattr(math, name)(x))
+    mp = _digits_of(x)
+    if mp is not None:
+        return mp.degrees(getattr(mp, name)(x))
+    return np.degrees(getattr(np, name.replace("a", "arc", 1))(x))
 
 
 def from_radians(theta: Any) -> Angle:
@@ -98,7 +132,10 @@ def from_radians(theta: Any) -> Angle:
 
 def sqrt(x: Any) -> Any:
     """Square root; NaN below zero in arrays, an error on a scalar."""
-    return math.sqrt(x) if _is_scalar(x) else np.sqrt(x)
+    if _is_scalar(x):
+        return math.sqrt(x)
+    mp = _digits_of(x)
+    return np.sqrt(x) if mp is None else mp.sqrt(x)
 
 
 def wrap(theta: Angle) -> Angle:
@@ -106,5 +143,8 @@ def wrap(theta: Angle) -> Angle:
     if _is_scalar(theta):
         rest = math.remainder(theta, 360.0)
         return 180.0 if rest == -180.0 else rest
+    mp = _digits_of(theta)
+    if mp is not None:
+        return theta - 360 * mp.ceil(theta / 360 - mp.mpf(1) / 2)
     rest = theta - 360.0 * np.rint(np.asarray(theta) / 360.0)
     return np.where(rest <= -180.0, rest + 360.0, rest)

@@ -6,9 +6,11 @@ core instead, which keeps its digits there.
 
 import numpy as np
 
+from coursework.accuracy import Study
 from coursework.degrees import acos, angle, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
 from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
 from coursework.solution import formula, mistake, stable
@@ -263,4 +265,19 @@ KNOWN = (
             "alpha4": 4 * 3**0.5, "v_B": 0, "a_B": 720, "v_BA": 90, "a_BA_n": 90,
         },
     ),
+)  # fmt: skip
+
+ACCURACY = Study(
+    given={
+        "r1": 200, "r2": 60, "r3": 180, "r4": 140, "omega2": 10, "alpha2": 0, "mode": "open",
+    },
+    positions=("theta3", "theta4"),
+    rates=("omega3", "omega4"),
+    # A change point: stretched out, the four bars lie on one line.
+    hard={
+        "r1": 100, "r2": 50, "r3": 70, "r4": 80,
+        "theta2": [180 + side * 10.0**-k for k in range(10) for side in (-1, 1)],
+    },
+    loops=[[Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r4", "theta4", -1), Vector("r1", 0.0, -1)]],
+    unknowns=("theta3", "theta4"),
 )  # fmt: skip

@@ -5,12 +5,15 @@ taken from the numeric core, which keeps its digits where the rod is hardly long
 """
 
 from itertools import pairwise
+from math import pi
 
 import numpy as np
 
+from coursework.accuracy import Study
 from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.figures import Figure, ground_pivot, link, pin, point, rail, slider, vector
 from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import formula, mistake, stable
 
@@ -236,4 +239,17 @@ KNOWN = (
         {"r2": 20, "r3": 50, "e": -20, "theta2": 30, "omega2": 0, "alpha2": 8},
         {"omega3": 0, "r1_dot": 0, "alpha3": -2 * _ROOT3, "r1_ddot": -80 - 60 * _ROOT3},
     ),
+)  # fmt: skip
+
+ACCURACY = Study(
+    given={"r2": 60, "r3": 200, "e": 15, "omega2": 10, "alpha2": 0},
+    positions=("theta3", "r1"),
+    rates=("omega3", "r1_dot"),
+    # A rod as long as the crank: upright, the piston stands under O and may go either way.
+    hard={
+        "r2": 100, "r3": 100, "e": 0,
+        "theta2": [90 + side * 10.0**-k for k in range(10) for side in (-1, 1)],
+    },
+    loops=[[Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("e", 0.5 * pi, -1)]],
+    unknowns=("theta3", "r1"),
 )  # fmt: skip

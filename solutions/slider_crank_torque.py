@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from coursework.accuracy import Motion, Study
 from coursework.degrees import atan2, cos, sin, sqrt
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
@@ -425,3 +426,12 @@ KNOWN = (
     # Nothing called for, nothing borne.
     (_UPRIGHT, {"torque": 0, "N_guide": 0, "R_A": 0, "R_B": 0, "R_O": 0}, ()),
 )
+
+# A crank spun up from rest but for a nudge: some turns, and the inertia of the rod felt in each.
+ACCURACY = Study(
+    given={
+        "r2": 150, "r3": 420, "e": 30, "theta2": 20, "omega2": 4, "alpha2": 0,
+        "s3": 0.35, "m3": 12, "J3": 0.3, "m4": 8, "J2": 0.3, "F": 0, "f": 0.2,
+    },
+    motion=Motion(effort=3.0, duration=2.0),
+)  # fmt: skip

@@ -47,19 +47,23 @@ class Degrees(NamedTuple):
 
     @property
     def cos(self) -> Any:
-        return degrees.cos(self.angle) - degrees.sin(self.angle) * (self.rest * _DEGREE)
+        return self._turned(degrees.cos, degrees.sin, self.angle, -self.rest * _DEGREE)
 
     @property
     def sin(self) -> Any:
-        return degrees.sin(self.angle) + degrees.cos(self.angle) * (self.rest * _DEGREE)
+        return self._turned(degrees.sin, degrees.cos, self.angle, self.rest * _DEGREE)
 
     @property
     def half_cos(self) -> Any:
-        return degrees.cos(self._half) - degrees.sin(self._half) * (self.rest * (0.5 * _DEGREE))
+        return self._turned(degrees.cos, degrees.sin, self._half, -self.rest * (0.5 * _DEGREE))
 
     @property
     def half_sin(self) -> Any:
-        return degrees.sin(self._half) + degrees.cos(self._half) * (self.rest * (0.5 * _DEGREE))
+        return self._turned(degrees.sin, degrees.cos, self._half, self.rest * (0.5 * _DEGREE))
+
+    @staticmethod
+    def _turned(function: Callable, slope: Callable, angle: Any, rest: Any) -> Any:
+        return function(angle) + slope(angle) * rest if np.ndim(rest) or rest else function(angle)
 
     @property
     def half_squares(self) -> tuple[Any, Any, Any]:
