@@ -149,6 +149,32 @@ class Course:
         return Renderer(self.template_folders)
 
     @property
+    def lessons(self) -> tuple[str, ...]:
+        """Names of the lessons, ``exercises/lessons/NAME.LANG.md``, in alphabetical order."""
+        return tuple(sorted({p.name.split(".")[0] for p in self._lesson_folder.glob("*.*.md")}))
+
+    @property
+    def _lesson_folder(self) -> Path:
+        return self.root / "exercises" / "lessons"
+
+    def lesson(self, name: str, lang: str) -> str:
+        """A lesson as a notebook (JSON).
+
+        Raises
+        ------
+        UnknownName
+            No such lesson.
+        BadCourse
+            The lesson is not written in this language.
+        """
+        if name not in self.lessons:
+            raise unknown("lesson", name, self.lessons, self.label)
+        path = self._lesson_folder / f"{name}.{lang}.md"
+        if not path.exists():
+            raise BadCourse(f"the lesson {name} has no text in {lang!r}: {path.name} is missing")
+        return self.renderer.lesson(name, path.read_text("utf-8"), lang)
+
+    @property
     def has_solutions(self) -> bool:
         """False for a students' copy."""
         return (self.root / "solutions").is_dir()

@@ -1,4 +1,4 @@
-"""Handouts, worked solutions and feedback as PDF, web page, notebook and text."""
+"""Handouts, worked solutions, feedback and reports as PDF, web page, notebook and text."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from coursework.handout import AnswerSheet, FeedbackSheet, Handout
+from coursework.report import Report
 
 
 class Renderer:
@@ -45,6 +46,24 @@ class Renderer:
         from coursework.rendering import notebook
 
         return notebook.notebook(self.template_folders, handout, practice=practice)
+
+    def lesson(self, name: str, text: str, lang: str) -> str:
+        """A lesson's Markdown as a notebook (JSON, nbformat 4.5)."""
+        from coursework.rendering import notebook
+
+        return notebook.lesson(name, text, lang)
+
+    def report_html(self, report: Report) -> str:
+        """A report as one web page that fetches nothing and runs no script."""
+        from coursework.rendering import reports
+
+        return reports.page(self.template_folders, report)
+
+    def report_pdf(self, report: Report) -> bytes:
+        """A report as a tagged PDF, A4."""
+        from coursework.rendering import pdf, reports
+
+        return pdf.compile_pdf(reports.source(self.template_folders, report))
 
     def terminal(self, handout: Handout) -> str:
         """A handout as plain text."""

@@ -18,12 +18,12 @@ from coursework.rendering.formulas import to_mathml
 
 def page(folders: Sequence[Path], sheet: views.Sheet) -> str:
     """The whole page."""
-    env = _environment(tuple(folders), views.handout_of(sheet).lang)
+    env = environment_of(tuple(folders), views.handout_of(sheet).lang)
     return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", views.context(sheet))
 
 
 @lru_cache(maxsize=32)
-def _environment(folders: tuple[Path, ...], lang: str) -> Environment:
+def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
     filters = {
         "markup": lambda text: markup.to_html(text, lang),
         "inline": lambda text: markup.html_inline(text, lang),

@@ -1,6 +1,6 @@
-"""A handout as a Jupyter notebook.
+"""Handouts and lessons as Jupyter notebooks.
 
-The template is one Markdown text. A line ``<!-- cell -->`` ends a cell; a ```` ```python ```` fence is a
+A notebook is one Markdown text. A line ``<!-- cell -->`` ends a cell; a ```` ```python ```` fence is a
 code cell, and ``{tags=answers}`` after ``python`` gives it tags.
 """
 
@@ -31,22 +31,38 @@ _FENCE = re.compile(
 
 def notebook(folders: Sequence[Path], handout: Handout, *, practice: bool) -> str:
     """The notebook's JSON text, valid nbformat 4.5; the same text for the same handout."""
-    import nbformat
-
     env = _environment(tuple(folders), handout.lang)
     text = render(env, "notebook.md.j2", views.context(handout) | {"practice": practice})
-    cells = [_cell(number, *piece, handout) for number, piece in enumerate(_pieces(text))]
+    identity = f"{handout.exercise} {handout.version} {handout.seed} {handout.student}"
+    cells = [_cell(f"{identity} {number}", *piece) for number, piece in enumerate(_pieces(text))]
+    for cell in cells:
+        _attach_figure(cell, handout)
+    return _json(
+        cells,
+        {
+            "exercise": handout.exercise,
+            "version": handout.version,
+            "seed": handout.seed,
+            "student": handout.student,
+            "lang": handout.lang,
+            "record": json.loads(json.dumps(handout.record, default=dict)),
+        },
+    )
+
+
+def lesson(name: str, text: str, lang: str) -> str:
+    """The notebook of a lesson: its Markdown as it is, its fences as code cells."""
+    cells = [_cell(f"{name} {lang} {number}", *piece) for number, piece in enumerate(_pieces(text))]
+    return _json(cells, {"lesson": name, "lang": lang})
+
+
+def _json(cells: list[dict[str, object]], about: dict[str, object]) -> str:
+    import nbformat
+
     book = {
         "cells": cells,
         "metadata": {
-            "coursework": {
-                "exercise": handout.exercise,
-                "version": handout.version,
-                "seed": handout.seed,
-                "student": handout.student,
-                "lang": handout.lang,
-                "record": json.loads(json.dumps(handout.record, default=dict)),
-            },
+            "coursework": about,
             "kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"},
             "language_info": {"file_extension": ".py", "mimetype": "text/x-python", "name": "python"},
         },
@@ -74,20 +90,23 @@ def _markdown_pieces(text: str) -> Iterator[tuple[str, tuple[str, ...], str]]:
             yield "markdown", (), source
 
 
-def _cell(number: int, kind: str, tags: tuple[str, ...], source: str, handout: Handout) -> dict[str, object]:
-    identity = f"{handout.exercise} {handout.version} {handout.seed} {handout.student} {number} {source}"
+def _cell(identity: str, kind: str, tags: tuple[str, ...], source: str) -> dict[str, object]:
     cell: dict[str, object] = {
         "cell_type": kind,
-        "id": hashlib.sha256(identity.encode()).hexdigest()[:12],
+        "id": hashlib.sha256(f"{identity} {source}".encode()).hexdigest()[:12],
         "metadata": {"tags": list(tags)} if tags else {},
         "source": source.splitlines(keepends=True),
     }
     if kind == "code":
         cell |= {"execution_count": None, "outputs": []}
-    elif handout.figure is not None and f"attachment:{FIGURE}" in source:
+    return cell
+
+
+def _attach_figure(cell: dict[str, object], handout: Handout) -> None:
+    shown = any(f"attachment:{FIGURE}" in line for line in cell["source"])
+    if cell["cell_type"] == "markdown" and handout.figure is not None and shown:
         png = base64.b64encode(handout.figure.png(ppi=_FIGURE_PPI)).decode()
         cell["attachments"] = {FIGURE: {"image/png": png}}
-    return cell
 
 
 @lru_cache(maxsize=32)

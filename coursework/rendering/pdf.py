@@ -24,10 +24,10 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet]) -> str:
     names = views.context(sheets[0])
     bodies = []
     for sheet in sheets:
-        env = _environment(tuple(folders), views.handout_of(sheet).lang)
+        env = environment_of(tuple(folders), views.handout_of(sheet).lang)
         body = render(env, views.TEMPLATES[type(sheet)] + ".typ.j2", views.context(sheet))
         bodies.append(Markup(body))
-    return render(_environment(tuple(folders), names["lang"]), "_page.typ.j2", names | {"bodies": bodies})
+    return render(environment_of(tuple(folders), names["lang"]), "_page.typ.j2", names | {"bodies": bodies})
 
 
 def compile_pdf(typst_source: str) -> bytes:
@@ -48,7 +48,7 @@ def compile_pdf(typst_source: str) -> bytes:
 
 
 @lru_cache(maxsize=32)
-def _environment(folders: tuple[Path, ...], lang: str) -> Environment:
+def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
     filters = {
         "markup": lambda text: markup.to_typst_markup(text, lang),
         "math": lambda tex: markup.typst_formula(tex, lang),

@@ -1,0 +1,49 @@
+"""Reports as web pages and PDF, in the dress of the sheets."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+
+from markupsafe import Markup
+
+from coursework.language import words
+from coursework.rendering import html, markup, pdf
+from coursework.rendering.environment import render
+from coursework.report import Chart, Report
+
+
+def page(folders: Sequence[Path], report: Report) -> str:
+    """A web page that fetches nothing and runs no script."""
+    env = html.environment_of(tuple(folders), report.lang)
+    return render(env, "report.html.j2", _names(report) | {"chart": _image})
+
+
+def source(folders: Sequence[Path], report: Report) -> str:
+    """The Typst source; it stands alone."""
+    env = pdf.environment_of(tuple(folders), report.lang)
+    body = Markup(render(env, "report.typ.j2", _names(report) | {"chart": _drawn}))
+    return render(env, "_page.typ.j2", _names(report) | {"bodies": [body]})
+
+
+def _names(report: Report) -> dict[str, object]:
+    return {
+        "sheet": report,
+        "report": report,
+        "lang": report.lang,
+        "title": report.title,
+        "variant": report.source,
+        "words": words(report.lang),
+    }
+
+
+def _image(chart: Chart) -> Markup:
+    data = base64.b64encode(chart.svg.encode()).decode()
+    return Markup(f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(chart.alt)}">')
+
+
+def _drawn(chart: Chart) -> Markup:
+    svg, alt = markup.typst_string(chart.svg), markup.typst_string(chart.alt)
+    return Markup(f"bytes({svg}), alt: {alt}")

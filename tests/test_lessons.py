@@ -1,0 +1,60 @@
+"""Lessons are notebooks in every language that run from top to bottom."""
+
+from __future__ import annotations
+
+import json
+
+import nbformat
+import pytest
+
+import coursework
+from coursework.cli import run
+from coursework.errors import BadCourse, UnknownName
+from coursework.language import languages
+
+LESSONS = coursework.open_course().lessons
+
+
+@pytest.mark.parametrize("lang", languages())
+@pytest.mark.parametrize("name", LESSONS)
+def test_a_lesson_runs_from_top_to_bottom(course, name, lang):
+    from nbclient import NotebookClient
+
+    book = nbformat.reads(course.lesson(name, lang), as_version=4)
+    NotebookClient(book, timeout=120, kernel_name="python3").execute()
+    printed = [o for cell in book.cells for o in cell.get("outputs", ()) if o.output_type == "stream"]
+    assert printed
+    assert all(output.name == "stdout" for output in printed)
+
+
+@pytest.mark.parametrize("name", LESSONS)
+def test_a_lesson_computes_the_same_in_every_language(course, name):
+    """The code differs in its words alone: texts and comments."""
+    import ast
+
+    def shape(source):
+        tree = ast.parse(source)
+        return [type(node).__name__ for node in ast.walk(tree) if not isinstance(node, ast.JoinedStr)]
+
+    books = [json.loads(course.lesson(name, lang)) for lang in languages()]
+    codes = [[shape("".join(c["source"])) for c in b["cells"] if c["cell_type"] == "code"] for b in books]
+    assert all(code == codes[0] for code in codes)
+
+
+def test_lessons_are_listed_and_written(tmp_path, capsys):
+    assert run(["lesson"]) == 0
+    assert set(capsys.readouterr().out.split()) == set(LESSONS)
+    assert run(["lesson", LESSONS[0], "--lang", "en", "--out", str(tmp_path)]) == 0
+    assert (tmp_path / f"{LESSONS[0]}.en.ipynb").exists()
+
+
+def test_a_lesson_that_is_not_there_is_told(course, small_course):
+    with pytest.raises(UnknownName, match="lesson"):
+        course.lesson("accurracy", "fr")
+    folder = small_course / "exercises" / "lessons"
+    folder.mkdir()
+    (folder / "rods.fr.md").write_text("# Bielles\n", "utf-8")
+    own = coursework.open_course(small_course)
+    assert own.lessons == ("rods",)
+    with pytest.raises(BadCourse, match="'en'"):
+        own.lesson("rods", "en")
