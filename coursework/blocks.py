@@ -4,12 +4,15 @@ thousand do."""
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import numpy as np
 
 BLOCK = 32768  #: configurations computed together: what the calls cost and what the cache holds, in balance
+PIECE = 2 * BLOCK  #: the same where threads share the work, and would wait for each other at every call
 
 
 def _keep_freed_memory() -> None:
@@ -66,11 +69,66 @@ def pieces(named: Mapping[str, Any]) -> tuple[list[str], list[slice]] | None:
     """
     arrays = {name: given for name, given in named.items() if isinstance(given, np.ndarray) and given.ndim}
     shape = np.broadcast_shapes(*{given.shape for given in arrays.values()})
-    if math.prod(shape) <= BLOCK or shape[0] == 1:
+    if math.prod(shape) <= PIECE or shape[0] == 1:
         return None
     cut = [n for n, given in arrays.items() if given.ndim == len(shape) and given.shape[0] > 1]
-    step = max(1, BLOCK // math.prod(shape[1:]))
+    step = max(1, PIECE // math.prod(shape[1:]))
     return cut, [slice(start, start + step) for start in range(0, shape[0], step)]
+
+
+def joined(
+    compute: Callable[[slice], Mapping[str, Any]], places: Sequence[slice], length: int
+) -> dict[str, Any]:
+    """What ``compute`` gives at each place, put together along the first axis; what is no array there stays.
+
+    Places are independent, and computed by as many threads as the process has processors: numpy lets them
+    run side by side. The result does not depend on their number.
+    """
+    whole = {name: _with_length(value, length) for name, value in compute(places[0]).items()}
+    odd: list[tuple[str, slice, np.ndarray]] = []
+
+    def put(place: slice, found: Mapping[str, Any]) -> None:
+        for name, value in found.items():
+            if np.ndim(value) == 0:
+                continue
+            if np.asarray(value).dtype == whole[name].dtype:
+                whole[name][place] = value
+            else:
+                odd.append((name, place, value))
+
+    def fill(place: slice) -> None:
+        put(place, compute(place))
+
+    threads = min(_processors(), len(places))
+    if threads == 1 or len(places) < _PLACES_WORTH_THREADS:
+        for place in places:
+            fill(place)
+    else:
+        with ThreadPoolExecutor(threads) as pool:
+            for _ in pool.map(fill, places):
+                pass
+    # Texts of other lengths, say: the whole must hold them all.
+    for name, place, value in odd:
+        whole[name] = whole[name].astype(np.promote_types(whole[name].dtype, value.dtype))
+        whole[name][place] = value
+    return whole
+
+
+_PLACES_WORTH_THREADS = 4  #: below, starting the threads costs what they gain
+
+
+def _processors() -> int:
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:  # only Linux can tell what this process may use
+        return os.cpu_count() or 1
+
+
+def _with_length(first: Any, length: int) -> Any:
+    """Room for the whole of which this is the first piece; a value that does not vary is its own whole."""
+    if np.ndim(first) == 0:
+        return first
+    return np.empty((length, *first.shape[1:]), dtype=first.dtype)
 
 
 def _whole(part: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:

@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.blocks import pieces
+from coursework.blocks import joined, pieces
 from coursework.errors import (
     BrokenFunction,
     CourseworkError,
@@ -114,21 +114,6 @@ def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
             raise Undefined(f"{name} does not exist for {told} ({fault})") from fault
         except Exception as fault:
             raise BrokenFunction(f"{_place(function)} fails: {type(fault).__name__}: {fault}") from fault
-
-
-def _put(values: dict[str, Value], name: str, place: slice, piece: Value, length: int) -> None:
-    """A quantity of one piece at its place in the whole; what does not vary stays as it is."""
-    piece = np.asarray(piece) if isinstance(piece, (np.ndarray, np.generic)) else piece
-    if not isinstance(piece, np.ndarray) or not piece.ndim:
-        values[name] = piece
-        return
-    whole = values.get(name)
-    if whole is None:
-        whole = np.empty((length, *piece.shape[1:]), dtype=piece.dtype)
-    elif whole.dtype != piece.dtype:
-        whole = whole.astype(np.promote_types(whole.dtype, piece.dtype))
-    whole[place] = piece
-    values[name] = whole
 
 
 class Graph:
@@ -306,11 +291,15 @@ class Graph:
             _run([step for step in steps if step[0] not in moving], values)
             steps = [step for step in steps if step[0] in moving]
             kept = moving.intersection(wanted)
-            for place in places:
-                piece = values | {name: given[name][place] for name in cut}
-                _run(steps, piece)
-                for name in kept:
-                    _put(values, name, place, piece[name], len(given[cut[0]]))
+
+            def compute(place: slice) -> dict[str, Value]:
+                piece = fixed | {name: given[name][place] for name in cut}
+                with np.errstate(all="ignore"):
+                    _run(steps, piece)
+                return {name: piece[name] for name in kept}
+
+            fixed = dict(values)
+            values |= joined(compute, places, len(given[cut[0]]))
         return values
 
     @staticmethod

@@ -119,7 +119,7 @@ class Scene:
         driver = self.driver.angle
         found = self.exercise.solve(**{**self.given, driver: angle}, only=self.quantities, effects=self._own)
         columns = {driver: angle, **{n: np.broadcast_to(v, angle.shape) for n, v in found.items()}}
-        open_somewhere = sum(bool(np.isnan(row).any()) for row in np.stack(list(columns.values()), axis=1))
+        open_somewhere = int(np.logical_or.reduce([np.isnan(column) for column in columns.values()]).sum())
         notes = (
             (f"the mechanism does not close at {open_somewhere} of {count + 1} angles",)
             if open_somewhere

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from coursework.blocks import joined
 from coursework.errors import CannotAssemble, Cycle, MissingQuantity, Undefined, UnknownName
 from coursework.graph import Graph, Replacement
 
@@ -227,7 +228,7 @@ def test_hidden_quantities_cannot_be_named_by_a_request():
 
 
 @pytest.mark.parametrize(
-    "shapes", [((100_000,), ()), ((3, 1), (50_000,)), ((50_000, 1), (3,)), ((1, 90_000), (1, 1))]
+    "shapes", [((400_000,), ()), ((8, 1), (50_000,)), ((150_000, 1), (3,)), ((1, 90_000), (1, 1))]
 )
 def test_long_arrays_give_what_their_places_give_alone(shapes):
     calls = []
@@ -240,7 +241,9 @@ def test_long_arrays_give_what_their_places_give_alone(shapes):
         return np.stack([area, whole * np.ones_like(area)], axis=-1)
 
     def case(area):
-        return np.where(area > 2, "large", "small")
+        return (
+            np.where(area > 2, "large", "small") if np.max(area) > 2.01 else np.where(area > 2, "l", "small")
+        )
 
     graph = GRAPH.with_functions({"whole": whole, "pair": pair, "case": case})
     rng = np.random.default_rng(0)
@@ -253,3 +256,11 @@ def test_long_arrays_give_what_their_places_give_alone(shapes):
     # What does not vary is computed once and stays a number.
     assert found["whole"] == 4.0
     assert calls == [3.0]
+
+
+def test_pieces_of_texts_of_any_length_are_put_together():
+    texts = [np.array(["a", "bb"]), np.array(["cccc"] * 2), np.array(["d", "e"]), np.array(["fffffff", ""])]
+    places = [slice(i, i + 2) for i in range(0, 8, 2)]
+    found = joined(lambda place: {"text": texts[place.start // 2], "one": 5.0}, places, 8)
+    assert found["text"].tolist() == ["a", "bb", "cccc", "cccc", "d", "e", "fffffff", ""]
+    assert found["one"] == 5.0

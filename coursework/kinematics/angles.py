@@ -80,6 +80,10 @@ class Degrees(NamedTuple):
         # A quarter more exchanges cosine and sine, and turns the sign of their product.
         whole = quarters * 0.5
         odd = whole != np.rint(whole)
+        if not np.any(odd):
+            return cos_squared, sin_squared, both
+        if np.all(odd):
+            return sin_squared, cos_squared, -both
         return (
             np.where(odd, sin_squared, cos_squared),
             np.where(odd, cos_squared, sin_squared),

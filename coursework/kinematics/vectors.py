@@ -10,8 +10,6 @@ import numpy as np
 
 from coursework.kinematics.scaling import exponent_of, scaled
 
-_QUARTER = math.pi / 2
-
 
 def cross(u: Any, v: Any) -> Any:
     """The z component of u x v."""
@@ -32,11 +30,9 @@ def direction(y: Any, x: Any) -> Any:
     """Angle of the vector (x, y), radians in (-pi, pi], for arrays faster than ``arctan2``; NaN for the
     zero vector."""
     quotient = np.divide(y, x)
-    # Half a turn where x < 0, towards the side of y: there the quotient has the other sign.
-    turn = np.copysign(_QUARTER, y)
-    turn -= np.copysign(_QUARTER, quotient)
     found = np.arctan(quotient)
-    found += turn
+    # Half a turn where x < 0, towards the side of y.
+    found += np.copysign(np.multiply(np.signbit(x), math.pi), y)
     if np.min(found, initial=math.inf) > -math.pi:
         return found
     return np.where(found == -math.pi, math.pi, found)

@@ -1,0 +1,44 @@
+"""Times of calls that are compared: taken in turn, so that what slows the machine slows them all."""
+
+from __future__ import annotations
+
+import platform
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+
+
+def best_in_turn(calls: Mapping[str, Callable[[], Any]], rounds: int = 15) -> dict[str, float]:
+    """The least seconds of each call; every round runs all of them once."""
+    best = dict.fromkeys(calls, float("inf"))
+    for call in calls.values():
+        call()
+    for _ in range(rounds):
+        for name, call in calls.items():
+            start = time.perf_counter()
+            call()
+            best[name] = min(best[name], time.perf_counter() - start)
+    return best
+
+
+def machine() -> str:
+    """What ran it, without saying whose it is."""
+    try:
+        from numpy._core._multiarray_umath import __cpu_features__ as features
+    except ImportError:
+        from numpy.core._multiarray_umath import __cpu_features__ as features
+    vectors = "with" if features.get("AVX512_SKX") else "without"
+    return (
+        f"{platform.machine()} {vectors} AVX-512, Python {platform.python_version()}, numpy {np.__version__}"
+    )
+
+
+def print_table(heads: tuple[str, ...], rows: list[tuple[str, ...]]) -> None:
+    """A Markdown table."""
+    print("| " + " | ".join(heads) + " |")
+    print("|" + "|".join("---" if i == 0 else "--:" for i in range(len(heads))) + "|")
+    for row in rows:
+        print("| " + " | ".join(row) + " |")
+    print()
