@@ -99,7 +99,7 @@ def joined(
     def fill(place: slice) -> None:
         put(place, compute(place))
 
-    threads = min(_processors(), len(places))
+    threads = min(processors(), len(places))
     if threads == 1 or len(places) < _PLACES_WORTH_THREADS:
         for place in places:
             fill(place)
@@ -117,7 +117,8 @@ def joined(
 _PLACES_WORTH_THREADS = 4  #: below, starting the threads costs what they gain
 
 
-def _processors() -> int:
+def processors() -> int:
+    """How many processors this process may use."""
     try:
         return len(os.sched_getaffinity(0))
     except AttributeError:  # only Linux can tell what this process may use

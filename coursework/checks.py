@@ -6,24 +6,31 @@ Used by ``coursework check`` on any course folder, and by this project's own tes
 from __future__ import annotations
 
 import math
+import multiprocessing
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from coursework import draws
-from coursework.course import CourseExercise, Variant
-from coursework.errors import CourseworkError
+from coursework.blocks import processors
+from coursework.comparing import distance
+from coursework.course import Course, CourseExercise, Variant, open_course
+from coursework.errors import CourseworkError, Starved
+from coursework.issuing import distinct_variants
+from coursework.key import Key, envelopes, keys_of
 from coursework.language import languages, plain, significant
-from coursework.marking import Key, distance
 from coursework.model import Part
+from coursework.rounding import student_who_rounds
+from coursework.worth import SHOWN, conditioning, visibility, worthy
 
 RESIDUAL = 1e-9  #: largest relative residual of the governing equations
-SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
-HIDDEN = 0.25  #: half-widths within which nothing can tell it
 RENDERED = 3  #: variants whose sheets are rendered in every format and language
+NONSENSICAL = 20  #: variants that are answered by nonsense; it is read alike on all
+KEPT_DIGITS = (3, 4, 5)  #: of simulated students who round at every step
 NONSENSE = ("?", "je ne sais pas", "12 +", "nan", "9**9**9", "1 = 1 = 1", "__import__('os')", "((((")
 
 
@@ -36,7 +43,10 @@ class Report:
     counts: Counter[str] = field(default_factory=Counter)
     failures: list[str] = field(default_factory=list)
     mistakes: dict[str, Counter[str]] = field(default_factory=dict)  #: shown, murky, hidden, by mistake
+    refused: Counter[str] = field(default_factory=Counter)  #: variants not worth issuing, by their first flaw
     acceptance: float = math.nan
+    conditioning: tuple[float, float] = (math.nan, math.nan)  #: median and largest, of what may be issued
+    cases: dict[str, Counter[str]] = field(default_factory=dict)  #: branches that students met, by quantity
 
     @property
     def passed(self) -> bool:
@@ -68,21 +78,76 @@ def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) 
     return report
 
 
+def check_all(
+    course: Course, names: Sequence[str], variants: int, progress: Callable[[], None] = lambda: None
+) -> list[Report]:
+    """A report an exercise, in this order, made by as many processes as there are processors."""
+    workers = min(processors(), len(names))
+    if workers < 2 or variants < _WORTH_PROCESSES:
+        return [_told(_check_one(str(course.root), name, variants), progress) for name in names]
+    # New processes, not forked ones: the typesetter must not be carried over.
+    with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+        tasks = [pool.submit(_check_one, str(course.root), name, variants) for name in names]
+        for task in tasks:
+            task.add_done_callback(lambda _: progress())
+        return [task.result() for task in tasks]
+
+
+_WORTH_PROCESSES = 50  #: variants an exercise; fewer are done before a process has started
+
+
+def _told(report: Report, progress: Callable[[], None]) -> Report:
+    progress()
+    return report
+
+
+def _check_one(root: str, name: str, variants: int) -> Report:
+    try:
+        return check(open_course(root)[name], variants)
+    except CourseworkError as fault:
+        return Report(name, failures=[str(fault)])
+
+
 def _check_variants(exercise: CourseExercise, count: int, report: Report) -> None:
     report.acceptance = draws.acceptance(exercise.name, exercise.spec)[0]
-    drawn = exercise.variants(range(count), exercise.languages[0])
+    lang = exercise.languages[0]
+    try:
+        drawn = distinct_variants(exercise, 0, count, lang, report.refused)
+    except Starved as fault:
+        report.fail(str(fault))
+        drawn = worthy(exercise, exercise.variants(range(count), lang))
     report.variants = len(drawn)
+    if not drawn:
+        return
+    keys_of(exercise, drawn)
+    _describe(drawn, report)
     check_arrays(exercise, drawn, report)
+    check_rounding_students(exercise, drawn, report)
     for variant in drawn:
         key = variant.key
         check_solves(variant, key, report)
         check_right_answers(variant, key, report)
         check_mistakes(variant, key, report)
+        check_slips(variant, key, report)
+        check_follow_through(variant, key, report)
+    for variant in drawn[:NONSENSICAL]:
         check_nonsense(variant, report)
     for name in exercise.solution.mistakes:
         tally = report.mistakes.setdefault(name, Counter())
         if count >= 50 and not tally["shown"]:
-            report.fail(f"mistake {name} shows in none of {count} variants")
+            report.fail(f"mistake {name} shows in none of {len(drawn)} variants")
+
+
+def _describe(drawn: Sequence[Variant], report: Report) -> None:
+    """How alike the variants are in difficulty: conditioning, and the branches that are to be chosen."""
+    shares = [conditioning(variant.key) for variant in drawn]
+    report.conditioning = float(np.median(shares)), max(shares)
+    for variant in drawn:
+        given = variant.exercise.spec.given
+        chosen = {n: v for n, v in variant.given.items() if given[n].is_choice}
+        chosen |= {p.quantity: variant.key.reference[p.quantity] for p in variant.parts if p.kind == "choice"}
+        for name, case in chosen.items():
+            report.cases.setdefault(name, Counter())[str(case)] += 1
 
 
 # ------------------------------------------------------------------------ texts
@@ -244,32 +309,94 @@ def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
     yield from (full, printed, comma, edge)
 
 
+def check_rounding_students(
+    exercise: CourseExercise, drawn: Sequence[Variant], report: Report, digits: Sequence[int] = KEPT_DIGITS
+) -> None:
+    """Who does everything right and rounds at every step is right, by rules that expect so many digits."""
+    given = {
+        n: np.array([v.given[n] for v in drawn]) for n in exercise.spec.given if n in exercise.quantity_names
+    }
+    effects, graph = exercise.spec.effects, exercise.solution.graph
+    wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
+    for kept in digits:
+        found = student_who_rounds(graph, wanted, given, effects, kept)
+        widths = envelopes(exercise, wanted, given, effects, min(kept, exercise.course.rules.digits))
+        for index, variant in enumerate(drawn):
+            for part in variant.parts:
+                if part.is_exact:
+                    continue
+                own, width = (_at(c[part.quantity], index, len(drawn)) for c in (found, widths))
+                along = variant.key.reference.get(part.along)
+                gap = distance(part, own, variant.key.reference[part.quantity], along, float(width))
+                report.counts[f"rounding to {kept}"] += 1
+                report.counts[f"outside the usual margin at {kept}"] += bool(
+                    distance(part, own, variant.key.reference[part.quantity], along) > 1
+                )
+                if not gap <= 1:
+                    report.fail(
+                        f"seed {variant.seed}: who rounds each step to {kept} digits lands {gap:.3g} half-widths "
+                        f"from {part.id}"
+                    )
+
+
+def _at(column: Any, index: int, count: int) -> Any:
+    varies = isinstance(column, np.ndarray) and column.ndim and column.shape[0] == count
+    return column[index] if varies else column
+
+
 def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
     """Each named mistake that shows is marked as that mistake, and never as right."""
-    for name, values in key.wrong.items():
+    for name in key.solution.mistakes:
         tally = report.mistakes.setdefault(name, Counter())
         shown = {}
-        for part in variant.parts:
-            wrong = values.get(part.quantity)
-            if wrong is None or not (isinstance(wrong, str) or np.all(np.isfinite(wrong))):
-                continue
-            along = key.reference.get(part.along)
-            gap = distance(part, _as_read(part, wrong), key.reference[part.quantity], along)
-            kind = "shown" if gap > SHOWN else "hidden" if gap <= HIDDEN else "murky"
-            tally[kind] += 1
-            if kind == "shown":
+        for part, seen in visibility(key, name):
+            tally[seen] += 1
+            if seen == "shown":
+                wrong = key.wrong[name][part.quantity]
                 shown[part.id] = (
                     "; ".join(map(repr, wrong.tolist())) if isinstance(wrong, np.ndarray) else wrong
                 )
         _check_recognised(variant, name, shown, report)
 
 
-def _as_read(part: Part, value: Any) -> Any:
-    if part.kind == "equation":
-        from coursework.expressions import parse_equation
+def check_slips(variant: Variant, key: Key, report: Report) -> None:
+    """A slip that shows is recognised, and earns nothing that a right answer does."""
+    for part in variant.parts:
+        for kind, value in key.slips(part):
+            reference, width = key.reference[part.quantity], key.envelope.get(part.quantity, 0.0)
+            if not distance(part, value, reference, None, width) > SHOWN:
+                continue
+            mark = variant.grade({part.id: value})[part.id]
+            if mark.in_other_order:
+                continue  # alone, it is the right answer of the other assembly
+            report.counts["slips recognised"] += 1
+            if f"slip:{kind}" not in mark.matches:
+                report.fail(
+                    f"seed {variant.seed}: slip {kind} on {part.id} ({value!r}) marks {mark.verdict}, not slip:{kind}"
+                )
 
-        return parse_equation(value, part.variables)
-    return value
+
+def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
+    """Who errs once and goes on rightly is marked wrong once."""
+    numeric = [p for p in variant.parts if p.kind in ("number", "angle")]
+    for first in numeric[: len(numeric) // 2 or 1]:
+        value = key.reference[first.quantity]
+        wrong = value + 11.0 if first.unit == "deg" else 1.13 * value
+        answers, expected = {first.id: wrong}, {}
+        for part in numeric[numeric.index(first) + 1 :]:
+            for follows in key.followed(part, {first.quantity: wrong}):
+                answers[part.id] = expected[part.id] = follows
+        marking = variant.grade(answers)
+        for part_id in expected:
+            part, mark = variant.exercise.spec.part(part_id), marking[part_id]
+            width = key.envelope.get(part.quantity, 0.0)
+            gap = distance(part, expected[part_id], key.reference[part.quantity], None, width)
+            report.counts["follow-through"] += 1
+            # What moves by less than two half-widths is right, or as good as untouched by the first error.
+            if gap > SHOWN and mark.verdict not in ("correct", "follow_through"):
+                report.fail(
+                    f"seed {variant.seed}: {part_id} follows from a wrong {first.id} but marks {mark.verdict}"
+                )
 
 
 def _check_recognised(variant: Variant, name: str, shown: Mapping[str, Any], report: Report) -> None:
@@ -277,7 +404,7 @@ def _check_recognised(variant: Variant, name: str, shown: Mapping[str, Any], rep
     for part_id, answer in shown.items():
         mark = marking[part_id]
         report.counts["mistakes recognised"] += 1
-        if name not in mark.matches:
+        if name not in mark.mistakes:
             report.fail(
                 f"seed {variant.seed}: mistake {name} on {part_id} ({answer!r}) marks {mark.verdict}, "
                 f"not mistake:{name}"
@@ -320,11 +447,35 @@ def table(reports: Sequence[Report]) -> list[Mapping[str, Any]]:
             "exercise": r.name,
             "variants": r.variants,
             "draws kept": f"{100 * r.acceptance:.0f} %" if r.variants else "",
+            "worth issuing": _share_worthy(r),
             "right answers": r.counts["right answers"],
-            "mistakes": len(r.mistakes),
-            "recognised": r.counts["mistakes recognised"],
-            "murky": sum(t["murky"] for t in r.mistakes.values()),
+            "rounded": sum(r.counts[f"rounding to {d}"] for d in KEPT_DIGITS),
+            "mistakes": r.counts["mistakes recognised"],
+            "slips": r.counts["slips recognised"],
+            "followed": r.counts["follow-through"],
+            "nonsense": r.counts["nonsense"],
             "failures": len(r.failures),
         }
         for r in reports
     ]
+
+
+def notes(reports: Sequence[Report]) -> list[str]:
+    """What the variants are like: what refuses most draws, conditioning, and the branches met."""
+    lines = []
+    for r in reports:
+        if not r.variants:
+            continue
+        median, largest = r.conditioning
+        line = f"{r.name}: rounding takes {100 * median:.0f} % of what a variant may have, {100 * largest:.0f} % at most"
+        for name, cases in r.cases.items():
+            told = ", ".join(f"{case} {100 * n / r.variants:.0f} %" for case, n in cases.most_common())
+            line += f"; {name}: {told}"
+        flaws = ", ".join(f"{flaw} ({n})" for flaw, n in r.refused.most_common(3))
+        lines.append(line + (f"; passed over most for {flaws}" if flaws else ""))
+    return lines
+
+
+def _share_worthy(report: Report) -> str:
+    tried = report.variants + sum(report.refused.values())
+    return f"{100 * report.variants / tried:.0f} %" if tried else ""

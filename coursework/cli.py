@@ -634,7 +634,7 @@ def _write_feedback(
 
 @cli.command()
 @click.argument("exercises", nargs=-1)
-@click.option("--variants", "count", type=click.IntRange(min=1), default=100, show_default=True)
+@click.option("--variants", "count", type=click.IntRange(min=1), default=200, show_default=True)
 @_json_option
 @click.pass_context
 def check(context: click.Context, exercises: Sequence[str], count: int, as_json: bool) -> int:
@@ -644,10 +644,7 @@ def check(context: click.Context, exercises: Sequence[str], count: int, as_json:
     course = _course(context)
     names = _exercise_names(course, exercises)
     with _progress("checking", len(names)) as advance:
-        reports = []
-        for name in names:
-            reports.append(_checked(course, name, count))
-            advance()
+        reports = checks.check_all(course, names, count, advance)
     if as_json:
         for report in reports:
             _print_json(
@@ -657,26 +654,22 @@ def check(context: click.Context, exercises: Sequence[str], count: int, as_json:
                     "acceptance": report.acceptance if report.variants else None,
                     "counts": dict(report.counts),
                     "mistakes": {n: dict(t) for n, t in report.mistakes.items()},
+                    "refused": dict(report.refused),
+                    "conditioning": dict(zip(("median", "largest"), report.conditioning, strict=True)),
+                    "cases": {n: dict(c) for n, c in report.cases.items()},
                     "failures": report.failures,
                 }
             )
     else:
         _print_table(checks.table(reports))
+        for note in checks.notes(reports):
+            click.echo(note)
         for report in reports:
             for failure in report.failures[:20]:
                 click.echo(f"{report.name}: {failure}")
             if len(report.failures) > 20:
                 click.echo(f"{report.name}: and {len(report.failures) - 20} more")
     return DONE if all(r.passed for r in reports) else FOUND
-
-
-def _checked(course: Course, name: str, count: int):
-    from coursework import checks
-
-    try:
-        return checks.check(course[name], count)
-    except CourseworkError as fault:
-        return checks.Report(name, failures=[str(fault)])
 
 
 # -------------------------------------------------------------------------- new

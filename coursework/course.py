@@ -36,12 +36,14 @@ from coursework.errors import (
 from coursework.graph import plain_scalar
 from coursework.language import languages, localise, plain, significant, with_unit
 from coursework.model import Exercise, GivenSpec, Part
+from coursework.rules import Rules
 from coursework.solution import Solution
 
 if TYPE_CHECKING:
     from coursework.figures import Figure
     from coursework.handout import AnswerSheet, Handout
-    from coursework.marking import Key, Marking
+    from coursework.key import Key
+    from coursework.marking import Marking
     from coursework.rendering import Renderer
 
 _packages = itertools.count()
@@ -127,6 +129,12 @@ class Course:
             return tomllib.loads(path.read_text("utf-8"))
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
             raise BadCourse(f"{path}: {fault}") from fault
+
+    @cached_property
+    def rules(self) -> Rules:
+        """How the course marks."""
+        source = str(self.root / "exercises" / "course.toml")
+        return Rules.of(self.settings.get("marking", {}), source)
 
     def title(self, lang: str) -> str:
         """The course's title in a language; the folder's name when it states none."""
@@ -627,7 +635,7 @@ class Variant:
     @cached_property
     def key(self) -> Key:
         """What the variant's answers are marked by."""
-        from coursework.marking import Key
+        from coursework.key import Key
 
         return Key(self)
 

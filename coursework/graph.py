@@ -344,6 +344,22 @@ class Graph:
         graph._build(nodes, frozenset(t for t in targets if t not in self._nodes), self._effects)
         return graph
 
+    def observed(self, observe: Callable[[str, Value], Value]) -> Graph:
+        """The same graph, with every value handed on as ``observe(name, value)`` gives it; hidden ones as
+        they are."""
+
+        def wrapped(name: str, node: Node) -> Node:
+            def function(*arguments: Value) -> Value:
+                return observe(name, node.function(*arguments))
+
+            stable = wrapped(name, node.stable) if node.stable else None
+            return replace(node, function=function, stable=stable)
+
+        graph = Graph.__new__(Graph)
+        nodes = {n: node if _is_hidden(n) else wrapped(n, node) for n, node in self._nodes.items()}
+        graph._build(nodes, self._shadowed, self._effects)
+        return graph
+
     def descendants(self, names: Iterable[str]) -> frozenset[str]:
         """The names themselves and every quantity that depends on one of them."""
         found = set(names)

@@ -7,6 +7,7 @@ import io
 import json
 import re
 import unicodedata
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +20,7 @@ from coursework.course import Course, CourseExercise, Variant
 from coursework.errors import BadInput, Starved
 from coursework.gradebook import ISSUED_FORMAT
 from coursework.language import languages
+from coursework.worth import worthy
 
 _STUDENT_COLUMNS = ("student", "name", "étudiant", "etudiant", "élève", "eleve", "nom")
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
@@ -78,27 +80,42 @@ def read_roster(path: Path) -> list[Student]:
     return students
 
 
-def distinct_variants(exercise: CourseExercise, first_seed: int, count: int, lang: str) -> list[Variant]:
-    """``count`` variants of different given values, from the first seed on; equal ones are passed over.
+def distinct_variants(
+    exercise: CourseExercise,
+    first_seed: int,
+    count: int,
+    lang: str,
+    refused: Counter[str] | None = None,
+) -> list[Variant]:
+    """``count`` variants of different given values that are worth issuing, from the first seed on.
+
+    Equal ones are passed over, and so are those that mark badly (:mod:`coursework.worth`), if the course
+    folder has solutions to tell; ``refused`` counts these by their flaw.
 
     Raises
     ------
     Starved
-        Fewer exist, or so few that they are not found; says how many.
+        Fewer exist, or so few that they are not found; says how many, and what refuses most.
     """
     found: dict[tuple, Variant] = {}
+    refused = Counter() if refused is None else refused
     seed = first_seed
     limit = first_seed + 30 * count + 300
     while len(found) < count and seed < limit:
-        batch = range(seed, min(limit, seed + max(16, count - len(found))))
-        for variant in exercise.variants(batch, lang):
+        batch = range(seed, min(limit, seed + max(16, 2 * (count - len(found)))))
+        drawn = exercise.variants(batch, lang)
+        if exercise.course.has_solutions:
+            drawn = worthy(exercise, drawn, refused)
+        for variant in drawn:
             found.setdefault(tuple(variant.given.values()), variant)
             if len(found) == count:
                 break
         seed = batch.stop
     if len(found) < count:
         exist = draws.population(exercise.spec)
-        told = f"{len(found)} were found" if exist is None else f"only {exist} exist"
+        told = f"{len(found)} were found" if exist is None or refused else f"only {exist} exist"
+        flaws = ", ".join(f"{flaw} ({times} times)" for flaw, times in refused.most_common(3))
+        told += f"; passed over as {flaws}" if flaws else ""
         raise Starved(
             f"{exercise.name}: {count} different variants were asked, {told}; "
             "ask for fewer, widen a range or make a step finer"

@@ -1,7 +1,8 @@
 """Marking: a student's texts against the reference, part by part.
 
-Answers are data: they are read, never run. A part that is not right is looked up among the named
-mistakes of the solution; nothing more than that is computed, and only then.
+Answers are data: they are read, never run. What is not right is looked up, in this order, among what
+follows rightly from the student's own earlier answers, the named mistakes of the solution, and the slips that
+need no naming; nothing of that is computed for an answer that is right.
 """
 
 from __future__ import annotations
@@ -9,17 +10,14 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Iterator, Mapping
-from contextlib import suppress
-from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from coursework.errors import CourseworkError, WrongValue, unknown
-from coursework.expressions import Equation, parse_equation, same_equation
-from coursework.graph import plain_scalar
+from coursework.comparing import distance
+from coursework.errors import WrongValue, unknown
+from coursework.key import Key
 from coursework.language import localise, unit_text, words
 from coursework.model import Part
 from coursework.reading import (
@@ -34,7 +32,6 @@ from coursework.reading import (
 if TYPE_CHECKING:
     from coursework.course import Variant
 
-SLACK = 1e-12  #: relative, so that an answer on the tolerance's edge is inside it
 ECHO = 60  #: characters of an answer quoted back in feedback
 
 
@@ -45,17 +42,29 @@ class Mark:
     part: str
     answer: str  #: the text as it came
     read_as: str  #: what was read in it; empty when nothing was
-    verdict: str  #: correct, mistake:NAME, wrong, wrong_unit, unreadable or missing
+    verdict: str  #: correct, follow_through, mistake:NAME, slip:KIND, wrong, wrong_unit, missing_unit, unreadable or missing
     points: float
     out_of: float
-    says: str  #: Markdown in the sheet's language; never the reference value
     lang: str
-    matches: tuple[str, ...] = ()  #: every named mistake that gives this answer
+    matches: tuple[str, ...] = ()  #: every verdict that explains this answer, the one given first
+    in_other_order: bool = False  #: right because the student exchanged two assemblies
+    _tell: Callable[[], str] = field(default=str, compare=False, repr=False)
+
+    @cached_property
+    def says(self) -> str:
+        """What to tell the student, Markdown in the sheet's language; never the reference value."""
+        note = words(self.lang)["marking"]["either_order"] if self.in_other_order else ""
+        return f"{self._tell()} {note}".rstrip()
 
     @cached_property
     def feedback(self) -> str:
         """What is said, as one line of plain text."""
         return _plain(self.says, self.lang)
+
+    @property
+    def mistakes(self) -> tuple[str, ...]:
+        """The named mistakes that give this answer."""
+        return tuple(m.partition(":")[2] for m in self.matches if m.startswith("mistake:"))
 
 
 class Marking(Mapping[str, Mark]):
@@ -90,37 +99,6 @@ class Marking(Mapping[str, Mark]):
         print(f"{self.points:g}/{self.out_of:g}")
 
 
-class Key:
-    """The reference values of one variant, and the values each named mistake would give."""
-
-    def __init__(self, variant: Variant):
-        self.variant = variant
-        self.solution = variant.exercise.solution
-        self.reference: dict[str, Any] = variant.solution()
-
-    @cached_property
-    def wrong(self) -> dict[str, dict[str, Any]]:
-        """By mistake, the asked quantities it reaches and their wrong values."""
-        return {name: self._wrong(name) for name in self.solution.mistakes}
-
-    def _wrong(self, name: str) -> dict[str, Any]:
-        reached = tuple(q for q in self.reference if q in self.solution.reached(name))
-        try:
-            return self._mistaken(name, reached)
-        except CourseworkError:
-            pass  # the wrong way leads nowhere for some quantity of this variant; the others are tried alone
-        values = {}
-        for quantity in reached:
-            with suppress(CourseworkError):
-                values |= self._mistaken(name, (quantity,))
-        return values
-
-    def _mistaken(self, name: str, quantities: tuple[str, ...]) -> dict[str, Any]:
-        graph = self.solution.mistaken(name)
-        found = graph.evaluate(quantities, self.variant.used, self.variant.effects)
-        return {quantity: plain_scalar(value) for quantity, value in found.items()}
-
-
 def read(part: Part, answer: Any, labels: Mapping[str, list[str]], reference: Any) -> Reading:
     """Read an answer as the part's kind asks; a vector has as many coordinates as its reference."""
     match part.kind:
@@ -134,63 +112,6 @@ def read(part: Part, answer: Any, labels: Mapping[str, list[str]], reference: An
             return read_equation(answer, part.variables)
         case _:
             return read_point(answer, part.unit, len(reference))
-
-
-def distance(part: Part, value: Any, reference: Any, along: Any = None) -> float:
-    """How far a value is from a reference, as a multiple of the accepted half-width: right up to 1.
-
-    0 or infinity for the kinds judged by identity. Angles are compared modulo 360.
-    """
-    match part.kind:
-        case "number":
-            return _over(abs(value - reference), part.half_width(reference), reference)
-        case "angle":
-            gap = abs(math.remainder(value - reference, 360.0))
-            return _over(gap, part.half_width(reference), 360.0)
-        case "point_on_line":
-            return _off_line(part, value, reference, along)
-        case "direction":
-            return _off_direction(part, value, reference)
-        case "equation":
-            right = _equation(reference, part.variables)
-            return 0.0 if same_equation(value, right, parameters=part.parameters) else math.inf
-        case _:
-            return 0.0 if value == plain_scalar(reference) else math.inf
-
-
-@lru_cache(maxsize=256)
-def _equation(text: str, variables: tuple[str, ...]) -> Equation:
-    """A reference equation, or a mistaken one, read once."""
-    return parse_equation(text, variables)
-
-
-def _over(gap: float, half_width: float, scale: float) -> float:
-    """``gap`` in half-widths, the boundary inclusive up to rounding."""
-    if not math.isfinite(gap):
-        return math.inf
-    if gap <= half_width + SLACK * max(half_width, abs(scale)):
-        return min(1.0, gap / half_width) if half_width else 0.0
-    return gap / half_width if half_width else math.inf
-
-
-def _off_line(part: Part, point: Any, reference: Any, along: Any) -> float:
-    offset = np.asarray(point, dtype=float) - reference
-    if float(np.max(np.abs(offset))) > 1e100:
-        return math.inf
-    axis = np.asarray(along, dtype=float)
-    gap = float(np.linalg.norm(np.cross(offset, axis)) / np.linalg.norm(axis))
-    size = float(np.linalg.norm(reference))
-    return _over(gap, part.half_width(size), size)
-
-
-def _off_direction(part: Part, vector: Any, reference: Any) -> float:
-    v, d = np.asarray(vector, dtype=float), np.asarray(reference, dtype=float)
-    largest = float(np.max(np.abs(v)))
-    v = v / largest if largest else v
-    size = float(np.linalg.norm(v) * np.linalg.norm(d))
-    if size == 0.0:
-        return math.inf
-    return _over(float(np.linalg.norm(np.cross(v, d))) / size, part.half_width(1.0), 1.0)
 
 
 def mark(variant: Variant, answers: Mapping[str, Any]) -> Marking:
@@ -216,12 +137,17 @@ def mark(variant: Variant, answers: Mapping[str, Any]) -> Marking:
         i: read(p, answers.get(i), variant.labels(p), key.reference[p.quantity]) for i, p in asked.items()
     }
     target = _targets(variant, readings, key)
-    marks = {i: _mark_part(variant, key, p, answers.get(i), readings[i], target[i]) for i, p in asked.items()}
-    if any(target[i] != i for i in target):
-        note = words(variant.lang)["marking"]["either_order"]
-        for i in target:
-            if target[i] != i and marks[i].verdict == "correct":
-                marks[i] = replace(marks[i], says=f"{marks[i].says} {note}")
+    own: dict[str, float] = {}  # the student's wrong values so far, by quantity
+    marks = {}
+    for i, part in asked.items():
+        judged_by = asked[target[i]]
+        marks[i] = _mark_part(variant, key, part, readings[i], judged_by, own)
+        reading = readings[i]
+        if reading.status == "read" and marks[i].verdict != "correct" and part.kind in ("number", "angle"):
+            own[judged_by.quantity] = reading.values[_nearest(part, reading, key, judged_by)[0]]
+    for i in target:
+        if target[i] != i and marks[i].verdict == "correct":
+            marks[i] = replace(marks[i], in_other_order=True)
     return Marking(marks)
 
 
@@ -238,7 +164,9 @@ def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dic
         members = itertools.chain(*groups)
         return sum(_nearest(parts[i], readings[i], key, parts[target[i]])[1] <= 1 for i in members)
 
-    best, best_score = own, fitting(own) if groups else 0
+    answered = sum(readings[i].status == "read" for i in itertools.chain(*groups))
+    # An exchange is meant where most of what is answered fits it: one answer may fit by chance.
+    best, best_score = own, max(fitting(own), answered / 2) if groups else 0
     for order in itertools.permutations(groups):
         target = {
             **own,
@@ -258,46 +186,95 @@ def _nearest(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[i
     along = key.reference.get(judged_by.along)
     gaps = [distance(part, v, reference, along) for v in reading.values]
     index = min(range(len(gaps)), key=gaps.__getitem__)
+    if 1 < gaps[index] < math.inf and not part.is_exact:
+        # Outside the part's own tolerance: rounding on the way may have brought it there.
+        width = key.envelope.get(judged_by.quantity, 0.0)
+        gaps = [distance(part, v, reference, along, width) for v in reading.values]
     return index, gaps[index]
 
 
-def _mark_part(variant: Variant, key: Key, part: Part, answer: Any, reading: Reading, target: str) -> Mark:
-    judged_by = variant.exercise.spec.part(target)
-    assert judged_by is not None
-    text = reading.text
+def _mark_part(
+    variant: Variant, key: Key, part: Part, reading: Reading, judged_by: Part, own: Mapping[str, float]
+) -> Mark:
+    def made(
+        verdict: str, share: float, read_as: str, tell: Callable[[], str], matches: tuple[str, ...] = ()
+    ) -> Mark:
+        points = float(part.points)
+        return Mark(
+            part.id,
+            reading.text,
+            read_as,
+            verdict,
+            share * points,
+            points,
+            variant.lang,
+            matches,
+            False,
+            tell,
+        )
+
     if reading.status != "read":
-        says = _say_not_read(variant, part, reading)
-        return _made(variant, part, text, "", reading.status, 0.0, says)
+        return made(reading.status, 0.0, "", lambda: _say_not_read(variant, part, reading))
     index, gap = _nearest(part, reading, key, judged_by)
     read_as = reading.read_as[index]
     if part.kind == "choice":
         read_as = _plain(variant.text.label(part.id, str(reading.values[index])), variant.lang)
+
+    def say(sentence: str, **pieces: str) -> str:
+        return _say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
+
     if gap <= 1:
-        says = _say(variant, part, "correct", read=echo(read_as, variant.lang))
-        return _made(variant, part, text, read_as, "correct", part.points, says)
-    matches = _mistakes(key, part, reading, judged_by)
-    if matches:
-        name = matches[0]
-        told = variant.solution_text.section(f"mistake {name}").text
-        says = _say(variant, part, "mistake", read=echo(read_as, variant.lang), says=told)
-        points = part.points * key.solution.mistakes[name].share
-        return _made(variant, part, text, read_as, f"mistake:{name}", points, says, matches)
+        if part.asks_unit and not reading.unit_given:
+            return made("missing_unit", 0.0, read_as, lambda: say("missing_unit"))
+        return made("correct", 1.0, read_as, lambda: say("correct"))
+    matches = tuple(_explanations(key, part, reading, judged_by, own))
+    verdict = matches[0] if matches else "wrong"
+    kind, _, name = verdict.partition(":")
+    if kind == "mistake":
+        share = key.solution.mistakes[name].share
+
+        def told() -> str:
+            return say("mistake", says=variant.solution_text.section(f"mistake {name}").text)
+
+        return made(verdict, share, read_as, told, matches)
+    if kind == "slip":
+        return made(verdict, key.rules.slip, read_as, lambda: say(f"slip_{name}"), matches)
+    if kind == "follow_through":
+        return made(verdict, key.rules.follow_through, read_as, lambda: say("follow_through"), matches)
     sentence = {"choice": "wrong_case", "equation": "wrong_equation"}.get(part.kind, "wrong")
-    says = _say(variant, part, sentence, read=echo(read_as, variant.lang))
-    return _made(variant, part, text, read_as, "wrong", 0.0, says)
+    return made("wrong", 0.0, read_as, lambda: say(sentence))
 
 
-def _mistakes(key: Key, part: Part, reading: Reading, judged_by: Part) -> tuple[str, ...]:
-    """Every named mistake that gives this answer, in the solution's order."""
-    found = []
+def _explanations(
+    key: Key, part: Part, reading: Reading, judged_by: Part, own: Mapping[str, float]
+) -> Iterator[str]:
+    """Every verdict that explains a wrong answer, the one to give first."""
+    quantity = judged_by.quantity
+    width = key.envelope.get(quantity, 0.0)
+    reference = key.reference[quantity]
+    if part.kind in ("number", "angle") and own:
+        for expected in key.followed(judged_by, own):
+            # Where the earlier answer hardly changes this one, it explains nothing.
+            tells = distance(part, expected, reference, None, width) > 2
+            if tells and _fits(part, reading, expected, None, width):
+                yield "follow_through"
+                break
     for name, values in key.wrong.items():
-        if judged_by.quantity not in values:
-            continue
-        wrong = values[judged_by.quantity]
-        along = values.get(judged_by.along, key.reference.get(judged_by.along))
-        if any(distance(part, v, wrong, along) <= 1 for v in reading.values):
-            found.append(name)
-    return tuple(found)
+        if quantity in values:
+            along = values.get(judged_by.along, key.reference.get(judged_by.along))
+            if _fits(part, reading, values[quantity], along, width):
+                yield f"mistake:{name}"
+    seen = set()
+    for kind, value in key.slips(judged_by):
+        # A slip scales what rounding may have moved.
+        own = width * abs(value / reference) if reference and part.kind == "number" else width
+        if kind not in seen and _fits(part, reading, value, None, own):
+            seen.add(kind)
+            yield f"slip:{kind}"
+
+
+def _fits(part: Part, reading: Reading, value: Any, along: Any, width: float) -> bool:
+    return any(distance(part, v, value, along, width) <= 1 for v in reading.values)
 
 
 def part_name(variant: Variant, part: Part) -> str:
@@ -316,10 +293,15 @@ def echo(text: str, lang: str) -> str:
     return _harmless(localised(shown, lang))
 
 
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+
+
 def localised(read_as: str, lang: str) -> str:
     """What was read, as the language writes numbers; an equation is left as it is."""
     if "=" in read_as:
         return read_as
+    if _NUMBER.fullmatch(read_as):
+        return localise(read_as, lang)
     number = re.sub(r"(?<![A-Za-z.])-?\d+(?:\.\d+)?", lambda m: localise(m.group(), lang), read_as)
     return number.replace(" °", "°")
 
@@ -358,18 +340,3 @@ def _plain(markdown: str, lang: str) -> str:
     from coursework.rendering.markup import to_text
 
     return " ".join(to_text(markdown, lang).split())
-
-
-def _made(
-    variant: Variant,
-    part: Part,
-    text: str,
-    read_as: str,
-    verdict: str,
-    points: float,
-    says: str,
-    matches: tuple[str, ...] = (),
-) -> Mark:
-    return Mark(
-        part.id, text, read_as, verdict, float(points), float(part.points), says, variant.lang, matches
-    )

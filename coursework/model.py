@@ -21,6 +21,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 from coursework.errors import BadCourse, WrongValue, nearest
@@ -102,8 +103,8 @@ class Part:
     ``direction`` (any non-zero multiple of the reference vector) or ``equation`` (in the exercise's
     symbols ``variables``, up to a factor, which may hold those of them that are ``parameters``: lengths).
     A numeric answer is right within max(``atol``, ``rtol`` · |reference|), by default 1 %, or 1° for what
-    is measured in degrees. ``when``, a function of given quantities,
-    says whether a variant asks the part.
+    is measured in degrees. ``when``, a function of given quantities, says whether a variant asks the part.
+    With ``asks_unit`` the sheet prints no unit beside the box, and an answer without one lacks something.
     """
 
     quantity: str
@@ -118,6 +119,7 @@ class Part:
     variables: tuple[str, ...] = ()
     parameters: tuple[str, ...] = ()
     when: Callable[..., Any] | None = None
+    asks_unit: bool = False
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -128,6 +130,8 @@ class Part:
             raise BadCourse(f"part {self.quantity!r}: 'along' goes with kind 'point_on_line', and it must")
         if (self.kind == "equation") != bool(self.variables):
             raise BadCourse(f"part {self.quantity!r}: 'variables' goes with kind 'equation', and it must")
+        if self.asks_unit and (self.is_exact or self.unit == "1"):
+            raise BadCourse(f"part {self.quantity!r}: it can ask for a unit only where its answer has one")
         if not self.points > 0:
             raise BadCourse(f"part {self.quantity!r}: points must be positive; found {self.points}")
         in_degrees = self.kind == "angle" or self.unit == "deg"
@@ -247,6 +251,7 @@ _GREEK = (
 ).split()
 
 
+@lru_cache(maxsize=4096)
 def symbol_of(name: str) -> str:
     r"""LaTeX of a public name: ``theta4`` -> ``\theta_4``, ``rA_dot`` -> ``\dot{r}_A``.
 

@@ -66,7 +66,7 @@ def _question(variant: Variant, number: int, part: Part) -> Question:
         id=part.id,
         symbol="" if part.kind in _WITHOUT_SYMBOL else variant.exercise.symbol(part.quantity),
         prompt=section.text,
-        unit=unit_text(part.unit, variant.lang),
+        unit="" if part.asks_unit else unit_text(part.unit, variant.lang),
         kind=part.kind,
         choices=choices,
         points=part.points,

@@ -160,6 +160,16 @@ class Solution:
         """The quantities that a named mistake can change."""
         return self._reached[name]
 
+    def depending_on(self, quantity: str) -> frozenset[str]:
+        """The quantities that change with one."""
+        if quantity not in self._dependants:
+            self._dependants[quantity] = self.graph.textbook.descendants((quantity,))
+        return self._dependants[quantity]
+
+    @cached_property
+    def _dependants(self) -> dict[str, frozenset[str]]:
+        return {}
+
     @cached_property
     def _reached(self) -> dict[str, frozenset[str]]:
         return {n: self.graph.descendants(m.targets) for n, m in self.mistakes.items()}

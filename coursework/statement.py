@@ -105,6 +105,8 @@ def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object
     import jinja2
 
     template = _template(path, path.stat().st_mtime_ns, folders)
+    if isinstance(template, Text):
+        return template
     try:
         return parse(template.render(variables), path.name)
     except jinja2.UndefinedError as fault:
@@ -131,7 +133,10 @@ def _template(path: Path, changed: int, folders: tuple[Path, ...]):
             keep_trailing_newline=True,
         )
         try:
-            _templates[key] = environment.get_template(path.name)
+            source = path.read_text("utf-8")
+            # A text without a variable in it is the same for every variant.
+            plain = "{{" not in source and "{%" not in source and "{#" not in source
+            _templates[key] = parse(source, path.name) if plain else environment.get_template(path.name)
         except jinja2.TemplateSyntaxError as fault:
             raise BadStatement(f"{path.name}, line {fault.lineno}: {fault.message}") from fault
         except UnicodeDecodeError as fault:

@@ -87,8 +87,9 @@ def test_just_beyond_the_tolerance_is_not_right(name):
                 continue
             value = key.reference[part.quantity]
             for side in (-1, 1):
-                inside = value + side * 0.99 * part.half_width(value)
-                beyond = value + side * 1.01 * part.half_width(value)
+                width = max(part.half_width(value), key.envelope[part.quantity])
+                inside = value + side * 0.99 * width
+                beyond = value + side * 1.01 * width
                 assert key.variant.grade({part.id: inside})[part.id].verdict == "correct"
                 assert key.variant.grade({part.id: beyond})[part.id].verdict != "correct"
 

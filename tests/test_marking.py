@@ -63,7 +63,7 @@ def test_an_angle_is_right_in_every_honest_spelling(slotted, answer):
         ("x" * 10_000, "unreadable"),
         ("0", "wrong"),
         ("500", "wrong"),
-        ("319.8 m", "wrong"),
+        ("319.8 m", "slip:unit"),
         (True, "unreadable"),
     ],
 )

@@ -144,7 +144,7 @@ def test_misprint_of_the_notes_turns_the_piston_round():
     assert wrong == pytest.approx(240)
     for variant in EXERCISE.variants(range(30)):
         mark = variant.grade({"r1_dot": -variant.solution()["r1_dot"]})["r1_dot"]
-        assert "notes_piston_sign" in mark.matches
+        assert "notes_piston_sign" in mark.mistakes
 
 
 def test_scalars_and_rows_agree():

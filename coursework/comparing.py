@@ -1,0 +1,77 @@
+"""How far an answer is from a reference, counted in the half-width that is accepted.
+
+Judged by value, never by spelling: angles modulo a turn, points by their distance to a line, vectors by direction,
+equations by the points that they hold at, cases and whole numbers by identity.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from coursework.expressions import Equation, parse_equation, same_equation
+from coursework.graph import plain_scalar
+from coursework.model import Part
+
+SLACK = 1e-12  #: relative, so that an answer on the tolerance's edge is inside it
+
+
+def distance(part: Part, value: Any, reference: Any, along: Any = None, envelope: float = 0.0) -> float:
+    """How far a value is from a reference, as a multiple of the accepted half-width: right up to 1.
+
+    The half-width is the part's own, or the ``envelope`` where that is wider. 0 or infinity for the kinds
+    judged by identity. Angles are compared modulo 360.
+    """
+    match part.kind:
+        case "number":
+            return _over(abs(value - reference), max(part.half_width(reference), envelope), reference)
+        case "angle":
+            gap = abs(math.remainder(value - reference, 360.0))
+            return _over(gap, max(part.half_width(reference), envelope), 360.0)
+        case "point_on_line":
+            return _off_line(part, value, reference, along, envelope)
+        case "direction":
+            return _off_direction(part, value, reference)
+        case "equation":
+            right = _equation(reference, part.variables)
+            return 0.0 if same_equation(value, right, parameters=part.parameters) else math.inf
+        case _:
+            return 0.0 if value == plain_scalar(reference) else math.inf
+
+
+@lru_cache(maxsize=256)
+def _equation(text: str, variables: tuple[str, ...]) -> Equation:
+    """A reference equation, or a mistaken one, read once."""
+    return parse_equation(text, variables)
+
+
+def _over(gap: float, half_width: float, scale: float) -> float:
+    """``gap`` in half-widths, the boundary inclusive up to rounding."""
+    if not math.isfinite(gap):
+        return math.inf
+    if gap <= half_width + SLACK * max(half_width, abs(scale)):
+        return min(1.0, gap / half_width) if half_width else 0.0
+    return gap / half_width if half_width else math.inf
+
+
+def _off_line(part: Part, point: Any, reference: Any, along: Any, envelope: float) -> float:
+    offset = np.asarray(point, dtype=float) - reference
+    if float(np.max(np.abs(offset))) > 1e100:
+        return math.inf
+    axis = np.asarray(along, dtype=float)
+    gap = float(np.linalg.norm(np.cross(offset, axis)) / np.linalg.norm(axis))
+    size = float(np.linalg.norm(reference))
+    return _over(gap, max(part.half_width(size), envelope), size)
+
+
+def _off_direction(part: Part, vector: Any, reference: Any) -> float:
+    v, d = np.asarray(vector, dtype=float), np.asarray(reference, dtype=float)
+    largest = float(np.max(np.abs(v)))
+    v = v / largest if largest else v
+    size = float(np.linalg.norm(v) * np.linalg.norm(d))
+    if size == 0.0:
+        return math.inf
+    return _over(float(np.linalg.norm(np.cross(v, d))) / size, part.half_width(1.0), 1.0)
