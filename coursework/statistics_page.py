@@ -30,8 +30,8 @@ from coursework.statistics import (
 
 _NAMED = 5  #: questions that a sentence names
 _CHARTED = 12  #: mistakes in the chart
-_LISTED = 25  #: mistakes in the table
-_CHART_ROWS = 24  #: bars that one chart holds
+_LISTED = 12  #: mistakes in the table of an exercise
+_CHART_ROWS = 16  #: bars that one chart holds
 _MEASURED_BY_SYMBOL = ("number", "angle", "integer")
 
 Words = Mapping[str, Any]
@@ -103,6 +103,7 @@ class _Page:
         self.lang = lang
         self.said: Words = words(lang)["statistics"]
         self.verdicts: Words = words(lang)["verdicts"]
+        self.told = _Told(course, lang)
 
     # ---------------------------------------------------------------- sections
 
@@ -142,7 +143,7 @@ class _Page:
 
     def exercise(self, name: str) -> Section:
         parts = [p for p in self.statistics.parts if p.exercise == name]
-        title = self._title(name)
+        title = self._heading(name)
         heading = self.said["chart_right"].format(title)
         charts = [
             self._chart(
@@ -165,10 +166,16 @@ class _Page:
         ]
         heading = self.said["chart_mistakes"]
         chart = self._chart(bars(rows, self._chart_text(heading), self.said["axis_answers"]), heading)
+        tables, left_out = [], 0
+        for name in told.exercises:
+            own = [m for m in told.mistakes if m.exercise == name]
+            left_out += len(own[_LISTED:])
+            if own:
+                tables.append(self._mistake_table(name, own[:_LISTED]))
         text = [self.said["mistakes_text"]]
-        if len(told.mistakes) > _LISTED:
-            text.append(self.said["mistakes_more"].format(len(told.mistakes) - _LISTED))
-        return Section(self.said["mistakes"], " ".join(text), (chart,), (self._mistake_table(),))
+        if left_out:
+            text.append(self.said["mistakes_more"].format(left_out))
+        return Section(self.said["mistakes"], " ".join(text), (chart,), tuple(tables))
 
     # ------------------------------------------------------------------ tables
 
@@ -201,25 +208,21 @@ class _Page:
         heads = (self.said["part"], *(self.verdicts[f] for f in met))
         return Table(heads, rows, (False, *[True] * len(met)), self.said["became"])
 
-    def _mistake_table(self) -> Table:
-        told, shown = _Told(self.course, self.lang), self.statistics.mistakes[:_LISTED]
-        parts = {(p.exercise, p.part): p for p in self.statistics.parts}
-        several = len(self.statistics.exercises) > 1
-        rows = []
-        for one in shown:
-            part = self._name(parts[one.exercise, one.part])
-            rows.append(
-                (
-                    f"{part} · {self._title(one.exercise)}" if several else part,
-                    _as_it_is(one.name),
-                    self._number(one.count),
-                    self._percent(one.share),
-                    self._decimal(one.lost, 1),
-                    " ".join(told.says(one).split()),
-                )
+    def _mistake_table(self, exercise: str, mistakes: Sequence[MistakeStatistics]) -> Table:
+        parts = {p.part: p for p in self.statistics.parts if p.exercise == exercise}
+        rows = tuple(
+            (
+                self._name(parts[one.part]),
+                _as_it_is(one.name),
+                self._number(one.count),
+                self._percent(one.share),
+                self._decimal(one.lost, 1),
+                " ".join(self.told.says(one).split()),
             )
-        heads = ("part", "mistake", "part_answers", "share", "lost", "says")
-        return Table(tuple(self.said[h] for h in heads), tuple(rows), (False, False, True, True, True, False))
+            for one in mistakes
+        )
+        heads = tuple(self.said[h] for h in ("part", "mistake", "part_answers", "share", "lost", "says"))
+        return Table(heads, rows, (False, False, True, True, True, False), self._heading(exercise))
 
     # ----------------------------------------------------------------- reading
 
@@ -291,8 +294,13 @@ class _Page:
         return self.course[name]
 
     def _title(self, name: str) -> str:
+        """An exercise's title as Markdown."""
         exercise = self._known(name)
         return exercise.title(self.lang) if exercise and self.lang in exercise.languages else _as_it_is(name)
+
+    def _heading(self, name: str) -> str:
+        """An exercise's title as plain text."""
+        return " ".join(to_text(self._title(name), self.lang).split())
 
     def _symbol(self, part: PartStatistics) -> str:
         """LaTeX of what the part asks; nothing where a symbol says nothing, or the course knows no such part."""
