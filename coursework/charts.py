@@ -19,6 +19,7 @@ STYLE = {
     "svg.fonttype": "path",
     "svg.hashsalt": "coursework",
 }
+INK = "#1b3a57"  #: dark enough to stand alone in black and white
 LINES = ("-", "--", "-.", ":")  #: told apart in black and white
 
 
@@ -99,9 +100,6 @@ def scatter(
         panel.set(xscale="log", yscale="log", xlabel=horizontal, ylabel=vertical, title=title)
         panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
         return _svg(pyplot, figure)
-
-
-INK = "#1b3a57"  #: dark enough to stand alone in black and white
 
 
 def formula_label(tex: str, otherwise: str) -> str:

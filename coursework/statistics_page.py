@@ -338,7 +338,7 @@ class _Page:
 
     def _hundredths(self, share: float) -> str:
         """A share in percent as a number alone; what is not all and not nothing does not round to it."""
-        value = 100 * float(share)
+        value = round(100 * float(share), 9)
         rounded = min(max(round(value), 1), 99) if 0 < value < 100 else round(value)
         return localise(str(rounded), self.lang)
 
