@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,7 @@ PART_COLUMNS = ("exercise", "part", "answers", "right", "mean", "discrimination"
 MISTAKE_COLUMNS = ("exercise", "part", "kind", "mistake", "count", "share", "lost", "share_of_lost", "says")
 
 _MARKS = ("student", "exercise", "part", "verdict", "points", "out_of")
+_REJECTED = ("source", "reason")
 _SUMMARY = ("student", "out_of", "missing")
 
 
@@ -108,7 +110,7 @@ def read(folder: Path) -> Marks:
     codes = [array("i") for _ in range(3)]
     student, part, verdict = codes
     points, out_of = array("d"), array("d")
-    for who, exercise, asked, judged, got, of in _lines(path, _MARKS, decimals, numbers=2):
+    for who, exercise, asked, judged, got, of in _lines(path, _MARKS, decimals):
         student.append(students[who])
         part.append(parts[exercise, asked])
         verdict.append(verdicts[judged])
@@ -135,7 +137,7 @@ def read(folder: Path) -> Marks:
         out_of,
         issued,
         without_line if told else 0,
-        sum(1 for _ in _lines(rejected, ("reason",), decimals)) if rejected.is_file() else 0,
+        sum(1 for _ in _lines(rejected, _REJECTED)) if rejected.is_file() else 0,
     )
 
 
@@ -144,7 +146,7 @@ def _summary(path: Path, students: _Numbered, decimals: _Decimals) -> tuple[dict
     told: dict[str, float] = {}
     blank = 0
     if path.is_file():
-        for name, out_of, missing in _lines(path, _SUMMARY, decimals, numbers=2):
+        for name, out_of, missing in _lines(path, _SUMMARY, decimals):
             students[name]
             told[name] = out_of
             blank += round(missing)
@@ -183,18 +185,21 @@ def _long_cells() -> Iterator[None]:
         csv.field_size_limit(before)
 
 
-def _lines(path: Path, columns: Sequence[str], decimals: _Decimals, numbers: int = 0) -> Iterator[list[Any]]:
-    """The named columns of a CSV, line by line; the last ``numbers`` of them as floats."""
+def _lines(
+    path: Path, columns: Sequence[str], decimals: _Decimals | None = None
+) -> Iterator[tuple[Any, ...]]:
+    """The named columns of a CSV, line by line; with ``decimals``, the last two of them as floats."""
     try:
         with path.open(encoding="utf-8-sig", newline="") as file, _long_cells():
             first = file.readline()
             file.seek(0)
             reader = csv.reader(file, delimiter=max((",", ";", "\t"), key=first.count))
             places = _places(path, next(reader, []), columns)
-            texts, values = places[: len(places) - numbers], places[len(places) - numbers :]
+            named = itemgetter(*places)
             for cells in reader:
                 try:
-                    yield [cells[i] for i in texts] + [decimals[cells[i]] for i in values]
+                    row = named(cells)
+                    yield row if decimals is None else (*row[:-2], decimals[row[-2]], decimals[row[-1]])
                 except (IndexError, ValueError) as fault:
                     if any(c.strip() for c in cells):
                         raise BadInput(_bad_line(path, reader.line_num, cells, columns, fault)) from fault
@@ -412,7 +417,8 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
 def _askers(marks: Marks) -> list[int]:
     """By part, how many students have a line of it."""
     students = max(1, len(marks.students))
-    pairs = np.unique(marks.part * students + marks.student)
+    pairs = np.sort(marks.part * students + marks.student)
+    pairs = pairs[np.diff(pairs, prepend=-1) > 0]
     return np.bincount(pairs // students, minlength=len(marks.parts)).tolist()
 
 
@@ -445,7 +451,7 @@ def correlation(x: np.ndarray, y: np.ndarray) -> float | None:
     if min(np.ptp(x), np.ptp(y)) < 1e-9:
         return None
     x, y = x - x.mean(), y - y.mean()
-    return float(x @ y / math.sqrt((x @ x) * (y @ y)))
+    return float((x * y).sum() / math.sqrt((x * x).sum() * (y * y).sum()))
 
 
 def _mistakes(

@@ -14,7 +14,7 @@ from coursework.charts import bars, formula_label, histogram, plain_label
 from coursework.course import Course, CourseExercise
 from coursework.errors import CourseworkError
 from coursework.language import localise, plain, words
-from coursework.rendering.markup import to_text
+from coursework.rendering.markup import drawable, to_text
 from coursework.rendering.typography import typeset
 from coursework.report import Chart, Report, Section, Table
 from coursework.statistics import (
@@ -321,11 +321,12 @@ class _Page:
 
     def _label(self, part: PartStatistics) -> str:
         symbol = self._symbol(part)
-        return formula_label(symbol, part.part) if symbol else plain_label(part.part)
+        return formula_label(symbol, _short(part.part)) if symbol else plain_label(_short(part.part))
 
     def _mistake_label(self, one: MistakeStatistics) -> str:
         several = len(self.statistics.exercises) > 1
-        return plain_label(f"{one.name} ({one.exercise})" if several else one.name)
+        name = _short(one.name)
+        return plain_label(f"{name} ({_short(one.exercise)})" if several else name)
 
     # ------------------------------------------------------------------ pieces
 
@@ -346,7 +347,7 @@ class _Page:
         return self.said["percent"].format(self._hundredths(share))
 
     def _chart_text(self, text: str) -> str:
-        return plain_label(typeset(text, self.lang))
+        return plain_label(typeset(_short(text, 80), self.lang))
 
     def _chart(self, svg: bytes, heading: str) -> Chart:
         return Chart(svg.decode("utf-8"), self.said["alt"].format(heading))
@@ -359,7 +360,13 @@ def _shared_out(rows: Sequence[PartStatistics], most: int) -> list[Sequence[Part
     return [rows[start : start + size] for start in range(0, len(rows), size)]
 
 
+def _short(name: str, most: int = 40) -> str:
+    """A name from a file on one line of a chart, in characters that its font has."""
+    one_line = drawable(" ".join(name.split()))
+    return one_line if len(one_line) <= most else one_line[: most - 1] + "…"
+
+
 def _as_it_is(name: str) -> str:
     """A name from a file as Markdown that shows it."""
     one_line = " ".join("".join(c if c.isprintable() else " " for c in name).split())
-    return re.sub(r"([!-/:-@\[-`{-~])", r"\\\1", one_line)
+    return re.sub(r"([!-/:-@\[-`{-~])", r"\\\1", one_line) or "–"

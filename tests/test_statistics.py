@@ -352,6 +352,21 @@ def test_the_reading_names_what_is_hard_weak_costly_and_to_be_looked_at(course, 
     assert "8, of which unreadable answers 7, rejected rows 1" in look
 
 
+@pytest.mark.parametrize("name", ["部", "a\nb\tc", "x" * 5000, "$", "#let", "| a | b |", "\\", "", "é" * 41])
+def test_any_name_in_the_marks_is_printed(course, folder, name):
+    lines = [line(f"s{i}", name, name, f"mistake:{name}" if i else "correct", 0) for i in range(2)]
+    page = report(course, measure(read(folder(lines))), "fr")
+    assert course.renderer.report_pdf(page).startswith(b"%PDF")
+    assert course.renderer.report_html(page).count("<figure>") == 3
+
+
+def test_every_symbol_of_the_course_is_a_label_of_a_chart(course):
+    for name in course.names:
+        for part in course[name].spec.parts:
+            symbol = course[name].symbol(part.quantity)
+            assert charts.formula_label(symbol, "no") == f"${symbol}$"
+
+
 def test_the_reading_of_a_class_without_answers_says_so(course, folder):
     page = report(course, measure(read(folder([]))), "en")
     assert "No answer was handed in" in page.sections[0].text
