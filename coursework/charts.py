@@ -19,6 +19,7 @@ STYLE = {
     "svg.fonttype": "path",
     "svg.hashsalt": "coursework",
 }
+INK = "#1b3a57"  #: dark enough to stand alone in black and white
 LINES = ("-", "--", "-.", ":")  #: told apart in black and white
 
 
@@ -98,4 +99,78 @@ def scatter(
             panel.plot(x, y, marks[number % len(marks)] + line, label=name, markersize=5, linewidth=0.9)
         panel.set(xscale="log", yscale="log", xlabel=horizontal, ylabel=vertical, title=title)
         panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
+        return _svg(pyplot, figure)
+
+
+def formula_label(tex: str, otherwise: str) -> str:
+    """A formula as a label of a chart; a plain text where the charts' own typesetter cannot set it."""
+    _pyplot()
+    from matplotlib.mathtext import MathTextParser
+
+    try:
+        MathTextParser("path").parse(f"${tex}$")
+    except ValueError:
+        return plain_label(otherwise)
+    return f"${tex}$"
+
+
+def plain_label(text: str) -> str:
+    """A text as a label of a chart: its dollars are dollars."""
+    return text.replace("$", r"\$")
+
+
+def bars(rows: Sequence[tuple[str, float, str]], title: str, horizontal: str, full: float = 0.0) -> bytes:
+    """Horizontal bars, the first at the top, as SVG.
+
+    A row is a label, a length, and what is written at the bar's end; the axis reaches ``full``, or a
+    little beyond the longest bar.
+    """
+    pyplot = _pyplot()
+    lengths = [length for _, length, _ in rows]
+    with pyplot.rc_context(STYLE):
+        figure, panel = pyplot.subplots(figsize=(6.6, 0.85 + 0.2 * max(3, len(rows))), layout="constrained")
+        panel.barh(range(len(rows)), lengths, height=0.62, color=INK)
+        for place, (_, length, said) in enumerate(rows):
+            panel.annotate(said, (length, place), (3, 0), textcoords="offset points", va="center", fontsize=8)
+        panel.set_yticks(range(len(rows)), [label for label, *_ in rows])
+        panel.set(xlabel=horizontal, title=title, xlim=(0, 1.12 * (full or max(lengths, default=0) or 1)))
+        panel.set_ylim(len(rows) - 0.4, -0.6)
+        _whole_ticks(panel.xaxis, full)
+        panel.tick_params(axis="y", length=0)
+        panel.grid(visible=False, axis="y")
+        panel.set_axisbelow(True)
+        return _svg(pyplot, figure)
+
+
+def _whole_ticks(axis: Any, full: float) -> None:
+    """Five steps up to ``full``; without it, whole numbers."""
+    from matplotlib.ticker import MaxNLocator
+
+    if full:
+        axis.set_ticks(np.linspace(0, full, 6))
+    else:
+        axis.set_major_locator(MaxNLocator(nbins=8, integer=True))
+
+
+def histogram(
+    counts: Sequence[int], edges: Sequence[float], title: str, horizontal: str, vertical: str
+) -> bytes:
+    """Counts between edges, one edge more than counts, as SVG; each count stands on its column."""
+    pyplot = _pyplot()
+    with pyplot.rc_context(STYLE):
+        figure, panel = pyplot.subplots(figsize=(6.6, 2.9), layout="constrained")
+        panel.bar(
+            edges[:-1], counts, np.diff(edges), align="edge", color=INK, edgecolor="white", linewidth=1.5
+        )
+        for left, right, count in zip(edges[:-1], edges[1:], counts, strict=True):
+            if count:
+                panel.annotate(
+                    str(count), ((left + right) / 2, count), (0, 2), textcoords="offset points", ha="center"
+                )
+        panel.set_xticks(edges)
+        panel.set(xlabel=horizontal, ylabel=vertical, title=title)
+        panel.set_ylim(0, 1.12 * max(1, *counts))
+        _whole_ticks(panel.yaxis, 0)
+        panel.grid(visible=False, axis="x")
+        panel.set_axisbelow(True)
         return _svg(pyplot, figure)

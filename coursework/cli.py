@@ -629,6 +629,59 @@ def _write_feedback(
     write(folder, files, advance)
 
 
+# ----------------------------------------------------------------------- report
+
+
+@cli.command()
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@_lang_option
+@click.option(
+    "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder to write; DIR/report unless told."
+)
+@_json_option
+@click.pass_context
+def report(context: click.Context, folder: Path, lang: str, out: Path | None, as_json: bool) -> None:
+    """Say how a class did, from the folder DIR that grade wrote: a page (HTML, PDF) and tables.
+
+    With --json and no --out nothing is written.
+    """
+    from coursework import statistics, statistics_page
+    from coursework.language import words
+
+    words(lang)  # an unknown language stops here
+    course = _course(context)
+    marks = statistics.read(folder)
+    told = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
+    if as_json:
+        _print_json(told.as_json())
+    if out is not None or not as_json:
+        out = out or folder / "report"
+        _write_report(course, told, lang, out)
+    if not as_json:
+        click.echo(
+            f"{told.students} students, {told.answers} answers, {told.needs_a_look} to be looked at; "
+            f"see {out / 'report'}.html, .pdf, parts.csv, mistakes.csv"
+        )
+
+
+def _write_report(course: Course, told: Any, lang: str, out: Path) -> None:
+    """Everything is made before the first file is written."""
+    from coursework import statistics, statistics_page
+    from coursework.building import write_whole
+    from coursework.issuing import csv_text
+
+    page = statistics_page.report(course, told, lang)
+    mistakes = statistics_page.mistake_rows(course, told, lang)
+    files = {
+        "report.html": course.renderer.report_html(page).encode("utf-8"),
+        "report.pdf": course.renderer.report_pdf(page),
+        "parts.csv": csv_text((p.row() for p in told.parts), statistics.PART_COLUMNS).encode("utf-8"),
+        "mistakes.csv": csv_text(mistakes, statistics.MISTAKE_COLUMNS).encode("utf-8"),
+    }
+    for name, content in files.items():
+        write_whole(out / name, content)
+
+
 # ------------------------------------------------------------------------ check
 
 

@@ -1,0 +1,480 @@
+"""Statistics of a marked class, from the folder that ``grade`` wrote: numbers, and no page.
+
+Texts are numbered as they are read, so that a line of ``marks.csv`` costs a few numbers whatever its
+answer and feedback hold.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import sys
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import pairwise
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coursework.errors import BadInput
+
+#: Verdicts without what follows their colon, in the order they are tried.
+FAMILIES = (
+    "correct",
+    "follow_through",
+    "mistake",
+    "slip",
+    "wrong",
+    "wrong_unit",
+    "missing_unit",
+    "unreadable",
+    "missing",
+)
+RIGHT = ("correct", "follow_through")
+RECOGNISED = ("mistake", "slip")
+
+ENOUGH = 10  #: students below which a discrimination is chance
+WEAK = 0.15  #: a discrimination below which a part is worth a look
+BINS = 10  #: of the distribution of points
+
+PART_COLUMNS = ("exercise", "part", "answers", "right", "mean", "discrimination", *FAMILIES)
+MISTAKE_COLUMNS = ("exercise", "part", "kind", "mistake", "count", "share", "lost", "share_of_lost", "says")
+
+_MARKS = ("student", "exercise", "part", "verdict", "points", "out_of")
+_REJECTED = ("source", "reason")
+_SUMMARY = ("student", "out_of", "missing")
+
+
+# ---------------------------------------------------------------------- reading
+
+
+@dataclass(frozen=True)
+class Marks:
+    """The lines of ``marks.csv`` as columns, each of shape (lines,), and what the other files add."""
+
+    students: tuple[str, ...]  #: those with a line, then those of the summary without
+    parts: tuple[tuple[str, str], ...]  #: exercise and part
+    verdicts: tuple[str, ...]
+    student: np.ndarray  #: index into students
+    part: np.ndarray  #: index into parts
+    verdict: np.ndarray  #: index into verdicts
+    points: np.ndarray
+    out_of: np.ndarray
+    issued: np.ndarray  #: points that each student could have, shape (students,)
+    without_line: int  #: answers asked for that no line holds
+    rejected: int  #: rows that could not be marked
+
+    @property
+    def exercises(self) -> tuple[str, ...]:
+        """Names of the exercises, in the order they are met."""
+        return tuple(dict.fromkeys(exercise for exercise, _ in self.parts))
+
+
+class _Numbered(dict):
+    """Texts to numbers, in the order they are met."""
+
+    def __missing__(self, key: Any) -> int:
+        self[key] = number = len(self)
+        return number
+
+
+class _Decimals(dict):
+    """Texts to finite numbers, each read once; a comma is a point, as some spreadsheets save it."""
+
+    def __missing__(self, text: str) -> float:
+        value = float(text.strip().replace(",", "."))
+        if not math.isfinite(value):
+            raise ValueError(text)
+        self[text] = value
+        return value
+
+
+def read(folder: Path) -> Marks:
+    """Read a folder of marks: ``marks.csv``, and ``summary.csv`` and ``rejected.csv`` if they are there.
+
+    Points come from ``marks.csv`` alone, so that a mark mended by hand there counts.
+
+    Raises
+    ------
+    BadInput
+        No ``marks.csv``, a column that is missing, or a line that holds no mark.
+    """
+    path = folder / "marks.csv"
+    if not path.is_file():
+        raise BadInput(_no_marks(folder))
+    students, parts, verdicts, decimals = _Numbered(), _Numbered(), _Numbered(), _Decimals()
+    codes = [array("i") for _ in range(3)]
+    student, part, verdict = codes
+    points, out_of = array("d"), array("d")
+    for who, exercise, asked, judged, got, of in _lines(path, _MARKS, decimals):
+        student.append(students[who])
+        part.append(parts[exercise, asked])
+        verdict.append(verdicts[judged])
+        points.append(got)
+        out_of.append(of)
+    _check_verdicts(path, verdicts)
+    columns = [np.array(c, dtype=np.int64) for c in codes]
+    points, out_of = np.array(points, dtype=float), np.array(out_of, dtype=float)
+    if np.any(out_of <= 0):
+        raise BadInput(f"{path}: a line is out of {out_of.min():g} points; every part is out of some")
+
+    told, asked_blank = _summary(folder / "summary.csv", students, decimals)
+    issued = np.bincount(columns[0], out_of, minlength=len(students))
+    issued = np.maximum(issued, [told.get(s, 0.0) for s in students])
+    blank = np.array([_family(v) == "missing" for v in verdicts], dtype=bool)
+    without_line = max(0, asked_blank - int(np.count_nonzero(blank[columns[2]])))
+    rejected = folder / "rejected.csv"
+    return Marks(
+        tuple(students),
+        tuple(parts),
+        tuple(verdicts),
+        *columns,
+        points,
+        out_of,
+        issued,
+        without_line if told else 0,
+        sum(1 for _ in _lines(rejected, _REJECTED)) if rejected.is_file() else 0,
+    )
+
+
+def _summary(path: Path, students: _Numbered, decimals: _Decimals) -> tuple[dict[str, float], int]:
+    """The points that each student could have, and the count of blank answers; new students join."""
+    told: dict[str, float] = {}
+    blank = 0
+    if path.is_file():
+        for name, out_of, missing in _lines(path, _SUMMARY, decimals):
+            students[name]
+            told[name] = out_of
+            blank += round(missing)
+    return told, blank
+
+
+def _no_marks(folder: Path) -> str:
+    if folder.is_file():
+        return f"{folder} is a file; give the folder that 'coursework grade' wrote, with marks.csv in it"
+    if not folder.is_dir():
+        return f"there is no folder {folder}; give the one that 'coursework grade' wrote"
+    found = sorted(p.name for p in folder.iterdir())
+    told = f"found {', '.join(found[:6])}{', …' if len(found) > 6 else ''}" if found else "it is empty"
+    below = sorted(p.parent for p in folder.glob("*/marks.csv"))
+    would = f"did you mean {below[0]}?" if below else "give the folder that 'coursework grade' wrote"
+    return f"{folder} holds no marks.csv ({told}); {would}"
+
+
+def _check_verdicts(path: Path, verdicts: Mapping[str, int]) -> None:
+    for verdict in verdicts:
+        if _family(verdict) not in FAMILIES:
+            raise BadInput(f"{path}: no verdict {verdict[:40]!r}; there is {', '.join(FAMILIES)}")
+
+
+def _family(verdict: str) -> str:
+    return verdict.partition(":")[0]
+
+
+@contextmanager
+def _long_cells() -> Iterator[None]:
+    """An answer of any length is a cell."""
+    before = csv.field_size_limit(min(sys.maxsize, 2**31 - 1))
+    try:
+        yield
+    finally:
+        csv.field_size_limit(before)
+
+
+def _lines(
+    path: Path, columns: Sequence[str], decimals: _Decimals | None = None
+) -> Iterator[tuple[Any, ...]]:
+    """The named columns of a CSV, line by line; with ``decimals``, the last two of them as floats."""
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as file, _long_cells():
+            first = file.readline()
+            file.seek(0)
+            reader = csv.reader(file, delimiter=max((",", ";", "\t"), key=first.count))
+            places = _places(path, next(reader, []), columns)
+            named = itemgetter(*places)
+            for cells in reader:
+                try:
+                    row = named(cells)
+                    yield row if decimals is None else (*row[:-2], decimals[row[-2]], decimals[row[-1]])
+                except (IndexError, ValueError) as fault:
+                    if any(c.strip() for c in cells):
+                        raise BadInput(_bad_line(path, reader.line_num, cells, columns, fault)) from fault
+    except OSError as fault:
+        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+    except UnicodeDecodeError as fault:
+        raise BadInput(f"{path} is not UTF-8; save it as “CSV UTF-8”") from fault
+    except csv.Error as fault:
+        raise BadInput(f"{path} is not CSV: {fault}") from fault
+
+
+def _places(path: Path, header: Sequence[str], columns: Sequence[str]) -> list[int]:
+    names = [h.strip().casefold() for h in header]
+    missing = [c for c in columns if c not in names]
+    if missing:
+        found = ", ".join(n[:30] for n in names if n) or "nothing"
+        raise BadInput(
+            f"{path} needs the columns {', '.join(columns)}; {', '.join(missing)} missing, found {found}; "
+            "'coursework grade' writes them"
+        )
+    return [names.index(c) for c in columns]
+
+
+def _bad_line(path: Path, line: int, cells: Sequence[str], columns: Sequence[str], fault: Exception) -> str:
+    if isinstance(fault, IndexError):
+        return f"{path}, line {line}: {len(cells)} cells, too few for {', '.join(columns)}"
+    return f"{path}, line {line}: {' and '.join(columns[-2:])} are numbers; found {','.join(cells)[:60]!r}"
+
+
+# -------------------------------------------------------------------- measuring
+
+
+@dataclass(frozen=True)
+class PartStatistics:
+    """One part over a class; shares are from 0 to 1."""
+
+    exercise: str
+    part: str
+    answers: int  #: lines, blank ones included
+    students: int  #: who have one of them
+    counts: Mapping[str, int]  #: by family of verdicts
+    mean: float  #: mean share of the part's points: the lower, the harder
+    discrimination: float | None  #: None where it cannot be computed
+    lost: float  #: points
+
+    def share(self, *families: str) -> float:
+        return sum(self.counts[f] for f in families) / self.answers
+
+    @property
+    def right(self) -> float:
+        """Share of the answers that are right, by themselves or from an earlier wrong one."""
+        return self.share(*RIGHT)
+
+    def row(self) -> dict[str, Any]:
+        """A line of ``parts.csv``: shares with four decimals."""
+        r = self.discrimination
+        return {
+            "exercise": self.exercise,
+            "part": self.part,
+            "answers": self.answers,
+            "right": round(self.right, 4),
+            "mean": round(self.mean, 4),
+            "discrimination": None if r is None else round(r, 4),
+            **{f: round(self.share(f), 4) for f in FAMILIES},
+        }
+
+
+@dataclass(frozen=True)
+class MistakeStatistics:
+    """A recognised mistake or slip, on one part or, where ``part`` is empty, on all of an exercise."""
+
+    exercise: str
+    part: str
+    kind: str  #: mistake or slip
+    name: str
+    count: int
+    share: float  #: of the answers to the part, or to the parts where it is met
+    lost: float  #: points
+    share_of_lost: float  #: of all points that the class lost on lines of marks.csv
+
+    def row(self) -> dict[str, Any]:
+        """A line of ``mistakes.csv``, but for the words of its feedback."""
+        return {
+            "exercise": self.exercise,
+            "part": self.part,
+            "kind": self.kind,
+            "mistake": self.name,
+            "count": self.count,
+            "share": round(self.share, 4),
+            "lost": round(self.lost, 4),
+            "share_of_lost": round(self.share_of_lost, 4),
+        }
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """What a class did."""
+
+    students: int
+    silent: int  #: students who handed in nothing
+    answers: int  #: lines of marks.csv, blank ones included
+    counts: Mapping[str, int]  #: of all lines, by family of verdicts
+    without_line: int  #: answers asked for that no line holds
+    rejected: int
+    percents: np.ndarray  #: of the points each student could have, shape (students with points to have,)
+    parts: tuple[PartStatistics, ...]  #: an exercise after another, in sheet order
+    mistakes: tuple[MistakeStatistics, ...]  #: by part, the most frequent first
+
+    @property
+    def needs_a_look(self) -> int:
+        """Answers that somebody must look at: unreadable or rejected."""
+        return self.counts["unreadable"] + self.rejected
+
+    @property
+    def exercises(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(p.exercise for p in self.parts))
+
+    def histogram(self) -> np.ndarray:
+        """Students in each tenth of the points, shape (BINS,); a full score is in the last."""
+        # A hair above its edge, so that rounding puts no 70 % below 70 %.
+        place = np.floor(self.percents * BINS / 100 + 1e-9)
+        return np.bincount(np.clip(place, 0, BINS - 1).astype(int), minlength=BINS)
+
+    def mistakes_of_exercises(self) -> list[MistakeStatistics]:
+        """The mistakes, those of one name summed over an exercise's parts; the most frequent first."""
+        groups: dict[tuple[str, str, str], list[MistakeStatistics]] = {}
+        for one in self.mistakes:
+            groups.setdefault((one.exercise, one.kind, one.name), []).append(one)
+        answers = {(p.exercise, p.part): p.answers for p in self.parts}
+        summed = [
+            MistakeStatistics(
+                *(exercise, "", kind, name),
+                count=(count := sum(m.count for m in group)),
+                share=count / sum(answers[m.exercise, m.part] for m in group),
+                lost=sum(m.lost for m in group),
+                share_of_lost=sum(m.share_of_lost for m in group),
+            )
+            for (exercise, kind, name), group in groups.items()
+        ]
+        return sorted(summed, key=lambda m: (-m.count, -m.lost))
+
+    def as_json(self) -> dict[str, Any]:
+        percents = self.percents
+        some = percents.size > 0
+        return {
+            "students": self.students,
+            "handed_in_nothing": self.silent,
+            "answers": self.answers,
+            "verdicts": dict(self.counts),
+            "asked_without_line": self.without_line,
+            "rejected": self.rejected,
+            "percent": {
+                "mean": round(float(percents.mean()), 2) if some else None,
+                "median": round(float(np.median(percents)), 2) if some else None,
+                "histogram": self.histogram().tolist(),
+            },
+            "parts": [p.row() for p in self.parts],
+            "mistakes": [m.row() for m in self.mistakes],
+        }
+
+
+def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None) -> Statistics:
+    """Measure a class.
+
+    ``sheet_order`` gives the part ids of exercises as their sheets print them; parts that it does not
+    know follow, in the order they are met.
+    """
+    families = np.array([FAMILIES.index(_family(v)) for v in marks.verdicts], dtype=int)
+    family = families[marks.verdict]
+    n = len(marks.parts)
+    answers = np.bincount(marks.part, minlength=n)
+    counts = np.bincount(marks.part * len(FAMILIES) + family, minlength=n * len(FAMILIES))
+    counts = counts.reshape(n, len(FAMILIES))
+    share = marks.points / marks.out_of
+    mean = np.bincount(marks.part, share, minlength=n) / np.maximum(answers, 1)
+    lost = np.bincount(marks.part, marks.out_of - marks.points, minlength=n)
+    askers = _askers(marks)
+    told = _discriminations(marks, share, askers)
+
+    def place(index: int) -> tuple[int, int]:
+        exercise, part = marks.parts[index]
+        known = list((sheet_order or {}).get(exercise, ()))
+        return marks.exercises.index(exercise), known.index(part) if part in known else len(known) + index
+
+    order = sorted(range(n), key=place)
+    parts = tuple(
+        PartStatistics(
+            *marks.parts[i],
+            answers=int(answers[i]),
+            students=askers[i],
+            counts=dict(zip(FAMILIES, counts[i].tolist(), strict=True)),
+            mean=float(mean[i]),
+            discrimination=told[i],
+            lost=float(lost[i]),
+        )
+        for i in order
+    )
+    students = len(marks.students)
+    with_line = np.bincount(marks.student, minlength=students) > 0
+    total = np.bincount(marks.student, marks.points, minlength=students)
+    has = marks.issued > 0
+    return Statistics(
+        students=students,
+        silent=students - int(np.count_nonzero(with_line)),
+        answers=len(marks.student),
+        counts=dict(zip(FAMILIES, counts.sum(axis=0).tolist(), strict=True)),
+        without_line=marks.without_line,
+        rejected=marks.rejected,
+        percents=100 * total[has] / marks.issued[has],
+        parts=parts,
+        mistakes=_mistakes(marks, answers, order, float(lost.sum())),
+    )
+
+
+def _askers(marks: Marks) -> list[int]:
+    """By part, how many students have a line of it."""
+    students = max(1, len(marks.students))
+    pairs = np.sort(marks.part * students + marks.student)
+    pairs = pairs[np.diff(pairs, prepend=-1) > 0]
+    return np.bincount(pairs // students, minlength=len(marks.parts)).tolist()
+
+
+def _discriminations(marks: Marks, share: np.ndarray, askers: Sequence[int]) -> list[float | None]:
+    """By part, the correlation of its points with the student's points on everything else.
+
+    Both are shares, since variants may ask different parts; where all ask the same this is the
+    correlation of the points themselves. What a student was asked and did not hand in counts as 0.
+    """
+    total = np.bincount(marks.student, marks.points, minlength=len(marks.students))
+    others_out_of = marks.issued[marks.student] - marks.out_of
+    # Out of the part alone there is no rest to compare with.
+    compared = others_out_of > 1e-6 * marks.out_of
+    rest = np.divide(
+        total[marks.student] - marks.points, others_out_of, out=np.zeros_like(share), where=compared
+    )
+    lines = np.flatnonzero(compared)
+    lines = lines[np.argsort(marks.part[lines], kind="stable")]
+    ends = np.searchsorted(marks.part[lines], np.arange(len(marks.parts) + 1))
+    found: list[float | None] = []
+    for (start, end), students in zip(pairwise(ends), askers, strict=True):
+        own = lines[start:end]
+        enough = students >= ENOUGH and own.size > 0
+        found.append(correlation(share[own], rest[own]) if enough else None)
+    return found
+
+
+def correlation(x: np.ndarray, y: np.ndarray) -> float | None:
+    """Pearson's correlation of two samples; None where one of them does not vary."""
+    if min(np.ptp(x), np.ptp(y)) < 1e-9:
+        return None
+    x, y = x - x.mean(), y - y.mean()
+    return float((x * y).sum() / math.sqrt((x * x).sum() * (y * y).sum()))
+
+
+def _mistakes(
+    marks: Marks, answers: np.ndarray, order: Sequence[int], all_lost: float
+) -> tuple[MistakeStatistics, ...]:
+    recognised = np.array([_family(v) in RECOGNISED for v in marks.verdicts], dtype=bool)
+    lines = np.flatnonzero(recognised[marks.verdict])
+    kinds = len(marks.verdicts)
+    code, which = np.unique(marks.part[lines] * kinds + marks.verdict[lines], return_inverse=True)
+    counts = np.bincount(which, minlength=len(code))
+    lost = np.bincount(which, (marks.out_of - marks.points)[lines], minlength=len(code))
+    rank = {index: place for place, index in enumerate(order)}
+    found = []
+    for one, count, points in zip(code.tolist(), counts.tolist(), lost.tolist(), strict=True):
+        part, verdict = divmod(one, kinds)
+        kind, _, name = marks.verdicts[verdict].partition(":")
+        own = MistakeStatistics(
+            *(*marks.parts[part], kind, name),
+            count=count,
+            share=count / int(answers[part]),
+            lost=points,
+            share_of_lost=points / all_lost if all_lost > 0 else 0.0,
+        )
+        found.append((rank[part], own))
+    found.sort(key=lambda f: (-f[1].count, f[0], f[1].kind, f[1].name))
+    return tuple(own for _, own in found)
