@@ -384,7 +384,8 @@ def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
         wrong = value + 11.0 if first.unit == "deg" else 1.13 * value
         answers, expected = {first.id: wrong}, {}
         for part in numeric[numeric.index(first) + 1 :]:
-            for follows in key.followed(part, {first.quantity: wrong}):
+            follows = key.followed(part, {first.quantity: wrong})
+            if follows is not None:
                 answers[part.id] = expected[part.id] = follows
         marking = variant.grade(answers)
         for part_id in expected:

@@ -1,14 +1,14 @@
 """What the answers to a variant are marked by: reference values, accepted widths, and the wrong values that
 are known.
 
-Everything is computed when it is first asked for, of one variant alone; or for many variants of an
-exercise at once (:func:`keys_of`), which costs a hundredth each.
+Everything is computed when it is first asked for, of one variant alone; or of many variants of an
+exercise at once (:class:`Batch`), which costs a hundredth each.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -90,23 +90,31 @@ class Key:
         found = graph.evaluate(quantities, self.variant.used, self.variant.effects)
         return {quantity: plain_scalar(value) for quantity, value in found.items()}
 
-    def followed(self, part: Part, own: Mapping[str, float]) -> Iterator[Any]:
-        """What a right method gives from a student's own wrong values: from all of them, then from each.
+    def wrong_ways(self, quantity: str) -> Iterator[tuple[str, Any]]:
+        """The named mistakes that reach a quantity, each with its wrong value, in the solution's order."""
+        for name, values in self.wrong.items():
+            if quantity in values:
+                yield name, values[quantity]
 
-        Only where it is well-posed: it closes, is finite and not trivially 0.
+    def followed(self, part: Part, own: Mapping[str, float], right: Collection[str] = ()) -> Any:
+        """What a right method gives from a student's own wrong values, or None.
+
+        The student goes on from all answers written before: ``own`` holds the wrong ones by quantity,
+        ``right`` names those that are right. None where no wrong one bears on this quantity, and where
+        nothing comes of it: the linkage does not close, the value is not finite, or trivially 0.
         """
-        own = {q: v for q, v in own.items() if q != part.quantity and v and self._reaches(q, part.quantity)}
-        for some in ([own] if own else []) + ([{q: v} for q, v in own.items()] if len(own) > 1 else []):
-            with suppress(CourseworkError):
-                found = self.solution.graph.evaluate(
-                    (part.quantity,), {**self.variant.used, **some}, self.variant.effects
-                )
-                value = plain_scalar(found[part.quantity])
-                if isinstance(value, (int, float)) and math.isfinite(value) and value != 0:
-                    yield value
-
-    def _reaches(self, start: str, end: str) -> bool:
-        return end in self.solution.depending_on(start)
+        quantity = part.quantity
+        before = {q: v for q, v in own.items() if q != quantity and v}
+        if not any(quantity in self.solution.depending_on(q) for q in before):
+            return None
+        kept = {q: self.reference[q] for q in right if q != quantity and q not in before}
+        with suppress(CourseworkError):
+            given = {**self.variant.used, **kept, **before}
+            found = self.solution.graph.evaluate((quantity,), given, self.variant.effects)
+            value = plain_scalar(found[quantity])
+            if isinstance(value, (int, float)) and math.isfinite(value) and value != 0:
+                return value
+        return None
 
     def slips(self, part: Part) -> Iterator[tuple[str, Any]]:
         """Wrong values that need nobody to declare them, by kind of slip."""
@@ -167,52 +175,97 @@ def envelopes(
     return {q: found.get(q, 0.0) for q in quantities}
 
 
-def keys_of(exercise: CourseExercise, variants: Sequence[Variant], *, wrong: bool = True) -> None:
-    """Give many variants of one exercise their keys, computed together.
+def keys_of(exercise: CourseExercise, variants: Sequence[Variant]) -> None:
+    """Give many variants of one exercise keys that are computed together.
 
-    A quantity that does not exist for some variant is left to that variant, which says why.
+    A variant that has some quantity that does not exist keeps a key of its own, which says why.
     """
-    if not variants:
-        return
-    rules = exercise.course.rules
-    given = {
-        n: np.array([v.given[n] for v in variants])
-        for n in exercise.spec.given
-        if n in exercise.quantity_names
-    }
-    quantities = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
-    along = tuple(dict.fromkeys(p.along for p in exercise.spec.parts if p.along))
-    effects = exercise.spec.effects
-    try:
-        reference = _rows(exercise.solve(**given, only=(*quantities, *along), effects=effects), len(variants))
-        widths = _rows(envelopes(exercise, quantities, given, effects, rules.digits), len(variants))
-        mistaken = _mistaken_rows(exercise, given, quantities + along, len(variants)) if wrong else None
-    except CourseworkError:
-        return  # each variant by itself then
-    for i, variant in enumerate(variants):
-        key = variant.key
-        own = {q: reference[q][i] for q in variant.asked_quantities}
-        if not all(_exists(value) for value in own.values()):
-            continue
-        key.reference = own
-        key.envelope = {q: key._bounded(q, float(widths[q][i])) for q in key._quantities}
-        if mistaken is not None:
-            key.wrong = {
-                name: {q: rows[q][i] for q in own if q in rows and _exists(rows[q][i])}
-                for name, rows in mistaken.items()
-            }
+    if variants:
+        batch = Batch(exercise, variants)
+        for index, variant in enumerate(variants):
+            key = _KeyOfBatch(variant, batch, index)
+            if batch.is_whole(index, variant.asked_quantities):
+                variant.__dict__["key"] = key
 
 
-def _mistaken_rows(
-    exercise: CourseExercise, given: Mapping[str, Any], quantities: Sequence[str], count: int
-) -> dict[str, dict[str, list]]:
-    """Rows of wrong values by mistake, for the quantities that it reaches."""
-    found = {}
-    for name in exercise.solution.mistakes:
-        reached = tuple(q for q in quantities if q in exercise.solution.reached(name))
-        graph = exercise.solution.mistaken(name)
-        found[name] = _rows(graph.evaluate(reached, given, exercise.spec.effects), count)
-    return found
+class Batch:
+    """What the answers to many variants of one exercise are marked by, a column a quantity.
+
+    A column is computed when the first variant asks for it.
+    """
+
+    def __init__(self, exercise: CourseExercise, variants: Sequence[Variant]) -> None:
+        self.exercise = exercise
+        self.count = len(variants)
+        names = (n for n in exercise.spec.given if n in exercise.quantity_names)
+        self.given = {n: np.array([v.given[n] for v in variants]) for n in names}
+        self.quantities = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
+        self.along = tuple(dict.fromkeys(p.along for p in exercise.spec.parts if p.along))
+
+    @cached_property
+    def reference(self) -> dict[str, list]:
+        wanted, effects = (*self.quantities, *self.along), self.exercise.spec.effects
+        try:
+            return _rows(self.exercise.solve(**self.given, only=wanted, effects=effects), self.count)
+        except CourseworkError:
+            return {}  # each variant by itself then
+
+    def is_whole(self, index: int, quantities: Sequence[str]) -> bool:
+        """Whether a variant has all these quantities."""
+        return all(q in self.reference and _exists(self.reference[q][index]) for q in quantities)
+
+    @cached_property
+    def envelope(self) -> dict[str, list]:
+        rules, effects = self.exercise.course.rules, self.exercise.spec.effects
+        return _rows(envelopes(self.exercise, self.quantities, self.given, effects, rules.digits), self.count)
+
+    @cached_property
+    def wrong(self) -> dict[str, dict[str, list]]:
+        """Columns by mistake, of the quantities that it reaches."""
+        return {name: self._wrong(name) for name in self.exercise.solution.mistakes}
+
+    def _wrong(self, name: str) -> dict[str, list]:
+        solution = self.exercise.solution
+        reached = tuple(q for q in (*self.quantities, *self.along) if q in solution.reached(name))
+        graph = solution.mistaken(name)
+        found: dict[str, list] = {}
+        for some in (reached, *((q,) for q in reached)):
+            # Where all together lead nowhere, each is tried alone.
+            with suppress(CourseworkError):
+                found |= _rows(graph.evaluate(some, self.given, self.exercise.spec.effects), self.count)
+                if len(some) == len(reached):
+                    break
+        return found
+
+
+class _KeyOfBatch(Key):
+    """The key of one variant among many."""
+
+    def __init__(self, variant: Variant, batch: Batch, index: int) -> None:
+        super().__init__(variant)
+        self._batch, self._index = batch, index
+
+    @cached_property
+    def reference(self) -> dict[str, Any]:
+        return {q: self._batch.reference[q][self._index] for q in self.variant.asked_quantities}
+
+    @cached_property
+    def envelope(self) -> dict[str, float]:
+        columns = self._batch.envelope
+        return {q: self._bounded(q, float(columns[q][self._index])) for q in self._quantities}
+
+    @cached_property
+    def wrong(self) -> dict[str, dict[str, Any]]:
+        found = {}
+        for name, columns in self._batch.wrong.items():
+            own = {q: columns[q][self._index] for q in self.reference if q in columns}
+            found[name] = {q: value for q, value in own.items() if _exists(value)}
+        return found
+
+    def wrong_ways(self, quantity: str) -> Iterator[tuple[str, Any]]:
+        for name, columns in self._batch.wrong.items():
+            if quantity in columns and _exists(columns[quantity][self._index]):
+                yield name, columns[quantity][self._index]
 
 
 def _rows(columns: Mapping[str, Any], count: int) -> dict[str, list]:

@@ -12,8 +12,8 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from coursework.comparing import distance
 from coursework.errors import WrongValue, unknown
@@ -35,9 +35,9 @@ if TYPE_CHECKING:
 ECHO = 60  #: characters of an answer quoted back in feedback
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Mark:
-    """What became of one answer."""
+    """What became of one answer. Not to be changed."""
 
     part: str
     answer: str  #: the text as it came
@@ -48,23 +48,51 @@ class Mark:
     lang: str
     matches: tuple[str, ...] = ()  #: every verdict that explains this answer, the one given first
     in_other_order: bool = False  #: right because the student exchanged two assemblies
-    _tell: Callable[[], str] = field(default=str, compare=False, repr=False)
+    _tell: Callable[[], _Said] = field(default=lambda: _Said("", {}), repr=False)
 
     @cached_property
     def says(self) -> str:
         """What to tell the student, Markdown in the sheet's language; never the reference value."""
-        note = words(self.lang)["marking"]["either_order"] if self.in_other_order else ""
-        return f"{self._tell()} {note}".rstrip()
+        return f"{self._tell().markdown()} {self._note}".rstrip()
 
     @cached_property
     def feedback(self) -> str:
         """What is said, as one line of plain text."""
-        return _plain(self.says, self.lang)
+        return f"{self._tell().plain(self.lang)} {self._note}".rstrip()
+
+    @property
+    def _note(self) -> str:
+        return words(self.lang)["marking"]["either_order"] if self.in_other_order else ""
 
     @property
     def mistakes(self) -> tuple[str, ...]:
         """The named mistakes that give this answer."""
         return tuple(m.partition(":")[2] for m in self.matches if m.startswith("mistake:"))
+
+
+class _Said(NamedTuple):
+    """A sentence of the engine, and the Markdown that fills it: ``{name}: {read} is right.``"""
+
+    sentence: str
+    pieces: Mapping[str, str]
+
+    def markdown(self) -> str:
+        return self.sentence.format(**self.pieces)
+
+    def plain(self, lang: str) -> str:
+        """One line of plain text. Sentences and most pieces recur: each is made plain once."""
+        pieces = {n: text if _is_plain(text) else _plain(text, lang) for n, text in self.pieces.items()}
+        return " ".join(_plain_sentence(self.sentence, lang).format(**pieces).split())
+
+
+_BARE = re.compile(r"[\w\s.,;:()=/°%·²³−…-]*")
+_is_plain = _BARE.fullmatch
+
+
+@lru_cache(maxsize=1024)
+def _plain_sentence(sentence: str, lang: str) -> str:
+    """A sentence with its places still open. Braces are no markup, and come through."""
+    return _plain(sentence, lang)
 
 
 class Marking(Mapping[str, Mark]):
@@ -137,14 +165,16 @@ def mark(variant: Variant, answers: Mapping[str, Any]) -> Marking:
         i: read(p, answers.get(i), variant.labels(p), key.reference[p.quantity]) for i, p in asked.items()
     }
     target = _targets(variant, readings, key)
-    own: dict[str, float] = {}  # the student's wrong values so far, by quantity
+    before = _Before({}, set())
     marks = {}
     for i, part in asked.items():
-        judged_by = asked[target[i]]
-        marks[i] = _mark_part(variant, key, part, readings[i], judged_by, own)
-        reading = readings[i]
-        if reading.status == "read" and marks[i].verdict != "correct" and part.kind in ("number", "angle"):
-            own[judged_by.quantity] = reading.values[_nearest(part, reading, key, judged_by)[0]]
+        judged_by, reading = asked[target[i]], readings[i]
+        marks[i] = _mark_part(variant, key, part, reading, judged_by, before)
+        if reading.status == "read" and part.kind in ("number", "angle"):
+            if marks[i].verdict == "correct":
+                before.right.add(judged_by.quantity)
+            else:
+                before.wrong[judged_by.quantity] = reading.values[_nearest(part, reading, key, judged_by)[0]]
     for i in target:
         if target[i] != i and marks[i].verdict == "correct":
             marks[i] = replace(marks[i], in_other_order=True)
@@ -193,11 +223,18 @@ def _nearest(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[i
     return index, gaps[index]
 
 
+class _Before(NamedTuple):
+    """What a student has answered before a part: wrong values by quantity, and the quantities that are right."""
+
+    wrong: dict[str, float]
+    right: set[str]
+
+
 def _mark_part(
-    variant: Variant, key: Key, part: Part, reading: Reading, judged_by: Part, own: Mapping[str, float]
+    variant: Variant, key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before
 ) -> Mark:
     def made(
-        verdict: str, share: float, read_as: str, tell: Callable[[], str], matches: tuple[str, ...] = ()
+        verdict: str, share: float, read_as: str, tell: Callable[[], _Said], matches: tuple[str, ...] = ()
     ) -> Mark:
         points = float(part.points)
         return Mark(
@@ -220,20 +257,20 @@ def _mark_part(
     if part.kind == "choice":
         read_as = _plain(variant.text.label(part.id, str(reading.values[index])), variant.lang)
 
-    def say(sentence: str, **pieces: str) -> str:
+    def say(sentence: str, **pieces: str) -> _Said:
         return _say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
 
     if gap <= 1:
         if part.asks_unit and not reading.unit_given:
             return made("missing_unit", 0.0, read_as, lambda: say("missing_unit"))
         return made("correct", 1.0, read_as, lambda: say("correct"))
-    matches = tuple(_explanations(key, part, reading, judged_by, own))
+    matches = tuple(_explanations(key, part, reading, judged_by, before))
     verdict = matches[0] if matches else "wrong"
     kind, _, name = verdict.partition(":")
     if kind == "mistake":
         share = key.solution.mistakes[name].share
 
-        def told() -> str:
+        def told() -> _Said:
             return say("mistake", says=variant.solution_text.section(f"mistake {name}").text)
 
         return made(verdict, share, read_as, told, matches)
@@ -245,25 +282,26 @@ def _mark_part(
     return made("wrong", 0.0, read_as, lambda: say(sentence))
 
 
-def _explanations(
-    key: Key, part: Part, reading: Reading, judged_by: Part, own: Mapping[str, float]
-) -> Iterator[str]:
+def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before) -> Iterator[str]:
     """Every verdict that explains a wrong answer, the one to give first."""
     quantity = judged_by.quantity
     width = key.envelope.get(quantity, 0.0)
     reference = key.reference[quantity]
-    if part.kind in ("number", "angle") and own:
-        for expected in key.followed(judged_by, own):
-            # Where the earlier answer hardly changes this one, it explains nothing.
-            tells = distance(part, expected, reference, None, width) > 2
-            if tells and _fits(part, reading, expected, None, width):
-                yield "follow_through"
-                break
-    for name, values in key.wrong.items():
-        if quantity in values:
-            along = values.get(judged_by.along, key.reference.get(judged_by.along))
-            if _fits(part, reading, values[quantity], along, width):
-                yield f"mistake:{name}"
+    if part.kind in ("number", "angle") and before.wrong:
+        expected = key.followed(judged_by, before.wrong, before.right)
+        # Where the earlier answers hardly change this one, they explain nothing.
+        if (
+            expected is not None
+            and distance(part, expected, reference, None, width) > 2
+            and _fits(part, reading, expected, None, width)
+        ):
+            yield "follow_through"
+    for name, value in key.wrong_ways(quantity):
+        along = key.reference.get(judged_by.along)
+        if judged_by.along:
+            along = key.wrong[name].get(judged_by.along, along)
+        if _fits(part, reading, value, along, width):
+            yield f"mistake:{name}"
     seen = set()
     for kind, value in key.slips(judged_by):
         # A slip scales what rounding may have moved.
@@ -306,13 +344,12 @@ def localised(read_as: str, lang: str) -> str:
     return number.replace(" °", "°")
 
 
-def _say(variant: Variant, part: Part, sentence: str, **pieces: str) -> str:
-    text = words(variant.lang)["marking"][sentence]
+def _say(variant: Variant, part: Part, sentence: str, **pieces: str) -> _Said:
     name = part_name(variant, part)
-    return text.format(name=name[:1].upper() + name[1:], **pieces)
+    return _Said(words(variant.lang)["marking"][sentence], {"name": name[:1].upper() + name[1:], **pieces})
 
 
-def _say_not_read(variant: Variant, part: Part, reading: Reading) -> str:
+def _say_not_read(variant: Variant, part: Part, reading: Reading) -> _Said:
     name = part_name(variant, part)
     name = name[:1].upper() + name[1:]
     table = words(variant.lang)["marking"]
@@ -327,7 +364,7 @@ def _say_not_read(variant: Variant, part: Part, reading: Reading) -> str:
         sentence = table["wrong_unit" if unit else "wrong_unit_ratio"]
     else:
         sentence = table["missing"]
-    return sentence.format(name=name, found=_harmless(found), unit=unit or "1")
+    return _Said(sentence, {"name": name, "found": _harmless(found), "unit": unit or "1"})
 
 
 def _harmless(text: str) -> str:
@@ -335,6 +372,7 @@ def _harmless(text: str) -> str:
     return "".join(c for c in text if c.isprintable() and c not in "$`*_\\<>[]#|")
 
 
+@lru_cache(maxsize=8192)
 def _plain(markdown: str, lang: str) -> str:
     """Markdown as one line of plain text."""
     from coursework.rendering.markup import to_text
