@@ -74,11 +74,11 @@ def crank_off_the_axes(theta2):
 
 
 def ram_away_from_the_y_axis(ram, r5):
-    return abs(ram[0]) > 0.25 * r5
+    return abs(ram[0]) > 0.5 * r5
 
 
 def ram_moves_visibly(ram, r2):
-    return abs(ram[1]) > 0.15 * r2
+    return abs(ram[1]) > 0.25 * r2
 
 
 def _told_apart(wrong, right):
@@ -132,7 +132,6 @@ def figure(arm, P, C, r1, r2, r4, theta2, omega2):
         ground_pivot(O2, "O_2"),
         pin(P, "P"),
         pin(C),
-        paper_mm=(110, 92),
     )
 
 
