@@ -1,0 +1,156 @@
+"""Quick return of a slider-crank whose piston is out of line with the crank (Figure 26 a, equations 22, 23)."""
+
+from coursework.degrees import angle, asin, cos, polar, sin, sqrt, wrap
+from coursework.figures import (
+    Figure,
+    angle_mark,
+    centre_line,
+    circle,
+    ground_pivot,
+    link,
+    note,
+    pin,
+    rail,
+    rotation_arrow,
+    slider,
+)
+from coursework.kinematics.dyads import rrp
+from coursework.model import Driver, Exercise, Part, drawn
+
+
+def rod(r2, r3, e, theta2):
+    """Vector AC."""
+    crank = polar(r2, theta2)
+    return rrp(crank, r3, e) - crank
+
+
+def piston(rod, r2, theta2):
+    """xC, and v_C over omega2."""
+    return _piston(rod, r2, theta2)
+
+
+def _piston(rod, r2, theta2):
+    lean = rod.imag / rod.real
+    return r2 * cos(theta2) + rod.real, -r2 * sin(theta2) + r2 * cos(theta2) * lean
+
+
+def unequal_halves(r2, r3, e):
+    """(alpha - beta) / 2, degrees."""
+    return asin(abs(e) / (r3 - r2)) - asin(abs(e) / (r3 + r2))
+
+
+def stroke(r2, r3, e):
+    return sqrt((r3 + r2) ** 2 - e**2) - sqrt((r3 - r2) ** 2 - e**2)
+
+
+def offset_is_visible(e, r2):
+    return abs(e) >= 0.4 * r2
+
+
+def crank_turns_with_room(r2, r3, e):
+    return r3 - r2 > 1.2 * abs(e)
+
+
+def strokes_last_unlike(unequal_halves):
+    return unequal_halves > 8
+
+
+def stroke_is_not_twice_the_crank(stroke, r2):
+    return stroke > 2 * 1.021 * r2
+
+
+def piston_moves_visibly(piston, r2):
+    return abs(piston[1]) > 0.15 * r2
+
+
+def crank_off_the_axes(theta2):
+    return theta2 % 90 >= 5
+
+
+def _told_apart(wrong, right):
+    """Whether a mistake moves a value by two tolerances and more, or not at all."""
+    gap = abs(wrong - right) / abs(0.01 * right)
+    return (gap > 2) | (gap < 0.25)
+
+
+def _tells(wrong, piston):
+    return _told_apart(wrong[0], piston[0]) & _told_apart(wrong[1], piston[1])
+
+
+def side_of_the_line_tells(piston, r2, r3, e, theta2):
+    return _tells(_piston(rod(r2, r3, -e, theta2), r2, theta2), piston)
+
+
+def offset_tells(piston, r2, r3, theta2):
+    return _tells(_piston(rod(r2, r3, 0.0, theta2), r2, theta2), piston)
+
+
+def rotation_of_the_rod_tells(piston, r2, theta2):
+    return _told_apart(-r2 * sin(theta2), piston[1])
+
+
+def sign_under_the_root_tells(stroke, r2, r3, e):
+    return _told_apart(sqrt((r3 + r2) ** 2 + e**2) - sqrt((r3 - r2) ** 2 + e**2), stroke)
+
+
+def _clearest(*directions):
+    """The direction, by steps of 15 degrees, that is farthest from all of these."""
+    return max(range(0, 360, 15), key=lambda way: min(abs(wrap(way - taken)) for taken in directions))
+
+
+def figure(rod, r2, theta2, omega2):
+    O, A = 0j, polar(r2, theta2)
+    C = A + rod
+    turning = _clearest(0, theta2, 0.5 * theta2, angle(C))
+    half_turn = 25 if omega2 > 0 else -25
+    return Figure(
+        circle(O, r2, dashed=True),
+        rotation_arrow(O, 1.3 * r2, turning - half_turn, turning + half_turn, label=r"\omega_2"),
+        rail(C - 0.9 * r2, C + 0.9 * r2),
+        centre_line(O, C.real + 0.9 * r2, label="x"),
+        link(O, A, label="r_2"),
+        link(A, C, label="r_3"),
+        angle_mark(O, 0, theta2, r"\theta_2"),
+        note(C + 0.8 * r2, "y=e"),
+        slider(C, 0, label="C"),
+        ground_pivot(O, "O"),
+        pin(A, "A"),
+        pin(C),
+    )
+
+
+EXERCISE = Exercise(
+    given={
+        "r2": drawn(30, 80, step=5, unit="mm"),
+        "r3": drawn(lambda r2: 2 * r2, lambda r2: 3.5 * r2, step=5, unit="mm", positive=True),
+        "e": drawn(lambda r2: -0.9 * r2, lambda r2: 0.9 * r2, step=5, unit="mm"),
+        "theta2": drawn(-175, 180, step=5, unit="deg"),
+        "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
+    },
+    helpers=(rod, piston, unequal_halves, stroke),
+    keep=(
+        offset_is_visible,
+        crank_turns_with_room,
+        strokes_last_unlike,
+        stroke_is_not_twice_the_crank,
+        piston_moves_visibly,
+        crank_off_the_axes,
+        side_of_the_line_tells,
+        offset_tells,
+        rotation_of_the_rod_tells,
+        sign_under_the_root_tells,
+    ),
+    parts=(
+        Part("xC", unit="mm", points=1),
+        Part("v_C", unit="mm/s", points=2),
+        Part("stroke", unit="mm", points=1),
+        Part("alpha", unit="deg", points=2),
+        Part("beta", unit="deg", points=1),
+        Part("Q", points=1),
+        Part("t_advance", unit="s", points=1),
+        Part("t_return", unit="s", points=1),
+    ),
+    symbols={"xC": "x_C", "stroke": "s", "t_advance": "t_a", "t_return": "t_r"},
+    figure=figure,
+    driver=Driver("theta2", "omega2", output="v_C"),
+)

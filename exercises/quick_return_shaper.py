@@ -1,0 +1,173 @@
+"""Shaper: a guide that oscillates drives a ram (Figure 26 c, equations 22, 23)."""
+
+import numpy as np
+
+from coursework.degrees import angle, asin, polar, sin, sqrt, wrap
+from coursework.figures import (
+    Figure,
+    angle_mark,
+    centre_line,
+    circle,
+    ground_pivot,
+    line,
+    link,
+    note,
+    pin,
+    rail,
+    rotation_arrow,
+    slider,
+    slot_link,
+)
+from coursework.kinematics.dyads import rrp
+from coursework.model import Driver, Exercise, Part, drawn
+
+
+def arm(r1, r2, theta2):
+    """Vector O4A."""
+    return 1j * r1 + polar(r2, theta2)
+
+
+def guide_rate(arm, r1, r2, theta2):
+    """omega4 / omega2."""
+    return r2 * (r2 + r1 * sin(theta2)) / abs(arm) ** 2
+
+
+def P(arm, r4):
+    return r4 * arm / abs(arm)
+
+
+def C(P, r5, h):
+    return rrp(P, r5, h)
+
+
+def _ram(P, r5, h, guide_rate):
+    """xC, and v_C over omega2."""
+    C = rrp(P, r5, h)
+    rod = C - P
+    return C.real, guide_rate * (P.real * rod.imag / rod.real - P.imag)
+
+
+def ram(P, r5, h, guide_rate):
+    return _ram(P, r5, h, guide_rate)
+
+
+def lowest_P(r1, r2, r4):
+    """Ordinate of P at the ends of the swing."""
+    return r4 * sqrt(r1**2 - r2**2) / r1
+
+
+def rod_reaches_with_room(lowest_P, r4, r5, h):
+    return r5 > 1.4 * np.maximum(abs(h - r4), abs(h - lowest_P))
+
+
+def rod_never_in_line_with_the_guide(r1, r2, r4, r5, h):
+    """The line O4-C of a rod stretched out is flatter than the guide ever is."""
+    return asin(h / (r4 + r5)) < 87 - asin(r2 / r1)
+
+
+def pins_can_be_told_apart_on_paper(arm, r4):
+    return abs(abs(arm) - r4) > 0.1 * r4
+
+
+def crank_off_the_axes(theta2):
+    return theta2 % 90 >= 5
+
+
+def ram_away_from_the_y_axis(ram, r5):
+    return abs(ram[0]) > 0.5 * r5
+
+
+def ram_moves_visibly(ram, r2):
+    return abs(ram[1]) > 0.25 * r2
+
+
+def _told_apart(wrong, right):
+    """Whether a mistake moves a value by two tolerances and more, not at all, or to where nothing closes."""
+    gap = abs(wrong - right) / abs(0.01 * right)
+    return ~((gap <= 2) & (gap >= 0.25))
+
+
+def _tells(wrong, ram):
+    return _told_apart(wrong[0], ram[0]) & _told_apart(wrong[1], ram[1])
+
+
+def place_of_the_rod_on_the_guide_tells(arm, r5, h, guide_rate, ram):
+    return _tells(_ram(arm, r5, h, guide_rate), ram)
+
+
+def turning_of_the_guide_tells(r4, theta2, r5, h, ram):
+    return _tells(_ram(polar(r4, theta2), r5, h, 1.0), ram)
+
+
+def projection_on_the_guide_tells(arm, P, r2, r5, h, ram):
+    return _tells(_ram(P, r5, h, r2 / abs(arm)), ram)
+
+
+def _clearest(*directions):
+    """The direction, by steps of 15 degrees, that is farthest from all of these."""
+    return max(range(0, 360, 15), key=lambda way: min(abs(wrap(way - taken)) for taken in directions))
+
+
+def figure(arm, P, C, r1, r2, r4, theta2, omega2):
+    O4, O2 = 0j, 1j * r1
+    along = arm / abs(arm)
+    turning = _clearest(0, 90, 270, theta2, 0.5 * theta2, angle(arm - O2))
+    half_turn = 20 if omega2 > 0 else -20
+    half_rail = 0.3 * r2 + 0.05 * r4
+    return Figure(
+        circle(O2, r2, dashed=True),
+        rotation_arrow(O2, 1.25 * r2, turning - half_turn, turning + half_turn, label=r"\omega_2"),
+        rail(C - half_rail, C + half_rail),
+        slot_link(O4, along * max(1.06 * (r1 + r2), 1.06 * r4)),
+        line(O4, O2, dashed=True, label="r_1"),
+        link(O2, arm, label="r_2"),
+        link(P, C, label="r_5"),
+        centre_line(O4, max(C.real, 0.0) + 0.3 * r4, label="x"),
+        line(O2, O2 + 0.7 * r2, dashed=True),
+        angle_mark(O2, 0, theta2, r"\theta_2"),
+        slider(arm, angle(arm), label="A"),
+        note(C + half_rail, "y=h"),
+        slider(C, 0, label="C"),
+        ground_pivot(O4, "O_4"),
+        ground_pivot(O2, "O_2"),
+        pin(P, "P"),
+        pin(C),
+    )
+
+
+EXERCISE = Exercise(
+    given={
+        "r1": drawn(200, 400, step=5, unit="mm"),
+        "r2": drawn(lambda r1: 0.2 * r1, lambda r1: 0.6 * r1, step=5, unit="mm", positive=True),
+        "r4": drawn(lambda r1: 1.5 * r1, lambda r1: 2.2 * r1, step=5, unit="mm", positive=True),
+        "r5": drawn(120, 300, step=5, unit="mm"),
+        "h": drawn(lambda r4: r4 - 40, lambda r4: r4, step=5, unit="mm", positive=False),
+        "theta2": drawn(-175, 180, step=5, unit="deg"),
+        "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
+    },
+    helpers=(arm, guide_rate, P, C, ram, lowest_P),
+    keep=(
+        rod_reaches_with_room,
+        rod_never_in_line_with_the_guide,
+        pins_can_be_told_apart_on_paper,
+        crank_off_the_axes,
+        ram_away_from_the_y_axis,
+        ram_moves_visibly,
+        place_of_the_rod_on_the_guide_tells,
+        turning_of_the_guide_tells,
+        projection_on_the_guide_tells,
+    ),
+    parts=(
+        Part("xC", unit="mm", points=2),
+        Part("v_C", unit="mm/s", points=2),
+        Part("stroke", unit="mm", points=1),
+        Part("alpha", unit="deg", points=2),
+        Part("beta", unit="deg", points=1),
+        Part("Q", points=1),
+        Part("t_advance", unit="s", points=1),
+        Part("t_return", unit="s", points=1),
+    ),
+    symbols={"xC": "x_C", "stroke": "s", "t_advance": "t_a", "t_return": "t_r"},
+    figure=figure,
+    driver=Driver("theta2", "omega2", output="v_C"),
+)

@@ -1,0 +1,217 @@
+"""Whitworth's quick return: a guide that turns fully drives a ram (Figure 26 b, equations 22, 23)."""
+
+import numpy as np
+
+from coursework.degrees import angle, asin, atan, cos, polar, sin, sqrt, wrap
+from coursework.figures import (
+    Figure,
+    angle_mark,
+    centre_line,
+    circle,
+    ground_pivot,
+    line,
+    link,
+    note,
+    pin,
+    rail,
+    rotation_arrow,
+    slider,
+    slot_link,
+)
+from coursework.kinematics.dyads import rrp
+from coursework.model import Driver, Exercise, Part, drawn
+
+
+def arm(r1, r2, theta2):
+    """Vector O4A."""
+    return 1j * r1 + polar(r2, theta2)
+
+
+def guide_rate(arm, r1, r2, theta2):
+    """omega4 / omega2."""
+    return r2 * (r2 + r1 * sin(theta2)) / abs(arm) ** 2
+
+
+def P(arm, r4):
+    return r4 * arm / abs(arm)
+
+
+def C(P, r5, h):
+    return rrp(P, r5, h)
+
+
+def _rod_share(P, C):
+    """What the turning of the rod adds to the velocity of C, over omega4."""
+    rod = C - P
+    return P.real * rod.imag / rod.real
+
+
+def _ram(P, r5, h, guide_rate):
+    """xC, and v_C over omega2."""
+    C = rrp(P, r5, h)
+    return C.real, guide_rate * (_rod_share(P, C) - P.imag)
+
+
+def ram(P, r5, h, guide_rate):
+    return _ram(P, r5, h, guide_rate)
+
+
+def stroke(r4, r5, h):
+    return sqrt((r5 + r4) ** 2 - h**2) - sqrt((r5 - r4) ** 2 - h**2)
+
+
+def lines_to_the_ends(r4, r5, h):
+    """Inclinations of O4-C at the near and the far end."""
+    return asin(h / (r5 - r4)), asin(h / (r5 + r4))
+
+
+def _unequal_halves(lines, at_A):
+    """(alpha - beta) / 2, from the angles at A between guide and crank."""
+    return abs(lines[0] - lines[1] + at_A[0] + at_A[1])
+
+
+def unequal_halves(lines_to_the_ends, r1, r2):
+    return _unequal_halves(lines_to_the_ends, [asin(r1 * cos(line) / r2) for line in lines_to_the_ends])
+
+
+def largest_crank(r1):
+    return np.minimum(2.4 * r1, 170)
+
+
+def pivots_can_be_told_apart_on_paper(r1, r4, r5):
+    return r1 > 0.1 * (r4 + r5)
+
+
+def pins_can_be_told_apart_on_paper(arm, r4, r5):
+    return abs(abs(arm) - r4) > 0.06 * (r4 + r5)
+
+
+def rod_reaches_with_room(r4, r5, h):
+    return r5 > 1.8 * r4 + abs(h)
+
+
+def crank_off_the_axes(theta2):
+    return theta2 % 90 >= 5
+
+
+def ram_moves_visibly(ram, r4):
+    return abs(ram[1]) > 0.15 * r4
+
+
+def _told_apart(wrong, right):
+    """Whether a mistake moves a value by two tolerances and more, or not at all."""
+    gap = abs(wrong - right) / abs(0.01 * right)
+    return (gap > 2) | (gap < 0.25)
+
+
+def _tells(wrong, ram):
+    return _told_apart(wrong[0], ram[0]) & _told_apart(wrong[1], ram[1])
+
+
+def _arcs_tell(wrong, right):
+    """In the angles themselves, in the shares of the turn that they are, and in their ratio."""
+    advance, back = 180 + right, 180 - right
+    ratio = _told_apart((180 + wrong) / (180 - wrong), advance / back)
+    gap = abs(wrong - right)
+    return ratio & ((gap > 0.02 * advance) | (gap < 0.0025 * back))
+
+
+def place_of_the_rod_on_the_guide_tells(arm, r5, h, guide_rate, ram):
+    return _tells(_ram(arm, r5, h, guide_rate), ram)
+
+
+def turning_of_the_guide_tells(r4, theta2, r5, h, ram):
+    return _tells(_ram(polar(r4, theta2), r5, h, 1.0), ram)
+
+
+def quadrant_of_the_guide_tells(P, arm, r5, h, guide_rate, ram):
+    return _tells(_ram(-P, r5, h, -guide_rate), ram) | (arm.real > 0)
+
+
+def rotation_of_the_rod_tells(P, guide_rate, ram):
+    return _told_apart(-guide_rate * P.imag, ram[1])
+
+
+def stroke_is_not_twice_the_crank(stroke, r2):
+    return _told_apart(2 * r2, stroke)
+
+
+def sine_and_tangent_tell(lines_to_the_ends, unequal_halves, r1, r2):
+    wrong = [atan(r1 * cos(line) / r2) for line in lines_to_the_ends]
+    return _arcs_tell(_unequal_halves(lines_to_the_ends, wrong), unequal_halves)
+
+
+def height_of_the_line_tells(unequal_halves, r1, r2):
+    return _arcs_tell(2 * asin(r1 / r2), unequal_halves)
+
+
+def _clearest(*directions):
+    """The direction, by steps of 15 degrees, that is farthest from all of these."""
+    return max(range(0, 360, 15), key=lambda way: min(abs(wrap(way - taken)) for taken in directions))
+
+
+def figure(arm, P, C, r1, r2, r4, theta2, omega2):
+    O4, O2 = 0j, 1j * r1
+    along = arm / abs(arm)
+    turning = _clearest(0, 270, theta2, 0.5 * theta2, angle(C - O2), angle(arm))
+    half_turn = 20 if omega2 > 0 else -20
+    return Figure(
+        circle(O2, r2, dashed=True),
+        rotation_arrow(O2, 1.15 * r2, turning - half_turn, turning + half_turn, label=r"\omega_2"),
+        rail(C - 0.5 * r4, C + 0.5 * r4),
+        slot_link(O4, along * max(1.12 * (r1 + r2), 1.1 * r4)),
+        line(O4, O2, dashed=True, label="r_1"),
+        link(O2, arm, label="r_2"),
+        link(P, C, label="r_5"),
+        centre_line(O4, C.real + 0.6 * r4, label="x"),
+        line(O2, O2 + 0.6 * r2, dashed=True),
+        angle_mark(O2, 0, theta2, r"\theta_2"),
+        slider(arm, angle(arm), label="A"),
+        note(C + 0.5 * r4, "y=h"),
+        slider(C, 0, label="C"),
+        ground_pivot(O4, "O_4"),
+        ground_pivot(O2, "O_2"),
+        pin(P, "P"),
+        pin(C),
+    )
+
+
+EXERCISE = Exercise(
+    given={
+        "r1": drawn(45, 90, step=5, unit="mm"),
+        "r2": drawn(lambda r1: 1.48 * r1, largest_crank, step=5, unit="mm", positive=True),
+        "r4": drawn(50, 150, step=5, unit="mm"),
+        "r5": drawn(250, 500, step=5, unit="mm"),
+        "h": drawn(-100, 100, step=50, unit="mm"),
+        "theta2": drawn(-175, 180, step=5, unit="deg"),
+        "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
+    },
+    helpers=(arm, guide_rate, P, C, ram, stroke, lines_to_the_ends, unequal_halves),
+    keep=(
+        pivots_can_be_told_apart_on_paper,
+        pins_can_be_told_apart_on_paper,
+        rod_reaches_with_room,
+        crank_off_the_axes,
+        ram_moves_visibly,
+        place_of_the_rod_on_the_guide_tells,
+        turning_of_the_guide_tells,
+        quadrant_of_the_guide_tells,
+        rotation_of_the_rod_tells,
+        stroke_is_not_twice_the_crank,
+        sine_and_tangent_tell,
+        height_of_the_line_tells,
+    ),
+    parts=(
+        Part("xC", unit="mm", points=2),
+        Part("v_C", unit="mm/s", points=2),
+        Part("stroke", unit="mm", points=1),
+        Part("alpha", unit="deg", points=2),
+        Part("beta", unit="deg", points=1),
+        Part("Q", points=1),
+        Part("t_advance", unit="s", points=1),
+        Part("t_return", unit="s", points=1),
+    ),
+    symbols={"xC": "x_C", "stroke": "s", "t_advance": "t_a", "t_return": "t_r"},
+    figure=figure,
+    driver=Driver("theta2", "omega2", output="v_C"),
+)

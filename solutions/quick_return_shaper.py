@@ -1,0 +1,339 @@
+"""Shaper: solution.
+
+The slotted mechanism gives the guide's direction and rate; the point P of the guide carries the rod to the ram.
+The ram turns back at the ends of the guide's swing, where the guide touches the circle of A and stands square to
+the crank. Only where the rod lines up with the guide inside the swing would it turn back there too.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.degrees import acos, asin, atan2, cos, from_radians, polar, sin, sqrt, wrap
+from coursework.errors import CannotAssemble, Undefined
+from coursework.figures import (
+    Figure,
+    circle,
+    ground_pivot,
+    line,
+    link,
+    pin,
+    point,
+    rotation_arrow,
+)
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.slider_crank import SliderCrank
+from coursework.kinematics.slotted_guide import SlottedGuidePose
+from coursework.solution import formula, mistake, stable
+
+UNITS = {
+    "rA": "mm",
+    "theta4": "deg",
+    "omega4": "rad/s",
+    "xP": "mm",
+    "yP": "mm",
+    "p": "mm",
+    "q": "mm",
+    "omega5": "rad/s",
+    "sigma": "deg",
+    "T": "s",
+}
+SYMBOLS = {"xP": "x_P", "yP": "y_P"}
+
+
+class _Turn(NamedTuple):
+    """What a whole turn of the crank does to the ram."""
+
+    stroke: Any
+    lines_up: Any  #: whether rod and guide line up inside the swing, where the ram turns back too
+
+
+def _arm(r1, r2, theta2):
+    """The guide at its crank angle, by the numeric core; it counts angles from the frame's direction."""
+    return SlottedGuidePose(r1, r2, Degrees.between(90.0, theta2))
+
+
+def _to_the_contact(r1, r2):
+    """From O4 along a tangent to the circle of A; none, and no swing, unless O4 lies outside."""
+    if isinstance(r1 + r2, float) and not r2 < r1:
+        raise Undefined(
+            f"the guide does not oscillate: r2 must be less than r1, found r2 = {r2:.6g} and r1 = {r1:.6g}"
+        )
+    return sqrt((r1 - r2) * (r1 + r2))
+
+
+def _turn(r1, r2, r4, r5, h):
+    """The stroke between the extreme positions, at the ends of the swing or where rod and guide are in line."""
+    alone = isinstance(r1 + r2 + r4 + r5 + h, float)
+    cosine = _to_the_contact(r1, r2) / r1
+    rise = h - r4 * cosine
+    room = r5 - np.maximum(abs(rise), abs(h - r4))
+    if alone and not room > 0:
+        raise CannotAssemble(f"the rod does not reach its line all turn: it is {-room:.3g} mm too short")
+    half = r4 * r2 / r1
+    stretched, folded = h > cosine * (r5 + r4), -h > cosine * (r5 - r4)
+    run = np.sqrt((r5 - rise) * (r5 + rise))
+    at_most = np.where(stretched, np.sqrt((r5 + r4 - h) * (r5 + r4 + h)) - run, half)
+    at_least = np.where(folded, np.sqrt((r5 - r4 - h) * (r5 - r4 + h)) - run, -half)
+    stroke = np.where((room > 0) & (r2 < r1), at_most - at_least, np.nan)
+    return _Turn(stroke[()], np.logical_or(stretched, folded))
+
+
+@formula(r"\sqrt{<r1>^2 + <r2>^2 + 2 \times <r1> \times <r2> \times \sin <theta2>}")
+@stable(lambda _arm: _arm.arm)
+def rA(r1, r2, theta2):
+    """Distance O4A, by the law of cosines."""
+    return sqrt(r1**2 + r2**2 + 2 * r1 * r2 * sin(theta2))
+
+
+@formula(r"\operatorname{atan2}\left(<r1> + <r2> \sin <theta2>;\ <r2> \cos <theta2>\right)")
+@stable(lambda _arm: wrap(90 + from_radians(_arm.guide_angle)))
+def theta4(r1, r2, theta2):
+    """Direction of the guide, by its quadrant."""
+    return atan2(r1 + r2 * sin(theta2), r2 * cos(theta2))
+
+
+@stable(lambda omega2, _arm: _arm.guide_ratio * omega2)
+def omega4(r2, omega2, theta2, theta4, rA):
+    """Component of the velocity of A across the guide, over its distance."""
+    return r2 * omega2 * cos(theta2 - theta4) / rA
+
+
+@formula(r"<r4> \cos <theta4>")
+def xP(r4, theta4):
+    return r4 * cos(theta4)
+
+
+@formula(r"<r4> \sin <theta4>")
+def yP(r4, theta4):
+    return r4 * sin(theta4)
+
+
+def p(h, yP):
+    """Height of C above P."""
+    return h - yP
+
+
+@stable(lambda r4, r5, h, theta4: SliderCrank(r4, r5, h).run(Degrees(theta4)))
+def q(r5, p):
+    """How far C lies to the right of P."""
+    return sqrt(r5**2 - p**2)
+
+
+def xC(xP, q):
+    return xP + q
+
+
+@formula(r"-\frac{<omega4> \times <xP>}{<q>}")
+def omega5(omega4, xP, q):
+    """C keeps to its line: no velocity across it."""
+    return -omega4 * xP / q
+
+
+@formula(r"-<omega4> \times <yP> - <omega5> \times <p>")
+def v_C(omega4, yP, omega5, p):
+    """Velocity of the ram, positive to the right."""
+    return -omega4 * yP - omega5 * p
+
+
+@formula(r"\arcsin \frac{<r2>}{<r1>}")
+@stable(lambda r1, r2: atan2(r2, _to_the_contact(r1, r2)))
+def sigma(r1, r2):
+    """Between the guide at the end of its swing and the y axis: the crank is square to it."""
+    return asin(r2 / r1)
+
+
+@stable(lambda _turn: _turn.stroke)
+def stroke(r1, r2, r4):
+    """Between the two positions of P, as the rod is equally inclined in both."""
+    return 2 * r4 * r2 / r1
+
+
+def _two_strokes(sigma, _turn):
+    if np.ndim(_turn.stroke) == 0 and _turn.lines_up:
+        raise Undefined(
+            "C turns back more than twice a turn: the rod lines up with the guide within its swing, "
+            "and one stroke out and one back are not two arcs of crank; only the stroke exists"
+        )
+    return np.where(np.isnan(_turn.stroke) | _turn.lines_up, np.nan, 180 + 2 * sigma)[()]
+
+
+@formula(r"180^{\circ} + 2 \times <sigma>")
+@stable(_two_strokes)
+def alpha(sigma):
+    """The longer of the two arcs of crank between the ends of the swing."""
+    return 180 + 2 * sigma
+
+
+@formula(r"360^{\circ} - <alpha>")
+def beta(alpha):
+    return 360 - alpha
+
+
+def Q(alpha, beta):
+    return alpha / beta
+
+
+@formula(r"\frac{2 \times \pi}{\left|<omega2>\right|}")
+def T(omega2):
+    """Duration of a turn."""
+    return 2 * math.pi / abs(omega2)
+
+
+@formula(r"\frac{<alpha>}{360^{\circ}} \times <T>")
+def t_advance(alpha, T):
+    return alpha / 360 * T
+
+
+@formula(r"\frac{<beta>}{360^{\circ}} \times <T>")
+def t_return(beta, T):
+    return beta / 360 * T
+
+
+@mistake("theta4", "omega4")
+def guide_turns_with_crank(theta2, omega2):
+    return theta2, omega2
+
+
+@mistake("omega4")
+def guide_speed_no_projection(r2, omega2, rA):
+    return r2 * omega2 / rA
+
+
+@mistake("xP", "yP")
+def P_at_A(rA, theta4):
+    return rA * cos(theta4), rA * sin(theta4)
+
+
+@mistake("stroke")
+def stroke_2r2(r2):
+    return 2 * r2
+
+
+@mistake("stroke")
+def stroke_formula(r4):
+    return 2 * r4
+
+
+@mistake("alpha", share=0.5)
+def Q_half(sigma):
+    return 180 + sigma
+
+
+@mistake("sigma")
+def Q_acos(r1, r2):
+    return acos(r2 / r1)
+
+
+@mistake("Q", share=0.5)
+def Q_inverse(alpha, beta):
+    return beta / alpha
+
+
+@mistake("T")
+def T_is_frequency(omega2):
+    return abs(omega2) / (2 * math.pi)
+
+
+@mistake("t_advance", "t_return", share=0.5)
+def advance_and_return_exchanged(t_advance, t_return):
+    return t_return, t_advance
+
+
+def figure(r1, r2, r4, r5, h, omega2, sigma):
+    """Both ends of the swing, and the arc that the crank covers during the advance."""
+    O4, O2 = 0j, 1j * r1
+    right, left = polar(1, 90 - sigma), polar(1, 90 + sigma)
+    A2, A1 = O2 + polar(r2, -sigma), O2 + polar(r2, 180 + sigma)
+    P2, P1 = r4 * right, r4 * left
+    C2, C1 = (complex(P.real + sqrt(r5**2 - (h - P.imag) ** 2), h) for P in (P2, P1))
+    start, end = (-sigma, 180 + sigma) if omega2 > 0 else (180 + sigma, -sigma)
+    return Figure(
+        circle(O2, r2, dashed=True),
+        line(C1, C2, dashed=True),
+        link(O4, P1),
+        link(O4, P2),
+        link(P1, C1),
+        link(P2, C2),
+        link(O2, A1),
+        link(O2, A2),
+        rotation_arrow(O2, 0.5 * r2, start, end, label=r"\alpha"),
+        ground_pivot(O4, "O_4"),
+        ground_pivot(O2, "O_2"),
+        pin(A1, "A_1"),
+        pin(A2, "A_2"),
+        pin(P1, "P_1"),
+        pin(P2, "P_2"),
+        point(C1, "C_1"),
+        point(C2, "C_2"),
+    )
+
+
+def residual(
+    r1, r2, r4, r5, h, theta2, omega2, rA, theta4, omega4, omega5, xC, v_C,
+    stroke, alpha, beta, Q, t_advance, t_return,
+):  # fmt: skip
+    """Both loops and their derivatives, crank square to guide at the ends of the arc alpha, and the times."""
+    crank = r2 * np.exp(1j * np.radians(theta2))
+    along = np.exp(1j * np.radians(theta4))
+    rod = xC + 1j * h - r4 * along
+    velocity_of_A = 1j * omega2 * crank / along
+    speed = r4 * abs(omega4) + r5 * abs(omega5)
+
+    # The arc of the advance lies on the far side of O2: it is halved by the y axis.
+    ends = [1j * r2 * np.exp(side * 0.5j * np.radians(alpha)) for side in (-1, 1)]
+    arms = [1j * r1 + end for end in ends]
+    pins = [r4 * arm / abs(arm) for arm in arms]
+    rams = [pin.real + np.sqrt(r5**2 - (h - pin.imag) ** 2) for pin in pins]
+    turn = 2 * np.pi / abs(omega2)
+    return (
+        abs(1j * r1 + crank - rA * along) / (r1 + r2),
+        abs(velocity_of_A.imag - rA * omega4) / (r2 * abs(omega2)),
+        abs(abs(rod) - r5) / r5,
+        abs(np.minimum(rod.real, 0)) / r5,
+        abs(1j * (omega4 * r4 * along + omega5 * rod) - v_C) / speed,
+        abs((np.conj(arms[0]) * ends[0]).real) / (r1 * r2),
+        abs(rams[0] - rams[1] - stroke) / r5,
+        np.maximum(beta - alpha, 0) / 360,
+        abs(alpha + beta - 360) / 360,
+        abs(Q * beta - alpha) / alpha,
+        abs(t_advance + t_return - turn) / turn,
+        abs(t_advance * beta - t_return * alpha) / (turn * alpha),
+    )
+
+
+KNOWN = (
+    # The course's slotted mechanism, where A and the guide are; the crank is half the frame: 30 degrees either side.
+    (
+        {"r1": 228.6, "r2": 114.3, "r4": 400, "r5": 200, "h": 380, "theta2": 135, "omega2": 1},
+        {"rA": "319.80", "theta4": "104.64", "sigma": 30, "alpha": 240, "beta": 120, "Q": 2, "stroke": 400},
+    ),
+    # The guide upright, A above O2; P-C a 3-4-5 triangle.
+    (
+        {"r1": 200, "r2": 100, "r4": 450, "r5": 100, "h": 390, "theta2": 90, "omega2": 3},
+        {"theta4": 90, "omega4": 1, "xC": 80, "v_C": -450, "stroke": 450},
+    ),
+    # The guide upright, A below O2: the guide turns back, and faster.
+    (
+        {"r1": 200, "r2": 100, "r4": 450, "r5": 100, "h": 390, "theta2": -90, "omega2": math.pi},
+        {
+            "theta4": 90,
+            "omega4": -math.pi,
+            "xC": 80,
+            "v_C": 450 * math.pi,
+            "t_advance": 4 / 3,
+            "t_return": 2 / 3,
+        },
+    ),
+    # The end of the swing, a 3-4-5 triangle at O4 too: P at (300, 400), the rod level.
+    (
+        {"r1": 250, "r2": 150, "r4": 500, "r5": 130, "h": 400, "theta2": -36.86989764584402, "omega2": -7},
+        {"rA": 200, "xC": 430, "v_C": 0, "stroke": 600, "alpha": "253.7398", "beta": "106.2602"},
+    ),
+    # The rod lines up with the guide before the right end of the swing: the ram goes farther than at that end.
+    (
+        {"r1": 100, "r2": 60, "r4": 200, "r5": 100, "h": 256, "theta2": 90, "omega2": 1},
+        {"stroke": 92 + 24464**0.5},
+    ),
+)

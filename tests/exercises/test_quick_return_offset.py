@@ -1,0 +1,129 @@
+"""Offset slider-crank: against fifty digits, over a swept turn, and where a crank does not turn fully."""
+
+import mpmath
+import numpy as np
+import pytest
+
+import coursework
+from coursework.errors import CannotAssemble
+
+EXERCISE = coursework.open_course()["quick_return_offset"]
+TURN = ("stroke", "alpha", "beta", "Q", "t_advance", "t_return")
+PLAIN = {"r2": 50.0, "r3": 140.0, "e": 35.0, "theta2": 40.0, "omega2": 6.0}
+
+
+def exact(r2, r3, e, theta2, omega2):
+    """Fifty digits: the piston on its line by |AC| = r3, its velocity by A's rigid rod, dead centres on circles."""
+    with mpmath.workdps(50):
+        r2, r3, e, omega2 = map(mpmath.mpf, (r2, r3, e, omega2))
+        A = r2 * mpmath.expjpi(mpmath.mpf(theta2) / 180)
+
+        def right_of(point, length):
+            return mpmath.re(point) + mpmath.sqrt(length**2 - (e - mpmath.im(point)) ** 2) + 1j * e
+
+        C = right_of(A, r3)
+        # Rigid rod: both ends have the same velocity along it.
+        along, v_A = C - A, 1j * omega2 * A
+        v_C = mpmath.re(v_A * mpmath.conj(along)) / mpmath.re(along)
+        near, far = right_of(mpmath.mpc(0), r3 - r2), right_of(mpmath.mpc(0), r3 + r2)
+        # The crank points to the far end, and away from the near one.
+        arc = mpmath.degrees(abs(mpmath.arg(far / -near)))
+        turn = 2 * mpmath.pi / abs(omega2)
+        return {
+            "xC": mpmath.re(C),
+            "v_C": v_C,
+            "stroke": mpmath.re(far - near),
+            "alpha": 360 - arc,
+            "beta": arc,
+            "Q": (360 - arc) / arc,
+            "t_advance": turn * (360 - arc) / 360,
+            "t_return": turn * arc / 360,
+        }
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_answers_are_those_of_the_loop_in_fifty_digits(seed):
+    variant = EXERCISE.variant(seed)
+    answers, reference = variant.solution(), exact(**variant.given)
+    assert set(answers) == set(reference)
+    for name, value in reference.items():
+        assert abs(float(answers[name] - value)) < 1e-13 * abs(value), name
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_stroke_and_arcs_are_those_of_a_swept_turn(seed):
+    given = dict(EXERCISE.variant(seed).given)
+    theta2 = np.arange(36_000) / 100
+    swept = EXERCISE.solve(**{**given, "theta2": theta2}, only=("xC", "v_C"))
+    answers = EXERCISE.solve(**given)
+    assert np.ptp(swept["xC"]) == pytest.approx(answers["stroke"], abs=1e-4)
+    forward = (swept["v_C"] > 0).mean() * 360
+    assert max(forward, 360 - forward) == pytest.approx(answers["alpha"], abs=0.03)
+    assert (np.diff(np.sign(swept["v_C"])) != 0).sum() in (1, 2)
+
+
+@pytest.mark.parametrize(
+    "change", [{"e": 1e-9}, {"r2": 1e-6}, {"r3": 85.0 + 1e-12}, {"e": -90 * (1 - 1e-13)}, {"r3": 1e6}]
+)
+def test_the_strokes_keep_their_digits_where_the_formulas_lose_them(change):
+    """A piston nearly in line, a tiny crank, a rod nearly square to its line: stroke and asymmetry both."""
+    given = {**PLAIN, **change}
+    found, reference = EXERCISE.solve(**given, only=TURN), exact(**given)
+    for name in TURN:
+        assert found[name] == pytest.approx(float(reference[name]), rel=1e-14), name
+
+
+def test_the_side_of_the_line_and_the_sense_of_rotation_change_no_duration():
+    here = EXERCISE.solve(**PLAIN)
+    for change in ({"e": -35.0}, {"omega2": -6.0}):
+        there = EXERCISE.solve(**{**PLAIN, **change})
+        assert {n: there[n] for n in TURN} == {n: here[n] for n in TURN}
+    mirrored = EXERCISE.solve(**{**PLAIN, "e": -35.0, "theta2": -40.0, "omega2": -6.0})
+    assert mirrored == pytest.approx(here, rel=1e-14)
+
+
+def test_the_piston_rests_at_both_ends_of_its_stroke():
+    ends = EXERCISE.solve(**PLAIN, only=("x1", "x2"))
+    for name, beyond in (("x1", 180.0), ("x2", 0.0)):
+        towards = np.degrees(np.arctan2(PLAIN["e"], ends[name])) + beyond
+        there = EXERCISE.solve(**{**PLAIN, "theta2": towards}, only=("xC", "v_C"))
+        assert there["xC"] == pytest.approx(ends[name], rel=1e-13)
+        assert there["v_C"] == pytest.approx(0, abs=1e-11)
+
+
+def test_a_crank_that_does_not_turn_has_no_strokes_while_the_instant_has_its_answers():
+    short = {**PLAIN, "r3": 80.0}
+    for name in TURN:
+        with pytest.raises(CannotAssemble, match=r"longer than r2 \+ \|e\| = 85; it is 80 \(gap 5\)"):
+            EXERCISE.solve(**short, only=name)
+    assert np.isfinite(EXERCISE.solve(**short, only="v_C")["v_C"])
+    with pytest.raises(CannotAssemble, match="rod reaches only"):
+        EXERCISE.solve(**{**short, "theta2": -90}, only="xC")
+    # A rod much shorter than the crank has no position in line either, though the squares would have roots.
+    row = EXERCISE.solve(**{**PLAIN, "r3": np.array([80.0, 10.0, 140.0])}, only=(*TURN, "x1", "phi1"))
+    for name, values in row.items():
+        assert np.isnan(values).tolist() == [True, True, False], name
+
+
+def test_strokes_compute_nothing_of_the_instant():
+    assert not {"p", "q", "xC", "v_C"} & set(EXERCISE.plan(TURN))
+    assert set(EXERCISE.plan(("v_C",))) == {"p", "q", "omega3", "v_C"}
+
+
+def test_the_sign_of_the_notes_sends_the_piston_the_other_way():
+    for variant in EXERCISE.variants(range(20)):
+        mark = variant.grade({"v_C": -variant.solution()["v_C"]})["v_C"]
+        assert "velocity_sign" in mark.matches
+
+
+def test_lines_above_and_below_the_pivot_are_both_issued():
+    above = [v.given["e"] > 0 for v in EXERCISE.variants(range(300))]
+    assert 0.35 < np.mean(above) < 0.65
+
+
+def test_scalars_and_rows_agree():
+    drawn = [dict(EXERCISE.variant(seed).given) for seed in range(30)]
+    row = EXERCISE.solve(**{n: np.array([g[n] for g in drawn]) for n in drawn[0]})
+    for i, given in enumerate(drawn):
+        for name, value in EXERCISE.solve(**given).items():
+            assert row[name][i] == pytest.approx(value, rel=1e-13), name
