@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from coursework.course import Course
 
 DONE, FOUND, BAD = 0, 1, 2  #: exit statuses
+FEEDBACK_STUDENTS = 1000  #: for so many at most, feedback sheets are printed unless told
 
 
 def main() -> None:
@@ -544,18 +545,34 @@ def build_files(
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder to write; marks/ beside it."
 )
-@click.option("--no-feedback", is_flag=True, help="Write no feedback sheets.")
+@click.option(
+    "--feedback/--no-feedback",
+    default=None,
+    help=f"Feedback sheets, a PDF a student; unless told, for up to {FEEDBACK_STUDENTS} students.",
+)
+@click.option(
+    "--accepted",
+    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    help="CSV of answers accepted by hand: student,exercise,seed,part and, if wanted, points,reason.",
+)
 @click.pass_context
 def grade(
-    context: click.Context, submissions: Sequence[Path], issued: Path, out: Path | None, no_feedback: bool
+    context: click.Context,
+    submissions: Sequence[Path],
+    issued: Path,
+    out: Path | None,
+    feedback: bool | None,
+    accepted: Path | None,
 ) -> int:
-    """Mark CSV, JSON and notebooks of answers, files or folders of them."""
-    from coursework.gradebook import needs_a_look
+    """Mark CSV, JSON, Parquet and notebooks of answers, files or folders of them.
 
+    Marked again, it says what changed and for whom.
+    """
     out = out or issued.parent / "marks"
-    book = grade_files(_course(context), submissions, issued, out, feedback=not no_feedback)
-    marked = sum(len(g.marked) for g in book.graded)
-    click.echo(f"{book.rows_in} rows: {marked} marked, {len(book.rejected)} rejected; see {out}")
+    book = grade_with_bar(_course(context), submissions, issued, out, feedback=feedback, accepted=accepted)
+    click.echo(f"{book.rows_in} rows: {book.marked} marked, {len(book.rejected)} rejected; see {out}")
+    if book.changes:
+        click.echo(f"{book.changes} marks are not what they were before; see {out / 'changes.csv'}")
     for warning in book.warnings:
         click.echo(f"coursework: note: {warning}", err=True)
     for rejected in book.rejected[:10]:
@@ -563,70 +580,29 @@ def grade(
     if len(book.rejected) > 10:
         more = len(book.rejected) - 10
         click.echo(f"coursework: and {more} more in {out / 'rejected.csv'}", err=True)
-    return FOUND if needs_a_look(book) else DONE
+    return FOUND if book.needs_a_look else DONE
 
 
-def grade_files(course: Course, submissions: Sequence[Path], issued_path: Path, out: Path, *, feedback: bool):
-    """Mark files and write marks.csv, summary.csv, rejected.csv and feedback sheets."""
-    from coursework import gradebook
-    from coursework.building import write_whole
-    from coursework.issuing import csv_text
-    from coursework.submissions import Rejected, find, read_file
+def grade_with_bar(
+    course: Course,
+    submissions: Sequence[Path],
+    issued: Path,
+    out: Path,
+    *,
+    feedback: bool | None = True,
+    accepted: Path | None = None,
+):
+    """Mark files and write the tables, with a bar on a terminal."""
+    from coursework.grading import grade_files
+    from coursework.issued import Issued
 
-    issued = gradebook.Issued.read(issued_path)
-
-    def rows():
-        for found in find(submissions):
-            yield from [found] if isinstance(found, Rejected) else read_file(found)
-
+    if feedback is None:
+        read = Issued.read(issued)
+        feedback = max(len(read.students), len(read.records)) <= FEEDBACK_STUDENTS
     with _progress("marking", None) as advance:
-        book = gradebook.grade(course, issued, rows(), advance)
-    marks = csv_text(gradebook.marks_table(book), gradebook.MARKS_COLUMNS)
-    summary = csv_text(gradebook.summary_table(book, issued), gradebook.SUMMARY_COLUMNS)
-    rejected = csv_text(gradebook.rejected_table(book), gradebook.REJECTED_COLUMNS)
-    for name, text in (("marks.csv", marks), ("summary.csv", summary), ("rejected.csv", rejected)):
-        write_whole(out / name, text.encode("utf-8"))
-    if feedback:
-        with _progress("feedback", None) as advance:
-            _write_feedback(course, book, issued, out / "feedback", advance)
-    return book
-
-
-def _write_feedback(
-    course: Course, book: Any, issued: Any, folder: Path, advance: Callable[..., None]
-) -> None:
-    """One PDF a student, an exercise after another, called as the student's handouts are.
-
-    A sheet that cannot be printed is a warning, and costs no other.
-    """
-    import shutil
-
-    from coursework.building import File, write
-    from coursework.gradebook import feedback_sheet
-    from coursework.issuing import file_stems
-
-    by_student: dict[str, list] = {student: [] for student in issued.students}
-    for graded in book.graded:
-        by_student.setdefault(graded.student, []).append(graded)
-
-    def maker(student: str, sheets: list) -> Callable[[], bytes | None]:
-        def make() -> bytes | None:
-            try:
-                return course.renderer.booklet_pdf([feedback_sheet(g) for g in sheets])
-            except CourseworkError as fault:
-                book.warnings.append(f"no feedback sheet for {student}: {fault}")
-                return None
-
-        return make
-
-    shutil.rmtree(folder, ignore_errors=True)
-    stems = file_stems(by_student)
-    files = [
-        File(Path(f"{stem}.pdf"), maker(student, mine))
-        for stem, (student, mine) in zip(stems, by_student.items(), strict=True)
-        if mine
-    ]
-    write(folder, files, advance)
+        return grade_files(
+            course, submissions, issued, out, feedback=feedback, accepted=accepted, progress=advance
+        )
 
 
 # ----------------------------------------------------------------------- report
@@ -750,7 +726,7 @@ def demo(out: Path) -> None:
     """Do the whole job on a small class: sheets, answers of all kinds, marks."""
     from coursework.demo import class_of_twelve
 
-    rows, report = class_of_twelve(out, build_files, grade_files)
+    rows, report = class_of_twelve(out, build_files, grade_with_bar)
     _print_table(rows, title="What became of the answers")
     for line in report:
         click.echo(line)

@@ -14,6 +14,7 @@ import sys
 import tomllib
 import traceback
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cache, cached_property
 from pathlib import Path
 from types import MappingProxyType, ModuleType
@@ -444,26 +445,46 @@ class CourseExercise:
     def from_record(self, record: Mapping[str, Any]) -> Variant:
         """The variant that a record issued, with the values that the record holds.
 
+        A record of an older version keeps its data, its parts and their points, and is solved as the
+        exercise is solved now: so a corrected solution marks what was issued before.
+
         Raises
         ------
         BadInput
-            The record is of another exercise or version, or lacks a given quantity.
+            The record is of another exercise or a later version, lacks a given quantity, or asks a
+            part that is no more.
         """
         if record.get("exercise") != self.name:
             raise BadInput(f"a record of {record.get('exercise')!r} was given to {self.name!r}")
-        if record.get("version") != self.version:
+        version = record.get("version")
+        if not isinstance(version, int) or version > self.version:
             raise BadInput(
-                f"{self.name}: the record is of version {record.get('version')}, the course has "
-                f"version {self.version}; mark it with the course it was issued from"
+                f"{self.name}: the record is of version {version}, the course has version {self.version}; "
+                "mark it with the course it was issued from"
             )
         try:
             given = {n: record["given"][n]["value"] for n in self.spec.given}
             seed = int(record["seed"])
+            asked = {str(part["id"]): float(part["points"]) for part in record["parts"]}
         except (KeyError, TypeError, ValueError) as fault:
             raise BadInput(f"{self.name}: a record lacks {fault}") from fault
         for name, value in given.items():
             self._check_recorded(name, value)
-        return Variant(self, seed, given, str(record.get("lang", "fr")))
+        variant = Variant(self, seed, given, str(record.get("lang", "fr")))
+        if version < self.version:
+            variant.__dict__["parts"] = self._parts_of(asked)
+            variant.__dict__["record"] = dict(record)
+        return variant
+
+    def _parts_of(self, asked: Mapping[str, float]) -> tuple[Part, ...]:
+        """The parts of an older version, by id: what they asked then and were worth then."""
+        gone = [i for i in asked if self.spec.part(i) is None]
+        if gone:
+            raise BadInput(
+                f"{self.name}: a record of an older version asks {gone[0]!r}, which the course no longer has; "
+                "mark it with the course it was issued from"
+            )
+        return tuple(replace(p, points=asked[p.id]) for p in self.spec.parts if p.id in asked)
 
     def _check_recorded(self, name: str, value: Any) -> None:
         spec = self.spec.given[name]
@@ -476,7 +497,7 @@ class CourseExercise:
 
     # -------------------------------------------------------------------- texts
 
-    @property
+    @cached_property
     def languages(self) -> tuple[str, ...]:
         """The languages that this exercise has a statement in, among those the engine speaks."""
         return tuple(lang for lang in languages() if self._text_file("exercises", lang).exists())
@@ -498,6 +519,16 @@ class CourseExercise:
         if not path.exists():
             raise BadCourse(f"{self.name} has no text in {lang!r}: {kind}/{path.name} is missing")
         return statement.render(path, self.course.template_folders, variables)
+
+    def constants(self, kind: str, lang: str) -> statement.Constants:
+        """What of a text is the same for every variant; read once."""
+        if (kind, lang) not in self._constants:
+            self._constants[kind, lang] = statement.constants(self._text_file(kind, lang))
+        return self._constants[kind, lang]
+
+    @cached_property
+    def _constants(self) -> dict[tuple[str, str], statement.Constants]:
+        return {}
 
     def title(self, lang: str) -> str:
         """The title, taken from the statement of the first variant."""
@@ -548,6 +579,10 @@ class Variant:
     def parts(self) -> tuple[Part, ...]:
         """The parts that this variant asks."""
         return self.exercise._asked_of(self.given)
+
+    @property
+    def part_ids(self) -> tuple[str, ...]:
+        return tuple(part.id for part in self.parts)
 
     @cached_property
     def record(self) -> dict[str, Any]:
@@ -622,15 +657,26 @@ class Variant:
         rounded = {n: _rounded(v, self.lang) for n, v in self.walk.items()}
         return self.exercise.text("solutions", self.lang, {**rounded, **self.printed})
 
-    @cached_property
-    def _texts(self) -> tuple[statement.Text, ...]:
-        """The statement in every language, this one's first."""
-        others = (lang for lang in self.exercise.languages if lang != self.lang)
-        return (self.text, *(self.in_language(lang).text for lang in others))
-
     def labels(self, part: Part) -> dict[str, list[str]]:
         """What each case of a choice is called, in every language; nothing for another kind."""
-        return {case: [text.label(part.id, case) for text in self._texts] for case in part.choices}
+        return {case: [self._label(part.id, case, lang) for lang in self._langs] for case in part.choices}
+
+    @property
+    def _langs(self) -> tuple[str, ...]:
+        """Every language of the exercise, this variant's first."""
+        return (self.lang, *(lang for lang in self.exercise.languages if lang != self.lang))
+
+    def _label(self, quantity: str, case: str, lang: str) -> str:
+        label = self.exercise.constants("exercises", lang).labels.get((quantity, case))
+        if label is not None:
+            return label
+        return (self.text if lang == self.lang else self.in_language(lang).text).label(quantity, case)
+
+    def told(self, mistake: str) -> str:
+        """What to say to who made a named mistake."""
+        name = f"mistake {mistake}"
+        text = self.exercise.constants("solutions", self.lang).texts.get(name)
+        return self.solution_text.section(name).text if text is None else text
 
     @cached_property
     def key(self) -> Key:

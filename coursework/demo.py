@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import csv
 import json
-from collections import Counter
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from coursework.course import Variant, open_course
-from coursework.gradebook import Issued
+from coursework.issued import Issued
 from coursework.language import languages, significant
 from coursework.marking import Key
 from coursework.model import Part
@@ -137,6 +136,11 @@ HABITS: tuple[Habit, ...] = (
 )
 
 
+SHOWN_VERDICTS = (
+    "correct", "follow_through", "mistake", "slip", "wrong", "wrong_unit", "unreadable", "missing",
+)  # fmt: skip
+
+
 def class_of_twelve(
     out: Path, build: Callable[..., int], grade: Callable[..., Any]
 ) -> tuple[list[Mapping[str, Any]], list[str]]:
@@ -153,18 +157,13 @@ def class_of_twelve(
     book = grade(course, [out / "submissions"], out / "issued.json", out / "marks", feedback=True)
     rows = []
     for name in names:
-        marks = [m.mark for g in book.graded if g.variant.exercise.name == name for m in g.marked]
-        verdicts = Counter(m.verdict.partition(":")[0] for m in marks)
-        points, out_of = sum(m.points for m in marks), sum(m.out_of for m in marks)
+        total = book.exercises[name]
         rows.append(
             {
                 "exercise": name,
-                "answers": len(marks),
-                **{
-                    v: verdicts[v]
-                    for v in ("correct", "mistake", "wrong", "wrong_unit", "unreadable", "missing")
-                },
-                "mean": f"{100 * points / out_of:.0f} %" if out_of else "",
+                "answers": total.answers,
+                **{v: total.verdicts[v] for v in SHOWN_VERDICTS},
+                "mean": f"{100 * total.points / total.out_of:.0f} %" if total.out_of else "",
             }
         )
     marked = sum(r["answers"] for r in rows)

@@ -1,131 +1,86 @@
-"""Marking a class: rows of answers against what was issued. Pure; the command line writes the files.
+"""Marking a class: rows of answers against what was issued. Pure; :mod:`coursework.grading` writes the files.
 
-Every row in comes out once, as a marked row or as a rejected one.
+Every row in comes out once, as a marked row or as a rejected one. Sheets are marked by the hundred, so that
+what their variants share is computed once; many of them by several processes.
 """
 
 from __future__ import annotations
 
-import json
+import multiprocessing
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
-from coursework.errors import BadInput, CourseworkError, nearest
-from coursework.submissions import COLUMNS, Rejected, Row
+from coursework.blocks import processors
+from coursework.course import Course, Variant, open_course
+from coursework.errors import CourseworkError, nearest
+from coursework.issued import Issued
+from coursework.key import keys_of
+from coursework.marking import Mark
+from coursework.submissions import Rejected, Row
 
-if TYPE_CHECKING:
-    from coursework.course import Course, Variant
-    from coursework.handout import FeedbackSheet
-    from coursework.marking import Mark, Marking
-
-ISSUED_FORMAT = 1
-MARKS_COLUMNS = (
-    "student",
-    "exercise",
-    "seed",
-    "part",
-    "answer",
-    "read_as",
-    "verdict",
-    "points",
-    "out_of",
-    "feedback",
-)
-SUMMARY_COLUMNS = (
-    "student",
-    "points",
-    "out_of",
-    "percent",
-    "correct",
-    "mistake",
-    "wrong",
-    "wrong_unit",
-    "unreadable",
-    "missing",
-)
-REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "reason")
+CHUNK = 500  #: sheets marked together
+WORTH_PROCESSES = 20_000  #: answers; fewer are marked before a process has started
 
 
-@dataclass(frozen=True)
-class MarkedRow:
-    """One input row with its mark."""
+class Line(NamedTuple):
+    """A mark as plain data: what a line of ``marks.csv`` and a feedback sheet say."""
 
-    row: Row
+    part: str
+    answer: str
+    read_as: str
+    verdict: str
+    points: float
+    out_of: float
+    says: str  #: Markdown
+    feedback: str  #: one line of plain text
+    matches: tuple[str, ...]
+
+    @staticmethod
+    def of(mark: Mark, *, printed: bool) -> Line:
+        """``printed``: with the Markdown that a feedback sheet needs."""
+        return Line(
+            mark.part, mark.answer, mark.read_as, mark.verdict, mark.points, mark.out_of,
+            mark.says if printed else "", mark.feedback, mark.matches,
+        )  # fmt: skip
+
+
+class Graded(NamedTuple):
+    """One student's marked sheet: a line for each part asked; ``answered`` names those that came."""
+
     student: str
+    exercise: str
     seed: int
-    mark: Mark
+    lines: Mapping[str, Line]
+    answered: tuple[str, ...]
 
+    @property
+    def points(self) -> float:
+        return sum(line.points for line in self.lines.values())
 
-@dataclass(frozen=True)
-class Graded:
-    """One student's marked variant."""
-
-    student: str
-    variant: Variant
-    marking: Marking
-    marked: tuple[MarkedRow, ...]
+    @property
+    def out_of(self) -> float:
+        return sum(line.out_of for line in self.lines.values())
 
 
 @dataclass
-class Gradebook:
-    """All that a marking gives."""
+class Sheets:
+    """Rows of answers in their places, before they are marked."""
 
-    graded: list[Graded] = field(default_factory=list)
+    sheets: dict[tuple[str, str, int], dict[str, Row]] = field(default_factory=dict)
     rejected: list[Rejected] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     rows_in: int = 0
 
+    @property
+    def answers(self) -> int:
+        return sum(map(len, self.sheets.values()))
 
-class Issued:
-    """What was issued: records by exercise and seed, and to whom when there was a roster."""
 
-    def __init__(self, content: Mapping[str, Any], source: str):
-        records = content.get("issued") if isinstance(content, Mapping) else None
-        if not isinstance(records, list) or not records:
-            raise BadInput(f"{source} is no list of issued records; 'coursework build' writes issued.json")
-        self.course_name = str(content.get("course", ""))
-        self.has_roster = bool(content.get("roster"))
-        self.records: dict[tuple[str, int], Mapping[str, Any]] = {}
-        self.owner: dict[tuple[str, int], str] = {}
-        self.seeds: dict[tuple[str, str], int] = {}
-        for item in records:
-            try:
-                record, student = item["record"], str(item.get("student", ""))
-                key = (str(record["exercise"]), int(record["seed"]))
-                sum(part["points"] for part in record["parts"])
-            except (KeyError, TypeError, ValueError, AttributeError) as fault:
-                raise BadInput(f"{source}: an item is no issued record ({fault})") from fault
-            self.records[key] = record
-            if student:
-                self.owner[key] = student
-                self.seeds[student.casefold(), key[0]] = key[1]
-        self.exercises = tuple(dict.fromkeys(exercise for exercise, _ in self.records))
-        self.students = tuple(dict.fromkeys(self.owner.values()))
-        self._student_named = {s.casefold(): s for s in self.students}
-
-    @staticmethod
-    def read(path: Path) -> Issued:
-        """Read ``issued.json``.
-
-        Raises
-        ------
-        BadInput
-            The file is not there, or is not what ``build`` writes.
-        """
-        try:
-            return Issued(json.loads(path.read_text("utf-8")), str(path))
-        except OSError as fault:
-            raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
-        except (json.JSONDecodeError, UnicodeDecodeError) as fault:
-            raise BadInput(f"{path} is not JSON: {str(fault)[:100]}") from fault
-
-    def student(self, name: str) -> str | None:
-        """The student's name as issued; None for a stranger to the roster."""
-        if not self.has_roster:
-            return name
-        return self._student_named.get(" ".join(name.split()).casefold())
+# ------------------------------------------------------------------------ placing
 
 
 class _Refused(Exception):
@@ -160,58 +115,50 @@ def _near(name: str, known: Iterable[str]) -> str:
     return hint if "did you mean" in hint else ""
 
 
-def grade(
-    course: Course,
-    issued: Issued,
-    rows: Iterable[Row | Rejected],
-    progress: Callable[[int, int], None] = lambda done, of: None,
-) -> Gradebook:
-    """Mark every row.
-
-    ``progress`` is told how many sheets are marked, of how many.
+def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sheets:
+    """Rows by sheet; those that belong nowhere are rejected with their reason.
 
     Raises
     ------
     CourseworkError
-        The course cannot mark: no solutions, an exercise of another version.
+        The course cannot mark: no solutions, an exercise that the records do not fit.
     """
-    book = Gradebook()
-    sheets: dict[tuple[str, str, int], dict[str, Row]] = {}
-    variants = {key: course[key[0]].from_record(record) for key, record in issued.records.items()}
-    asked = {key: {p.id for p in v.parts} for key, v in variants.items()}
+    found = Sheets()
+    for exercise in issued.exercises:
+        _ = course[exercise].solution
+    asked: dict[tuple[str, int], frozenset[str]] = {}
+    places: dict[tuple[str, str, str], tuple[str, str, int] | str] = {}
     for row in rows:
-        book.rows_in += 1
+        found.rows_in += 1
         if isinstance(row, Rejected):
-            book.rejected.append(row)
+            found.rejected.append(row)
             continue
-        if row.warning and row.warning not in book.warnings:
-            book.warnings.append(row.warning)
-        try:
-            student, exercise, seed = _place(issued, row)
-            if row.part not in asked[exercise, seed]:
-                known = sorted(asked[exercise, seed])
-                raise _Refused(f"{exercise} has no part {row.part[:60]!r}{nearest(row.part[:60], known)}")
-            sheet = sheets.setdefault((student, exercise, seed), {})
-            if row.part in sheet:
-                raise _Refused(f"repeats {sheet[row.part].source}, which is marked")
-        except _Refused as why:
-            book.rejected.append(Rejected(row.source, str(why), _as_texts(row)))
-            continue
-        sheet[row.part] = row
-    for done, ((student, exercise, seed), answered) in enumerate(sheets.items(), start=1):
-        variant = variants[exercise, seed]
-        try:
-            marking = variant.grade({part: row.answer for part, row in answered.items()})
-        except CourseworkError:
-            raise  # the course cannot mark: no row is at fault
-        except Exception as fault:  # a sheet that the reader did not foresee costs itself alone
-            reason = f"cannot be marked, somebody must look at it ({type(fault).__name__}: {str(fault)[:80]})"
-            book.rejected += [Rejected(row.source, reason, _as_texts(row)) for row in answered.values()]
-            continue
-        marked = tuple(MarkedRow(row, student, seed, marking[part]) for part, row in answered.items())
-        book.graded.append(Graded(student, variant, marking, marked))
-        progress(done, len(sheets))
-    return book
+        if row.warning and row.warning not in found.warnings:
+            found.warnings.append(row.warning)
+        named = row.student, row.exercise, row.seed
+        if named not in places:
+            try:
+                places[named] = _place(issued, row)
+            except _Refused as why:
+                places[named] = str(why)
+        place = places[named]
+        reason = place if isinstance(place, str) else ""
+        if not reason:
+            key = place[1:]
+            if key not in asked:
+                asked[key] = frozenset(course[key[0]].from_record(issued.records[key]).part_ids)
+            sheet = found.sheets.setdefault(place, {})
+            if row.part not in asked[key]:
+                near = nearest(row.part[:60], sorted(asked[key]))
+                reason = f"{row.exercise} has no part {row.part[:60]!r}{near}"
+            elif row.part in sheet:
+                reason = f"repeats {sheet[row.part].source}, which is marked"
+        if reason:
+            found.rejected.append(Rejected(row.source, reason, _as_texts(row)))
+        else:
+            sheet[row.part] = row
+    found.sheets = {place: sheet for place, sheet in found.sheets.items() if sheet}
+    return found
 
 
 def _as_texts(row: Row) -> dict[str, str]:
@@ -225,91 +172,199 @@ def _as_texts(row: Row) -> dict[str, str]:
     }
 
 
-def marks_table(book: Gradebook) -> Iterator[dict[str, Any]]:
-    """The lines of ``marks.csv``."""
-    for graded in book.graded:
-        for marked in graded.marked:
-            mark = marked.mark
-            yield {
-                "student": marked.student,
-                "exercise": graded.variant.exercise.name,
-                "seed": marked.seed,
-                "part": mark.part,
-                "answer": mark.answer,
-                "read_as": mark.read_as,
-                "verdict": mark.verdict,
-                "points": f"{mark.points:g}",
-                "out_of": f"{mark.out_of:g}",
-                "feedback": mark.feedback,
-            }
+# ------------------------------------------------------------------------ marking
 
 
-def rejected_table(book: Gradebook) -> Iterator[dict[str, Any]]:
+class _Job(NamedTuple):
+    """A sheet to mark: the record it was issued by, and its answers by part."""
+
+    record: Mapping[str, Any]
+    answers: Mapping[str, Any]
+
+
+def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True) -> Iterator[Graded]:
+    """The sheets marked, in their order; ``printed`` where feedback sheets are to be made of them.
+
+    A sheet that the marking did not foresee costs itself alone: its rows are added to the rejected.
+
+    Raises
+    ------
+    CourseworkError
+        The course cannot mark.
+    """
+    places = list(sheets.sheets)
+    chunks = [places[i : i + CHUNK] for i in range(0, len(places), CHUNK)]
+
+    def jobs(chunk: Sequence[tuple[str, str, int]]) -> list[_Job]:
+        return [
+            _Job(issued.records[place[1:]], {p: row.answer for p, row in sheets.sheets[place].items()})
+            for place in chunk
+        ]
+
+    for chunk, results in zip(
+        chunks, _marked_chunks(course, map(jobs, chunks), sheets.answers, printed), strict=True
+    ):
+        for place, result in zip(chunk, results, strict=True):
+            rows = sheets.sheets[place]
+            if isinstance(result, str):
+                reason = f"cannot be marked, somebody must look at it ({result})"
+                sheets.rejected += [Rejected(row.source, reason, _as_texts(row)) for row in rows.values()]
+            else:
+                yield Graded(*place, {line.part: line for line in result}, tuple(rows))
+
+
+def _marked_chunks(
+    course: Course, chunks: Iterator[list[_Job]], answers: int, printed: bool
+) -> Iterator[list[list[Line] | str]]:
+    """Each chunk marked, in order; by processes where there is much to do."""
+    workers = processors()
+    if answers < WORTH_PROCESSES or workers < 2:
+        for chunk in chunks:
+            yield _mark_chunk(course, chunk, printed)
+        return
+    # New processes, not forked ones: the typesetter must not be carried over.
+    with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+        waiting: list[Any] = []
+        for chunk in chunks:
+            waiting.append(pool.submit(_mark_elsewhere, str(course.root), chunk, printed))
+            if len(waiting) >= 3 * workers:
+                yield waiting.pop(0).result()
+        for task in waiting:
+            yield task.result()
+
+
+def _mark_elsewhere(root: str, chunk: list[_Job], printed: bool) -> list[list[Line] | str]:
+    return _mark_chunk(open_course(root), chunk, printed)
+
+
+def _mark_chunk(course: Course, chunk: Sequence[_Job], printed: bool) -> list[list[Line] | str]:
+    """Lines a sheet, or why it cannot be marked."""
+    variants = [course[job.record["exercise"]].from_record(job.record) for job in chunk]
+    by_exercise: dict[str, list[Variant]] = {}
+    for variant in variants:
+        by_exercise.setdefault(variant.exercise.name, []).append(variant)
+    for name, some in by_exercise.items():
+        keys_of(course[name], some)
+    found: list[list[Line] | str] = []
+    for variant, job in zip(variants, chunk, strict=True):
+        try:
+            found.append([Line.of(mark, printed=printed) for mark in variant.grade(job.answers).values()])
+        except CourseworkError:
+            raise  # the course cannot mark: no row is at fault
+        except Exception as fault:  # a sheet that the reader did not foresee
+            found.append(f"{type(fault).__name__}: {str(fault)[:80]}")
+    return found
+
+
+# ------------------------------------------------------------------------- tables
+
+MARKS_COLUMNS = (
+    "student", "exercise", "seed", "part", "answer", "read_as", "verdict", "points", "out_of", "feedback",
+)  # fmt: skip
+#: Kinds of verdict, in the order of the summary's columns.
+VERDICTS = (
+    "correct", "follow_through", "mistake", "slip", "accepted", "wrong", "wrong_unit", "missing_unit",
+    "unreadable", "missing",
+)  # fmt: skip
+SUMMARY_COLUMNS = ("student", "points", "out_of", "percent", *VERDICTS)
+REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "reason")
+
+
+def marks_rows(graded: Graded) -> Iterator[dict[str, Any]]:
+    """A sheet's lines of ``marks.csv``: its answers, in the order they came."""
+    for part in graded.answered:
+        line = graded.lines[part]
+        yield {
+            "student": graded.student,
+            "exercise": graded.exercise,
+            "seed": graded.seed,
+            "part": part,
+            "answer": line.answer,
+            "read_as": line.read_as,
+            "verdict": line.verdict,
+            "points": f"{line.points:g}",
+            "out_of": f"{line.out_of:g}",
+            "feedback": line.feedback,
+        }
+
+
+def rejected_rows(rejected: Iterable[Rejected]) -> Iterator[dict[str, Any]]:
     """The lines of ``rejected.csv``."""
-    for rejected in book.rejected:
-        place = {"source": rejected.source, "reason": rejected.reason}
-        yield {**dict.fromkeys(COLUMNS, ""), **rejected.row, **place}
+    for one in rejected:
+        yield {**dict.fromkeys(REJECTED_COLUMNS, ""), **one.row, "source": one.source, "reason": one.reason}
 
 
-def summary_table(book: Gradebook, issued: Issued) -> Iterator[dict[str, Any]]:
+@dataclass
+class Total:
+    """Points and verdicts of one student, or of one exercise."""
+
+    points: float = 0.0
+    out_of: float = 0.0
+    answers: int = 0
+    verdicts: Counter[str] = field(default_factory=Counter)
+
+    def add(self, line: Line) -> None:
+        self.points += line.points
+        self.out_of += line.out_of
+        self.verdicts[line.verdict.partition(":")[0]] += 1
+
+
+@dataclass
+class Gradebook:
+    """What a marking came to."""
+
+    issued: Issued
+    rows_in: int = 0
+    rejected: list[Rejected] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    students: dict[str, Total] = field(default_factory=dict)
+    exercises: dict[str, Total] = field(default_factory=dict)  #: of the answers that came
+    handed_in: dict[str, set[str]] = field(default_factory=dict)  #: exercises by student
+    changes: int = 0  #: marks that differ from those that were there before
+
+    @property
+    def marked(self) -> int:
+        return sum(total.answers for total in self.exercises.values())
+
+    def add(self, graded: Graded) -> None:
+        """Count a sheet: all its parts for the student, its answers for the exercise."""
+        student = self.students.setdefault(graded.student, Total())
+        exercise = self.exercises.setdefault(graded.exercise, Total())
+        self.handed_in.setdefault(graded.student, set()).add(graded.exercise)
+        for line in graded.lines.values():
+            student.add(line)
+        for part in graded.answered:
+            exercise.add(graded.lines[part])
+            exercise.answers += 1
+
+    @property
+    def needs_a_look(self) -> int:
+        """How many rows somebody must look at: rejected or unreadable."""
+        unreadable = sum(total.verdicts["unreadable"] for total in self.exercises.values())
+        return len(self.rejected) + unreadable
+
+
+def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
     """The lines of ``summary.csv``: every student of the roster and every one who answered.
 
     Points are out of all that a student was issued, or without a roster of all that they answered to.
     """
-    sheets: dict[str, list[Graded]] = {student: [] for student in issued.students}
-    issued_to: dict[str, list[tuple[str, int]]] = {}
-    for (name, exercise), seed in issued.seeds.items():
-        issued_to.setdefault(name, []).append((exercise, seed))
-    for graded in book.graded:
-        sheets.setdefault(graded.student, []).append(graded)
-    for student, mine in sheets.items():
-        marks = [m for graded in mine for m in graded.marking.values()]
-        handed_in = {graded.variant.exercise.name for graded in mine}
-        owed = [
-            issued.records[exercise, seed]
-            for exercise, seed in issued_to.get(student.casefold(), ())
-            if exercise not in handed_in
-        ]
-        lost = [part for record in owed for part in record["parts"]]
-        verdicts = [m.verdict.partition(":")[0] for m in marks]
-        out_of = sum(m.out_of for m in marks) + sum(p["points"] for p in lost)
-        points = sum(m.points for m in marks)
+    issued = book.issued
+    for student in dict.fromkeys((*issued.students, *book.students)):
+        total = book.students.get(student, Total())
+        owed = {
+            (e, seed)
+            for e, seed in issued.issued_to(student).items()
+            if e not in book.handed_in.get(student, ())
+        }
+        lost = [part for key in owed for part in issued.records[key]["parts"]]
+        out_of = total.out_of + sum(part["points"] for part in lost)
+        missing = total.verdicts["missing"] + len(lost)
         yield {
             "student": student,
-            "points": f"{points:g}",
+            "points": f"{total.points:g}",
             "out_of": f"{out_of:g}",
-            "percent": f"{100 * points / out_of:.1f}" if out_of else "",
-            "correct": verdicts.count("correct"),
-            "mistake": verdicts.count("mistake"),
-            "wrong": verdicts.count("wrong"),
-            "wrong_unit": verdicts.count("wrong_unit"),
-            "unreadable": verdicts.count("unreadable"),
-            "missing": verdicts.count("missing") + len(lost),
+            "percent": f"{100 * total.points / out_of:.1f}" if out_of else "",
+            **{verdict: total.verdicts[verdict] for verdict in VERDICTS},
+            "missing": missing,
         }
-
-
-def feedback_sheet(graded: Graded) -> FeedbackSheet:
-    """A student's marks on one exercise, ready to print."""
-    from coursework.handout import FeedbackLine, FeedbackSheet
-    from coursework.marking import localised
-
-    handout = graded.variant.handout(graded.student)
-    lines = tuple(
-        FeedbackLine(
-            question=question,
-            answer=graded.marking[question.id].answer,
-            read_as=localised(graded.marking[question.id].read_as, graded.variant.lang),
-            verdict=graded.marking[question.id].verdict,
-            points=graded.marking[question.id].points,
-            out_of=graded.marking[question.id].out_of,
-            says=graded.marking[question.id].says,
-        )
-        for question in handout.questions
-    )
-    return FeedbackSheet(handout, lines, graded.marking.points, graded.marking.out_of)
-
-
-def needs_a_look(book: Gradebook) -> int:
-    """How many rows somebody must look at: rejected or unreadable."""
-    unreadable = sum(m.mark.verdict == "unreadable" for g in book.graded for m in g.marked)
-    return len(book.rejected) + unreadable

@@ -18,7 +18,7 @@ import numpy as np
 from coursework import draws
 from coursework.course import Course, CourseExercise, Variant
 from coursework.errors import BadInput, Starved
-from coursework.gradebook import ISSUED_FORMAT
+from coursework.issued import ISSUED_FORMAT
 from coursework.language import languages
 from coursework.worth import worthy
 
@@ -261,11 +261,11 @@ def csv_text(rows: Iterable[Mapping[str, Any]], columns: Sequence[str]) -> str:
     writer = csv.DictWriter(out, columns)  # lines end as the format's own description says
     writer.writeheader()
     for row in rows:
-        writer.writerow({c: _inert(row[c]) for c in columns})
+        writer.writerow({c: inert(row[c]) for c in columns})
     return out.getvalue()
 
 
-def _inert(cell: Any) -> Any:
+def inert(cell: Any) -> Any:
     """The cell, or its text kept from being run: a formula that calls, pipes or reaches elsewhere."""
     runs = isinstance(cell, str) and cell.lstrip()[:1] in ("=", "+", "-", "@") and set(cell) & set("(|!")
     return f"'{cell}" if runs else cell

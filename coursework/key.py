@@ -135,12 +135,16 @@ class Key:
                 yield "turns_a_minute", reference / _TURN_A_MINUTE
             for factor in _UNIT_FACTORS:
                 yield "unit", reference * factor
-        yield from self._other_cases.get(part.quantity, ())
+        for value in self._other_values(part.quantity):
+            yield "other_case", value
+
+    def _other_values(self, quantity: str) -> list[Any]:
+        """Values of a quantity when a given case of two is taken for the other one: the assembly mode, say."""
+        return self._other_cases.get(quantity, [])
 
     @cached_property
-    def _other_cases(self) -> dict[str, list[tuple[str, Any]]]:
-        """By quantity, its values when a given case of two is taken for the other one: the assembly mode, say."""
-        found: dict[str, list[tuple[str, Any]]] = {}
+    def _other_cases(self) -> dict[str, list[Any]]:
+        found: dict[str, list[Any]] = {}
         for name, spec in self.variant.exercise.spec.given.items():
             if len(spec.choices) != 2 or name not in self.variant.used:
                 continue
@@ -149,7 +153,7 @@ class Key:
             for quantity in self._quantities:
                 with suppress(CourseworkError):
                     value = self.solution.graph.evaluate((quantity,), given, self.variant.effects)[quantity]
-                    found.setdefault(quantity, []).append(("other_case", plain_scalar(value)))
+                    found.setdefault(quantity, []).append(plain_scalar(value))
         return found
 
 
@@ -210,6 +214,23 @@ class Batch:
         except CourseworkError:
             return {}  # each variant by itself then
 
+    @cached_property
+    def other_cases(self) -> dict[str, list[list]]:
+        """By quantity, columns of its values when a given case of two is taken for the other one."""
+        found: dict[str, list[list]] = {}
+        for name, spec in self.exercise.spec.given.items():
+            if len(spec.choices) != 2 or name not in self.given:
+                continue
+            one, other = spec.choices
+            given = {**self.given, name: np.where(self.given[name] == one, other, one)}
+            with suppress(CourseworkError):
+                graph, effects = self.exercise.solution.graph, self.exercise.spec.effects
+                for quantity, column in _rows(
+                    graph.evaluate(self.quantities, given, effects), self.count
+                ).items():
+                    found.setdefault(quantity, []).append(column)
+        return found
+
     def is_whole(self, index: int, quantities: Sequence[str]) -> bool:
         """Whether a variant has all these quantities."""
         return all(q in self.reference and _exists(self.reference[q][index]) for q in quantities)
@@ -262,6 +283,10 @@ class _KeyOfBatch(Key):
             found[name] = {q: value for q, value in own.items() if _exists(value)}
         return found
 
+    def _other_values(self, quantity: str) -> list[Any]:
+        columns = self._batch.other_cases.get(quantity, ())
+        return [column[self._index] for column in columns if _exists(column[self._index])]
+
     def wrong_ways(self, quantity: str) -> Iterator[tuple[str, Any]]:
         for name, columns in self._batch.wrong.items():
             if quantity in columns and _exists(columns[quantity][self._index]):
@@ -281,4 +306,6 @@ def _rows(columns: Mapping[str, Any], count: int) -> dict[str, list]:
 
 
 def _exists(value: Any) -> bool:
+    if isinstance(value, float):
+        return math.isfinite(value)
     return isinstance(value, str) or bool(np.all(np.isfinite(value)))

@@ -85,7 +85,7 @@ class _Said(NamedTuple):
         return " ".join(_plain_sentence(self.sentence, lang).format(**pieces).split())
 
 
-_BARE = re.compile(r"[\w\s.,;:()=/°%·²³−…-]*")
+_BARE = re.compile(r"[\w\s.,;:()=/°%·²³−…+^?!-]*")
 _is_plain = _BARE.fullmatch
 
 
@@ -127,7 +127,7 @@ class Marking(Mapping[str, Mark]):
         print(f"{self.points:g}/{self.out_of:g}")
 
 
-def read(part: Part, answer: Any, labels: Mapping[str, list[str]], reference: Any) -> Reading:
+def read(variant: Variant, part: Part, answer: Any) -> Reading:
     """Read an answer as the part's kind asks; a vector has as many coordinates as its reference."""
     match part.kind:
         case "number" | "angle":
@@ -135,11 +135,11 @@ def read(part: Part, answer: Any, labels: Mapping[str, list[str]], reference: An
         case "integer":
             return read_integer(answer)
         case "choice":
-            return read_choice(answer, labels)
+            return read_choice(answer, variant.labels(part))
         case "equation":
             return read_equation(answer, part.variables)
         case _:
-            return read_point(answer, part.unit, len(reference))
+            return read_point(answer, part.unit, len(variant.key.reference[part.quantity]))
 
 
 def mark(variant: Variant, answers: Mapping[str, Any]) -> Marking:
@@ -161,9 +161,7 @@ def mark(variant: Variant, answers: Mapping[str, Any]) -> Marking:
         if part_id not in asked:
             raise unknown("part", part_id, asked, f"{variant.exercise.name} {variant.seed}")
     key = variant.key
-    readings = {
-        i: read(p, answers.get(i), variant.labels(p), key.reference[p.quantity]) for i, p in asked.items()
-    }
+    readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items()}
     target = _targets(variant, readings, key)
     before = _Before({}, set())
     marks = {}
@@ -271,7 +269,7 @@ def _mark_part(
         share = key.solution.mistakes[name].share
 
         def told() -> _Said:
-            return say("mistake", says=variant.solution_text.section(f"mistake {name}").text)
+            return say("mistake", says=variant.told(name))
 
         return made(verdict, share, read_as, told, matches)
     if kind == "slip":

@@ -118,6 +118,31 @@ def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object
         raise BadStatement(f"{path.name}: an expression fails: {fault}") from fault
 
 
+@dataclass(frozen=True)
+class Constants:
+    """What of a text holds no variable, and so is the same for every variant."""
+
+    texts: Mapping[str, str]  #: by section
+    labels: Mapping[tuple[str, str], str]  #: by section and case
+
+
+def constants(path: Path) -> Constants:
+    """What of a file needs no variant to be read; nothing where there is no file."""
+    source = path.read_text("utf-8") if path.exists() else ""
+    if not source or "{%" in source or "{#" in source:
+        return Constants({}, {})  # a block may hold whole sections
+    sections = parse(source, path.name).sections
+    return Constants(
+        {name: section.text for name, section in sections.items() if "{{" not in section.text},
+        {
+            (name, case): label
+            for name, section in sections.items()
+            for case, label in section.labels.items()
+            if "{{" not in label
+        },
+    )
+
+
 _templates: dict[tuple, object] = {}
 
 

@@ -1,0 +1,73 @@
+"""What was issued: ``issued.json``, read back to mark against."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from coursework.errors import BadInput
+
+ISSUED_FORMAT = 1
+
+
+class Issued:
+    """What was issued: records by exercise and seed, and to whom when there was a roster."""
+
+    def __init__(self, content: Mapping[str, Any], source: str):
+        records = content.get("issued") if isinstance(content, Mapping) else None
+        if not isinstance(records, list) or not records:
+            raise BadInput(f"{source} is no list of issued records; 'coursework build' writes issued.json")
+        self.has_roster = bool(content.get("roster"))
+        self.records: dict[tuple[str, int], Mapping[str, Any]] = {}
+        self.owner: dict[tuple[str, int], str] = {}
+        self.seeds: dict[tuple[str, str], int] = {}
+        for item in records:
+            try:
+                record, student = item["record"], str(item.get("student", ""))
+                key = (str(record["exercise"]), int(record["seed"]))
+                sum(part["points"] for part in record["parts"])
+            except (KeyError, TypeError, ValueError, AttributeError) as fault:
+                raise BadInput(f"{source}: an item is no issued record ({fault})") from fault
+            self.records[key] = record
+            if student:
+                self.owner[key] = student
+                self.seeds[student.casefold(), key[0]] = key[1]
+        self.exercises = tuple(dict.fromkeys(exercise for exercise, _ in self.records))
+        self.students = tuple(dict.fromkeys(self.owner.values()))
+        self._student_named = {s.casefold(): s for s in self.students}
+
+    @staticmethod
+    def read(path: Path) -> Issued:
+        """Read ``issued.json``.
+
+        Raises
+        ------
+        BadInput
+            The file is not there, or is not what ``build`` writes.
+        """
+        alike: dict[str, Any] = {}
+
+        def shared(pairs: list[tuple[str, Any]]) -> Any:
+            # Records say the same of every part of an exercise; once is enough for all of them.
+            made = dict(pairs)
+            return alike.setdefault(repr(pairs), made) if "quantity" in made or "unit" in made else made
+
+        try:
+            return Issued(json.loads(path.read_text("utf-8"), object_pairs_hook=shared), str(path))
+        except OSError as fault:
+            raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+        except (json.JSONDecodeError, UnicodeDecodeError) as fault:
+            raise BadInput(f"{path} is not JSON: {str(fault)[:100]}") from fault
+
+    def student(self, name: str) -> str | None:
+        """The student's name as issued; None for a stranger to the roster."""
+        if not self.has_roster:
+            return name
+        return self._student_named.get(" ".join(name.split()).casefold())
+
+    def issued_to(self, student: str) -> dict[str, int]:
+        """The seeds that a student of the roster was issued, by exercise."""
+        named = student.casefold()
+        return {e: self.seeds[named, e] for e in self.exercises if (named, e) in self.seeds}
