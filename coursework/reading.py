@@ -128,6 +128,11 @@ _SEXAGESIMAL = re.compile(
         (?:(?P<seconds>[0-9]+(?:[.,][0-9]+)?)\s*(?:"|''|$))?""",
     re.VERBOSE,
 )
+_MIXED = re.compile(
+    r"(?P<sign>[+-]?)\s*(?P<whole>[0-9]{1,3}) +(?P<above>[0-9]{1,2})\s*/\s*(?P<below>[0-9]{1,3})(?![0-9.,])"
+    r"\s*(?P<rest>.*)",
+    re.DOTALL,
+)
 _NAME = re.compile(r"(?:[^\W\d_]|[\\|‖])[^=≈≃:]{0,39}?\s*(?:=|≈|≃|:)\s*(?=\S)")
 _ABOUT = re.compile(
     r"(?:≈|≃|~|=|(?:environ|env\.|env|about|approximately|approx\.?|circa|ca\.|soit)(?![^\W\d_]))\s*", re.I
@@ -226,6 +231,19 @@ def _sexagesimal(text: str, target: Unit) -> list[_Amount] | None:
     return [_amount(value, _short(float(degrees)), "deg")]
 
 
+def _mixed(text: str, target: Unit) -> list[_Amount] | None:
+    """A whole number and a proper fraction, ``1 1/2``; ``1 234/5`` is no such number."""
+    found = _MIXED.fullmatch(text)
+    if found is None or not 0 < int(found["above"]) < int(found["below"]):
+        return None
+    unit = _rest_unit(found["rest"]) if found["rest"] else target
+    if unit is None:
+        return None
+    value = int(found["whole"]) + Fraction(int(found["above"]), int(found["below"]))
+    value = -value if found["sign"] == "-" else value
+    return [_amount(_in_unit(value, unit, target), _short(float(value)), found["rest"])]
+
+
 def _short(value: float) -> str:
     return f"{value:.7g}"
 
@@ -300,7 +318,7 @@ def _amounts(text: str, target: Unit) -> list[_Amount]:
         raise _Stop("not_a_number", text)
     if _NOT_FINITE.match(text):
         raise _Stop("not_finite", text)
-    amounts = _sexagesimal(text, target) or _literal(text, target)
+    amounts = _sexagesimal(text, target) or _mixed(text, target) or _literal(text, target)
     if amounts is not None:
         return amounts
     _refuse_ranges(text)

@@ -73,6 +73,10 @@ NUMBERS = [
     *[(s, "N*m", 4.2) for s in ("4.2 N.m", "4,2 Nm", "4.2 N·m", "4.2 N m", "4200 N.mm", "4.2N.m",
     "0,0042 kNm")],
     ("5 mm/s/mm", "mm/s/mm", 5),
+    *[(s, "mm", 1.5) for s in ("1 1/2", "1 1/2 mm", "1 2/4", f"1{NBSP}1/2", "rA = 1 1/2", "1 1/2mm")],
+    ("−12 3/4 m", "mm", -12750),
+    ("2 1/2 tr/min", "rad/s", math.pi / 12),
+    ("1 234/5", "mm", 246.8),
 ]  # fmt: skip
 
 
@@ -184,8 +188,8 @@ def test_nothing_but_spaces_is_missing(blank):
         ("abc", "unknown_symbol"), ("theta2", "unknown_symbol"), ("trois", "unknown_symbol"),
         ("180°-75", "mixed_units"), ("90°-5", "mixed_units"),
         ("-", "not_a_number"), ("?", "not_a_number"), ("!", "not_a_number"), ("5 6", "not_a_number"),
-        ("1,2,3", "not_a_number"), ("1,23,456", "not_a_number"), ("1.2.3", "not_a_number"), ("1 1/2",
-        "not_a_number"),
+        ("1,2,3", "not_a_number"), ("1,23,456", "not_a_number"), ("1.2.3", "not_a_number"), ("1 3/2",
+        "not_a_number"), ("1 0/2", "not_a_number"), ("1 1/2/3", "not_a_number"),
         ("rA = 3 = 4", "not_a_number"), ("104°75'", "not_a_number"), ("__import__('os')", "not_a_number"),
         (True, "not_a_number"), (False, "not_a_number"), ([1], "not_a_number"), ({}, "not_a_number"),
         (float("nan"), "not_finite"), (float("inf"), "not_finite"), (10**400, "not_finite"),
