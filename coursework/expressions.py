@@ -731,7 +731,7 @@ def same_equation(a: Equation, b: Equation, *, parameters: Iterable[str] = (), r
         return False
     lines = _Lines(names, held)
     with np.errstate(all="ignore"):
-        return all(_apart(divisor, (a, b), lines) for divisor, _ in divided)
+        return _apart([divisor for divisor, _ in divided], (a, b), lines)
 
 
 def _proportional(
@@ -876,27 +876,23 @@ def _both_signs(name: str) -> np.ndarray:
     return (_points(name, _LINES) - 1.65) * 2.2
 
 
-def _apart(divisor: Expression, equations: Iterable[Equation], lines: _Lines) -> bool:
-    """Whether a divisor does not vanish at the solutions of the equations, nor they where it does.
+def _apart(divisors: Sequence[Expression], equations: Sequence[Equation], lines: _Lines) -> bool:
+    """Whether divisors do not vanish at the solutions of the equations, nor the equations where they do.
 
     An equation without a solution on the lines, or over complex numbers, is not said to be apart.
     """
-
-    def size(values: Mapping[str, np.ndarray], count: int) -> np.ndarray:
-        return np.broadcast_to(_quiet(divisor, values), (count,))
-
-    line_of_divisor, t_of_divisor, negligible = lines.zeros(size)
-    for equation in equations:
-
-        def gap(values: Mapping[str, np.ndarray], count: int, equation: Equation = equation) -> np.ndarray:
-            return _sides(equation, values, count)[0]
-
-        line, t, zero = lines.zeros(gap)
-        if t.size < _ENOUGH or np.any(lines.along(size, line, t) <= negligible):
-            return False
-        if np.any(lines.along(gap, line_of_divisor, t_of_divisor) <= zero):
-            return False
-    return True
+    gaps = [lambda values, count, e=e: _sides(e, values, count)[0] for e in equations]
+    sizes = [lambda values, count, d=d: np.broadcast_to(_quiet(d, values), (count,)) for d in divisors]
+    solved, divided = ([(f, *lines.zeros(f)) for f in functions] for functions in (gaps, sizes))
+    if any(t.size < _ENOUGH for _, _, t, _ in solved):
+        return False
+    return not any(
+        np.any(lines.along(f, line, t) <= zero)
+        for (gap, gap_line, gap_t, gap_zero), (size, size_line, size_t, size_zero) in itertools.product(
+            solved, divided
+        )
+        for f, line, t, zero in ((size, gap_line, gap_t, size_zero), (gap, size_line, size_t, gap_zero))
+    )
 
 
 # --- LaTeX ------------------------------------------------------------------------------

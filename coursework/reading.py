@@ -16,6 +16,8 @@ from fractions import Fraction
 from functools import lru_cache
 from numbers import Real
 
+import numpy as np
+
 from coursework.errors import WrongUnit
 from coursework.expressions import (
     MAX_LENGTH,
@@ -397,6 +399,39 @@ def read_number(text: object, unit: str) -> Reading:
     if isinstance(text, Real) and not isinstance(text, bool):
         return _from_real(text)
     return _reading(text, lambda plain: _from_amounts(text, _amounts(plain, target)))
+
+
+def read_numbers(texts: Sequence[object], unit: str) -> tuple[np.ndarray, np.ndarray]:
+    """Many answers to one part at once: those that are plain digits are read here and now.
+
+    Returns the values in ``unit`` (floats, NaN where there is none) and a mask (booleans) of the answers that
+    :func:`read_number` has still to read: they have a unit, a formula, two readings, or nothing readable. What
+    is neither read nor in the mask is missing. A value is the one that :func:`read_number` gives.
+
+    Raises
+    ------
+    WrongUnit
+        The canonical unit itself is unknown.
+    """
+    _target(unit)
+    values = np.array([_plain_value(text) for text in texts], dtype=float)
+    left = np.isinf(values)
+    values[left] = math.nan
+    return values, left
+
+
+def _plain_value(text: object) -> float:
+    """The value of plain digits; NaN where nothing is written, infinity where more than digits is."""
+    if text.__class__ is str:
+        if len(text) < 40 and (plain := _match_plain(text)):
+            digits = plain[1]
+            return float(digits) if "," not in digits else float(digits.replace(",", "."))
+        return math.inf if text.strip() else math.nan
+    if text is None:
+        return math.nan
+    if isinstance(text, (int, float)) and not isinstance(text, bool) and abs(text) < 1e300:
+        return float(text)
+    return math.inf
 
 
 def read_integer(text: object) -> Reading:

@@ -9,7 +9,15 @@ from hypothesis import strategies as st
 
 from coursework.errors import WrongUnit
 from coursework.expressions import parse_equation, same_equation
-from coursework.reading import Reading, read_choice, read_equation, read_integer, read_number, read_point
+from coursework.reading import (
+    Reading,
+    read_choice,
+    read_equation,
+    read_integer,
+    read_number,
+    read_numbers,
+    read_point,
+)
 
 NBSP, THIN, NARROW = "\u00a0", "\u2009", "\u202f"
 
@@ -309,6 +317,53 @@ def test_any_text_gives_a_reading_and_keeps_the_text(text, unit):
 @settings(max_examples=200, deadline=None)
 def test_a_value_that_is_read_is_finite(text):
     assert all(math.isfinite(v) for v in read_number(text, "deg").values)
+
+
+# --- many answers at once ---------------------------------------------------------------
+
+
+def agrees_one_by_one(texts):
+    """Whether the array of readings says of each answer what its own reading says."""
+    values, left = read_numbers(texts, "mm")
+    assert values.dtype == float
+    assert left.dtype == bool
+    assert values.shape == left.shape == (len(texts),)
+    for text, value, later in zip(texts, values, left, strict=True):
+        reading = read_number(text, "mm")
+        if later:
+            assert math.isnan(value)
+        elif math.isnan(value):
+            assert reading.status == "missing"
+        else:
+            assert (reading.status, reading.values) == ("read", (value,)), text
+            assert math.copysign(1.0, value) == math.copysign(1.0, reading.values[0])
+            assert not reading.unit_given
+    return left
+
+
+PLAIN = st.from_regex(r"\s{0,2}[+-]?[0-9]{1,6}([.,][0-9]{1,5})?([eE][+-]?[0-9]{1,3})?\s?", fullmatch=True)
+ANYTHING = st.none() | st.booleans() | st.floats() | st.integers() | st.text(max_size=8) | PLAIN
+
+
+@given(
+    st.lists(
+        ANYTHING | st.sampled_from(["", " ", NBSP, "1 1/2", "12 mm", "1,234", "1e999", "\u200b", "9" * 50])
+    )
+)
+@settings(max_examples=300, deadline=None)
+def test_many_answers_at_once_are_read_as_each_alone(texts):
+    agrees_one_by_one(texts)
+
+
+def test_plain_digits_leave_nothing_to_the_full_reader():
+    texts = ["319.8", "104,6", "-12", "3.2e2", "+7", " 5 ", "", None, 3, 2.5]
+    assert not agrees_one_by_one(texts).any()
+    assert agrees_one_by_one(["1,234", "12 mm", "π", True, float("nan"), "nan", "1e999", 10**400]).all()
+
+
+def test_many_answers_in_an_unknown_unit_are_the_callers_error():
+    with pytest.raises(WrongUnit):
+        read_numbers(["5"], "frogs")
 
 
 # --- integers ---------------------------------------------------------------------------
