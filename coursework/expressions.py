@@ -156,6 +156,14 @@ def _primes_as_dots(text: str) -> str:
 
 # --- vocabulary -------------------------------------------------------------------------
 
+
+def _atan2(y: Value, x: Value) -> Value:
+    """The angle of a point of the plane; there is none for complex coordinates."""
+    if np.iscomplexobj(y) or np.iscomplexobj(x):
+        return np.real(y + x) * math.nan
+    return np.arctan2(y, x)
+
+
 _FUNCTIONS: Mapping[str, Callable] = {
     "sin": np.sin,
     "cos": np.cos,
@@ -163,7 +171,7 @@ _FUNCTIONS: Mapping[str, Callable] = {
     "asin": np.arcsin,
     "acos": np.arccos,
     "atan": np.arctan,
-    "atan2": np.arctan2,
+    "atan2": _atan2,
     "sqrt": np.sqrt,
     "exp": np.exp,
     "abs": np.abs,

@@ -214,6 +214,12 @@ def test_complex_equations_compare_up_to_a_complex_factor():
     assert not same_equation(parse_equation("r2 e^(iθ2) - i r1 = r4 e^(iθ4)", NAMES), reference)
 
 
+def test_the_angle_of_complex_coordinates_is_no_solution_of_anything():
+    names = ("x", "y")
+    text = "atan2(e^(i x); y) = y"
+    assert not same_equation(parse_equation(text, names), parse_equation("x = y", names))
+
+
 def test_a_domain_that_fails_at_some_points_does_not_hide_the_others():
     a = parse_equation("sqrt(r1 - 1) = r2", NAMES)
     assert same_equation(a, parse_equation("3 sqrt(r1 - 1) - 3 r2 = 0", NAMES))
