@@ -115,6 +115,7 @@ _PLAIN = {
 _WORDS = {
     "metre": "m", "meter": "m", "gramme": "g", "gram": "g", "seconde": "s", "second": "s",
     "radian": "rad", "newton": "N", "joule": "J", "watt": "W", "pascal": "Pa", "hertz": "Hz", "volt": "V",
+    "ampere": "A", "coulomb": "C", "ohm": "Ω",
     "degre": "deg", "degree": "deg", "grade": "gon", "tour": "tr", "turn": "tr", "revolution": "tr",
     "minute": "min", "heure": "h", "hour": "h", "tonne": "t",
 }  # fmt: skip

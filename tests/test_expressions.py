@@ -326,6 +326,21 @@ def test_an_equation_may_be_divided_by_what_is_not_zero_with_it(text, reference,
     assert same_equation(other, one, parameters=("r4", "r5")) is same
 
 
+MAY_VANISH = ("sinθ5", "x", "(1 - cosθ4)", "(x - y)", "(r4 + x)", "(r4 sinθ4 - r5 sinθ5)")
+
+
+@pytest.mark.parametrize("factor", MAY_VANISH)
+@pytest.mark.parametrize("divisor", MAY_VANISH)
+def test_a_factor_that_may_vanish_is_allowed_below_only(factor, divisor):
+    names = (*LOOP_NAMES, "x", "y")
+    reference = parse_equation(ROCKER, names)
+    text = "r4 sinθ4 {0}/{1} = r5 sinθ5 {0}/{1}"
+    multiplied = parse_equation(text.format(factor, divisor), names)
+    divided = parse_equation(text.format("(1)", divisor), names)
+    assert same_equation(multiplied, reference, parameters=("r4", "r5")) is (factor == divisor)
+    assert same_equation(divided, reference, parameters=("r4", "r5")) is (divisor != MAY_VANISH[-1])
+
+
 def solutions(equation, names, unknown):
     """Points that solve an equation, by bisection in one variable, the others scattered."""
     rng = np.random.default_rng(5)
