@@ -422,7 +422,7 @@ def read_numbers(texts: Sequence[object], unit: str) -> tuple[np.ndarray, np.nda
 
 def _plain_value(text: object) -> float:
     """The value of plain digits; NaN where nothing is written, infinity where more than digits is."""
-    if text.__class__ is str:
+    if isinstance(text, str):
         if len(text) < 40 and (plain := _match_plain(text)):
             digits = plain[1]
             return float(digits) if "," not in digits else float(digits.replace(",", "."))

@@ -315,6 +315,8 @@ DIVIDED = [
     ("x/tanθ5 = 0", "x sinθ5 = 0", False),
     ("x/tanθ5 = 0", "x = 0", False),
     ("x e^(i theta4)/x^2 = 1", "e^(i theta4) = x + 1", False),
+    ("(e^(i theta4) - x)/y = 0", "e^(i theta4) = x", False),
+    ("(x^2 + 1)/y = 0", "x^2 + 1 = 0", False),
 ]
 
 

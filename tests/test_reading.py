@@ -3,6 +3,7 @@
 import math
 import sys
 
+import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -358,6 +359,7 @@ def test_many_answers_at_once_are_read_as_each_alone(texts):
 def test_plain_digits_leave_nothing_to_the_full_reader():
     texts = ["319.8", "104,6", "-12", "3.2e2", "+7", " 5 ", "", None, 3, 2.5]
     assert not agrees_one_by_one(texts).any()
+    assert not agrees_one_by_one(np.array(["319,8", "-12", " "])).any()
     assert agrees_one_by_one(["1,234", "12 mm", "π", True, float("nan"), "nan", "1e999", 10**400]).all()
 
 
