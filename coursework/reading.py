@@ -145,6 +145,7 @@ _TWO_VALUES = re.compile(
 )
 _RANGE = re.compile(r"([0-9]+(?:[.,][0-9]+)?)\s*-\s*([0-9]+(?:[.,][0-9]+)?)(?![0-9.,]*\s*[*/^(])")
 _UNIT_START = re.compile(r"(?<![^\W\d_])[^\W\d_]|[°%]|(?<![0-9.,])1\s*/")
+_MAX_PIECES = 8  #: names in the unit behind a formula
 _WORD = re.compile(r"[\[(]?(?:[^\W\d_]|[°%])")
 
 
@@ -254,7 +255,7 @@ def _formula(text: str, target: Unit) -> list[_Amount]:
     """A formula, with or without a unit behind it; the longest unit that leaves a formula is taken."""
     first: Unreadable | None = None
     starts = [m.start() for m in _UNIT_START.finditer(text) if m.start() > 0 and len(text) - m.start() <= 60]
-    for start in [*starts, len(text)]:
+    for start in [*starts[-_MAX_PIECES:], len(text)]:
         unit_text = text[start:]
         unit = find_unit(unit_text) if unit_text else None
         if unit_text and unit is None:

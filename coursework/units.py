@@ -229,6 +229,8 @@ def _chain(tokens: list[tuple[str, int]], text: str, depth: int = 0) -> Unit:
             if not tokens:
                 raise _UnknownPiece(text)
             power = tokens.pop(0)[1]
+        elif piece == "1" and not waiting and (power != 1 or not tokens or tokens[0][0] != "/"):
+            raise _UnknownPiece(text)  # rad 1/s is a unit, ° 1-1 is none
         else:
             factor = _named(piece)
         unit, sign, waiting = _product(unit, factor, sign * power), 1, False

@@ -210,7 +210,7 @@ def nasty_texts(count: int, seed: int) -> Iterator[str]:
 # --- what must hold -----------------------------------------------------------------------
 
 
-NUMBERLESS = re.compile(r"\d|pi|[πΠ]|(?<![A-Za-z])e(?![A-Za-z])", re.I)
+NUMBERLESS = re.compile(r"\d|pi|(?<![A-Za-z])e(?![A-Za-z])", re.I)
 
 #: Every letter that a number may have beside its digits, whole words at a time: functions, constants, powers of ten,
 #: LaTeX, and what units are made of.
@@ -223,15 +223,20 @@ KNOWN_LETTERS = re.compile(
 )
 
 
+def visible(text: str) -> str:
+    """A text with one form for each character and without those that have no width."""
+    plain = unicodedata.normalize("NFKC", text)
+    return re.sub("[\\u200b-\\u200d\\u2060\\ufeff\\u00ad]", "", plain).replace("Π", "π").replace("π", "pi")
+
+
 def may_be_a_number(text: str) -> bool:
     """Whether a text holds a digit of any script or a constant by name, without which there is no number."""
-    return bool(NUMBERLESS.search(unicodedata.normalize("NFKD", text)))
+    return bool(NUMBERLESS.search(unicodedata.normalize("NFKD", visible(text))))
 
 
 def has_only_known_letters(text: str) -> bool:
     """Whether the letters of a number, its name aside, are those of functions, constants and units."""
-    plain = unicodedata.normalize("NFKC", text).replace("Π", "π").replace("π", "pi")
-    plain = re.sub(r"\\(?:approx|simeq)", "≈", plain)
+    plain = re.sub(r"\\(?:approx|simeq)", "≈", visible(text))
     value = re.split("[=≈≃:]", plain)[-1]
     return all(KNOWN_LETTERS.fullmatch(run) for run in re.findall(r"[^\W\d_]+", value))
 
