@@ -775,7 +775,7 @@ _LINES = 10
 _STEPS = 96
 _ZOOMS = 9  #: each narrows a place eight times, to about 1e-10
 _NEGLIGIBLE = 1e-6  #: what counts as zero, beside the usual size
-_ENOUGH = 4  #: solutions on the lines without which nothing is said
+_ENOUGH = 4  #: zeros on the lines, without which nothing is said
 
 _OfValues = Callable[[Mapping[str, np.ndarray], int], np.ndarray]
 
@@ -867,7 +867,8 @@ class _Lines:
         line, t = np.repeat(np.arange(_LINES), _STEPS), np.tile(grid, _LINES)
         size = self.along(function, line, t).reshape(_LINES, _STEPS)
         finite = size[np.isfinite(size)]
-        smallest = (size[:, 1:-1] <= size[:, :-2]) & (size[:, 1:-1] <= size[:, 2:])
+        inside = size[:, 1:-1]
+        smallest = (inside <= size[:, :-2]) & (inside <= size[:, 2:]) & np.isfinite(inside)
         line, place = np.nonzero(smallest)
         t, width = grid[place + 1], grid[1] - grid[0]
         for _ in range(_ZOOMS):
