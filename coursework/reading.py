@@ -16,6 +16,8 @@ from fractions import Fraction
 from functools import lru_cache
 from numbers import Real
 
+import numpy as np
+
 from coursework.errors import WrongUnit
 from coursework.expressions import (
     MAX_LENGTH,
@@ -128,6 +130,11 @@ _SEXAGESIMAL = re.compile(
         (?:(?P<seconds>[0-9]+(?:[.,][0-9]+)?)\s*(?:"|''|$))?""",
     re.VERBOSE,
 )
+_MIXED = re.compile(
+    r"(?P<sign>[+-]?)\s*(?P<whole>[0-9]{1,3}) +(?P<above>[0-9]{1,2})\s*/\s*(?P<below>[0-9]{1,3})(?![0-9.,])"
+    r"\s*(?P<rest>.*)",
+    re.DOTALL,
+)
 _NAME = re.compile(r"(?:[^\W\d_]|[\\|‖])[^=≈≃:]{0,39}?\s*(?:=|≈|≃|:)\s*(?=\S)")
 _ABOUT = re.compile(
     r"(?:≈|≃|~|=|(?:environ|env\.|env|about|approximately|approx\.?|circa|ca\.|soit)(?![^\W\d_]))\s*", re.I
@@ -138,6 +145,7 @@ _TWO_VALUES = re.compile(
 )
 _RANGE = re.compile(r"([0-9]+(?:[.,][0-9]+)?)\s*-\s*([0-9]+(?:[.,][0-9]+)?)(?![0-9.,]*\s*[*/^(])")
 _UNIT_START = re.compile(r"(?<![^\W\d_])[^\W\d_]|[°%]|(?<![0-9.,])1\s*/")
+_MAX_PIECES = 8  #: names in the unit behind a formula
 _WORD = re.compile(r"[\[(]?(?:[^\W\d_]|[°%])")
 
 
@@ -226,6 +234,19 @@ def _sexagesimal(text: str, target: Unit) -> list[_Amount] | None:
     return [_amount(value, _short(float(degrees)), "deg")]
 
 
+def _mixed(text: str, target: Unit) -> list[_Amount] | None:
+    """A whole number and a proper fraction, ``1 1/2``; ``1 234/5`` is no such number."""
+    found = _MIXED.fullmatch(text)
+    if found is None or not 0 < int(found["above"]) < int(found["below"]):
+        return None
+    unit = _rest_unit(found["rest"]) if found["rest"] else target
+    if unit is None:
+        return None
+    value = int(found["whole"]) + Fraction(int(found["above"]), int(found["below"]))
+    value = -value if found["sign"] == "-" else value
+    return [_amount(_in_unit(value, unit, target), _short(float(value)), found["rest"])]
+
+
 def _short(value: float) -> str:
     return f"{value:.7g}"
 
@@ -234,7 +255,7 @@ def _formula(text: str, target: Unit) -> list[_Amount]:
     """A formula, with or without a unit behind it; the longest unit that leaves a formula is taken."""
     first: Unreadable | None = None
     starts = [m.start() for m in _UNIT_START.finditer(text) if m.start() > 0 and len(text) - m.start() <= 60]
-    for start in [*starts, len(text)]:
+    for start in [*starts[-_MAX_PIECES:], len(text)]:
         unit_text = text[start:]
         unit = find_unit(unit_text) if unit_text else None
         if unit_text and unit is None:
@@ -300,7 +321,7 @@ def _amounts(text: str, target: Unit) -> list[_Amount]:
         raise _Stop("not_a_number", text)
     if _NOT_FINITE.match(text):
         raise _Stop("not_finite", text)
-    amounts = _sexagesimal(text, target) or _literal(text, target)
+    amounts = _sexagesimal(text, target) or _mixed(text, target) or _literal(text, target)
     if amounts is not None:
         return amounts
     _refuse_ranges(text)
@@ -379,6 +400,39 @@ def read_number(text: object, unit: str) -> Reading:
     if isinstance(text, Real) and not isinstance(text, bool):
         return _from_real(text)
     return _reading(text, lambda plain: _from_amounts(text, _amounts(plain, target)))
+
+
+def read_numbers(texts: Sequence[object], unit: str) -> tuple[np.ndarray, np.ndarray]:
+    """Many answers to one part at once: those that are plain digits are read here and now.
+
+    Returns the values in ``unit`` (floats, NaN where there is none) and a mask (booleans) of the answers that
+    :func:`read_number` has still to read: they have a unit, a formula, two readings, or nothing readable. What
+    is neither read nor in the mask is missing. A value is the one that :func:`read_number` gives.
+
+    Raises
+    ------
+    WrongUnit
+        The canonical unit itself is unknown.
+    """
+    _target(unit)
+    values = np.array([_plain_value(text) for text in texts], dtype=float)
+    left = np.isinf(values)
+    values[left] = math.nan
+    return values, left
+
+
+def _plain_value(text: object) -> float:
+    """The value of plain digits; NaN where nothing is written, infinity where more than digits is."""
+    if isinstance(text, str):
+        if len(text) < 40 and (plain := _match_plain(text)):
+            digits = plain[1]
+            return float(digits) if "," not in digits else float(digits.replace(",", "."))
+        return math.inf if text.strip() else math.nan
+    if text is None:
+        return math.nan
+    if isinstance(text, (int, float)) and not isinstance(text, bool) and abs(text) < 1e300:
+        return float(text)
+    return math.inf
 
 
 def read_integer(text: object) -> Reading:

@@ -115,6 +115,7 @@ _PLAIN = {
 _WORDS = {
     "metre": "m", "meter": "m", "gramme": "g", "gram": "g", "seconde": "s", "second": "s",
     "radian": "rad", "newton": "N", "joule": "J", "watt": "W", "pascal": "Pa", "hertz": "Hz", "volt": "V",
+    "ampere": "A", "coulomb": "C", "ohm": "Ω",
     "degre": "deg", "degree": "deg", "grade": "gon", "tour": "tr", "turn": "tr", "revolution": "tr",
     "minute": "min", "heure": "h", "hour": "h", "tonne": "t",
 }  # fmt: skip
@@ -228,6 +229,8 @@ def _chain(tokens: list[tuple[str, int]], text: str, depth: int = 0) -> Unit:
             if not tokens:
                 raise _UnknownPiece(text)
             power = tokens.pop(0)[1]
+        elif piece == "1" and not waiting and (power != 1 or not tokens or tokens[0][0] != "/"):
+            raise _UnknownPiece(text)  # rad 1/s is a unit, ° 1-1 is none
         else:
             factor = _named(piece)
         unit, sign, waiting = _product(unit, factor, sign * power), 1, False

@@ -214,6 +214,12 @@ def test_complex_equations_compare_up_to_a_complex_factor():
     assert not same_equation(parse_equation("r2 e^(iθ2) - i r1 = r4 e^(iθ4)", NAMES), reference)
 
 
+def test_the_angle_of_complex_coordinates_is_no_solution_of_anything():
+    names = ("x", "y")
+    text = "atan2(e^(i x); y) = y"
+    assert not same_equation(parse_equation(text, names), parse_equation("x = y", names))
+
+
 def test_a_domain_that_fails_at_some_points_does_not_hide_the_others():
     a = parse_equation("sqrt(r1 - 1) = r2", NAMES)
     assert same_equation(a, parse_equation("3 sqrt(r1 - 1) - 3 r2 = 0", NAMES))
@@ -276,8 +282,129 @@ def test_a_factor_may_hold_lengths_where_they_are_declared(text, same):
 
 
 def test_a_factor_holds_no_length_where_none_is_declared():
-    one = parse_equation("sin(theta5) = r4/r5*sin(theta4)", LOOP_NAMES)
+    one = parse_equation("r4^2*sin(theta4) = r4*r5*sin(theta5)", LOOP_NAMES)
     assert not same_equation(one, parse_equation(ROCKER, LOOP_NAMES))
+
+
+#: An equation, another, and whether they have the same solutions wherever both are defined.
+DIVIDED = [
+    ("sin(theta4)/sin(theta5) = r5/r4", ROCKER, True),
+    ("r5/r4 = sinθ4/sinθ5", ROCKER, True),
+    ("r4 sinθ4/(r5 sinθ5) = 1", ROCKER, True),
+    ("r4/sinθ5 = r5/sinθ4", ROCKER, True),
+    ("r4 tanθ4 = r5 sinθ5/cosθ4", ROCKER, True),
+    ("r4 sinθ4 (sinθ5)^-2 - r5/sinθ5 = 0", ROCKER, True),
+    ("\\frac{\\sin\\theta_4}{\\sin\\theta_5} = \\frac{r_5}{r_4}", ROCKER, True),
+    ("tanθ4 = x/y", "y sinθ4 = x cosθ4", True),
+    ("y = x/tanθ4", "y tanθ4 = x", True),
+    ("(r4 + x cosθ4)/cosθ5 = y", "r4 + x cosθ4 = y cosθ5", True),
+    ("r4/(r5 cosθ4 + x cosθ5) = 1", "r4 = r5 cosθ4 + x cosθ5", True),
+    ("sinθ4/sinθ5 = r4/r5", ROCKER, False),
+    ("sinθ4/sinθ5 = -r5/r4", ROCKER, False),
+    ("sinθ4/sinθ5 = r5/r4 + 0.000001", ROCKER, False),
+    ("sinθ4^2/sinθ5^2 = r5^2/r4^2", ROCKER, False),
+    ("sinθ4/sinθ5 = x", ROCKER, False),
+    ("sinθ4 sinθ5/sinθ5 = 0", ROCKER, False),
+    ("1/(r4 sinθ4 - r5 sinθ5) = 0", ROCKER, False),
+    ("(r4 sinθ4 - r5 sinθ5) sinθ5^2/sinθ5 = 0", ROCKER, False),
+    ("(r4 sinθ4 - r5 sinθ5) x/(x + 0) = 0", "x (r4 sinθ4 - r5 sinθ5) = 0", False),
+    ("y = 0", "sinθ5 y = 0", False),
+    ("sinθ5 y/sinθ5 = 0", "sinθ5 y = 0", False),
+    ("(1 - cosθ5) y/(1 - cosθ5) = 0", "(1 - cosθ5) y = 0", False),
+    ("y (1 - cosθ5)^2/(1 - cosθ5) = 0", "y = 0", False),
+    ("x/tanθ5 = 0", "x sinθ5 = 0", False),
+    ("x/tanθ5 = 0", "x = 0", False),
+    ("x e^(i theta4)/x^2 = 1", "e^(i theta4) = x + 1", False),
+    ("(e^(i theta4) - x)/y = 0", "e^(i theta4) = x", False),
+    ("(x^2 + 1)/y = 0", "x^2 + 1 = 0", False),
+]
+
+
+@pytest.mark.parametrize(("text", "reference", "same"), DIVIDED)
+def test_an_equation_may_be_divided_by_what_is_not_zero_with_it(text, reference, same):
+    names = (*LOOP_NAMES, "x", "y")
+    one, other = parse_equation(text, names), parse_equation(reference, names)
+    assert same_equation(one, other, parameters=("r4", "r5")) is same
+    assert same_equation(other, one, parameters=("r4", "r5")) is same
+
+
+MAY_VANISH = ("sinθ5", "x", "(1 - cosθ4)", "(x - y)", "(r4 + x)", "(r4 sinθ4 - r5 sinθ5)")
+
+
+@pytest.mark.parametrize("factor", MAY_VANISH)
+@pytest.mark.parametrize("divisor", MAY_VANISH)
+def test_a_factor_that_may_vanish_is_allowed_below_only(factor, divisor):
+    names = (*LOOP_NAMES, "x", "y")
+    reference = parse_equation(ROCKER, names)
+    text = "r4 sinθ4 {0}/{1} = r5 sinθ5 {0}/{1}"
+    multiplied = parse_equation(text.format(factor, divisor), names)
+    divided = parse_equation(text.format("(1)", divisor), names)
+    assert same_equation(multiplied, reference, parameters=("r4", "r5")) is (factor == divisor)
+    assert same_equation(divided, reference, parameters=("r4", "r5")) is (divisor != MAY_VANISH[-1])
+
+
+def solutions(equation, names, unknown):
+    """Points that solve an equation, by bisection in one variable, the others scattered."""
+    rng = np.random.default_rng(5)
+    for _ in range(40):
+        values = {name: rng.uniform(0.4, 2.8) for name in names}
+        t = np.linspace(-3.1, 3.1, 200)
+        gaps = equation.difference({**{n: np.full(t.size, v) for n, v in values.items()}, unknown: t})
+        for k in np.nonzero(np.sign(gaps[:-1]) != np.sign(gaps[1:]))[0]:
+            low, high = t[k], t[k + 1]
+            for _ in range(60):
+                middle = (low + high) / 2
+                below = np.sign(at(equation, values, unknown, middle)) == np.sign(gaps[k])
+                low, high = (middle, high) if below else (low, middle)
+            if abs(at(equation, values, unknown, low)) < 1e-9:
+                yield {**values, unknown: low}
+
+
+def at(equation, values, unknown, value):
+    """The difference of the sides at one point, infinite where a side is."""
+    return equation.difference({**values, unknown: np.array([value])})[0]
+
+
+@pytest.mark.parametrize(("text", "reference"), [(t, r) for t, r, same in DIVIDED if same])
+def test_equations_said_to_be_the_same_hold_at_the_same_points(text, reference):
+    names = (*LOOP_NAMES, "x", "y")
+    pair = parse_equation(text, names), parse_equation(reference, names)
+    for one, other in (pair, pair[::-1]):
+        found = list(solutions(one, names, "theta4"))
+        assert len(found) > 5
+        for values in found:
+            assert abs(at(other, values, "theta4", values["theta4"])) < 1e-6
+            assert abs(at(other, values, "theta4", values["theta4"] + 1e-3)) > 1e-8
+
+
+@pytest.mark.parametrize(
+    ("spelling", "name"),
+    [
+        (s, "phi_dot")
+        for s in ("phi'", "φ'", "φ′", "φ’", "\\dot\\varphi", "\\dot{\\varphi}", "\\varphi'", "\\dot φ")
+    ]
+    + [(s, "r1_dot") for s in ("r1'", "r_1'", "r'_1", "r_1^\\prime", "r_1^{\\prime}")]
+    + [(s, "r6_ddot") for s in ("r6''", "r_6″", 'r6"', "r_6^{\\prime\\prime}", "r_6^{''}")],
+)
+def test_a_prime_is_a_derivative(spelling, name):
+    assert parse_expression(spelling, (*NAMES, "phi_dot")).variables == {name}
+
+
+def test_primes_stand_anywhere_in_an_equation():
+    names = ("R", "r", "phi_dot", "psi_dot", "omega")
+    reference = parse_equation("(R + r)*phi_dot - r*omega = R*psi_dot", names)
+    assert same_equation(parse_equation("(R+r)φ' = rω + Rψ'", names), reference)
+    assert not same_equation(parse_equation("(R+r)φ' = rω - Rψ'", names), reference)
+
+
+@pytest.mark.parametrize("text", ["r1''' + r1", "'", "phi'", "theta2'", "r1 '"])
+def test_a_prime_without_its_derivative_among_the_names_is_unreadable(text):
+    with pytest.raises(Unreadable):
+        parse_expression(text, NAMES)
+
+
+def test_an_apostrophe_still_separates_thousands():
+    assert parse_expression("1'234.5 r1", NAMES).evaluate({"r1": 2.0}) == 2469
 
 
 @pytest.mark.parametrize("text", [".E0", ".", ".e", "-.E+3"])

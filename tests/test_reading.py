@@ -3,13 +3,22 @@
 import math
 import sys
 
+import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from coursework.errors import WrongUnit
 from coursework.expressions import parse_equation, same_equation
-from coursework.reading import Reading, read_choice, read_equation, read_integer, read_number, read_point
+from coursework.reading import (
+    Reading,
+    read_choice,
+    read_equation,
+    read_integer,
+    read_number,
+    read_numbers,
+    read_point,
+)
 
 NBSP, THIN, NARROW = "\u00a0", "\u2009", "\u202f"
 
@@ -73,6 +82,10 @@ NUMBERS = [
     *[(s, "N*m", 4.2) for s in ("4.2 N.m", "4,2 Nm", "4.2 N·m", "4.2 N m", "4200 N.mm", "4.2N.m",
     "0,0042 kNm")],
     ("5 mm/s/mm", "mm/s/mm", 5),
+    *[(s, "mm", 1.5) for s in ("1 1/2", "1 1/2 mm", "1 2/4", f"1{NBSP}1/2", "rA = 1 1/2", "1 1/2mm")],
+    ("−12 3/4 m", "mm", -12750),
+    ("2 1/2 tr/min", "rad/s", math.pi / 12),
+    ("1 234/5", "mm", 246.8),
 ]  # fmt: skip
 
 
@@ -184,8 +197,8 @@ def test_nothing_but_spaces_is_missing(blank):
         ("abc", "unknown_symbol"), ("theta2", "unknown_symbol"), ("trois", "unknown_symbol"),
         ("180°-75", "mixed_units"), ("90°-5", "mixed_units"),
         ("-", "not_a_number"), ("?", "not_a_number"), ("!", "not_a_number"), ("5 6", "not_a_number"),
-        ("1,2,3", "not_a_number"), ("1,23,456", "not_a_number"), ("1.2.3", "not_a_number"), ("1 1/2",
-        "not_a_number"),
+        ("1,2,3", "not_a_number"), ("1,23,456", "not_a_number"), ("1.2.3", "not_a_number"), ("1 3/2",
+        "not_a_number"), ("1 0/2", "not_a_number"), ("1 1/2/3", "not_a_number"),
         ("rA = 3 = 4", "not_a_number"), ("104°75'", "not_a_number"), ("__import__('os')", "not_a_number"),
         (True, "not_a_number"), (False, "not_a_number"), ([1], "not_a_number"), ({}, "not_a_number"),
         (float("nan"), "not_finite"), (float("inf"), "not_finite"), (10**400, "not_finite"),
@@ -305,6 +318,54 @@ def test_any_text_gives_a_reading_and_keeps_the_text(text, unit):
 @settings(max_examples=200, deadline=None)
 def test_a_value_that_is_read_is_finite(text):
     assert all(math.isfinite(v) for v in read_number(text, "deg").values)
+
+
+# --- many answers at once ---------------------------------------------------------------
+
+
+def agrees_one_by_one(texts):
+    """Whether the array of readings says of each answer what its own reading says."""
+    values, left = read_numbers(texts, "mm")
+    assert values.dtype == float
+    assert left.dtype == bool
+    assert values.shape == left.shape == (len(texts),)
+    for text, value, later in zip(texts, values, left, strict=True):
+        reading = read_number(text, "mm")
+        if later:
+            assert math.isnan(value)
+        elif math.isnan(value):
+            assert reading.status == "missing"
+        else:
+            assert (reading.status, reading.values) == ("read", (value,)), text
+            assert math.copysign(1.0, value) == math.copysign(1.0, reading.values[0])
+            assert not reading.unit_given
+    return left
+
+
+PLAIN = st.from_regex(r"\s{0,2}[+-]?[0-9]{1,6}([.,][0-9]{1,5})?([eE][+-]?[0-9]{1,3})?\s?", fullmatch=True)
+ANYTHING = st.none() | st.booleans() | st.floats() | st.integers() | st.text(max_size=8) | PLAIN
+
+
+@given(
+    st.lists(
+        ANYTHING | st.sampled_from(["", " ", NBSP, "1 1/2", "12 mm", "1,234", "1e999", "\u200b", "9" * 50])
+    )
+)
+@settings(max_examples=300, deadline=None)
+def test_many_answers_at_once_are_read_as_each_alone(texts):
+    agrees_one_by_one(texts)
+
+
+def test_plain_digits_leave_nothing_to_the_full_reader():
+    texts = ["319.8", "104,6", "-12", "3.2e2", "+7", " 5 ", "", None, 3, 2.5]
+    assert not agrees_one_by_one(texts).any()
+    assert not agrees_one_by_one(np.array(["319,8", "-12", " "])).any()
+    assert agrees_one_by_one(["1,234", "12 mm", "π", True, float("nan"), "nan", "1e999", 10**400]).all()
+
+
+def test_many_answers_in_an_unknown_unit_are_the_callers_error():
+    with pytest.raises(WrongUnit):
+        read_numbers(["5"], "frogs")
 
 
 # --- integers ---------------------------------------------------------------------------

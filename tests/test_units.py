@@ -14,7 +14,17 @@ from coursework.units import UnknownUnit, convert, find_unit, parse_unit, same_d
 SPELLINGS = [
     *[
         (s, "rad/s", 1)
-        for s in ("rad/s", "rad.s-1", "rad·s⁻¹", "rad s^-1", "1/s", "s^-1", "rad.s^{-1}", "rad*s**-1")
+        for s in (
+            "rad/s",
+            "rad.s-1",
+            "rad·s⁻¹",
+            "rad s^-1",
+            "1/s",
+            "s^-1",
+            "rad.s^{-1}",
+            "rad*s**-1",
+            "rad 1/s",
+        )
     ],
     *[(s, "rad/s", math.pi / 30) for s in ("tr/min", "rpm", "rev/min", "tours/min", "tr.min⁻¹", "turns/min")],
     *[(s, "rad/s", math.pi / 180) for s in ("°/s", "deg/s", "deg.s-1", "degrés/s")],
@@ -30,6 +40,9 @@ SPELLINGS = [
     ("km", "mm", 1e6),
     ("millimètres", "mm", 1),
     ("meter", "mm", 1e3),
+    ("milliampères", "A", 1e-3),
+    ("kiloohms", "V/A", 1e3),
+    ("coulomb", "A.s", 1),
     ("cm²", "mm^2", 100),
     ("m²", "mm^2", 1e6),
     ("kNmm", "N*m", 1),
@@ -109,7 +122,7 @@ def test_an_unknown_unit_names_its_piece_and_the_nearest(text, piece, offer):
     "text",
     ["", " ", "frogs", "mm//s", "mm/", "/mm", "(mm", "mm)", "mm 3", "5 mm", "mm^99", "mm^", "m^1.5", "()",
     "mm()", "°C",
-     "Tm9" * 9, "(" * 30 + "m" + ")" * 30, "m" * 5000, "^2", "mm^-", "é"],
+     "Tm9" * 9, "(" * 30 + "m" + ")" * 30, "m" * 5000, "^2", "mm^-", "é", "° 1-1 °", "m 1", "° 1 °"],
 )  # fmt: skip
 def test_what_is_no_unit_is_refused(text):
     assert find_unit(text) is None
