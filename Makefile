@@ -29,7 +29,7 @@ wheel-test: $(VENV)/ready
 	$(BIN)/python -m build --quiet --outdir build/wheel .
 	$(PYTHON) -m venv build/wheel/venv
 	build/wheel/venv/bin/python -m pip install --quiet --disable-pip-version-check "$$(ls build/wheel/*.whl)[test]"
-	cp -r tests pyproject.toml build/wheel/
+	cp -r tests docs pyproject.toml build/wheel/
 	cd build/wheel && venv/bin/python -P -m pytest -n auto -q
 	cd build/wheel && venv/bin/coursework demo --out demo
 

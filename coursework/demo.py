@@ -17,8 +17,8 @@ import numpy as np
 
 from coursework.course import Variant, open_course
 from coursework.issued import Issued
+from coursework.key import Key
 from coursework.language import languages, significant
-from coursework.marking import Key
 from coursework.model import Part
 from coursework.rendering.markup import to_text
 

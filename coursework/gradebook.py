@@ -19,7 +19,9 @@ from coursework.course import Course, Variant, open_course
 from coursework.errors import CourseworkError, nearest
 from coursework.issued import Issued
 from coursework.key import keys_of
-from coursework.marking import Mark
+from coursework.marking import Mark, mark, right_feedback
+from coursework.model import Part
+from coursework.plainly import plainly_right
 from coursework.submissions import Rejected, Row
 
 CHUNK = 500  #: sheets marked together
@@ -240,20 +242,44 @@ def _mark_elsewhere(root: str, chunk: list[_Job], printed: bool) -> list[list[Li
 def _mark_chunk(course: Course, chunk: Sequence[_Job], printed: bool) -> list[list[Line] | str]:
     """Lines a sheet, or why it cannot be marked."""
     variants = [course[job.record["exercise"]].from_record(job.record) for job in chunk]
-    by_exercise: dict[str, list[Variant]] = {}
-    for variant in variants:
-        by_exercise.setdefault(variant.exercise.name, []).append(variant)
-    for name, some in by_exercise.items():
-        keys_of(course[name], some)
-    found: list[list[Line] | str] = []
-    for variant, job in zip(variants, chunk, strict=True):
-        try:
-            found.append([Line.of(mark, printed=printed) for mark in variant.grade(job.answers).values()])
-        except CourseworkError:
-            raise  # the course cannot mark: no row is at fault
-        except Exception as fault:  # a sheet that the reader did not foresee
-            found.append(f"{type(fault).__name__}: {str(fault)[:80]}")
-    return found
+    by_exercise: dict[str, list[int]] = {}
+    for i, variant in enumerate(variants):
+        by_exercise.setdefault(variant.exercise.name, []).append(i)
+    right: list[dict[str, str]] = [{} for _ in chunk]
+    for name, places in by_exercise.items():
+        batch = keys_of(course[name], [variants[i] for i in places])
+        if not printed:
+            found = plainly_right(course[name], batch, [chunk[i].answers for i in places])
+            for i, digits in zip(places, found, strict=True):
+                right[i] = digits
+    return [
+        _mark_sheet(variant, job.answers, own, printed)
+        for variant, job, own in zip(variants, chunk, right, strict=True)
+    ]
+
+
+def _mark_sheet(
+    variant: Variant, answers: Mapping[str, Any], right: Mapping[str, str], printed: bool
+) -> list[Line] | str:
+    """A sheet's lines in the order of its parts; those that are plainly ``right`` are not marked anew."""
+    try:
+        marking = mark(variant, answers, right) if len(right) < len(variant.parts) else {}
+        return [
+            _right_line(variant, part, answers[part.id], right[part.id])
+            if part.id in right
+            else Line.of(marking[part.id], printed=printed)
+            for part in variant.parts
+        ]
+    except CourseworkError:
+        raise  # the course cannot mark: no row is at fault
+    except Exception as fault:  # a sheet that the reader did not foresee
+        return f"{type(fault).__name__}: {str(fault)[:80]}"
+
+
+def _right_line(variant: Variant, part: Part, answer: str, read_as: str) -> Line:
+    points = float(part.points)
+    says = right_feedback(variant, part, read_as)
+    return Line(part.id, answer, read_as, "correct", points, points, "", says, ())
 
 
 # ------------------------------------------------------------------------- tables

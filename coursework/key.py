@@ -179,17 +179,16 @@ def envelopes(
     return {q: found.get(q, 0.0) for q in quantities}
 
 
-def keys_of(exercise: CourseExercise, variants: Sequence[Variant]) -> None:
+def keys_of(exercise: CourseExercise, variants: Sequence[Variant]) -> Batch:
     """Give many variants of one exercise keys that are computed together.
 
     A variant that has some quantity that does not exist keeps a key of its own, which says why.
     """
-    if variants:
-        batch = Batch(exercise, variants)
-        for index, variant in enumerate(variants):
-            key = _KeyOfBatch(variant, batch, index)
-            if batch.is_whole(index, variant.asked_quantities):
-                variant.__dict__["key"] = key
+    batch = Batch(exercise, variants)
+    for index, variant in enumerate(variants):
+        if batch.is_whole(index, variant.asked_quantities):
+            variant.__dict__["key"] = _KeyOfBatch(variant, batch, index)
+    return batch
 
 
 class Batch:
@@ -209,6 +208,8 @@ class Batch:
     @cached_property
     def reference(self) -> dict[str, list]:
         wanted, effects = (*self.quantities, *self.along), self.exercise.spec.effects
+        if not self.count:
+            return {}
         try:
             return _rows(self.exercise.solve(**self.given, only=wanted, effects=effects), self.count)
         except CourseworkError:

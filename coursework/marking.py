@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -30,7 +30,7 @@ from coursework.reading import (
 )
 
 if TYPE_CHECKING:
-    from coursework.course import Variant
+    from coursework.course import CourseExercise, Variant
 
 ECHO = 60  #: characters of an answer quoted back in feedback
 
@@ -142,8 +142,10 @@ def read(variant: Variant, part: Part, answer: Any) -> Reading:
             return read_point(answer, part.unit, len(variant.key.reference[part.quantity]))
 
 
-def mark(variant: Variant, answers: Mapping[str, Any]) -> Marking:
+def mark(variant: Variant, answers: Mapping[str, Any], known: Collection[str] = ()) -> Marking:
     """Mark the answers to a variant; a part left out is missing.
+
+    Parts that are ``known`` to be right are not marked again, and are not in the marking.
 
     Raises
     ------
@@ -161,11 +163,14 @@ def mark(variant: Variant, answers: Mapping[str, Any]) -> Marking:
         if part_id not in asked:
             raise unknown("part", part_id, asked, f"{variant.exercise.name} {variant.seed}")
     key = variant.key
-    readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items()}
+    readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
     before = _Before({}, set())
     marks = {}
     for i, part in asked.items():
+        if i in known:
+            before.right.add(part.quantity)
+            continue
         judged_by, reading = asked[target[i]], readings[i]
         marks[i] = _mark_part(variant, key, part, reading, judged_by, before)
         if reading.status == "read" and part.kind in ("number", "angle"):
@@ -173,7 +178,7 @@ def mark(variant: Variant, answers: Mapping[str, Any]) -> Marking:
                 before.right.add(judged_by.quantity)
             else:
                 before.wrong[judged_by.quantity] = reading.values[_nearest(part, reading, key, judged_by)[0]]
-    for i in target:
+    for i in marks:
         if target[i] != i and marks[i].verdict == "correct":
             marks[i] = replace(marks[i], in_other_order=True)
     return Marking(marks)
@@ -186,7 +191,9 @@ def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dic
     """
     own = {p.id: p.id for p in variant.parts}
     parts = {p.id: p for p in variant.parts}
-    groups = [g for g in variant.exercise.spec.either_order if all(i in parts for i in g)]
+    groups = [g for g in variant.exercise.spec.either_order if all(i in readings for i in g)]
+    if not groups:
+        return own
 
     def fitting(target: Mapping[str, str]) -> int:
         members = itertools.chain(*groups)
@@ -194,13 +201,13 @@ def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dic
 
     answered = sum(readings[i].status == "read" for i in itertools.chain(*groups))
     # An exchange is meant where most of what is answered fits it: one answer may fit by chance.
-    best, best_score = own, max(fitting(own), answered / 2) if groups else 0
+    best, best_score = own, max(fitting(own), answered / 2)
     for order in itertools.permutations(groups):
         target = {
             **own,
             **{i: j for g, h in zip(groups, order, strict=True) for i, j in zip(g, h, strict=True)},
         }
-        score = fitting(target) if groups else 0
+        score = fitting(target)
         if score > best_score:
             best, best_score = target, score
     return best
@@ -219,6 +226,22 @@ def _nearest(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[i
         width = key.envelope.get(judged_by.quantity, 0.0)
         gaps = [distance(part, v, reference, along, width) for v in reading.values]
     return index, gaps[index]
+
+
+def right_feedback(variant: Variant, part: Part, read_as: str) -> str:
+    """What is said of a right answer, as one line of plain text."""
+    sentence = _plain_right(variant.exercise, part, variant.lang)
+    return sentence.replace(_READ, echo(read_as, variant.lang))
+
+
+_READ = "\N{OBJECT REPLACEMENT CHARACTER}"
+
+
+@lru_cache(maxsize=4096)
+def _plain_right(exercise: CourseExercise, part: Part, lang: str) -> str:
+    name = f"${exercise.symbol(part.quantity)}$"
+    pieces = {"name": name[:1].upper() + name[1:], "read": _READ}
+    return _Said(words(lang)["marking"]["correct"], pieces).plain(lang)
 
 
 class _Before(NamedTuple):

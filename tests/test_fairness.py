@@ -298,3 +298,42 @@ def test_the_envelope_widens_and_never_narrows():
     assert distance(part, 103.0, 100.0, None, 3.0) == 1.0
     assert distance(part, 101.0, 100.0, None, 0.1) == 1.0
     assert HIDDEN < 1 < SHOWN
+
+
+# ------------------------------------------------------------------------- bulk
+
+
+@pytest.mark.parametrize("name", COURSE.names)
+def test_many_sheets_are_marked_as_each_alone(name):
+    """By the column or one by one, the verdict, the points, what was read and what is said are the same."""
+    from coursework.gradebook import _Job, _mark_chunk
+
+    exercise = COURSE[name]
+    variants = exercise.variants(range(24), "en")
+    jobs = []
+    for i, variant in enumerate(variants):
+        answers = {}
+        for j, part in enumerate(variant.parts):
+            value = variant.key.reference[part.quantity]
+            if isinstance(value, float) and not part.is_exact:
+                ways = (
+                    f"{value:.6g}",
+                    f" {value:.5g}".replace(".", ","),
+                    f"{-value:.5g}",
+                    "",
+                    "abc",
+                    1.3 * value,
+                )
+                answers[part.id] = (*ways, f"{value:.7g} {part.unit}")[(i + j) % 7]
+            elif isinstance(value, str):
+                answers[part.id] = value
+        jobs.append(_Job(variant.record, answers))
+    together = _mark_chunk(COURSE, jobs, False)
+    for job, lines in zip(jobs, together, strict=True):
+        alone = exercise.from_record(job.record).grade(job.answers)
+        assert [line.part for line in lines] == list(alone)
+        for line in lines:
+            mark = alone[line.part]
+            assert (line.verdict, line.points, line.read_as, line.answer, line.feedback, line.matches) == (
+                mark.verdict, mark.points, mark.read_as, mark.answer, mark.feedback, mark.matches,
+            )  # fmt: skip

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
+from coursework.comparing import distance
 from coursework.errors import NoSolution, UnknownName, WrongValue
-from coursework.marking import distance
 from coursework.model import Part
 
 GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "theta2": 135.0, "omega2": 5.0, "alpha2": 0.0}

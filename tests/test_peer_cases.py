@@ -7,8 +7,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from coursework.comparing import distance
 from coursework.errors import WrongUnit
-from coursework.marking import distance
 from coursework.reading import read_number
 from coursework.units import convert
 
