@@ -1,0 +1,130 @@
+"""Mechanical advantage of a slider-crank: what force does the piston pass on? (equations 20 and 21)."""
+
+import numpy as np
+
+from coursework.degrees import cos, polar, sin
+from coursework.figures import (
+    Figure,
+    angle_mark,
+    dimension,
+    ground_pivot,
+    line,
+    link,
+    pin,
+    rail,
+    slider,
+    vector,
+)
+from coursework.kinematics.dyads import rrp
+from coursework.model import Driver, Exercise, Part, drawn
+
+
+def rod(r2, r3, e, theta2):
+    """Vector AB."""
+    crank = polar(r2, theta2)
+    return rrp(crank, r3, e) - crank
+
+
+def rates(rod, r2, theta2):
+    """omega3 and r1_dot, over omega2."""
+    omega3 = -r2 * cos(theta2) / rod.real
+    return omega3, -r2 * sin(theta2) - omega3 * rod.imag
+
+
+def largest_offset(r2):
+    """Half of the cranks, those of whole centimetres, are in line with their piston."""
+    return np.where(r2 % 10 == 0, 0.0, 0.5 * r2)
+
+
+def crank_turns_visibly(omega2):
+    return abs(omega2) >= 5
+
+
+def offset_is_none_or_visible(e, r2):
+    return (e == 0) | (abs(e) >= 0.1 * r2)
+
+
+def crank_off_the_axes(theta2):
+    return theta2 % 90 != 0
+
+
+def rod_turns_visibly(rates, r2, r3):
+    return abs(rates[0]) * r3 > 0.1 * r2
+
+
+def piston_moves_visibly(rates, r2):
+    return abs(rates[1]) > 0.15 * r2
+
+
+def _tells(wrong, right):
+    """Whether a mistake moves a value by two tolerances of 1 % and more, or not at all."""
+    gap = abs(wrong - right) / abs(0.01 * right)
+    return (gap > 2) | (gap < 0.25)
+
+
+def inverse_tells(rates, r2):
+    advantage = r2 / abs(rates[1])
+    return _tells(1 / advantage, advantage)
+
+
+def velocity_of_the_rod_tells(rates, r3):
+    return _tells(abs(rates[0]) * r3, abs(rates[1]))
+
+
+def rotation_of_the_rod_tells(rates, rod, r2, theta2):
+    """Left out of the piston's velocity, or of the wrong sign in it."""
+    crank_alone, of_rod = -r2 * sin(theta2), rates[0] * rod.imag
+    mistaken = (crank_alone, crank_alone + of_rod)
+    pairs = [(wrong, rates[1]) for wrong in mistaken] + [(abs(wrong), abs(rates[1])) for wrong in mistaken]
+    return np.all([_tells(wrong, right) for wrong, right in pairs], axis=0)
+
+
+def figure(rod, r2, e, theta2, omega2):
+    O, A = 0j, polar(r2, theta2)
+    B, half_rail = A + rod, 0.5 * r2
+    offset = (dimension(B.real + 1.4 * half_rail, B + 1.4 * half_rail, "e", offset=0),) if e else ()
+    return Figure(
+        rail(B - half_rail, B + half_rail),
+        line(O, B.real + 1.6 * half_rail, dashed=True),
+        *offset,
+        link(O, A, label="r_2"),
+        link(A, B, label="r_3"),
+        slider(B),
+        vector(A, 1j * np.sign(omega2) * A, "F_e"),
+        ground_pivot(O, "O"),
+        pin(A, "A"),
+        pin(B, "B"),
+        angle_mark(O, 0, theta2, r"\theta_2"),
+    )
+
+
+EXERCISE = Exercise(
+    given={
+        "r2": drawn(20, 100, step=5, unit="mm"),
+        "r3": drawn(lambda r2: 2.2 * r2, lambda r2: 4 * r2, step=5, unit="mm", positive=True),
+        "e": drawn(lambda r2: -largest_offset(r2), largest_offset, step=5, unit="mm", default=0),
+        "theta2": drawn(-175, 180, step=5, unit="deg"),
+        "omega2": drawn(-150, 150, step=5, unit="rad/s"),
+        "Gamma_e": drawn(2, 40, step=0.5, unit="N*m"),
+    },
+    helpers=(rod, rates),
+    keep=(
+        crank_turns_visibly,
+        offset_is_none_or_visible,
+        crank_off_the_axes,
+        rod_turns_visibly,
+        piston_moves_visibly,
+        inverse_tells,
+        velocity_of_the_rod_tells,
+        rotation_of_the_rod_tells,
+    ),
+    parts=(
+        Part("r1_dot", unit="mm/s", points=2),
+        Part("mechanical_advantage", points=2),
+        Part("F_e", unit="N", points=1),
+        Part("F_s", unit="N", points=1),
+    ),
+    figure=figure,
+    symbols={"mechanical_advantage": r"\lambda", "Gamma_e": r"\Gamma_e"},
+    driver=Driver("theta2", "omega2", output="r1_dot"),
+)
