@@ -659,14 +659,16 @@ class Variant:
 
     def labels(self, part: Part) -> dict[str, list[str]]:
         """What each case of a choice is called, in every language; nothing for another kind."""
-        return {case: [self._label(part.id, case, lang) for lang in self._langs] for case in part.choices}
+        return {case: [self.label(part.id, case, lang) for lang in self._langs] for case in part.choices}
 
     @property
     def _langs(self) -> tuple[str, ...]:
         """Every language of the exercise, this variant's first."""
         return (self.lang, *(lang for lang in self.exercise.languages if lang != self.lang))
 
-    def _label(self, quantity: str, case: str, lang: str) -> str:
+    def label(self, quantity: str, case: str, lang: str = "") -> str:
+        """What a case is called, in this variant's language unless told."""
+        lang = lang or self.lang
         label = self.exercise.constants("exercises", lang).labels.get((quantity, case))
         if label is not None:
             return label

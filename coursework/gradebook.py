@@ -126,8 +126,9 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
         The course cannot mark: no solutions, an exercise that the records do not fit.
     """
     found = Sheets()
-    for exercise in issued.exercises:
+    for exercise, one in {key[0]: record for key, record in issued.records.items()}.items():
         _ = course[exercise].solution
+        course[exercise].from_record(one)
     asked: dict[tuple[str, int], frozenset[str]] = {}
     places: dict[tuple[str, str, str], tuple[str, str, int] | str] = {}
     for row in rows:
@@ -148,7 +149,7 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
         if not reason:
             key = place[1:]
             if key not in asked:
-                asked[key] = frozenset(course[key[0]].from_record(issued.records[key]).part_ids)
+                asked[key] = frozenset(str(part["id"]) for part in issued.records[key]["parts"])
             sheet = found.sheets.setdefault(place, {})
             if row.part not in asked[key]:
                 near = nearest(row.part[:60], sorted(asked[key]))
@@ -212,12 +213,13 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
                 reason = f"cannot be marked, somebody must look at it ({result})"
                 sheets.rejected += [Rejected(row.source, reason, _as_texts(row)) for row in rows.values()]
             else:
-                yield Graded(*place, {line.part: line for line in result}, tuple(rows))
+                lines = map(Line._make, result)
+                yield Graded(*place, {line.part: line for line in lines}, tuple(rows))
 
 
 def _marked_chunks(
     course: Course, chunks: Iterator[list[_Job]], answers: int, printed: bool
-) -> Iterator[list[list[Line] | str]]:
+) -> Iterator[list[list[tuple] | str]]:
     """Each chunk marked, in order; by processes where there is much to do."""
     workers = processors()
     if answers < WORTH_PROCESSES or workers < 2:
@@ -235,11 +237,11 @@ def _marked_chunks(
             yield task.result()
 
 
-def _mark_elsewhere(root: str, chunk: list[_Job], printed: bool) -> list[list[Line] | str]:
+def _mark_elsewhere(root: str, chunk: list[_Job], printed: bool) -> list[list[tuple] | str]:
     return _mark_chunk(open_course(root), chunk, printed)
 
 
-def _mark_chunk(course: Course, chunk: Sequence[_Job], printed: bool) -> list[list[Line] | str]:
+def _mark_chunk(course: Course, chunk: Sequence[_Job], printed: bool) -> list[list[tuple] | str]:
     """Lines a sheet, or why it cannot be marked."""
     variants = [course[job.record["exercise"]].from_record(job.record) for job in chunk]
     by_exercise: dict[str, list[int]] = {}
@@ -260,16 +262,17 @@ def _mark_chunk(course: Course, chunk: Sequence[_Job], printed: bool) -> list[li
 
 def _mark_sheet(
     variant: Variant, answers: Mapping[str, Any], right: Mapping[str, str], printed: bool
-) -> list[Line] | str:
+) -> list[tuple] | str:
     """A sheet's lines in the order of its parts; those that are plainly ``right`` are not marked anew."""
     try:
         marking = mark(variant, answers, right) if len(right) < len(variant.parts) else {}
-        return [
+        lines = (
             _right_line(variant, part, answers[part.id], right[part.id])
             if part.id in right
             else Line.of(marking[part.id], printed=printed)
             for part in variant.parts
-        ]
+        )
+        return [tuple(line) for line in lines]  # plain tuples pass between processes at half the price
     except CourseworkError:
         raise  # the course cannot mark: no row is at fault
     except Exception as fault:  # a sheet that the reader did not foresee

@@ -23,11 +23,16 @@ class Issued:
         self.records: dict[tuple[str, int], Mapping[str, Any]] = {}
         self.owner: dict[tuple[str, int], str] = {}
         self.seeds: dict[tuple[str, str], int] = {}
+        alike: dict[tuple[str, str], Any] = {}
         for item in records:
             try:
                 record, student = item["record"], str(item.get("student", ""))
                 key = (str(record["exercise"]), int(record["seed"]))
                 sum(part["points"] for part in record["parts"])
+                # Records of an exercise ask the same; once is enough for all of them.
+                usual = alike.setdefault((key[0], str(record["version"])), record["parts"])
+                if usual == record["parts"]:
+                    record["parts"] = usual
             except (KeyError, TypeError, ValueError, AttributeError) as fault:
                 raise BadInput(f"{source}: an item is no issued record ({fault})") from fault
             self.records[key] = record
@@ -47,15 +52,8 @@ class Issued:
         BadInput
             The file is not there, or is not what ``build`` writes.
         """
-        alike: dict[str, Any] = {}
-
-        def shared(pairs: list[tuple[str, Any]]) -> Any:
-            # Records say the same of every part of an exercise; once is enough for all of them.
-            made = dict(pairs)
-            return alike.setdefault(repr(pairs), made) if "quantity" in made or "unit" in made else made
-
         try:
-            return Issued(json.loads(path.read_text("utf-8"), object_pairs_hook=shared), str(path))
+            return Issued(json.loads(path.read_text("utf-8")), str(path))
         except OSError as fault:
             raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
         except (json.JSONDecodeError, UnicodeDecodeError) as fault:

@@ -276,7 +276,7 @@ def _mark_part(
     index, gap = _nearest(part, reading, key, judged_by)
     read_as = reading.read_as[index]
     if part.kind == "choice":
-        read_as = _plain(variant.text.label(part.id, str(reading.values[index])), variant.lang)
+        read_as = _plain(variant.label(part.id, str(reading.values[index])), variant.lang)
 
     def say(sentence: str, **pieces: str) -> _Said:
         return _say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)

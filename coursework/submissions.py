@@ -9,7 +9,7 @@ import ast
 import csv
 import json
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -113,8 +113,10 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
         yield Rejected(source, "the file holds NUL bytes: it is not a CSV of answers")
         return
     lines = re.split(r"\r\n|\n|\r", text)
+    del text
     delimiter = max((";", ",", "\t"), key=lines[0].count)
     header: list[str] = []
+    columns: list[int] = []
     number = 0
     while number < len(lines):
         place = f"{source}, line {number + 1}"
@@ -124,6 +126,14 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
             continue  # a blank line is no row
         if header:
             yield from _csv_row(header, cells, place, warning)
+            # Lines that are plain, as nearly all are, without more ado.
+            while number < len(lines) and '"' not in lines[number]:
+                cells = lines[number].split(delimiter)
+                if len(cells) != len(header):
+                    break
+                number += 1
+                if any(map(str.strip, cells)):
+                    yield _row_of(cells, columns, f"{source}, line {number}", warning)
             continue
         header = [c.strip().casefold() for c in cells]
         missing = [c for c in COLUMNS if c not in header]
@@ -132,6 +142,12 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
             wanted = f"the header must name {', '.join(COLUMNS)}; {', '.join(missing)} missing, found {found}"
             yield Rejected(place, wanted)
             return
+        columns = [header.index(c) for c in COLUMNS]
+
+
+def _row_of(cells: Sequence[str], columns: Sequence[int], place: str, warning: str) -> Row:
+    student, exercise, seed, part, answer = (cells[i] for i in columns)
+    return Row(student.strip(), exercise.strip(), seed.strip(), part.strip(), answer, place, warning)
 
 
 def _read_parquet(path: Path) -> Iterator[Row | Rejected]:
@@ -199,8 +215,7 @@ def _csv_row(header: list[str], cells: list[str], place: str, warning: str) -> I
         kept = {c: row.get(c, "") for c in COLUMNS}
         yield Rejected(place, f"{len(cells)} cells where the header has {len(header)}", kept)
         return
-    names = {c: row[c].strip() for c in ("student", "exercise", "seed", "part")}
-    yield Row(**names, answer=row["answer"], source=place, warning=warning)
+    yield _row_of([row[c] for c in COLUMNS], range(len(COLUMNS)), place, warning)
 
 
 # ------------------------------------------------------------------------- JSON

@@ -306,7 +306,7 @@ def test_the_envelope_widens_and_never_narrows():
 @pytest.mark.parametrize("name", COURSE.names)
 def test_many_sheets_are_marked_as_each_alone(name):
     """By the column or one by one, the verdict, the points, what was read and what is said are the same."""
-    from coursework.gradebook import _Job, _mark_chunk
+    from coursework.gradebook import Line, _Job, _mark_chunk
 
     exercise = COURSE[name]
     variants = exercise.variants(range(24), "en")
@@ -331,6 +331,7 @@ def test_many_sheets_are_marked_as_each_alone(name):
     together = _mark_chunk(COURSE, jobs, False)
     for job, lines in zip(jobs, together, strict=True):
         alone = exercise.from_record(job.record).grade(job.answers)
+        lines = [Line._make(line) for line in lines]
         assert [line.part for line in lines] == list(alone)
         for line in lines:
             mark = alone[line.part]
