@@ -113,7 +113,7 @@ def test_strokes_compute_nothing_of_the_instant():
 def test_the_sign_of_the_notes_sends_the_piston_the_other_way():
     for variant in EXERCISE.variants(range(20)):
         mark = variant.grade({"v_C": -variant.solution()["v_C"]})["v_C"]
-        assert "velocity_sign" in mark.matches
+        assert "velocity_sign" in mark.mistakes
 
 
 def test_lines_above_and_below_the_pivot_are_both_issued():
