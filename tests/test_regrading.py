@@ -1,0 +1,224 @@
+"""Marking again: old records, corrected exercises, answers accepted by hand, and what changed for whom."""
+
+from __future__ import annotations
+
+import csv
+import json
+import shutil
+
+import pytest
+
+import coursework
+from coursework.cli import run
+from coursework.errors import BadInput
+
+SOLUTION = "solutions/crank_pin.py"
+
+
+@pytest.fixture
+def issued(small_course, tmp_path):
+    """Three students of the small course, their sheets and their answers, all right by its first version."""
+    roster = tmp_path / "class.csv"
+    roster.write_text("student\nAda\nBo\nCy\n", "utf-8")
+    out = tmp_path / "out"
+    assert course_run(small_course, "build", "--roster", roster, "--formats", "html", "--out", out) == 0
+    rows = []
+    course = coursework.open_course(small_course)
+    for item in json.loads((out / "issued.json").read_text("utf-8"))["issued"]:
+        variant = course["crank_pin"].from_record(item["record"])
+        rows += [[item["student"], "crank_pin", variant.seed, p, v] for p, v in variant.solution().items()]
+    rows[1][4] = "somewhere"
+    with (tmp_path / "answers.csv").open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file).writerows([["student", "exercise", "seed", "part", "answer"], *rows])
+    return out
+
+
+def course_run(folder, *arguments):
+    return run(["--course", str(folder), *map(str, arguments)])
+
+
+def grade(folder, out, *more):
+    answers = out.parent / "answers.csv"
+    return course_run(folder, "grade", answers, "--issued", out / "issued.json", "--no-feedback", *more)
+
+
+def table(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def copy_of(course, tmp_path, name="second"):
+    """The course in another folder: what is imported once is not imported again."""
+    shutil.copytree(course, tmp_path / name)
+    return tmp_path / name
+
+
+def test_marking_again_gives_the_same_and_says_that_nothing_changed(small_course, issued):
+    assert grade(small_course, issued) == 1  # one answer must be looked at
+    first = (issued / "marks" / "marks.csv").read_bytes()
+    assert not (issued / "marks" / "changes.csv").exists()
+    assert grade(small_course, issued) == 1
+    assert (issued / "marks" / "marks.csv").read_bytes() == first
+    assert table(issued / "marks" / "changes.csv") == []
+
+
+def test_a_corrected_solution_says_what_changed_and_for_whom(small_course, issued, tmp_path, capsys):
+    grade(small_course, issued)
+    corrected = copy_of(small_course, tmp_path)
+    solution = corrected / SOLUTION
+    text = solution.read_text("utf-8")
+    solution.write_text(text.replace("return r * omega\n", "return 2 * r * omega\n"), "utf-8")
+    capsys.readouterr()
+    grade(corrected, issued)
+    assert "3 marks are not what they were" in capsys.readouterr().out
+    changes = table(issued / "marks" / "changes.csv")
+    assert [c["student"] for c in changes] == ["Ada", "Bo", "Cy"]
+    assert {c["part"] for c in changes} == {"v"}
+    assert {c["verdict_before"] for c in changes} == {"correct"}
+    assert {c["points_now"] for c in changes} == {"0"}
+
+
+def test_a_record_of_an_older_version_keeps_its_data_its_parts_and_their_points(
+    small_course, issued, tmp_path
+):
+    newer = copy_of(small_course, tmp_path)
+    path = newer / "exercises" / "crank_pin.py"
+    text = path.read_text("utf-8")
+    text = text.replace("drawn(50, 200, step=5", "drawn(500, 900, step=5")  # seeds draw something else now
+    text = text.replace('Part("v", unit="mm/s", points=2)', 'Part("v", unit="mm/s", points=7)')
+    text = text.replace("    figure=figure,\n)", "    figure=figure,\n    version=2,\n)")
+    path.write_text(text, "utf-8")
+    exercise = coursework.open_course(newer)["crank_pin"]
+    assert exercise.version == 2
+    record = json.loads((issued / "issued.json").read_text("utf-8"))["issued"][0]["record"]
+    old = exercise.from_record(record)
+    assert old.given["r"] <= 200 < exercise.variant(record["seed"]).given["r"]
+    assert [p.points for p in old.parts] == [1, 1, 2]
+    assert old.record["version"] == 1
+    grade(newer, issued)
+    marks = table(issued / "marks" / "marks.csv")
+    assert [m["verdict"] for m in marks if m["student"] != "Ada"] == ["correct"] * 6
+    assert sum(float(m["out_of"]) for m in marks) == 3 * 4
+
+
+def test_a_record_that_the_course_cannot_honour_is_refused(small_course, issued, tmp_path):
+    record = json.loads((issued / "issued.json").read_text("utf-8"))["issued"][0]["record"]
+    exercise = coursework.open_course(small_course)["crank_pin"]
+    with pytest.raises(BadInput, match="of version 5"):
+        exercise.from_record({**record, "version": 5})
+    newer = copy_of(small_course, tmp_path)
+    path = newer / "exercises" / "crank_pin.py"
+    text = path.read_text("utf-8").replace('        Part("y", unit="mm"),\n', "")
+    path.write_text(text.replace("    figure=figure,\n)", "    figure=figure,\n    version=2,\n)"), "utf-8")
+    with pytest.raises(BadInput, match="'y', which the course no longer has"):
+        coursework.open_course(newer)["crank_pin"].from_record(record)
+
+
+def test_a_mark_is_replayed_from_its_record_alone(small_course, issued):
+    grade(small_course, issued)
+    records = {
+        item["student"]: item["record"]
+        for item in json.loads((issued / "issued.json").read_text("utf-8"))["issued"]
+    }
+    course = coursework.open_course(small_course)
+    for line in table(issued / "marks" / "marks.csv"):
+        variant = course["crank_pin"].from_record(records[line["student"]])
+        mark = variant.grade({line["part"]: line["answer"]})[line["part"]]
+        assert (mark.verdict, f"{mark.points:g}", mark.feedback) == (
+            line["verdict"],
+            line["points"],
+            line["feedback"],
+        )
+
+
+def test_an_answer_accepted_by_hand_stays_accepted(small_course, issued, capsys):
+    grade(small_course, issued)
+    kept = issued / "marks" / "accepted.csv"
+    kept.write_text("student,exercise,part,points,reason\nada,crank_pin,y,0.5,Correct on paper.\n", "utf-8")
+    assert grade(small_course, issued) == 0  # nothing is left to be looked at
+    (change,) = table(issued / "marks" / "changes.csv")
+    assert (change["student"], change["part"]) == ("Ada", "y")
+    assert (change["verdict_before"], change["verdict_now"]) == ("unreadable", "accepted")
+    line = next(m for m in table(issued / "marks" / "marks.csv") if m["verdict"] == "accepted")
+    assert (line["points"], line["answer"]) == ("0.5", "somewhere")
+    assert line["feedback"].endswith("Correct on paper.")
+    ada = table(issued / "marks" / "summary.csv")[0]
+    assert (ada["student"], ada["points"], ada["accepted"]) == ("Ada", "3.5", "1")
+    assert grade(small_course, issued) == 0
+    assert table(issued / "marks" / "changes.csv") == []
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("student,exercise,part,points\nAda,crank_pin,y,half\n", "points are a number"),
+        ("student,exercise,part\nAda,crank_pin,\n", "part missing"),
+    ],
+)
+def test_an_acceptance_that_makes_no_sense_is_told(small_course, issued, tmp_path, capsys, text, told):
+    path = tmp_path / "by_hand.csv"
+    path.write_text(text, "utf-8")
+    assert grade(small_course, issued, "--accepted", path) == 2
+    assert told in capsys.readouterr().err
+    assert not (issued / "marks" / "marks.csv").exists()
+
+
+def test_an_acceptance_of_what_nobody_answered_is_a_note(small_course, issued, tmp_path, capsys):
+    path = tmp_path / "by_hand.csv"
+    path.write_text("student,exercise,part\nDee,crank_pin,y\n", "utf-8")
+    grade(small_course, issued, "--accepted", path)
+    assert "never answered: dee, crank_pin, y" in capsys.readouterr().err
+
+
+def test_an_interrupted_marking_leaves_the_marks_that_were_there(small_course, issued, monkeypatch):
+    grade(small_course, issued)
+    before = {p.name: p.read_bytes() for p in (issued / "marks").iterdir()}
+    from coursework import gradebook
+    from coursework.grading import grade_files
+
+    def breaks(graded):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(gradebook, "marks_rows", breaks)
+    answers = [issued.parent / "answers.csv"]
+    course = coursework.open_course(small_course)
+    with pytest.raises(KeyboardInterrupt):
+        grade_files(course, answers, issued / "issued.json", issued / "marks", feedback=False)
+    assert {p.name: p.read_bytes() for p in (issued / "marks").iterdir()} == before
+
+
+def test_parquet_marks_as_csv_does(small_course, issued, tmp_path):
+    import pyarrow
+    from pyarrow import parquet
+
+    grade(small_course, issued, "--out", tmp_path / "by_csv")
+    with (tmp_path / "answers.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    columns = {c: [r[c] for r in rows] for c in rows[0]}
+    columns["seed"] = [int(s) for s in columns["seed"]]
+    parquet.write_table(pyarrow.table(columns), tmp_path / "answers.parquet")
+    where = ["--issued", str(issued / "issued.json"), "--no-feedback", "--out", str(tmp_path / "by_parquet")]
+    assert course_run(small_course, "grade", tmp_path / "answers.parquet", *where) == 1
+    assert (tmp_path / "by_parquet" / "marks.csv").read_bytes() == (
+        tmp_path / "by_csv" / "marks.csv"
+    ).read_bytes()
+
+
+def test_a_parquet_file_that_is_none_is_rejected_with_its_reason(small_course, issued, tmp_path):
+    (tmp_path / "odd.parquet").write_bytes(b"PAR?")
+    where = ["--issued", str(issued / "issued.json"), "--no-feedback", "--out", str(tmp_path / "m")]
+    assert course_run(small_course, "grade", tmp_path / "odd.parquet", *where) == 1
+    (rejected,) = table(tmp_path / "m" / "rejected.csv")
+    assert "not a Parquet file" in rejected["reason"]
+
+
+def test_many_answers_are_marked_by_processes_as_by_one(small_course, issued, tmp_path, monkeypatch):
+    from coursework import gradebook
+
+    grade(small_course, issued, "--out", tmp_path / "one")
+    monkeypatch.setattr(gradebook, "WORTH_PROCESSES", 0)
+    monkeypatch.setattr(gradebook, "CHUNK", 1)
+    monkeypatch.setattr(gradebook, "processors", lambda: 2)
+    grade(small_course, issued, "--out", tmp_path / "many")
+    for name in ("marks.csv", "summary.csv", "rejected.csv"):
+        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "many" / name).read_bytes()
