@@ -360,19 +360,28 @@ def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
 
 
 def check_slips(variant: Variant, key: Key, report: Report) -> None:
-    """A slip that shows is recognised, and earns nothing that a right answer does."""
+    """A slip that shows is recognised, and earns nothing that a right answer does.
+
+    The first slip of every part on one sheet, then the second of every part, and so on.
+    """
+    shown: list[dict[str, tuple[str, Any]]] = []
     for part in variant.parts:
-        for kind, value in key.slips(part):
-            reference, width = key.reference[part.quantity], key.envelope.get(part.quantity, 0.0)
-            if not distance(part, value, reference, None, width) > SHOWN:
-                continue
-            mark = variant.grade({part.id: value})[part.id]
+        reference, width = key.reference[part.quantity], key.envelope.get(part.quantity, 0.0)
+        slips = [s for s in key.slips(part) if distance(part, s[1], reference, None, width) > SHOWN]
+        for place, slip in enumerate(slips):
+            shown += [{}] * (place + 1 - len(shown))
+            shown[place] = {**shown[place], part.id: slip}
+    for sheet in shown:
+        marking = variant.grade({part_id: value for part_id, (_, value) in sheet.items()})
+        for part_id, (kind, value) in sheet.items():
+            mark = marking[part_id]
             if mark.in_other_order:
-                continue  # alone, it is the right answer of the other assembly
+                continue  # it is the right answer of the other assembly
             report.counts["slips recognised"] += 1
             if f"slip:{kind}" not in mark.matches:
                 report.fail(
-                    f"seed {variant.seed}: slip {kind} on {part.id} ({value!r}) marks {mark.verdict}, not slip:{kind}"
+                    f"seed {variant.seed}: slip {kind} on {part_id} ({value!r}) marks {mark.verdict}, "
+                    f"not slip:{kind}"
                 )
 
 
@@ -382,11 +391,11 @@ def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
     for first in numeric[: len(numeric) // 2 or 1]:
         value = key.reference[first.quantity]
         wrong = value + 11.0 if first.unit == "deg" else 1.13 * value
-        answers, expected = {first.id: wrong}, {}
+        answers, expected, own = {first.id: wrong}, {}, {first.quantity: wrong}
         for part in numeric[numeric.index(first) + 1 :]:
-            follows = key.followed(part, {first.quantity: wrong})
+            follows = key.followed(part, own, (first.quantity,))
             if follows is not None:
-                answers[part.id] = expected[part.id] = follows
+                answers[part.id] = expected[part.id] = own[part.quantity] = follows
         marking = variant.grade(answers)
         for part_id in expected:
             part, mark = variant.exercise.spec.part(part_id), marking[part_id]

@@ -36,10 +36,15 @@ def distance(part: Part, value: Any, reference: Any, along: Any = None, envelope
         case "direction":
             return _off_direction(part, value, reference)
         case "equation":
-            right = _equation(reference, part.variables)
-            return 0.0 if same_equation(value, right, parameters=part.parameters) else math.inf
+            return 0.0 if _same(value, reference, part.variables, part.parameters) else math.inf
         case _:
             return 0.0 if value == plain_scalar(reference) else math.inf
+
+
+@lru_cache(maxsize=4096)
+def _same(value: Equation, reference: str, variables: tuple[str, ...], parameters: tuple[str, ...]) -> bool:
+    """Equations are dear to compare, and many students write the same."""
+    return same_equation(value, _equation(reference, variables), parameters=parameters)
 
 
 @lru_cache(maxsize=256)

@@ -96,20 +96,19 @@ class Key:
             if quantity in values:
                 yield name, values[quantity]
 
-    def followed(self, part: Part, own: Mapping[str, float], right: Collection[str] = ()) -> Any:
-        """What a right method gives from a student's own wrong values, or None.
+    def followed(self, part: Part, own: Mapping[str, float], wrong: Collection[str]) -> Any:
+        """What a right method gives from a student's own earlier answers, or None.
 
-        The student goes on from all answers written before: ``own`` holds the wrong ones by quantity,
-        ``right`` names those that are right. None where no wrong one bears on this quantity, and where
-        nothing comes of it: the linkage does not close, the value is not finite, or trivially 0.
+        ``own`` holds them by quantity, right ones too: a student goes on from what they wrote. None where
+        no ``wrong`` one bears on this quantity, and where nothing comes of it: the linkage does not
+        close, the value is not finite, or trivially 0.
         """
         quantity = part.quantity
-        before = {q: v for q, v in own.items() if q != quantity and v}
-        if not any(quantity in self.solution.depending_on(q) for q in before):
+        before = {q: v for q, v in own.items() if q != quantity and (v or q not in wrong)}
+        if not any(quantity in self.solution.depending_on(q) for q in wrong if q in before):
             return None
-        kept = {q: self.reference[q] for q in right if q != quantity and q not in before}
         with suppress(CourseworkError):
-            given = {**self.variant.used, **kept, **before}
+            given = {**self.variant.used, **before}
             found = self.solution.graph.evaluate((quantity,), given, self.variant.effects)
             value = plain_scalar(found[quantity])
             if isinstance(value, (int, float)) and math.isfinite(value) and value != 0:

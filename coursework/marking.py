@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -142,10 +142,11 @@ def read(variant: Variant, part: Part, answer: Any) -> Reading:
             return read_point(answer, part.unit, len(variant.key.reference[part.quantity]))
 
 
-def mark(variant: Variant, answers: Mapping[str, Any], known: Collection[str] = ()) -> Marking:
+def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] | None = None) -> Marking:
     """Mark the answers to a variant; a part left out is missing.
 
-    Parts that are ``known`` to be right are not marked again, and are not in the marking.
+    Parts that are ``known`` to be right, with their numbers as read, are not marked again, and are not in
+    the marking.
 
     Raises
     ------
@@ -162,22 +163,22 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Collection[str] = 
     for part_id in answers:
         if part_id not in asked:
             raise unknown("part", part_id, asked, f"{variant.exercise.name} {variant.seed}")
-    key = variant.key
+    key, known = variant.key, known or {}
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
     before = _Before({}, set())
+    number_kinds = ("number", "angle")
     marks = {}
     for i, part in asked.items():
         if i in known:
-            before.right.add(part.quantity)
+            before.own[part.quantity] = float(known[i])
             continue
         judged_by, reading = asked[target[i]], readings[i]
         marks[i] = _mark_part(variant, key, part, reading, judged_by, before)
-        if reading.status == "read" and part.kind in ("number", "angle"):
-            if marks[i].verdict == "correct":
-                before.right.add(judged_by.quantity)
-            else:
-                before.wrong[judged_by.quantity] = reading.values[_nearest(part, reading, key, judged_by)[0]]
+        if reading.status == "read" and part.kind in number_kinds:
+            before.own[judged_by.quantity] = reading.values[_nearest(part, reading, key, judged_by)[0]]
+            if marks[i].verdict != "correct":
+                before.wrong.add(judged_by.quantity)
     for i in marks:
         if target[i] != i and marks[i].verdict == "correct":
             marks[i] = replace(marks[i], in_other_order=True)
@@ -245,10 +246,10 @@ def _plain_right(exercise: CourseExercise, part: Part, lang: str) -> str:
 
 
 class _Before(NamedTuple):
-    """What a student has answered before a part: wrong values by quantity, and the quantities that are right."""
+    """The numbers that a student has answered before a part, by quantity, and which of them are wrong."""
 
-    wrong: dict[str, float]
-    right: set[str]
+    own: dict[str, float]
+    wrong: set[str]
 
 
 def _mark_part(
@@ -309,7 +310,7 @@ def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, befor
     width = key.envelope.get(quantity, 0.0)
     reference = key.reference[quantity]
     if part.kind in ("number", "angle") and before.wrong:
-        expected = key.followed(judged_by, before.wrong, before.right)
+        expected = key.followed(judged_by, before.own, before.wrong)
         # Where the earlier answers hardly change this one, they explain nothing.
         if (
             expected is not None
