@@ -28,7 +28,7 @@ from coursework.rounding import student_who_rounds
 from coursework.worth import SHOWN, conditioning, visibility, worthy
 
 RESIDUAL = 1e-9  #: largest relative residual of the governing equations
-RENDERED = 3  #: variants whose sheets are rendered in every format and language
+RENDERED = 2  #: variants whose sheets are rendered in every format and language
 NONSENSICAL = 20  #: variants that are answered by nonsense; it is read alike on all
 KEPT_DIGITS = (3, 4, 5)  #: of simulated students who round at every step
 NONSENSE = ("?", "je ne sais pas", "12 +", "nan", "9**9**9", "1 = 1 = 1", "__import__('os')", "((((")

@@ -2,7 +2,8 @@
 
 ``solutions/NAME.py`` is read by these rules:
 
-* a public function defined in it is a quantity, and its parameters are what it needs;
+* a public function defined in it is a quantity, and its parameters are what it needs; so is one that it imports
+  from a sibling whose name begins with an underscore: ``from ._strokes import *``;
 * a function marked :func:`mistake` is a wrong way to get a quantity;
 * ``residual`` gives the governing equations, written independently, relative to their terms: 0 when right;
 * ``KNOWN`` lists pairs (given values, expected values); an expected text such as ``"319.80"`` is
@@ -125,7 +126,7 @@ class Solution:
             if not key.startswith("_")
             and callable(value)
             and not isinstance(value, type)
-            and getattr(value, "__module__", None) == module.__name__
+            and _belongs(value, module)
         }
         mistakes = {k: f.__mistake__ for k, f in own.items() if hasattr(f, "__mistake__")}
         special = {"residual", "figure"}
@@ -190,6 +191,12 @@ class Solution:
         if self.residual is None:
             raise BadCourse(f"solutions/{self.name}.py states no residual; write the governing equations")
         return self.graph.with_functions({"residual": self.residual})
+
+
+def _belongs(function: Any, module: ModuleType) -> bool:
+    """Whether a function is the module's own, or comes from a module that solutions share: ``_strokes``."""
+    home = getattr(function, "__module__", None) or ""
+    return home == module.__name__ or home.startswith(f"{module.__package__}._")
 
 
 def _hidden(functions: Mapping[str, Callable[..., Any]], module: ModuleType) -> dict[str, Callable[..., Any]]:

@@ -16,6 +16,8 @@ from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.kinematics.margins import grashof_margins
 from coursework.solution import formula, mistake
 
+from ._strokes import *
+
 UNITS = {
     "xC_max": "mm",
     "xC_min": "mm",
@@ -318,31 +320,6 @@ def alpha(theta2_turns):
         )
     arc = abs(wrap(theta2_turns[..., 0] - theta2_turns[..., 1]))
     return np.where(two, 360 - arc, np.nan)
-
-
-@formula(r"360^{\circ} - <alpha>")
-def beta(alpha):
-    return 360 - alpha
-
-
-def Q(alpha, beta):
-    return alpha / beta
-
-
-@formula(r"\frac{2 \times \pi}{\left|<omega2>\right|}")
-def T(omega2):
-    """Duration of a turn."""
-    return 2 * math.pi / abs(omega2)
-
-
-@formula(r"\frac{<alpha>}{360^{\circ}} \times <T>")
-def t_advance(alpha, T):
-    return alpha / 360 * T
-
-
-@formula(r"\frac{<beta>}{360^{\circ}} \times <T>")
-def t_return(beta, T):
-    return beta / 360 * T
 
 
 @formula(r"\left|\frac{<r2> \times <omega2>}{<v_C>}\right|")

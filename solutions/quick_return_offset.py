@@ -26,6 +26,8 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import formula, mistake, stable
 
+from ._strokes import *
+
 UNITS = {
     "p": "mm",
     "q": "mm",
@@ -115,31 +117,6 @@ def phi2(r2, r3, e):
 def alpha(phi1, phi2):
     """The longer of the two arcs of crank between the positions in line."""
     return 180 + phi1 - phi2
-
-
-@formula(r"360^{\circ} - <alpha>")
-def beta(alpha):
-    return 360 - alpha
-
-
-def Q(alpha, beta):
-    return alpha / beta
-
-
-@formula(r"\frac{2 \times \pi}{\left|<omega2>\right|}")
-def T(omega2):
-    """Duration of a turn."""
-    return 2 * math.pi / abs(omega2)
-
-
-@formula(r"\frac{<alpha>}{360^{\circ}} \times <T>")
-def t_advance(alpha, T):
-    return alpha / 360 * T
-
-
-@formula(r"\frac{<beta>}{360^{\circ}} \times <T>")
-def t_return(beta, T):
-    return beta / 360 * T
 
 
 @mistake("e", share=0.5)

@@ -27,6 +27,8 @@ from coursework.kinematics.slider_crank import SliderCrank
 from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.solution import formula, mistake, stable
 
+from ._strokes import *
+
 UNITS = {
     "rA": "mm",
     "theta4": "deg",
@@ -191,31 +193,6 @@ def psi2(r1, r2, phi2):
 def alpha(phi1, phi2, psi1, psi2):
     """The longer of the two arcs of crank between the positions in line."""
     return 180 + abs(psi1 + psi2 + phi1 - phi2)
-
-
-@formula(r"360^{\circ} - <alpha>")
-def beta(alpha):
-    return 360 - alpha
-
-
-def Q(alpha, beta):
-    return alpha / beta
-
-
-@formula(r"\frac{2 \times \pi}{\left|<omega2>\right|}")
-def T(omega2):
-    """Duration of a turn."""
-    return 2 * math.pi / abs(omega2)
-
-
-@formula(r"\frac{<alpha>}{360^{\circ}} \times <T>")
-def t_advance(alpha, T):
-    return alpha / 360 * T
-
-
-@formula(r"\frac{<beta>}{360^{\circ}} \times <T>")
-def t_return(beta, T):
-    return beta / 360 * T
 
 
 @mistake("theta4", share=0.5)
