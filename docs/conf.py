@@ -2,7 +2,10 @@
 
 import re
 
+from docutils import nodes
+
 from coursework import __version__
+from coursework.rendering.formulas import to_mathml
 
 project = "coursework"
 author = "the authors of coursework"
@@ -20,6 +23,7 @@ html_css_files = ["site.css"]
 html_copy_source = False
 html_show_sphinx = False
 html_show_copyright = False
+html_math_renderer = "mathml"
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
@@ -38,5 +42,12 @@ def _bars_are_sizes(app, what, name, obj, options, lines):
     lines[:] = [_LITERAL_OR_BAR.sub(lambda m: m[1] or r"\|", line) for line in lines]
 
 
+def _mathml(translator, node):
+    """Formulas are MathML, as on the sheets: no script, nothing fetched."""
+    translator.body.append(to_mathml(node.astext(), "en", display=node.tagname == "math_block"))
+    raise nodes.SkipNode
+
+
 def setup(app):
+    app.add_html_math_renderer("mathml", (_mathml, None), (_mathml, None))
     app.connect("autodoc-process-docstring", _bars_are_sizes)
