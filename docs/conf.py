@@ -13,7 +13,7 @@ version = release = __version__
 html_title = "coursework"
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon"]
-myst_enable_extensions = ["attrs_inline", "colon_fence"]
+myst_enable_extensions = ["attrs_inline", "dollarmath"]
 myst_heading_anchors = 3
 exclude_patterns = ["gallery.py"]
 
@@ -26,9 +26,8 @@ html_show_copyright = False
 html_math_renderer = "mathml"
 
 autodoc_member_order = "bysource"
-autodoc_typehints = "description"
-autodoc_typehints_description_target = "documented"
-autodoc_class_signature = "separated"
+autodoc_typehints = "signature"
+maximum_signature_line_length = 88
 napoleon_google_docstring = False
 napoleon_use_rtype = False
 
@@ -36,10 +35,18 @@ add_module_names = False
 
 #: Text between double backquotes, or a bar: |x| is a size in the docstrings, a substitution to docutils.
 _LITERAL_OR_BAR = re.compile(r"(``.+?``)|\|")
+_plain: dict[str, list[str]] = {}
 
 
 def _bars_are_sizes(app, what, name, obj, options, lines):
     lines[:] = [_LITERAL_OR_BAR.sub(lambda m: m[1] or r"\|", line) for line in lines]
+    _plain[name] = list(lines)
+
+
+def _colons_are_colons(app, what, name, obj, options, lines):
+    """A colon in the sentence of an attribute does not end a type."""
+    if what in ("attribute", "property") and any(line.startswith(":type:") for line in lines):
+        lines[:] = _plain[name]
 
 
 def _mathml(translator, node):
@@ -50,4 +57,5 @@ def _mathml(translator, node):
 
 def setup(app):
     app.add_html_math_renderer("mathml", (_mathml, None), (_mathml, None))
-    app.connect("autodoc-process-docstring", _bars_are_sizes)
+    app.connect("autodoc-process-docstring", _bars_are_sizes, priority=400)
+    app.connect("autodoc-process-docstring", _colons_are_colons, priority=600)

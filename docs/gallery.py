@@ -7,6 +7,7 @@ Nothing is typed by hand: what the course has is what the gallery shows.
 
 from __future__ import annotations
 
+import inspect
 import re
 import sys
 from collections.abc import Iterator
@@ -16,7 +17,8 @@ from pathlib import Path
 import coursework
 from coursework.course import Course, CourseExercise, Variant
 from coursework.handout import Question
-from coursework.language import unit_text
+from coursework.language import plain, with_unit
+from coursework.model import GivenSpec
 from coursework.rendering.formulas import to_mathml
 from coursework.rendering.markup import html_inline, to_html
 
@@ -116,8 +118,8 @@ def _in_language(variant: Variant, lang: str) -> list[str]:
 
 
 def _question(question: Question, lang: str) -> str:
-    cases = "; ".join(html_inline(label, lang) for _, label in question.choices)
-    asked = " ".join(filter(None, (to_html(question.prompt, lang), f"<p>{cases}</p>" if cases else "")))
+    cases = "".join(f"<li>{html_inline(label, lang)}</li>" for _, label in question.choices)
+    asked = to_html(question.prompt, lang) + (f"<ul>{cases}</ul>" if cases else "")
     unit = f" <span class='unit'>{escape(question.unit)}</span>" if question.unit else ""
     return f"<li><code>{escape(question.id)}</code>{unit} {asked}</li>"
 
@@ -125,21 +127,25 @@ def _question(question: Question, lang: str) -> str:
 def _given_table(exercise: CourseExercise) -> str:
     rows = []
     for name, spec in exercise.spec.given.items():
-        unit = unit_text(spec.unit, "en")
-        if spec.is_choice:
-            told = " or ".join(spec.choices)
-        elif spec.is_fixed:
-            told = f"{spec.default:g} {unit}, always"
-        else:
-            told = f"{_bound(spec.low)} to {_bound(spec.high)} {unit}, by {float(spec.step):g}"
         symbol = to_mathml(exercise.symbol(name), "en")
-        rows.append(f"<tr><td>{symbol}</td><td><code>{name}</code></td><td>{escape(told)}</td></tr>")
+        rows.append(f"<tr><td>{symbol}</td><td><code>{name}</code></td><td>{_range(spec)}</td></tr>")
     return f"<table>{''.join(rows)}</table>"
 
 
-def _bound(bound: object) -> str:
-    """A bound that is a function is told by its name, which says what it is."""
-    return getattr(bound, "__name__", "").replace("_", " ") if callable(bound) else f"{bound:g}"
+def _range(spec: GivenSpec) -> str:
+    if spec.is_choice:
+        return " or ".join(map(escape, spec.choices))
+    if spec.is_fixed:
+        return f"always {_bound(spec.default, spec.unit)}"
+    step = with_unit(plain(float(spec.step)), spec.unit, "en")
+    return f"{_bound(spec.low, spec.unit)} to {_bound(spec.high, spec.unit)}, by {step}"
+
+
+def _bound(bound: object, unit: str) -> str:
+    """A bound that is a function is told by its name, which says what it is, and by what it depends on."""
+    if callable(bound):
+        return f"<code>{bound.__name__}({', '.join(inspect.signature(bound).parameters)})</code>"
+    return escape(with_unit(plain(bound), unit, "en"))
 
 
 def _alt(variant: Variant) -> str:

@@ -33,7 +33,7 @@ def turning_points(slope: Slope, parameters: Sequence[Any], *, samples: int = 24
     Returns
     -------
     Angles in radians, shape ``(n, k)``, k at least 2; a row holds its own in increasing order from
-    :math:`0.12` on, less than a turn apart, then NaN. A row whose slope is not finite at some sample
+    0.12 on, less than a turn apart, then NaN. A row whose slope is not finite at some sample
     is NaN throughout.
 
     Source
