@@ -30,16 +30,20 @@ autodoc_typehints = "signature"
 maximum_signature_line_length = 88
 napoleon_google_docstring = False
 napoleon_use_rtype = False
+napoleon_custom_sections = ["Source", "Gives"]
 
 add_module_names = False
 
 #: Text between double backquotes, or a bar: |x| is a size in the docstrings, a substitution to docutils.
 _LITERAL_OR_BAR = re.compile(r"(``.+?``)|\|")
+#: A section of returned values whose lines are not indented: sentences, where a list of names is expected.
+_RETURNS = re.compile(r"^Returns\n-+\n((?:\S.*\n?)+)(?=\n|\Z)", re.MULTILINE)
 _plain: dict[str, list[str]] = {}
 
 
-def _bars_are_sizes(app, what, name, obj, options, lines):
-    lines[:] = [_LITERAL_OR_BAR.sub(lambda m: m[1] or r"\|", line) for line in lines]
+def _as_written(app, what, name, obj, options, lines):
+    text = "\n".join(_LITERAL_OR_BAR.sub(lambda m: m[1] or r"\|", line) for line in lines)
+    lines[:] = _RETURNS.sub(r"Gives\n-----\n\1", text).splitlines()
     _plain[name] = list(lines)
 
 
@@ -57,5 +61,5 @@ def _mathml(translator, node):
 
 def setup(app):
     app.add_html_math_renderer("mathml", (_mathml, None), (_mathml, None))
-    app.connect("autodoc-process-docstring", _bars_are_sizes, priority=400)
+    app.connect("autodoc-process-docstring", _as_written, priority=400)
     app.connect("autodoc-process-docstring", _colons_are_colons, priority=600)
