@@ -164,7 +164,15 @@ def _progress(what: str, total: int | None) -> Iterator[Callable[..., None]]:
 
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=total)
-        yield lambda *_: bar.advance(task)
+
+        def advance(*progress: Any) -> None:
+            """One more, or so many of so many."""
+            if len(progress) == 2:
+                bar.update(task, completed=progress[0], total=progress[1])
+            else:
+                bar.advance(task)
+
+        yield advance
 
 
 # ------------------------------------------------------------------------- look
