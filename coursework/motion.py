@@ -44,10 +44,10 @@ _KEY = 25.0  #: longest arrow of the legend, over the scale: mm on paper
 class Reading:
     """A quantity over the instants, as printed; empty where it does not exist."""
 
-    name: str
     symbol: str
     unit: str
     effects: tuple[str, ...]
+    point: str  #: the point whose vector it measures, if any
     values: tuple[str, ...]
 
 
@@ -127,7 +127,7 @@ class Animation:
                 break
             found[k] = elements
         if len(found) == self.count:
-            turned = int(math.floor((start % 360.0) / step + 1e-9))
+            turned = math.floor((start % 360.0) / step + 1e-9)
             shown = [(k - turned) % self.count for k in range(self.count)]
             angles = (start % 360.0) + (np.arange(self.count) - turned) * step
             return angles, [found[k] for k in shown], turned, True
@@ -227,7 +227,7 @@ class Animation:
             lengths = [np.abs(v[self._inside]) for _, effect, v in self._vectors if effect in kind]
             longest = max((float(np.nanmax(one)) for one in lengths), default=0.0)
             if longest > 0:
-                found |= {effect: longest / (_LONGEST * size) for effect in kind}
+                found |= dict.fromkeys(kind, longest / (_LONGEST * size))
         return found
 
     @property
@@ -328,20 +328,39 @@ class Animation:
                 effects_of.setdefault(name, []).append(effect)
         given = {**self.variant.used, self._driver.angle: self.angles}
         found = exercise.solve(**given, only=tuple(effects_of)) if effects_of else {}
-        return tuple(self._reading(name, effects_of[name], value) for name, value in found.items())
+        told = [
+            self._reading(
+                exercise.solution.symbols.get(name) or exercise.symbol(name),
+                exercise.units.get(name, "1"),
+                effects_of[name],
+                value,
+            )
+            for name, value in found.items()
+        ]
+        known = {reading.symbol for reading in told}
+        if any("coriolis" in reading.effects for reading in told):
+            known |= {_symbol("coriolis", name) for name in self.points}
+        return (*told, *(r for r in self._norms() if r.symbol not in known))
 
-    def _reading(self, name: str, effects: Sequence[str], value: Any) -> Reading:
-        exercise = self.variant.exercise
-        symbol = exercise.solution.symbols.get(name) or exercise.symbol(name)
+    def _norms(self) -> list[Reading]:
+        """The length of every vector, under the name that it has in the course."""
+        return [
+            self._reading(_symbol(effect, name), UNIT[effect], (effect,), np.abs(v), name)
+            for name, effect, v in self._vectors
+        ]
+
+    def _reading(
+        self, symbol: str, unit: str, effects: Sequence[str], value: Any, point: str = ""
+    ) -> Reading:
         values = np.broadcast_to(value, self.angles.shape).astype(float)
-        unit = unit_text(exercise.units.get(name, "1"), self.variant.lang)
+        unit = unit_text(unit, self.variant.lang)
         # Rounding noise where a quantity vanishes is not worth its digits.
         noise = 1e-12 * float(np.nanmax(np.abs(values), initial=0.0))
         return Reading(
-            name,
             symbol,
             unit,
             tuple(effects),
+            point,
             tuple(self._number(0.0 if abs(v) < noise else v) for v in values),
         )
 
@@ -353,6 +372,13 @@ def _animate(track: Any, order: Sequence[int], times: str) -> str:
     if track.mark:
         return f'<animateTransform attributeName="transform" type="translate" {loop}/>'
     return f'<animate attributeName="d" {loop}/>'
+
+
+def _symbol(effect: str, point: str) -> str:
+    """LaTeX of a vector's length, as the course writes it: ``v_B``, ``a_{A,c}``."""
+    index = f"{point},c" if effect == "coriolis" else point
+    letter = "v" if effect == "velocity" else "a"
+    return f"{letter}_" + (index if len(index) == 1 else f"{{{index}}}")
 
 
 def _round_below(value: float) -> float:

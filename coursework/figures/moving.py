@@ -7,6 +7,7 @@ instants, so that nothing jumps.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -17,12 +18,12 @@ from coursework.errors import WrongValue
 from coursework.figures.elements import Bars, Element, centre_line, line, rail, rotation_arrow
 from coursework.figures.ink import (
     BLACK,
-    DOTTED,
     FILLS,
     LINES,
     MARKS,
     PINS,
     THIN,
+    WHITE,
     Arc,
     Disc,
     Ink,
@@ -34,8 +35,8 @@ from coursework.figures.ink import (
 )
 from coursework.figures.paper import Paper
 from coursework.figures.placing import NAMES, Label, Wish, _support
-from coursework.figures.text import read
-from coursework.figures.writing import _label
+from coursework.figures.text import SIZE, read
+from coursework.figures.writing import _label, _outlines
 
 COLOURS = {"position": "#1b7a4b", "velocity": "#0a58a8", "acceleration": "#b3261e", "coriolis": "#7a2f9e"}
 ARROW, TIP = 0.5, 2.6  #: width of a vector's shaft and length of its head, mm
@@ -43,6 +44,7 @@ _MARGIN = 1.5
 _ROW = 6.0  #: height of a line of the legend, mm
 _SYMBOLS = complex(26, 24)  #: paper that symbols and labels take round the mechanism, mm
 _ARC_SIDES = 20
+_RIM = 30  #: white round letters, hundredths of their size
 
 
 @dataclass(frozen=True)
@@ -60,6 +62,7 @@ class Track:
     layer: int = LINES
     effect: str = ""  #: what must be switched on for it to be seen
     point: str = ""  #: the point that it belongs to
+    key: bool = False  #: a part of the legend
 
     @property
     def moves(self) -> bool:
@@ -331,7 +334,7 @@ def _spot_tracks(spot: Spot, scale: float) -> list[Track]:
     way = spot.p * scale
     path = Track(
         np.repeat(_flat([way]), count, axis=0),
-        f' stroke="{colour}"{_paint(0.3, "none", DOTTED)}',
+        f' stroke="{colour}"{_paint(0.25, "none")}',
         spot.closed,
         layer=FILLS,
         effect="position",
@@ -384,11 +387,19 @@ def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float) -> li
         costs = [cost + 12 * meetings(centres) / len(looked_at) for cost, centres in ways]
         centres = ways[int(np.argmin(np.round(costs, 6)))][1]
         placed.append((centres, half))
-        letters = _label(Label(own[0].label, text, 0j, *text.box), 0j, outlined=True)
-        mark = f'<g fill="{BLACK}" stroke="none">{letters}</g>'
+        mark = _letters(own[0].label, BLACK)
         effect = "position" if point else ""
         tracks.append(Track(_flat(centres[:, None]), mark=mark, layer=MARKS, effect=effect, point=point))
     return tracks
+
+
+def _letters(label: str, colour: str) -> str:
+    """A label centred on the origin, on a white rim of its own: lines may pass under it."""
+    text = read(label)
+    box = Label(label, text, 0j, *text.box)
+    left = 1j * SIZE * (text.top + text.bottom) / 2 - SIZE * text.width / 2
+    rim = f'<g fill="{WHITE}" stroke="{WHITE}" stroke-width="{_RIM}">{_outlines(text, left)}</g>'
+    return f'{rim}<g fill="{colour}" stroke="none">{_label(box, 0j, outlined=True)}</g>'
 
 
 def _candidates(wishes: Sequence[Wish], half: complex) -> list[tuple[float, list[complex]]]:
@@ -428,7 +439,7 @@ def _outline(thing: Ink) -> list[complex]:
 
 
 def _sides(points: Sequence[complex]) -> list[tuple[complex, complex]]:
-    return list(zip(points, points[1:], strict=False))
+    return list(itertools.pairwise(points))
 
 
 def _meets(segments: tuple[np.ndarray, np.ndarray], centre: complex, half: complex) -> bool:
@@ -459,10 +470,13 @@ def _framed(tracks: Sequence[Track], keys: Sequence[Key], scale: float) -> Drawi
     left, top = round(xs.min() - around - _MARGIN, 1), round(ys.max() + around + _MARGIN, 1)
     bottom = ys.min() - around - _MARGIN
     width = round(xs.max() + around + _MARGIN - left, 1)
-    legend = [
-        track for row, key in enumerate(keys) for track in _key_tracks(key, row, left, bottom, scale, tracks)
-    ]
-    width = max(width, round(max((_key_width(key, scale) for key in keys), default=0.0), 1))
+    indent = 2.0 + max((key.length * scale for key in keys), default=0.0)
+    widest = max((read(key.words).box[0] for key in keys), default=-indent)
+    width = max(width, round(indent + widest + 4 * _MARGIN, 1))
+    legend, count = [], len(tracks[0].numbers)
+    for row, key in enumerate(keys):
+        corner = complex(left + 2 * _MARGIN, bottom - _ROW * (row + 0.4))
+        legend += _key_tracks(key, count, corner, indent, scale)
     height = round(top - bottom + _ROW * len(keys), 1)
     flip = [replace(t, numbers=_downwards(t.numbers, left, top)) for t in [*tracks, *legend]]
     return Drawing(tuple(sorted(flip, key=lambda t: t.layer)), (width, height), scale)
@@ -475,20 +489,11 @@ def _downwards(numbers: np.ndarray, left: float, top: float) -> np.ndarray:
     return moved
 
 
-def _key_width(key: Key, scale: float) -> float:
-    return 3 * _MARGIN + key.length * scale + read(key.words).box[0] + 3
-
-
-def _key_tracks(
-    key: Key, row: int, left: float, bottom: float, scale: float, tracks: Sequence[Track]
-) -> list[Track]:
+def _key_tracks(key: Key, count: int, corner: complex, indent: float, scale: float) -> list[Track]:
     """An arrow of a round length, and its words."""
-    count = len(tracks[0].numbers)
-    start = complex(left + 2 * _MARGIN, bottom - _ROW * (row + 0.4)) / scale
+    start = corner / scale
     arrow = Arrow(np.full(count, start), np.full(count, key.length + 0j), key.effect, "")
-    text = read(key.words)
-    centre = (start + key.length) * scale + 2 + text.box[0] / 2
-    letters = _label(Label(key.words, text, 0j, *text.box), 0j, outlined=True)
-    mark = f'<g fill="{COLOURS[key.effect]}" stroke="none">{letters}</g>'
+    centre = start * scale + indent + read(key.words).box[0] / 2
+    mark = _letters(key.words, COLOURS[key.effect])
     words = Track(_flat([[centre]] * count), mark=mark, layer=MARKS, effect=key.effect)
-    return [*_arrow_tracks(arrow, scale), words]
+    return [replace(track, key=True) for track in (*_arrow_tracks(arrow, scale), words)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Sequence
 from html import escape
@@ -68,9 +69,7 @@ def _spans(animation: Animation) -> list[float]:
     order = animation.order
     if animation.turns:
         return [1 / (len(order) - 1)] * (len(order) - 1)
-    steps = [
-        abs(float(animation.angles[b] - animation.angles[a])) for a, b in zip(order, order[1:], strict=False)
-    ]
+    steps = [abs(float(animation.angles[b] - animation.angles[a])) for a, b in itertools.pairwise(order)]
     return [round(step / sum(steps), 6) for step in steps]
 
 
@@ -87,9 +86,11 @@ def _svg(tracks: Sequence[Track], size: tuple[float, float], first: int, animati
         more = ""
         if track.moves:
             more, moving = f' data-track="{moving}"', moving + 1
-        if track.effect:
-            more += f' data-effect="{track.effect}"'
-            more += "" if track.effect in animation.effects else ' style="display:none"'
+        on = track.effect in animation.effects
+        if track.key:
+            more += f' data-key="{track.effect}"' + ("" if on else ' style="opacity:.3"')
+        elif track.effect:
+            more += f' data-effect="{track.effect}"' + ("" if on else ' style="display:none"')
         if track.point:
             more += f' data-point="{escape(track.point)}"'
         lines.append(track.svg(first, more))
