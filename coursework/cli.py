@@ -386,6 +386,35 @@ def _drive(exercise: Any, text: str) -> float:
     return exercise._accept(effort, value.strip())
 
 
+# ---------------------------------------------------------------------- animate
+
+
+@cli.command()
+@click.argument("exercise")
+@_seed_option
+@click.option(
+    "--effects",
+    default="",
+    metavar="E,E",
+    help="What is seen: position (paths), velocity, acceleration, coriolis; paths alone unless told.",
+)
+@_lang_option
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=".", help="Folder to write.")
+@click.pass_context
+def animate(context: click.Context, exercise: str, seed: int, effects: str, lang: str, out: Path) -> None:
+    """Show a mechanism over the cycle of its driver.
+
+    Writes a moving picture (SVG) and a page with a slider (HTML).
+    """
+    from coursework.building import write_whole
+
+    animation = _course(context)[exercise].variant(seed, lang).animation(_split(effects))
+    pages = {"svg": animation.svg(), "html": animation.html()}
+    for ending, text in pages.items():
+        write_whole(out / f"{exercise}.{ending}", text.encode("utf-8"))
+        click.echo(f"{out / exercise}.{ending}")
+
+
 # ----------------------------------------------------------------------- lesson
 
 

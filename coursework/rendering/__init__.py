@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from coursework.handout import AnswerSheet, FeedbackSheet, Handout
 from coursework.report import Report
+
+if TYPE_CHECKING:
+    from coursework.motion import Animation
 
 
 class Renderer:
@@ -64,6 +68,12 @@ class Renderer:
         from coursework.rendering import pdf, reports
 
         return pdf.compile_pdf(reports.source(self.template_folders, report))
+
+    def motion_html(self, animation: Animation) -> str:
+        """A mechanism in motion as one web page that fetches nothing; its one script is in the page."""
+        from coursework.rendering import motion
+
+        return motion.page(self.template_folders, animation)
 
     def terminal(self, handout: Handout) -> str:
         """A handout as plain text."""
