@@ -11,6 +11,7 @@ from pathlib import Path
 from coursework import booklets
 from coursework.booklets import File
 from coursework.course import Course
+from coursework.handout import AnswerSheet, Handout
 from coursework.issuing import (
     Issue,
     csv_text,
@@ -23,7 +24,7 @@ from coursework.issuing import (
 from coursework.rendering import Renderer
 from coursework.submissions import COLUMNS
 
-FORMATS = ("pdf", "ipynb", "html")
+FORMATS = ("pdf", "ipynb", "html", "tex")
 KEY_COLUMNS = ("student", "exercise", "seed", "part", "value", "unit", "tolerance")
 
 
@@ -84,10 +85,23 @@ def _sheets(
         yield File(
             _with(for_student, ".ipynb"), _text(lambda: renderer.notebook(handout(), practice=practice))
         )
+    if "tex" in formats:
+        yield from _tex(renderer, for_student, ".tex", "figure", handout)
     if course.has_solutions and "pdf" in formats:
         yield File(_with(for_staff, ".solution.pdf"), lambda: renderer.pdf(solution()))
     if course.has_solutions and "html" in formats:
         yield File(_with(for_staff, ".solution.html"), _text(lambda: renderer.html(solution())))
+    if course.has_solutions and "tex" in formats:
+        yield from _tex(renderer, for_staff, ".solution.tex", "solution-figure", solution)
+
+
+def _tex(
+    renderer: Renderer, path: Path, ending: str, what: str, sheet: Callable[[], Handout | AnswerSheet]
+) -> Iterator[File]:
+    """A source and its figure beside it; one dot in the figure's name, as every LaTeX reads it."""
+    figure = f"{path.name.replace('.', '-')}-{what}.pdf"
+    yield File(_with(path, ending), _text(lambda: renderer.tex(sheet(), figure)))
+    yield File(path.with_name(figure), lambda: renderer.figure_pdf(sheet()))
 
 
 def _with(path: Path, ending: str) -> Path:

@@ -59,6 +59,22 @@ class Renderer:
 
         return html.page(self.template_folders, sheet, self.paper)
 
+    def tex(self, sheet: Handout | AnswerSheet, figure: str) -> str:
+        """A sheet as LaTeX source for pdflatex.
+
+        ``figure`` names the PDF file beside it that holds the figure of :meth:`figure_pdf`, if any.
+        """
+        from coursework.rendering import latex
+
+        return latex.source(self.template_folders, sheet, self.paper, figure)
+
+    def figure_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
+        """The figure that a sheet shows, as a PDF of its own; nothing when it shows none."""
+        from coursework.rendering import views
+
+        figure = views.figure_of(sheet)
+        return None if figure is None else figure.pdf()
+
     def notebook(self, handout: Handout, *, practice: bool = False) -> str:
         """A handout as a notebook (JSON, nbformat 4.5); with practice, a cell that checks the answers."""
         from coursework.rendering import notebook
