@@ -512,6 +512,14 @@ def accuracy(
 @click.option("--lang", "langs", type=_Lists(_known_languages), default="fr", show_default=True)
 @click.option("--practice", is_flag=True, help="Notebooks check answers with the installed package.")
 @click.option(
+    "--paper",
+    type=click.Choice(["a4", "letter"]),
+    default="a4",
+    show_default=True,
+    help="Paper of the sheets.",
+)
+@click.option("--booklet", is_flag=True, help="Also all students' sheets in one PDF, to print at once.")
+@click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."
 )
 @click.option("--overwrite", is_flag=True, help="Replace what was issued there before.")
@@ -525,6 +533,8 @@ def build(
     formats: Sequence[str],
     langs: Sequence[str],
     practice: bool,
+    paper: str,
+    booklet: bool,
     out: Path,
     overwrite: bool,
 ) -> None:
@@ -534,7 +544,18 @@ def build(
     course = _course(context)
     names = _exercise_names(course, exercises)
     written = build_files(
-        course, names, count or 1, seed, roster, formats, langs, out, practice=practice, overwrite=overwrite
+        course,
+        names,
+        count or 1,
+        seed,
+        roster,
+        formats,
+        langs,
+        out,
+        practice=practice,
+        paper=paper,
+        booklet=booklet,
+        overwrite=overwrite,
     )
     click.echo(f"{written} files in {out}: handouts/ to give away, issued.json and answers.csv to keep")
     if course.has_solutions:
@@ -552,6 +573,8 @@ def build_files(
     out: Path,
     *,
     practice: bool = False,
+    paper: str = "a4",
+    booklet: bool = False,
     overwrite: bool = False,
 ) -> int:
     """Issue and write a build; gives how many files were written."""
@@ -565,7 +588,7 @@ def build_files(
         raise BadInput(
             f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them"
         )
-    wanted = list(building.files(course, issues, formats, practice=practice))
+    wanted = list(building.files(course, issues, formats, practice=practice, paper=paper, booklet=booklet))
     with _progress("building", len(wanted)) as advance:
         building.write_tree(out, wanted, advance)
     return len(wanted)

@@ -71,6 +71,7 @@ def _question(variant: Variant, number: int, part: Part) -> Question:
         choices=choices,
         points=part.points,
         tolerance=tolerance_words(part, variant.lang),
+        asks_unit=part.asks_unit,
     )
 
 
@@ -193,7 +194,7 @@ def _value_latex(variant: Variant, name: str, value: Any) -> str:
 def _unit_latex(unit: str) -> str:
     if unit in ("1", "deg"):
         return r"^{\circ}" if unit == "deg" else ""
-    text = unit.replace("*", r"\cdot ").replace("^2", "^{2}")
+    text = unit.replace("*", r"{\cdot}").replace("^2", "^{2}")
     return rf"\ \mathrm{{{text}}}"
 
 
