@@ -1,4 +1,4 @@
-# Two commands do the job on a machine with Python and make: `make demo` and `make test`.
+# Two commands do the job on a machine with Python and make: `make demo` and `make test`. `make docs` builds the pages.
 # PYTHON chooses the interpreter, at least 3.11.
 
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
@@ -6,7 +6,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint wheel-test clean
+.PHONY: demo test docs lint wheel-test clean
 .DEFAULT_GOAL := demo
 
 # Installed anew when the requirements change; edited code needs no reinstallation.
@@ -21,6 +21,19 @@ demo: $(VENV)/ready  ## The whole job on a class of twelve
 
 test: $(VENV)/ready lint  ## Every test
 	$(BIN)/python -m pytest -n auto -q
+
+$(VENV)/docs-ready: $(VENV)/ready
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	touch $(VENV)/docs-ready
+
+# A warning is an error. The gallery is made from the course, beside a copy of the sources.
+docs: $(VENV)/docs-ready  ## The documentation, in build/site
+	rm -rf build/docs build/site
+	mkdir -p build
+	cp -r docs build/docs
+	$(BIN)/python docs/gallery.py build/docs/gallery
+	$(BIN)/sphinx-build -W --keep-going -q -b html -d build/doctrees build/docs build/site
+	@echo "open build/site/index.html"
 
 # The wheel in an environment of its own, the tests beside it, and no source in reach.
 wheel-test: $(VENV)/ready

@@ -1,0 +1,162 @@
+"""Writes the gallery: a page an exercise of the built-in course, and a page of them all.
+
+    python docs/gallery.py build/docs/gallery
+
+Nothing is typed by hand: what the course has is what the gallery shows.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Iterator
+from html import escape
+from pathlib import Path
+
+import coursework
+from coursework.course import Course, CourseExercise, Variant
+from coursework.handout import Question
+from coursework.language import unit_text
+from coursework.rendering.formulas import to_mathml
+from coursework.rendering.markup import html_inline, to_html
+
+SEED = 0  #: the variant shown
+PPI = 75  #: of the picture of a sheet
+LANGUAGE_NAMES = {"en": "English", "fr": "Français"}
+
+
+def pages(course: Course) -> Iterator[tuple[str, bytes]]:
+    """Every file of the gallery: its name, its content."""
+    yield "index.md", index(course).encode()
+    for name in course.names:
+        exercise = course[name]
+        for lang in exercise.languages:
+            sheet = course.renderer.typst(exercise.variant(SEED, lang).handout())
+            yield f"{name}.{lang}.png", first_page(sheet)
+        figure = exercise.variant(SEED, exercise.languages[0]).figure
+        if figure is not None:
+            yield f"{name}.svg", figure.outlined_svg().encode()
+        yield f"{name}.md", page(exercise).encode()
+
+
+def first_page(typst_source: str) -> bytes:
+    """The first page of a sheet as PNG."""
+    import typst
+
+    compiler = typst.Compiler(ignore_system_fonts=True)
+    made = compiler.compile(input=typst_source.encode(), format="png", ppi=PPI)
+    return made[0] if isinstance(made, list) else made
+
+
+def index(course: Course) -> str:
+    """All exercises at a glance, each a link to its page."""
+    cards = "\n".join(_card(course[name]) for name in course.names)
+    listed = "\n".join(course.names)
+    return f"""# Gallery
+
+The {len(course.names)} exercises of the built-in course, each as variant {SEED} draws it. This page is made from the
+course at every build.
+
+```{{raw}} html
+<div class="gallery">
+{cards}
+</div>
+```
+
+```{{toctree}}
+:hidden:
+
+{listed}
+```
+"""
+
+
+def _card(exercise: CourseExercise) -> str:
+    titles = [escape(exercise.title(lang)) for lang in exercise.languages]
+    figure = f'<img src="../_images/{exercise.name}.svg" alt="">' if exercise.spec.figure else ""
+    return (
+        f'<a class="card" href="{exercise.name}.html"><span class="drawing">{figure}</span>'
+        f"<b>{titles[0]}</b><span>{' · '.join(titles[1:])}</span>"
+        f"<span>{len(exercise.spec.parts)} questions</span></a>"
+    )
+
+
+def page(exercise: CourseExercise) -> str:
+    """One exercise: figure, what varies, and in every language the statement, the questions, the sheet."""
+    first = exercise.variant(SEED, exercise.languages[0])
+    points = sum(part.points for part in first.parts)
+    lines = [
+        f"# {exercise.title(exercise.languages[0])}",
+        "",
+        f"`{exercise.name}`, version {exercise.version}: {len(first.parts)} questions, {points:g} points. "
+        f"{len(exercise.solution.mistakes)} known mistakes are told apart.",
+        "",
+    ]
+    if first.figure is not None:
+        lines += [f"![{_alt(first)}]({exercise.name}.svg){{.figure}}", ""]
+    lines += ["## What varies", "", _html(_given_table(exercise)), ""]
+    for lang in exercise.languages:
+        lines += _in_language(exercise.variant(SEED, lang), lang)
+    lines += ["## Try it", "", "```console", f"coursework show {exercise.name} --seed {SEED} --lang en"]
+    lines += [f"coursework build {exercise.name} --variants 3 --out sheets", "```", ""]
+    return "\n".join(lines)
+
+
+def _in_language(variant: Variant, lang: str) -> list[str]:
+    handout = variant.handout()
+    questions = "\n".join(_question(question, lang) for question in handout.questions)
+    return [
+        f"## {LANGUAGE_NAMES.get(lang, lang)}: {handout.title}",
+        "",
+        _html(f'<div lang="{lang}">{to_html(handout.statement, lang)}<ol>{questions}</ol></div>'),
+        "",
+        f"![The first page of the sheet, {lang}]({variant.exercise.name}.{lang}.png){{.sheet}}",
+        "",
+    ]
+
+
+def _question(question: Question, lang: str) -> str:
+    cases = "; ".join(html_inline(label, lang) for _, label in question.choices)
+    asked = " ".join(filter(None, (to_html(question.prompt, lang), f"<p>{cases}</p>" if cases else "")))
+    unit = f" <span class='unit'>{escape(question.unit)}</span>" if question.unit else ""
+    return f"<li><code>{escape(question.id)}</code>{unit} {asked}</li>"
+
+
+def _given_table(exercise: CourseExercise) -> str:
+    rows = []
+    for name, spec in exercise.spec.given.items():
+        unit = unit_text(spec.unit, "en")
+        if spec.is_choice:
+            told = " or ".join(spec.choices)
+        elif spec.is_fixed:
+            told = f"{spec.default:g} {unit}, always"
+        else:
+            told = f"{_bound(spec.low)} to {_bound(spec.high)} {unit}, by {float(spec.step):g}"
+        symbol = to_mathml(exercise.symbol(name), "en")
+        rows.append(f"<tr><td>{symbol}</td><td><code>{name}</code></td><td>{escape(told)}</td></tr>")
+    return f"<table>{''.join(rows)}</table>"
+
+
+def _bound(bound: object) -> str:
+    """A bound that is a function is told by its name, which says what it is."""
+    return getattr(bound, "__name__", "").replace("_", " ") if callable(bound) else f"{bound:g}"
+
+
+def _alt(variant: Variant) -> str:
+    words = variant.handout().figure_alt
+    return re.sub(r"[\[\]\n]+", " ", words)
+
+
+def _html(text: str) -> str:
+    return f"````{{raw}} html\n{text}\n````"
+
+
+def main(folder: str) -> None:
+    target = Path(folder)
+    target.mkdir(parents=True, exist_ok=True)
+    for name, content in pages(coursework.open_course()):
+        (target / name).write_bytes(content)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,164 @@
+"""The documentation keeps up with what it tells of: links, commands, code, and the gallery of every exercise."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+import shlex
+from pathlib import Path
+
+import click
+import pytest
+
+import coursework
+from coursework.cli import cli
+
+ROOT = Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
+# Beside an installed wheel there is no README.
+PAGES = [*sorted(DOCS.glob("*.md")), *(p for p in [ROOT / "README.md"] if p.exists())]
+COURSE = coursework.open_course()
+
+every_page = pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+every_exercise = pytest.mark.parametrize("name", COURSE.names)
+
+FENCE = re.compile(r"^```(\S*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+LINK = re.compile(r"\]\(([^()\s]+)\)")
+
+
+def blocks(page: Path, kind: str) -> list[str]:
+    return [body for name, body in FENCE.findall(page.read_text("utf-8")) if name == kind]
+
+
+def anchors(page: Path) -> set[str]:
+    """The anchors of a page's headings, as both GitHub and the site make them."""
+    text = FENCE.sub("", page.read_text("utf-8"))
+    headings = re.findall(r"^#+ (.+)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", h.lower()).strip().replace(" ", "-") for h in headings}
+
+
+def commands(page: Path) -> list[list[str]]:
+    """The arguments of every ``coursework`` command of a page; where a block has prompts, of their lines."""
+    found = []
+    for block in blocks(page, "console"):
+        lines = block.splitlines()
+        prompted = [line[2:] for line in lines if line.startswith("$ ")]
+        for line in prompted or lines:
+            words = shlex.split(line.replace("\\", "/"), comments=True)
+            if words and Path(words[0]).name == "coursework":
+                found.append(words[1:])
+    return found
+
+
+def read_command(arguments: list[str]) -> tuple[str, dict]:
+    """A command line as click reads it, without running it: the command, its options and arguments."""
+    with cli.make_context("coursework", list(arguments)) as context:
+        name, command, rest = cli.resolve_command(context, [*context._protected_args, *context.args])
+        with click.Context(command, parent=context, info_name=name) as inner:
+            options, unread, _ = command.make_parser(inner).parse_args(list(rest))
+        assert not unread, f"{name} takes no {unread}"
+        for parameter in command.params:
+            if parameter.required:
+                assert isinstance(options.get(parameter.name), (str, tuple)), (
+                    f"{name} needs {parameter.opts[0]}"
+                )
+    return name, {n: value for n, value in options.items() if isinstance(value, (str, tuple))}
+
+
+def gallery():
+    spec = importlib.util.spec_from_file_location("gallery", DOCS / "gallery.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+# ------------------------------------------------------------------------ links
+
+
+@every_page
+def test_every_internal_link_leads_somewhere(page):
+    for target in LINK.findall(FENCE.sub("", page.read_text("utf-8"))):
+        if "://" in target:
+            continue
+        path, _, anchor = target.partition("#")
+        if path.startswith("gallery/"):
+            assert Path(path).stem in (*COURSE.names, "index"), target
+            continue
+        there = (page.parent / path).resolve() if path else page
+        assert there.exists(), target
+        if anchor:
+            assert anchor in anchors(there), target
+
+
+def test_every_page_is_in_the_table_of_contents():
+    index = (DOCS / "index.md").read_text("utf-8")
+    listed = re.search(r"```\{toctree\}\n:hidden:\n\n(.*?)```", index, re.DOTALL)[1].split()
+    assert {p.stem for p in DOCS.glob("*.md")} - {"index"} | {"gallery/index"} == set(listed)
+
+
+def test_the_site_names_no_other_place():
+    sources = [*DOCS.glob("*.md"), *DOCS.glob("*.py"), *DOCS.glob("_static/*")]
+    for source in sources:
+        assert not re.search(r"https?://", source.read_text("utf-8")), source.name
+
+
+# --------------------------------------------------------------------- commands
+
+
+@every_page
+def test_every_command_shown_exists_with_its_options(page):
+    for arguments in commands(page):
+        name, given = read_command(arguments)
+        if name != "new" and "--course" not in arguments:
+            named = {given["exercise"]} if "exercise" in given else set(given.get("exercises", ()))
+            assert named <= set(COURSE.names), arguments
+
+
+def test_pages_do_show_commands():
+    found = {read_command(a)[0] for page in DOCS.glob("*.md") for a in commands(page)}
+    assert {"list", "show", "build", "grade", "report", "check", "new", "accuracy", "lesson"} <= found
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [["grade", "returned/", "--isued", "x"], ["grade", "returned/"], ["gade"], ["list", "--seed", "1"]],
+)
+def test_a_command_that_does_not_exist_would_be_found(wrong):
+    with pytest.raises((click.UsageError, AssertionError)):
+        read_command(wrong)
+
+
+# ------------------------------------------------------------------------- code
+
+
+@every_page
+def test_every_python_block_runs(page):
+    for number, block in enumerate(blocks(page, "python")):
+        exec(compile(block, f"{page.name}, block {number + 1}", "exec"), {"__name__": "shown"})
+
+
+# ---------------------------------------------------------------------- gallery
+
+
+def test_the_gallery_shows_every_exercise():
+    index = gallery().index(COURSE)
+    for name in COURSE.names:
+        assert f'href="{name}.html"' in index
+        assert re.search(rf"^{name}$", index, re.MULTILINE), "in its table of contents"
+
+
+@every_exercise
+def test_a_page_of_the_gallery_tells_all_questions_in_every_language(name):
+    exercise, page = COURSE[name], gallery().page(COURSE[name])
+    for lang in exercise.languages:
+        assert exercise.title(lang) in page
+        assert f"{name}.{lang}.png" in page
+    for part in exercise.variant(0).parts:
+        assert page.count(f"<li><code>{part.id}</code>") == len(exercise.languages)
+    for given in exercise.spec.given:
+        assert f"<td><code>{given}</code></td>" in page
+
+
+def test_the_picture_of_a_sheet_is_one_page_as_png():
+    handout = COURSE["slotted_mechanism"].variant(0, "en").handout()
+    assert gallery().first_page(COURSE.renderer.typst(handout)).startswith(b"\x89PNG")
