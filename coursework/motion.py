@@ -78,6 +78,10 @@ class Animation:
         spec = variant.exercise.spec
         if spec.driver is None:
             raise BadCourse(f"{variant.exercise.name} names no driver=Driver(…), so it cannot be moved")
+        if spec.driver.angle not in variant.given:
+            raise BadCourse(
+                f"{variant.exercise.name}: its driver's angle {spec.driver.angle} is no given quantity"
+            )
         if spec.figure is None:
             raise BadCourse(f"{variant.exercise.name} has no figure to move")
         if count < 3:

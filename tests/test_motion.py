@@ -36,7 +36,7 @@ def animation(name, seed=1, lang="fr", effects=()):
 
 def outward_references(text):
     """Addresses and style imports that a reader of the file would go and fetch."""
-    found = re.findall(r"""(?:src|href|data|action|poster)\s*=\s*["']?([^"'\s>]+)""", text)
+    found = re.findall(r"""\b(?:src|srcset|href|action|poster)\s*=\s*["']?([^"'\s>]+)""", text)
     found += re.findall(r"url\(\s*[\"']?([^\"')]+)", text) + re.findall(r"@import[^;]*", text)
     return [f for f in found if not f.startswith("data:")]
 
@@ -346,7 +346,7 @@ def test_a_students_copy_moves_without_solutions(small_course):
     text = source.read_text("utf-8")
     assert "driver" not in text
     text = text.replace("import Exercise", "import Driver, Exercise")
-    text = re.sub(r"figure=figure,", 'figure=figure, driver=Driver("theta2"),', text)
+    text = re.sub(r"figure=figure,", 'figure=figure, driver=Driver("theta"),', text)
     source.write_text(text, "utf-8")
     shutil.rmtree(small_course / "solutions")
     moved = coursework.open_course(small_course)["crank_pin"].variant(0).animation()
