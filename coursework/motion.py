@@ -37,7 +37,6 @@ EFFECTS = tuple(LEVELS)
 UNIT = {"velocity": "mm/s", "acceleration": "mm/s^2", "coriolis": "mm/s^2"}
 SECONDS = 6.0  #: how long a loop lasts on the screen
 _LONGEST = 0.3  #: of the longest vector, over the size of the mechanism
-_KEY = 25.0  #: longest arrow of the legend, over the scale: mm on paper
 
 
 @dataclass(frozen=True)
