@@ -37,7 +37,6 @@ EFFECTS = tuple(LEVELS)
 UNIT = {"velocity": "mm/s", "acceleration": "mm/s^2", "coriolis": "mm/s^2"}
 SECONDS = 6.0  #: how long a loop lasts on the screen
 _LONGEST = 0.3  #: of the longest vector, over the size of the mechanism
-_KEY = 25.0  #: longest arrow of the legend, over the scale: mm on paper
 
 
 @dataclass(frozen=True)
@@ -78,6 +77,10 @@ class Animation:
         spec = variant.exercise.spec
         if spec.driver is None:
             raise BadCourse(f"{variant.exercise.name} names no driver=Driver(…), so it cannot be moved")
+        if spec.driver.angle not in variant.given:
+            raise BadCourse(
+                f"{variant.exercise.name}: its driver's angle {spec.driver.angle} is no given quantity"
+            )
         if spec.figure is None:
             raise BadCourse(f"{variant.exercise.name} has no figure to move")
         if count < 3:
@@ -131,17 +134,25 @@ class Animation:
             shown = [(k - turned) % self.count for k in range(self.count)]
             angles = (start % 360.0) + (np.arange(self.count) - turned) * step
             return angles, [found[k] for k in shown], turned, True
-        angle = {k: start + k * step for k in found}
+        closing = {start + k * step: elements for k, elements in found.items()}
         for k in range(-1, -self.count, -1):
             if (elements := self._elements(start + k * step)) is None:
                 break
-            found[k], angle[k] = elements, start + k * step
-        for end, way in ((max(found), 1), (min(found), -1)):
-            limit, elements = self._limit(angle[end], way * step)
-            if abs(limit - angle[end]) > 1e-3 * step:
-                found[end + way], angle[end + way] = elements, limit
-        order = sorted(found)
-        return np.array([angle[k] for k in order]), [found[k] for k in order], order.index(0), False
+            closing[start + k * step] = elements
+        for way, last in ((1, max(closing)), (-1, min(closing))):
+            closing |= self._toward_limit(last, way * step, min(len(closing) - 1, 2))
+        angles = sorted(closing)
+        return np.array(angles), [closing[a] for a in angles], angles.index(start), False
+
+    def _toward_limit(self, last: float, step: float, back: int) -> dict[float, tuple[Element, ...]]:
+        """The limit beyond the last angle, and more angles before it, where the links turn as its square root."""
+        limit, elements = self._limit(last, step)
+        if abs(limit - last) < 1e-3 * abs(step):
+            return {}
+        run = limit - (last - back * step)
+        more = {limit - run * (j / 10) ** 2: None for j in range(1, 10)}
+        found = {angle: self._elements(angle) for angle in more}
+        return {limit: elements} | {angle: one for angle, one in found.items() if one is not None}
 
     def _limit(self, angle: float, step: float) -> tuple[float, tuple[Element, ...]]:
         """The last angle that closes between one that does and the next, which does not."""
@@ -273,7 +284,7 @@ class Animation:
         """The moving figure as SVG with no script; it stands still for who wants no motion."""
         shown = self.drawing(self.effects)
         width, height = (f"{x:.6g}" for x in shown.size)
-        times = self._times()
+        times = self._key_times()
         lines = []
         for track in shown.tracks:
             if not track.moves:
@@ -294,13 +305,21 @@ class Animation:
             "</svg>\n",
         ])  # fmt: skip
 
-    def _times(self) -> str:
-        """When each instant of a loop is reached, in shares of it; nothing when they are evenly spread."""
+    @cached_property
+    def times(self) -> np.ndarray:
+        """When each instant of a loop is reached, from 0 to 1: a turn goes steadily, a swing like a pendulum's."""
+        if self.turns:
+            return np.linspace(0.0, 1.0, len(self.order))
+        low, high = self.angles[[0, -1]]
+        phase = np.arccos(np.clip((2 * self.angles - low - high) / (low - high), -1.0, 1.0))
+        steps = np.abs(np.diff(phase[list(self.order)]))
+        return np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
+
+    def _key_times(self) -> str:
+        """The same for SVG; nothing when they are evenly spread."""
         if self.turns:
             return ""
-        steps = np.abs(np.diff(self.angles[list(self.order)]))
-        reached = np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
-        return ";".join(f"{t:.5g}" for t in [*reached[:-1], 1])
+        return ";".join([*(f"{t:.5f}" for t in self.times[:-1]), "1"])
 
     def html(self) -> str:
         """One page with a slider for the driver's angle: it fetches nothing, and without script stands still."""

@@ -36,7 +36,7 @@ def animation(name, seed=1, lang="fr", effects=()):
 
 def outward_references(text):
     """Addresses and style imports that a reader of the file would go and fetch."""
-    found = re.findall(r"""(?:src|href|data|action|poster)\s*=\s*["']?([^"'\s>]+)""", text)
+    found = re.findall(r"""\b(?:src|srcset|href|action|poster)\s*=\s*["']?([^"'\s>]+)""", text)
     found += re.findall(r"url\(\s*[\"']?([^\"')]+)", text) + re.findall(r"@import[^;]*", text)
     return [f for f in found if not f.startswith("data:")]
 
@@ -74,9 +74,7 @@ def test_the_sheets_position_comes_first_and_a_loop_ends_where_it_began(name):
 
 @pytest.mark.parametrize("name", DRIVEN)
 def test_a_full_turn_visits_every_angle_once_the_way_the_driver_turns(name):
-    moved = animation(name)
-    if not moved.turns:
-        pytest.skip("this variant swings")
+    moved = next(animation(name, seed) for seed in range(1, 30) if animation(name, seed).turns)
     speed = moved.variant.given.get(moved.variant.exercise.spec.driver.speed, 1.0)
     steps = np.diff(np.unwrap(moved.angles[list(moved.order)], period=360))
     assert steps == pytest.approx(np.full(36, np.sign(speed) * 10.0))
@@ -94,17 +92,25 @@ def test_a_linkage_that_does_not_turn_fully_swings_between_its_limits_and_back(f
     assert (np.diff(visited) != 0).all()
 
 
-def test_the_times_of_a_swing_go_from_0_to_1_in_step_with_the_angle(four_bar_that_swings):
-    svg = ET.fromstring(four_bar_that_swings.svg())
-    timed = [e for e in svg.iter() if e.get("keyTimes")]
+def test_a_swing_slows_down_at_its_ends_as_a_pendulum_does(four_bar_that_swings):
+    moved = four_bar_that_swings
+    timed = [e for e in ET.fromstring(moved.svg()).iter() if e.get("keyTimes")]
     assert timed
-    times = [float(t) for t in timed[0].get("keyTimes").split(";")]
-    assert times[0] == 0
-    assert times[-1] == 1
-    assert times == sorted(times)
+    times = np.array([float(t) for t in timed[0].get("keyTimes").split(";")])
+    assert (times[0], times[-1]) == (0, 1)
     assert len(times) == len(timed[0].get("values").split(";"))
-    turned = np.abs(np.diff(four_bar_that_swings.angles[list(four_bar_that_swings.order)]))
-    assert np.diff(times) == pytest.approx(turned / turned.sum(), abs=2e-5)
+    assert (np.diff(times) > 0).all()
+    half = moved.angles[-1]  # the limits are opposite
+    start = np.arcsin(moved.angles[moved.first] / half)
+    assert half * np.sin(2 * np.pi * times + start) == pytest.approx(
+        moved.angles[list(moved.order)], abs=0.01
+    )
+
+
+def test_paths_are_smooth_up_to_the_limits_of_a_swing(four_bar_that_swings):
+    path = four_bar_that_swings.points["B_1"].position
+    steps = np.abs(np.diff(path))
+    assert max(steps[:10].max(), steps[-10:].max()) < 0.05 * steps.sum()
 
 
 # --------------------------------------------------------------------- vectors
@@ -285,7 +291,8 @@ def test_the_page_holds_every_instant_of_everything_that_moves(name):
     assert tracks == [str(k) for k in range(len(data["tracks"]))]
     assert {len(track["rows"]) for track in data["tracks"]} == {len(moved.angles)}
     assert len(data["readings"]) == sum("data-reading" in a for _, a in page.tags)
-    assert sum(data["spans"]) == pytest.approx(1, abs=1e-4)
+    assert len(data["times"]) == len(data["order"])
+    assert (data["times"][0], data["times"][-1]) == (0, 1)
     slider = next(a for tag, a in page.tags if a.get("type") == "range")
     assert slider["max"] == str(len(moved.angles) - 1)
     assert slider["value"] == str(moved.first)
@@ -346,7 +353,7 @@ def test_a_students_copy_moves_without_solutions(small_course):
     text = source.read_text("utf-8")
     assert "driver" not in text
     text = text.replace("import Exercise", "import Driver, Exercise")
-    text = re.sub(r"figure=figure,", 'figure=figure, driver=Driver("theta2"),', text)
+    text = re.sub(r"figure=figure,", 'figure=figure, driver=Driver("theta"),', text)
     source.write_text(text, "utf-8")
     shutil.rmtree(small_course / "solutions")
     moved = coursework.open_course(small_course)["crank_pin"].variant(0).animation()

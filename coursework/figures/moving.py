@@ -7,10 +7,10 @@ instants, so that nothing jumps.
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -367,8 +367,8 @@ def _arrow_tracks(arrow: Arrow, scale: float) -> list[Track]:
 
 def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float) -> list[Track]:
     """Labels that go with what they name, each on the side where it meets fewest lines over the cycle."""
-    looked_at = range(0, len(stages), max(1, len(stages) // 24))
-    segments = [_segments(stages[k].ink) for k in looked_at]
+    looked_at = slice(0, None, max(1, len(stages) // 24))
+    segments = _segments([stage.ink for stage in stages[looked_at]])
     count = min(len(stage.wishes) for stage in stages)
     wishes = [[stage.wishes[i] for stage in stages] for i in range(count)]
     wishes += [[Wish(s.point, z * scale, 1j, 1.2, NAMES) for z in s.p] for s in spots]
@@ -380,11 +380,11 @@ def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float) -> li
         half = complex(*text.box) / 2
 
         def meetings(centres: np.ndarray, half: complex = half) -> float:
-            lines = sum(_meets(segments[i], centres[k], half) for i, k in enumerate(looked_at))
-            return lines + 2 * sum(_overlaps(centres, half, *other) for other in placed) * len(looked_at)
+            lines = _meets(segments, centres[looked_at], half)
+            return lines + 2 * sum(_overlaps(centres, half, *other) for other in placed)
 
-        ways = [(_cost, np.array(centres)) for _cost, centres in _candidates(own, half)]
-        costs = [cost + 12 * meetings(centres) / len(looked_at) for cost, centres in ways]
+        ways = [(cost, np.array(centres)) for cost, centres in _candidates(own, half)]
+        costs = [cost + 12 * meetings(centres) for cost, centres in ways]
         centres = ways[int(np.argmin(np.round(costs, 6)))][1]
         placed.append((centres, half))
         mark = _letters(own[0].label, BLACK)
@@ -427,29 +427,28 @@ def _away(wish: Wish, way: complex, step: float, half: complex) -> complex:
     return wish.anchor + way * (wish.start + step + _support(half, way))
 
 
-def _segments(ink: Sequence[Ink]) -> tuple[np.ndarray, np.ndarray]:
-    """Ends of every drawn segment that a label should keep off."""
-    ends = [pair for thing in ink if thing.layer != FILLS for pair in _sides(_outline(thing))]
-    return np.array([a for a, _ in ends]), np.array([b for _, b in ends])
+def _segments(inks: Sequence[Sequence[Ink]]) -> tuple[np.ndarray, np.ndarray]:
+    """Ends of every drawn segment that a label should keep off, a row an instant."""
+    rows = [[side for thing in ink if thing.layer != FILLS for side in _sides(thing)] for ink in inks]
+    most = max(map(len, rows))
+    ends = np.array([[*row, *[row[-1]] * (most - len(row))] for row in rows])
+    return ends[..., 0], ends[..., 1]
 
 
-def _outline(thing: Ink) -> list[complex]:
+def _sides(thing: Ink) -> list[tuple[complex, complex]]:
     points = _points_of(thing)
-    return [*points, points[0]] if isinstance(thing, Path) and thing.closed else points
+    return list(pairwise([*points, points[0]] if isinstance(thing, Path) and thing.closed else points))
 
 
-def _sides(points: Sequence[complex]) -> list[tuple[complex, complex]]:
-    return list(itertools.pairwise(points))
-
-
-def _meets(segments: tuple[np.ndarray, np.ndarray], centre: complex, half: complex) -> bool:
-    """Whether a segment comes into the ellipse round a box."""
+def _meets(segments: tuple[np.ndarray, np.ndarray], centres: np.ndarray, half: complex) -> float:
+    """Share of the instants at which a segment comes into the ellipse round a box."""
     wide, tall = half.real + 0.4, half.imag + 0.4
-    a, b = (((z - centre).real / wide + 1j * (z - centre).imag / tall) for z in segments)
+    a, b = (z - centres[:, None] for z in segments)
+    a, b = a.real / wide + 1j * (a.imag / tall), b.real / wide + 1j * (b.imag / tall)
     along = b - a
-    square = np.abs(along) ** 2
+    square = along.real**2 + along.imag**2
     share = np.clip(-(a * along.conj()).real / np.where(square > 0, square, 1.0), 0.0, 1.0)
-    return bool((np.abs(a + share * along) < 1.15).any())
+    return float((np.abs(a + share * along) < 1.15).any(axis=1).mean())
 
 
 def _overlaps(centres: np.ndarray, half: complex, others: np.ndarray, other: complex) -> float:

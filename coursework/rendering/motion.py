@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 from collections.abc import Sequence
 from html import escape
@@ -31,8 +30,7 @@ def page(folders: Sequence[Path], animation: Animation) -> str:
     data = {
         "tracks": [_numbers(track) for track in shown.tracks if track.moves],
         "order": list(animation.order),
-        "closed": animation.turns,
-        "spans": _spans(animation),
+        "times": [round(float(t), 6) for t in animation.times],
         "seconds": SECONDS,
         "first": first,
         "angles": angles,
@@ -62,15 +60,6 @@ def page(folders: Sequence[Path], animation: Animation) -> str:
         "data": Markup(json.dumps(data, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")),
     }
     return render(environment_of(tuple(folders), lang), "motion.html.j2", names)
-
-
-def _spans(animation: Animation) -> list[float]:
-    """How long each step of a loop lasts, in shares of the loop."""
-    order = animation.order
-    if animation.turns:
-        return [1 / (len(order) - 1)] * (len(order) - 1)
-    steps = [abs(float(animation.angles[b] - animation.angles[a])) for a, b in itertools.pairwise(order)]
-    return [round(step / sum(steps), 6) for step in steps]
 
 
 def _numbers(track: Track) -> dict[str, Any]:
