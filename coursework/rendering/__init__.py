@@ -107,7 +107,7 @@ class Renderer:
         """A mechanism in motion as one web page that fetches nothing; its one script is in the page."""
         from coursework.rendering import motion
 
-        return motion.page(self.template_folders, animation)
+        return motion.page(self.template_folders, animation, self.paper)
 
     def terminal(self, handout: Handout) -> str:
         """A handout as plain text."""

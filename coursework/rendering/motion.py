@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from coursework.motion import Animation
 
 
-def page(folders: Sequence[Path], animation: Animation) -> str:
+def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> str:
     """The whole page, in the variant's language."""
     variant = animation.variant
     lang = variant.lang
@@ -42,6 +42,7 @@ def page(folders: Sequence[Path], animation: Animation) -> str:
     said = words(lang)
     names = {
         "lang": lang,
+        "paper": paper,
         "title": animation.title,
         "variant": f"{variant.exercise.name} {variant.seed}",
         "words": said,
