@@ -156,6 +156,14 @@ def chain_on_lines(step: Step) -> str:
     return r"\begin{aligned} " + step.symbol + " " + r" \\ ".join(lines) + r" \end{aligned}"
 
 
+_SURELY_FITS = 60  #: characters of a formula written out that the narrowest line holds, however wide they are
+
+
+def is_short(step: Step, lang: str) -> bool:
+    """Whether the step's chain is on one line without any doubt."""
+    return len(to_line(chain_on_one_line(step), lang)) <= _SURELY_FITS
+
+
 _LINE = 85  #: characters of a formula written out that a printed line holds
 
 
