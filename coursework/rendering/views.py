@@ -35,6 +35,7 @@ def context(sheet: Sheet) -> dict[str, object]:
         "words": words(handout.lang),
         "title": title(sheet),
         "figure": figure_of(sheet),
+        "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
         "variant": f"{handout.exercise} · {handout.seed} · v{handout.version}",
         "tolerances": tolerances(handout.questions, handout.lang),
     }
