@@ -96,6 +96,7 @@ class AnswerSheet:
     steps: tuple[Step, ...]
     introduction: str  #: Markdown, the solution text's opening words
     figure: Figure | None  #: the solution's own figure, if it has one
+    figure_alt: str = ""  #: what that figure shows; empty when the handout's words say it
 
 
 @dataclass(frozen=True)

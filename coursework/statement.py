@@ -18,7 +18,8 @@ r"""Texts of an exercise in one language: one Markdown file of named sections, t
     What the figure shows, for those who cannot see it.
 
 ``solutions/NAME.LANG.md.j2`` has the same form: opening words, a section a quantity (words before its
-formula), and ``## mistake NAME`` sections (what to tell a student who made it).
+formula), ``## mistake NAME`` sections (what to tell a student who made it) and, where the solution draws its
+own figure, ``## figure``.
 """
 
 from __future__ import annotations

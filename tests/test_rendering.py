@@ -33,6 +33,7 @@ from coursework.rendering.formulas import (
 from coursework.rendering.markup import to_html, to_notebook_markdown, to_text, to_typst_markup, typst_text
 from coursework.rendering.typography import typeset
 from coursework.rendering.views import points_text, tolerances, verdict_word
+from coursework.statement import Section
 
 TEMPLATES = builtin_root() / "templates"
 RENDERER = Renderer([TEMPLATES])
@@ -333,6 +334,8 @@ def test_every_sheet_is_an_accessible_pdf_and_the_same_bytes_twice(make, lang):
     pdf = RENDERER.pdf(make(lang))
     assert pdf.startswith(b"%PDF")
     assert b"pdfuaid:part" in pdf
+    assert b"<pdfaid:part>2<" in pdf
+    assert b"<pdfaid:conformance>A<" in pdf
     assert RENDERER.pdf(make(lang)) == pdf
 
 
@@ -405,6 +408,15 @@ def test_an_answer_box_has_its_unit_or_the_words_that_ask_for_one(lang):
     )
     assert "<span>mm/s</span>" in box
     assert RENDERER.pdf(asks).startswith(b"%PDF")
+
+
+@every_language
+def test_the_words_of_a_solutions_own_figure_stand_in_place_of_the_sheets(lang):
+    own = replace(answer_sheet(lang), figure=handout(lang).figure, figure_alt="Deux cercles")
+    for shown in (RENDERER.typst(own), RENDERER.html(own)):
+        assert "Deux cercles" in shown
+        assert handout(lang).figure_alt not in shown
+    assert handout(lang).figure_alt in RENDERER.html(answer_sheet(lang))
 
 
 # -- what a student's sheet never holds --------------------------------------------------------------
@@ -572,3 +584,14 @@ def test_a_missing_template_is_named(tmp_path):
     shutil.copy(TEMPLATES / "sheet.html.j2", tmp_path)
     with pytest.raises(BadCourse, match="_page"):
         Renderer([tmp_path]).html(handout("en"))
+
+
+def test_a_solutions_text_says_what_its_own_figure_shows(course, monkeypatch):
+    variant = course["four_bar_positions"].variant(0, "en")
+    text = variant.solution_text
+    said = replace(text, sections={**text.sections, "figure": Section("Two circles\nthat meet.")})
+    monkeypatch.setitem(variant.__dict__, "solution_text", said)
+    sheet = variant.answer_sheet()
+    assert sheet.figure is not None
+    assert sheet.figure_alt == "Two circles that meet."
+    assert "Two circles that meet." in course.renderer.html(sheet)

@@ -220,7 +220,16 @@ def parse(tex: str) -> Row:
 class _Parser:
     def __init__(self, tex: str) -> None:
         self.tex = tex
-        self.tokens = tokens(tex)
+        self.tokens: list[str] = []  #: those that are not blank, and an empty one at the end
+        self.blanks: list[str] = []  #: what stands before each of them
+        blank = ""
+        for token in (*tokens(tex), ""):
+            if token.isspace():
+                blank = token
+            else:
+                self.tokens.append(token)
+                self.blanks.append(blank)
+                blank = ""
         self.at = 0
 
     def refuse(self, why: str) -> BadStatement:
@@ -229,13 +238,12 @@ class _Parser:
     # -- the stream ---------------------------------------------------------------------------
     def peek(self) -> str:
         """The next token that is not blank; empty at the end."""
-        while self.at < len(self.tokens) and self.tokens[self.at].isspace():
-            self.at += 1
-        return self.tokens[self.at] if self.at < len(self.tokens) else ""
+        return self.tokens[self.at]
 
     def take(self) -> str:
-        token = self.peek()
-        self.at += 1
+        token = self.tokens[self.at]
+        if token:
+            self.at += 1
         return token
 
     def expect(self, token: str, after: str) -> None:
@@ -248,11 +256,12 @@ class _Parser:
         self.expect("{", macro)
         start = self.at
         depth = 1
-        while self.at < len(self.tokens):
-            depth += {"{": 1, "}": -1}.get(self.tokens[self.at], 0)
-            self.at += 1
+        while token := self.take():
+            depth += (token == "{") - (token == "}")
             if depth == 0:
-                return "".join(self.tokens[start : self.at - 1])
+                end = self.at - 1
+                pieces = zip(self.blanks[start:end], self.tokens[start:end], strict=True)
+                return "".join(map("".join, pieces)) + self.blanks[end]
         raise self.refuse(f"the brace after {macro} is not closed")
 
     # -- the grammar --------------------------------------------------------------------------
@@ -321,11 +330,11 @@ class _Parser:
 
     def digits(self, first: str) -> Symbol:
         text = first
-        while self.at < len(self.tokens) and self.tokens[self.at].isdigit():
-            text += self.tokens[self.at]
-            self.at += 1
+        while self.peek().isdigit() and not self.blanks[self.at]:
+            text += self.take()
         after = self.tokens[self.at : self.at + 2]
-        if len(after) == 2 and after[0] in ".," and after[1].isdigit():
+        touch = not any(self.blanks[self.at : self.at + 2])
+        if touch and len(after) == 2 and after[0] in ".," and after[1].isdigit():
             written = text + after[0] + after[1]
             raise self.refuse(rf"a decimal number is written \num{{...}}, not {written}...")
         return Symbol(text, "digits")

@@ -19,7 +19,7 @@ from coursework.rendering.environment import environment, render
 from coursework.rendering.formulas import spoken, to_typst
 
 _LOCAL = threading.local()
-_OUTPUT = {"format": "pdf", "pdf_standards": "ua-1", "timestamp": 0}
+_OUTPUT = {"format": "pdf", "pdf_standards": ["a-2a", "ua-1"], "timestamp": 0}
 
 
 def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = "a4") -> str:
@@ -35,7 +35,7 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = 
 
 
 def compile_pdf(typst_source: str) -> bytes:
-    """The tagged PDF (PDF/UA-1) of a Typst source; the same bytes for the same source.
+    """The tagged PDF (PDF/UA-1 and PDF/A-2a) of a Typst source; the same bytes for the same source.
 
     A compiler serves one thread, and is kept: fonts are read once. What the course's own template may
     have got wrong is said as :class:`BadStatement`.

@@ -35,6 +35,7 @@ def context(sheet: Sheet) -> dict[str, object]:
         "words": words(handout.lang),
         "title": title(sheet),
         "figure": figure_of(sheet),
+        "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
         "variant": f"{handout.exercise} · {handout.seed} · v{handout.version}",
         "tolerances": tolerances(handout.questions, handout.lang),
     }
@@ -154,6 +155,14 @@ def chain_on_lines(step: Step) -> str:
         return chain_on_one_line(step)
     lines = [line for member in chain(step) for line in _broken(member)]
     return r"\begin{aligned} " + step.symbol + " " + r" \\ ".join(lines) + r" \end{aligned}"
+
+
+_SURELY_FITS = 60  #: characters of a formula written out that the narrowest line holds, however wide they are
+
+
+def is_short(step: Step, lang: str) -> bool:
+    """Whether the step's chain is on one line without any doubt."""
+    return len(to_line(chain_on_one_line(step), lang)) <= _SURELY_FITS
 
 
 _LINE = 85  #: characters of a formula written out that a printed line holds
