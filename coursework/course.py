@@ -546,7 +546,10 @@ def _check_shapes(values: Mapping[str, Any]) -> None:
         raise WrongValue(f"the arrays do not broadcast together: {told}") from None
 
 
-def _rounded(value: Any, lang: str) -> str:
+def _rounded(value: Any, lang: str) -> Any:
+    """A number as running text; a list of records as it is, for the text to go through."""
+    if isinstance(value, tuple):
+        return value
     return localise(significant(value), lang) if isinstance(value, (int, float)) else str(value)
 
 

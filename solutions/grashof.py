@@ -20,7 +20,7 @@ def l(r1, r2, r3, r4):  # noqa: E743
     return grashof.longest(r1, r2, r3, r4)
 
 
-def s_plus_l(s, l):  # noqa: E741
+def s_plus_l(s, l):
     return s + l
 
 

@@ -53,6 +53,11 @@ class Driven(NamedTuple):
     joints: tuple[Record, ...]
     driver: tuple[int, int]
 
+    @property
+    def body(self) -> int:
+        """The body that questions name."""
+        return last_body(JointGraph.of(self.joints), self.driver)
+
 
 @lru_cache(maxsize=4096)
 def to_count(number: int) -> tuple[Record, ...]:
@@ -88,3 +93,8 @@ def _can_drive(graph: JointGraph, body: int) -> bool:
         return decompose(graph, (1, body)).rank <= _HIGHEST
     except CourseworkError:
         return False  # it is held, once the other bodies have their groups
+
+
+def last_body(graph: JointGraph, driver: tuple[int, int]) -> int:
+    """The highest number of a body that is neither frame nor driven; the driven one where there is no other."""
+    return max((body for body in graph.moving if body not in driver), default=max(driver))
