@@ -3,18 +3,18 @@
 from coursework.solution import mistake
 from coursework.structure import assour
 from coursework.structure.columns import each
-from coursework.structure.joints import FRAME, JointGraph
+from coursework.structure.joints import FRAME, JointGraph, copied
 from coursework.structure.library import LIBRARY
 from coursework.structure.numbered import last_body, to_decompose
 
 STRUCTURES = ("joints", "driver", "groups")
-SYMBOLS = {"driver": r"\mathrm{driver}"}
+SYMBOLS = {"body": "j"}
 _HIGHEST = 4  #: class among the choices
 
 
 def joints(mechanism):
     """The list of the statement."""
-    return each(lambda number: tuple(dict(r) for r in to_decompose(int(number)).joints), mechanism)
+    return each(lambda number: copied(to_decompose(int(number)).joints), mechanism)
 
 
 def driver(mechanism):

@@ -2,7 +2,7 @@
 
 from coursework.solution import mistake
 from coursework.structure.columns import each
-from coursework.structure.joints import FRAME, JointGraph
+from coursework.structure.joints import FRAME, JointGraph, copied
 from coursework.structure.library import LIBRARY
 from coursework.structure.numbered import to_count
 
@@ -11,7 +11,7 @@ STRUCTURES = ("joints",)
 
 def joints(mechanism):
     """The list of the statement."""
-    return each(lambda number: tuple(dict(record) for record in to_count(int(number))), mechanism)
+    return each(lambda number: copied(to_count(int(number))), mechanism)
 
 
 def _graph(joints):
