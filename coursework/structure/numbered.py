@@ -14,11 +14,10 @@ from coursework.structure.growing import (
     TETRAD,
     TRIAD,
     Choices,
-    Grown,
     grow,
     relabelled,
 )
-from coursework.structure.joints import JointGraph, Record
+from coursework.structure.joints import FRAME, JointGraph, Record
 from coursework.structure.library import LIBRARY
 
 _COUNTED_FIGURES = (
@@ -80,12 +79,9 @@ def to_decompose(number: int) -> Driven:
         grown = relabelled(number, LIBRARY[choices.one_of(_DECOMPOSED_FIGURES)].joints, (2,))
     else:
         grown = grow(number, choices.one_of(_DECOMPOSED_GROUPS))
-    return Driven(grown.joints, (1, choices.one_of(_able_drivers(grown))))
-
-
-def _able_drivers(grown: Grown) -> list[int]:
     graph = grown.graph
-    return [body for body in drivers(graph) if body in grown.drivers or _can_drive(graph, body)]
+    able = (b for b in choices.shuffled(drivers(graph)) if b in grown.drivers or _can_drive(graph, b))
+    return Driven(grown.joints, (FRAME, next(able)))
 
 
 def _can_drive(graph: JointGraph, body: int) -> bool:

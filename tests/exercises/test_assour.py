@@ -59,7 +59,9 @@ def test_the_other_driver_is_a_mistake_only_where_there_is_one():
         joints, driver = variant.printed["joints"], variant.printed["driver"]
         assert found["assour_class"] == decompose(joints, found["driver"]).class_name
         moved += found["driver"] != driver
-    assert 0 < moved < 60
+    assert moved > 30
+    mistake = EXERCISE.solution.mistakes["other_driver"].replacement.function
+    assert mistake(LIBRARY["figure_8a_motor"], (1, 2)) == (1, 2)
 
 
 def test_a_shared_pivot_taken_for_a_ternary_body_raises_the_class():
