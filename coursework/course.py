@@ -355,6 +355,8 @@ class CourseExercise:
 
     def _accept(self, name: str, value: Any) -> Any:
         """A given value as a float, an array or a case's name, in the canonical unit, within its domain."""
+        if name in self.solution.structures:
+            return value
         spec = self.spec.given.get(name)
         if type(value) is float and value > 0 and value < math.inf and (spec is None or not spec.choices):
             return value
@@ -545,7 +547,10 @@ def _check_shapes(values: Mapping[str, Any]) -> None:
         raise WrongValue(f"the arrays do not broadcast together: {told}") from None
 
 
-def _rounded(value: Any, lang: str) -> str:
+def _rounded(value: Any, lang: str) -> Any:
+    """A number as running text; a list of records as it is, for the text to go through."""
+    if isinstance(value, tuple):
+        return value
     return localise(significant(value), lang) if isinstance(value, (int, float)) else str(value)
 
 
@@ -626,13 +631,16 @@ class Variant:
         return self.exercise.text("exercises", self.lang, self.printed)
 
     @property
-    def printed(self) -> dict[str, str]:
-        """Given values as running text, for the texts: ``228,6 mm``."""
+    def printed(self) -> dict[str, Any]:
+        """Given values as running text, for the texts: ``228,6 mm``; then what the exercise tells besides."""
         spec = self.exercise.spec
-        return {
+        shown: dict[str, Any] = {
             n: str(v) if spec.given[n].is_choice else with_unit(plain(v), spec.given[n].unit, self.lang)
             for n, v in self.given.items()
         }
+        if spec.tells is not None:
+            shown |= spec.tells(*[self.given[n] for n in _parameters(spec.tells)])
+        return shown
 
     @cached_property
     def used(self) -> dict[str, Any]:

@@ -187,6 +187,8 @@ class Exercise:
         Functions that several conditions share; their names are quantities to the conditions.
     figure
         A function of given quantities (and of ``helpers``) to a :class:`~coursework.figures.Figure`.
+    tells
+        A function of given quantities to what the statement's text may use besides them: lists, records.
     version
         Raised when a change alters what a seed draws, or what is asked; records keep theirs.
     symbols
@@ -204,6 +206,7 @@ class Exercise:
     keep: Sequence[Callable[..., Any]] = ()
     helpers: Sequence[Callable[..., Any]] = ()
     figure: Callable[..., Any] | None = None
+    tells: Callable[..., Mapping[str, Any]] | None = None
     version: int = 1
     symbols: Mapping[str, str] = field(default_factory=dict)
     either_order: tuple[tuple[str, ...], ...] = ()

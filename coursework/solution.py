@@ -10,6 +10,8 @@
   right to its last printed digit, a number to 1e-9 relative; a third item names the case's effects,
   where they are not those of the exercise's own parts;
 * ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
+* ``STRUCTURES`` names the quantities whose value is a list or a record, such as a list of joints: a request
+  may give them, and they are passed to the functions as they come;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
 * a name that begins with an underscore is the module's own; a function of such a name is computed once
   a request when a quantity takes it as a parameter, and is no quantity that one could ask for.
@@ -133,6 +135,7 @@ class Solution:
     motion: Callable[..., Mapping[str, Moving]] | None
     units: Mapping[str, str]
     symbols: Mapping[str, str]
+    structures: frozenset[str] = frozenset()  #: quantities that are no numbers: passed on as they come
 
     @staticmethod
     def of(name: str, module: ModuleType) -> Solution:
@@ -173,6 +176,7 @@ class Solution:
             own.get("motion"),
             dict(getattr(module, "UNITS", {})),
             dict(getattr(module, "SYMBOLS", {})),
+            frozenset(getattr(module, "STRUCTURES", ())),
         )
 
     def mistaken(self, name: str) -> Graph:

@@ -130,8 +130,9 @@ class Constants:
 def constants(path: Path) -> Constants:
     """What of a file needs no variant to be read; nothing where there is no file."""
     source = path.read_text("utf-8") if path.exists() else ""
-    if not source or "{%" in source or "{#" in source:
-        return Constants({}, {})  # a block may hold whole sections
+    rest = source.partition("\n## ")[2]
+    if not source or "{%" in rest or "{#" in rest:
+        return Constants({}, {})  # a block may hold whole sections, unless it ends before the first
     sections = parse(source, path.name).sections
     return Constants(
         {name: section.text for name, section in sections.items() if "{{" not in section.text},

@@ -7,6 +7,7 @@ A mechanism is a list of joints, records ``{"between": [i, j], "kind": "revolute
 ``assour``   Assour groups behind a driver, their classes, the class of the mechanism
 ``grashof``  the type of a four-bar, exact on the printed lengths
 ``growing``  mechanisms grown group by group from a whole number, the same for ever
+``numbered`` those that exercises hand out, by number
 ``library``  the mechanisms of the course's figures
 ``picture``  the joint graph as a figure
 ``columns``  functions of one mechanism, applied to many

@@ -10,7 +10,6 @@ from __future__ import annotations
 import heapq
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from numbers import Integral
 from typing import Any
 
 from coursework.errors import Undefined, WrongValue
@@ -83,9 +82,9 @@ def decompose(joints: JointGraph | Iterable[Record], driver: Sequence[int]) -> D
 def driven_body(graph: JointGraph, driver: Sequence[int]) -> int:
     """The body of a driver [1, body], which a lower pair joins to the frame."""
     try:
-        numbers = [int(x) for x in driver if isinstance(x, Integral) and not isinstance(x, bool)]
-        wrong = len(numbers) != 2 or len(driver) != 2 or FRAME not in numbers
-    except TypeError:
+        numbers = [int(x) for x in driver]
+        wrong = len(numbers) != 2 or FRAME not in numbers or numbers != list(driver)
+    except (TypeError, ValueError):
         wrong = True
     if wrong:
         raise WrongValue(f"driver must be [1, body], a body joined to the frame; found {driver!r}")

@@ -129,6 +129,11 @@ class JointGraph:
         return parents
 
 
+def copied(records: Iterable[Record]) -> tuple[dict[str, Any], ...]:
+    """Records of their own, for whom may change them."""
+    return tuple({**record, "between": list(record["between"])} for record in records)
+
+
 def _cycle(parents: Mapping[int, int], one: int, other: int) -> tuple[int, ...]:
     """The cycle that a pair closes with the ways of its two bodies towards the frame."""
     left, right = _way(parents, one), _way(parents, other)
@@ -210,9 +215,9 @@ def _check_bodies(joints: Sequence[Joint]) -> None:
         linked = linked.union(*[joint.bodies for joint in touching])
         rest = [joint for joint in rest if joint not in touching]
     bodies = {body for joint in joints for body in joint.bodies}
-    missing = sorted(set(range(1, max(bodies) + 1)) - bodies) if len(bodies) < max(bodies) else []
-    if missing:
-        what = "the frame, 1," if missing[0] == FRAME else f"body {missing[0]}"
+    missing = next((n for n, body in enumerate(sorted(bodies), start=FRAME) if n != body), None)
+    if missing is not None:
+        what = "the frame, 1," if missing == FRAME else f"body {missing}"
         raise WrongValue(f"{what} has no joint; bodies are numbered from 1 without a gap")
     if bodies - linked:
         raise WrongValue(f"bodies {sorted(bodies - linked)} are not linked to the frame, 1")

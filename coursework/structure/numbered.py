@@ -1,0 +1,96 @@
+"""The mechanisms that exercises hand out, by number: some from the course's figures, most grown."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import NamedTuple
+
+from coursework.errors import CourseworkError
+from coursework.structure.assour import decompose, drivers
+from coursework.structure.growing import (
+    DYAD,
+    FOLLOWER,
+    STIFFENER,
+    TETRAD,
+    TRIAD,
+    Choices,
+    grow,
+    relabelled,
+)
+from coursework.structure.joints import FRAME, JointGraph, Record
+from coursework.structure.library import LIBRARY
+
+_COUNTED_FIGURES = (
+    "figure_3",
+    "figure_5",
+    "figure_6_cam",
+    "figure_13",
+    "figure_14",
+    "figure_26b",
+    "figure_27",
+)
+_DECOMPOSED_FIGURES = ("figure_8c_shaper", "figure_8d", "figure_13", "figure_14", "figure_26b", "figure_27")
+_ONE_IN = 6  #: of so many mechanisms, one is of a figure
+_HIGHEST = 4  #: class that the course names
+
+_COUNTED_GROUPS = (DYAD, DYAD, FOLLOWER, TRIAD)
+_DECOMPOSED_GROUPS = (
+    (DYAD, DYAD),
+    (DYAD, DYAD, DYAD),
+    (TRIAD,),
+    (DYAD, TRIAD),
+    (TRIAD, DYAD),
+    (TETRAD,),
+    (DYAD, TETRAD),
+    (TETRAD, DYAD),
+)
+
+
+class Driven(NamedTuple):
+    """A mechanism and its driver, (frame, body)."""
+
+    joints: tuple[Record, ...]
+    driver: tuple[int, int]
+
+    @property
+    def body(self) -> int:
+        """The body that questions name."""
+        return last_body(JointGraph.of(self.joints), self.driver)
+
+
+@lru_cache(maxsize=4096)
+def to_count(number: int) -> tuple[Record, ...]:
+    """A mechanism whose joints and bodies are to be counted; 0, 1 or 2 degrees of freedom by the formula."""
+    choices = Choices(number, "count")
+    if choices.below(_ONE_IN) == 0:
+        return relabelled(number, LIBRARY[choices.one_of(_COUNTED_FIGURES)].joints).joints
+    driven = 2 if choices.below(3) == 0 else 1
+    groups = [choices.one_of(_COUNTED_GROUPS) for _ in range(2 if choices.below(2) else 3 - driven)]
+    if choices.below(5) == 0:
+        groups.append(STIFFENER)
+    return grow(number, groups, drivers=driven).joints
+
+
+@lru_cache(maxsize=4096)
+def to_decompose(number: int) -> Driven:
+    """A mechanism to be taken apart into Assour groups of class II to IV, and any driver that allows it."""
+    choices = Choices(number, "decompose")
+    if choices.below(_ONE_IN) == 0:
+        grown = relabelled(number, LIBRARY[choices.one_of(_DECOMPOSED_FIGURES)].joints, (2,))
+    else:
+        grown = grow(number, choices.one_of(_DECOMPOSED_GROUPS))
+    graph = grown.graph
+    able = (b for b in choices.shuffled(drivers(graph)) if b in grown.drivers or _can_drive(graph, b))
+    return Driven(grown.joints, (FRAME, next(able)))
+
+
+def _can_drive(graph: JointGraph, body: int) -> bool:
+    try:
+        return decompose(graph, (1, body)).rank <= _HIGHEST
+    except CourseworkError:
+        return False  # it is held, once the other bodies have their groups
+
+
+def last_body(graph: JointGraph, driver: tuple[int, int]) -> int:
+    """The highest number of a body that is neither frame nor driven; the driven one where there is no other."""
+    return max((body for body in graph.moving if body not in driver), default=max(driver))

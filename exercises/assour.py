@@ -1,0 +1,31 @@
+"""Assour groups of a mechanism, and its class for a driver (chapter 3, section 3.3.2)."""
+
+from coursework.model import Exercise, Part, drawn
+from coursework.structure.numbered import to_decompose
+from coursework.structure.picture import kinematic_graph
+
+CLASSES = ("I", "II", "III", "IV")
+
+
+def tells(mechanism):
+    found = to_decompose(int(mechanism))
+    return {"joints": found.joints, "driver": found.driver, "body": found.body}
+
+
+def figure(mechanism):
+    """The joint graph: shapes and lengths are of no account here."""
+    return kinematic_graph(to_decompose(int(mechanism)).joints)
+
+
+EXERCISE = Exercise(
+    given={"mechanism": drawn(1000, 999999)},
+    parts=(
+        Part("group_count", kind="integer", points=1),
+        Part("group_size", kind="integer", points=1),
+        Part("group_class", kind="choice", choices=CLASSES, points=1),
+        Part("assour_class", kind="choice", choices=CLASSES, points=2),
+    ),
+    symbols={"mechanism": r"\mathrm{no}", "group_count": r"n_{\mathrm{g}}", "group_size": "k"},
+    tells=tells,
+    figure=figure,
+)

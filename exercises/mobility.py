@@ -1,0 +1,31 @@
+"""Structure of a mechanism: its bodies, pairs, mobility and independent cycles (chapter 3, equations 2 and 3)."""
+
+from coursework.model import Exercise, Part, drawn
+from coursework.structure.numbered import to_count
+from coursework.structure.picture import kinematic_graph
+
+
+def tells(mechanism):
+    return {"joints": to_count(int(mechanism))}
+
+
+def figure(mechanism):
+    """The joint graph: shapes and lengths are of no account here."""
+    return kinematic_graph(to_count(int(mechanism)))
+
+
+EXERCISE = Exercise(
+    given={"mechanism": drawn(1000, 999999)},
+    parts=(
+        Part("n", kind="integer", points=1),
+        Part("b", kind="integer", points=1),
+        Part("h", kind="integer", points=1),
+        Part("w", kind="integer", points=1),
+        Part("L", kind="integer", points=1),
+        Part("N", kind="integer", points=1),
+        Part("gamma", kind="integer", points=1),
+    ),
+    symbols={"mechanism": r"\mathrm{no}"},
+    tells=tells,
+    figure=figure,
+)
