@@ -9,6 +9,7 @@ one unit of length, any one; axes and normals need not be unit vectors.
 * :func:`recognise`: the joint of the table that a space of twists is.
 """
 
+from coursework.solids.aligned import aligned, each_distinct
 from coursework.solids.chains import Chain, PlanarChain, planar_kind
 from coursework.solids.combining import Parallel, Series, in_parallel, in_series
 from coursework.solids.joints import FREEDOMS, JOINTS, Joint, joint_of, joints_of
@@ -26,6 +27,8 @@ __all__ = [
     "PlanarChain",
     "Rank",
     "Series",
+    "aligned",
+    "each_distinct",
     "in_parallel",
     "in_series",
     "joint_of",

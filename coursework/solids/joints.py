@@ -165,6 +165,8 @@ def joint_of(given: Mapping[str, Any]) -> Joint:
 
 def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
     """All the joints of a list, in its order; an empty list is refused."""
+    if isinstance(given, (Mapping, str)) or not isinstance(given, Iterable):
+        raise WrongValue(f"a list of joints is a list of mappings; found {str(given)[:60]!r}")
     joints = tuple(joint_of(one) for one in given)
     if not joints:
         raise WrongValue("a list of joints must hold at least one")

@@ -277,7 +277,7 @@ def test_the_mobility_jumps_where_a_four_bar_is_flat():
     """A parallelogram that lies on its frame: the rank falls by one there, and only there."""
     for angle, m in ((0.0, 2), (1e-3, 1), (0.7, 1), (math.pi, 2)):
         tip = 40 * np.array([math.cos(angle), math.sin(angle), 0])
-        points = [np.zeros(3), tip, tip + (100, 0, 0), np.array([100, 0, 0])]
+        points = [np.zeros(3), tip, tip + 100 * AXES[0], np.array([100, 0, 0])]
         chain = Chain(revolutes(points, [Z] * 4))
         assert (chain.m, chain.h) == (m, m + 2)
         assert PlanarChain(revolutes(points, [Z] * 4)).m == m
@@ -297,7 +297,7 @@ def test_a_row_of_parallelograms_gains_a_freedom_each_where_it_is_flat():
             assert Chain(joints).m == PlanarChain(joints).m == m
 
 
-def bennett(theta, a=60.0, b=100.0, alpha=math.radians(35)):
+def bennett(theta, a=60.0, b=100.0, alpha=0.6):
     """A Bennett linkage from its lengths a, b, twists with sin(alpha)/a = sin(beta)/b, by Denavit and Hartenberg."""
     beta = math.asin(b * math.sin(alpha) / a)
     ratio = math.sin((beta + alpha) / 2) / math.sin((beta - alpha) / 2)
