@@ -311,7 +311,8 @@ class CourseExercise:
             Optional effects that the request calls for.
         **given
             Scalars, arrays that broadcast, or texts with a unit (``"0.2286 m"``). Any quantity may be
-            given, also one that the graph could compute: then it is used as it is.
+            given, also one that the graph could compute: then it is used as it is. A list of mappings, such
+            as joints, is handed on as a tuple.
 
         Returns
         -------
@@ -362,6 +363,8 @@ class CourseExercise:
             return value
         if spec is not None and spec.is_choice:
             return self._accept_case(name, spec, value)
+        if spec is None and _is_structured(value):
+            return tuple(value)
         if isinstance(value, str):
             value = self._accept_text(name, value)
         elif type(value) is not float:
@@ -536,6 +539,11 @@ class CourseExercise:
     def title(self, lang: str) -> str:
         """The title, taken from the statement of the first variant."""
         return self.variant(0, lang).text.title
+
+
+def _is_structured(value: Any) -> bool:
+    """Whether a value is a list of mappings, such as joints: its own quantity knows what may stand in it."""
+    return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(v, Mapping) for v in value)
 
 
 def _check_shapes(values: Mapping[str, Any]) -> None:

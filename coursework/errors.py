@@ -41,6 +41,10 @@ class Undefined(CourseworkError, ValueError):
     """A quantity that does not exist in this configuration."""
 
 
+class CannotTell(CourseworkError, ValueError):
+    """A rank, or a kind of joint, that hangs on digits which the data do not hold; names the gap."""
+
+
 class Starved(CourseworkError, RuntimeError):
     """No variant was found within the allowed draws; names the condition that refuses."""
 

@@ -1,0 +1,39 @@
+"""Chains of solids: joints as spaces of twists, combined in parallel, in series and in loops.
+
+A joint is a mapping ``{"joint": NAME, "axis": [x, y, z], "normal": …, "point": …, "pitch": p}`` with the
+keys that it needs, and ``"between": [i, j]`` in a chain; body 0 is the frame. Points and pitches are in
+one unit of length, any one; axes and normals need not be unit vectors.
+
+* :func:`in_parallel`, :func:`in_series`: joints between two bodies, joints in a row;
+* :class:`Chain`, :class:`PlanarChain`: loops of joints, in space and in a plane;
+* :func:`recognise`: the joint of the table that a space of twists is.
+"""
+
+from coursework.solids.aligned import aligned, each_distinct
+from coursework.solids.chains import Chain, PlanarChain, planar_kind
+from coursework.solids.combining import Parallel, Series, in_parallel, in_series
+from coursework.solids.joints import FREEDOMS, JOINTS, Joint, joint_of, joints_of
+from coursework.solids.ranks import Rank, rank_of
+from coursework.solids.recognition import EQUIVALENTS, Equivalent, recognise
+
+__all__ = [
+    "EQUIVALENTS",
+    "FREEDOMS",
+    "JOINTS",
+    "Chain",
+    "Equivalent",
+    "Joint",
+    "Parallel",
+    "PlanarChain",
+    "Rank",
+    "Series",
+    "aligned",
+    "each_distinct",
+    "in_parallel",
+    "in_series",
+    "joint_of",
+    "joints_of",
+    "planar_kind",
+    "rank_of",
+    "recognise",
+]

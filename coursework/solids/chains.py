@@ -1,0 +1,248 @@
+"""Closed and complex chains, in space and in a plane: loops of joints, their mobility and their constraint.
+
+Bodies are numbered from 0, the frame, without holes. Each loop asks that the twists met along it add up to
+zero; the rates that do are the motions of the mechanism at the given position.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from coursework.errors import WrongValue
+from coursework.solids.joints import Joint, Measure, joints_of
+from coursework.solids.ranks import Rank, decompose, rank_of
+
+
+class _Loops:
+    """What chains in space and in a plane share: the graph, and numbers that follow from ranks.
+
+    ``equations`` is the number of equations a loop, or a body, gives.
+    """
+
+    equations = 6
+
+    def __init__(
+        self,
+        joints: Iterable[Joint | Mapping[str, Any]],
+        inputs: int | None = None,
+        outputs: int | None = None,
+    ):
+        joints = tuple(joints)
+        is_known = joints and all(isinstance(joint, Joint) for joint in joints)
+        self.joints: tuple[Joint, ...] = joints if is_known else joints_of(joints)
+        self.inputs, self.outputs = inputs, outputs
+        self._ends = [joint.between for joint in self.joints]
+        self.n = max(max(ends) for ends in self._ends)  #: moving bodies
+        for one, other in self._ends:
+            if one == other:
+                raise WrongValue(f"a joint lies between two different bodies; found {[one, other]}")
+        self._paths = self._walk()
+        for name, body in (("input", inputs), ("output", outputs)):
+            if body is not None and not 0 < body <= self.n:
+                raise WrongValue(f"the {name} body is one of 1 to {self.n}; found {body}")
+
+    def _walk(self) -> list[dict[int, int]]:
+        """For each body, the joints from the frame to it and the sense in which they are met: a tree."""
+        paths: dict[int, dict[int, int]] = {0: {}}
+        waiting = [0]
+        while waiting:
+            body = waiting.pop(0)
+            for index, (one, other) in enumerate(self._ends):
+                for here, there, sense in ((one, other, 1), (other, one, -1)):
+                    if here == body and there not in paths:
+                        paths[there] = {**paths[body], index: sense}
+                        waiting.append(there)
+        lost = [body for body in range(self.n + 1) if body not in paths]
+        if lost:
+            raise WrongValue(
+                f"bodies {lost} are not linked to the frame; number the bodies from 0 without holes"
+            )
+        return [paths[body] for body in range(self.n + 1)]
+
+    @cached_property
+    def loops(self) -> list[dict[int, int]]:
+        """Independent loops: in each, the joints met and their senses; one a joint that is not in the tree."""
+        in_tree = {index for path in self._paths for index in path}
+        found = []
+        for index, (one, other) in enumerate(self._ends):
+            if index in in_tree:
+                continue
+            loop = dict(self._paths[one])
+            loop[index] = 1
+            for joint, sense in self._paths[other].items():
+                loop[joint] = loop.get(joint, 0) - sense
+            found.append({joint: sense for joint, sense in loop.items() if sense})
+        return found
+
+    @cached_property
+    def measure(self) -> Measure:
+        return Measure.of(self.joints)
+
+    @cached_property
+    def columns(self) -> list[np.ndarray]:
+        """Free twists of each joint at one point: shape (freedoms, equations)."""
+        raise NotImplementedError
+
+    def _system(self, walks: Sequence[Mapping[int, int]]) -> np.ndarray:
+        """The sums of twists along some walks: shape (equations · walks, Nc)."""
+        places = np.cumsum([0, *(len(rows) for rows in self.columns)])
+        size = self.equations
+        matrix = np.zeros((size * len(walks), places[-1]))
+        for number, walk in enumerate(walks):
+            for joint, sense in walk.items():
+                block = slice(places[joint], places[joint + 1])
+                matrix[size * number : size * (number + 1), block] = sense * self.columns[joint].T
+        return matrix
+
+    @property
+    def gamma(self) -> int:
+        """Independent loops."""
+        return len(self.joints) - self.n
+
+    @property
+    def Nc(self) -> int:
+        """Free rates of all the joints."""
+        return sum(len(rows) for rows in self.columns)
+
+    @property
+    def Ns(self) -> int:
+        """Unknown components of the actions of all the joints."""
+        return self.equations * len(self.joints) - self.Nc
+
+    @cached_property
+    def rank(self) -> Rank:
+        """The rank of the loop system at the given position, with its gap."""
+        return rank_of(self._system(self.loops), "the loop equations")
+
+    @property
+    def rc(self) -> int:
+        return self.rank.value
+
+    @property
+    def m(self) -> int:
+        """Mobility."""
+        return self.Nc - self.rc
+
+    @property
+    def rs(self) -> int:
+        """The rank of the equations of equilibrium."""
+        return self.equations * self.n - self.m
+
+    @property
+    def h(self) -> int:
+        """Degree of static indeterminacy."""
+        return self.Ns - self.rs
+
+    @property
+    def i(self) -> int:
+        """Index of mobility, which needs no rank."""
+        return self.m - self.h
+
+    @cached_property
+    def m_internal(self) -> int:
+        """Dimension of the motions with the input and the output body at rest."""
+        held = [self._paths[body] for body in (self.inputs, self.outputs) if body is not None]
+        if not held:
+            raise WrongValue("internal mobility needs an input and an output body")
+        return self.Nc - rank_of(self._system([*self.loops, *held]), "the held loop equations").value
+
+    @property
+    def m_useful(self) -> int:
+        return self.m - self.m_internal
+
+
+class Chain(_Loops):
+    """A chain in space.
+
+    Parameters
+    ----------
+    joints
+        Mappings with ``between``, or joints.
+    inputs, outputs
+        Bodies whose motions are transformed; needed for ``m_internal`` and ``m_useful`` only.
+
+    Raises
+    ------
+    WrongValue, UnknownName
+        As :func:`~coursework.solids.joints.joint_of`; bodies that nothing links to the frame.
+    CannotTell
+        When a number is asked for that hangs on digits which the data do not hold.
+    """
+
+    @cached_property
+    def columns(self) -> list[np.ndarray]:
+        at = self.measure
+        return [np.array(j.twists(at.origin, at.length)).reshape(-1, 6) for j in self.joints]
+
+    @cached_property
+    def static_rank(self) -> Rank:
+        """The rank of the equations of equilibrium of the moving bodies, found from the actions themselves."""
+        at = self.measure
+        blocks = []
+        for joint in self.joints:
+            wrenches = np.array(joint.wrenches(at.origin, at.length)).reshape(-1, 6).T
+            column = np.zeros((6 * (self.n + 1), wrenches.shape[1]))
+            for body, sense in zip(joint.between, (1, -1), strict=True):
+                column[6 * body : 6 * body + 6] = sense * wrenches
+            blocks.append(column[6:])
+        return rank_of(np.concatenate(blocks, axis=1), "the equations of equilibrium")
+
+
+_IN_PLANE = (2, 3, 4)  #: rotation about z, velocities along x and y
+_PLANAR = {(0, 0): "rigid", (1, 0): "revolute", (0, 1): "prismatic", (1, 1): "point_contact", (1, 2): "free"}
+
+
+def _projected(joint: Joint) -> np.ndarray:
+    """The freedoms of a joint in the plane xy, at its own point: shape (k, 3).
+
+    Raises
+    ------
+    WrongValue
+        Its axis or its normal is along none of x, y, z.
+    """
+    if any(sorted(map(abs, vector))[1] > 1e-9 for vector in joint.frame):
+        raise WrongValue(
+            f"in a plane problem axes and normals are along x, y or z; that of a {joint.name} is {joint.frame[0]}"
+        )
+    own_point = joint.point or (0.0, 0.0, 0.0)
+    rows = np.array(joint.twists(own_point, 1.0)).reshape(-1, 6)[:, _IN_PLANE]
+    return np.round(decompose(rows, "the motions in the plane", 1.0)[1], 9) if len(rows) else rows
+
+
+def planar_kind(joint: Joint) -> str:
+    """What a joint is in the plane xy: ``rigid``, ``revolute``, ``prismatic``, ``point_contact`` or ``free``.
+
+    Raises
+    ------
+    WrongValue
+        Its axis or its normal is along none of x, y, z.
+    """
+    rows = _projected(joint)
+    turning = int(np.any(rows[:, 0] != 0))
+    return _PLANAR[turning, len(rows) - turning]
+
+
+class PlanarChain(_Loops):
+    """A chain in the plane xy: joints of space, of which what happens in the plane counts.
+
+    Parameters and errors are those of :class:`Chain`; axes and normals are along x, y or z.
+    """
+
+    equations = 3
+
+    @cached_property
+    def columns(self) -> list[np.ndarray]:
+        at = self.measure
+        found = []
+        for joint in self.joints:
+            rows = _projected(joint).copy()
+            x, y, _ = joint.arm(at.origin, at.length)
+            # The velocity at the origin of a rotation about z at (x, y).
+            rows[:, 1] += y * rows[:, 0]
+            rows[:, 2] -= x * rows[:, 0]
+            found.append(rows)
+        return found

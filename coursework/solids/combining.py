@@ -1,0 +1,138 @@
+"""Joints between the same two bodies, and joints in a row."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from coursework.solids.joints import Joint, Measure, joints_of
+from coursework.solids.ranks import Rank, decompose
+from coursework.solids.recognition import Equivalent, recognise
+
+
+def in_parallel(joints: Iterable[Joint | Mapping[str, Any]]) -> Parallel:
+    """Joints between the same two bodies: what one forbids is forbidden, what one transmits is transmitted.
+
+    Raises
+    ------
+    WrongValue, UnknownName
+        As :func:`~coursework.solids.joints.joint_of`.
+    """
+    return Parallel(_known(joints))
+
+
+def in_series(joints: Iterable[Joint | Mapping[str, Any]]) -> Series:
+    """Joints in a row: the motions that they leave free add up. Errors are those of :func:`in_parallel`."""
+    return Series(_known(joints))
+
+
+def _known(joints: Iterable[Joint | Mapping[str, Any]]) -> tuple[Joint, ...]:
+    joints = tuple(joints)
+    if joints and all(isinstance(joint, Joint) for joint in joints):
+        return joints
+    return joints_of(joints)
+
+
+def _unit_rows(rows: list[list[float]]) -> np.ndarray:
+    matrix = np.array(rows).reshape(-1, 6)
+    return matrix / np.linalg.norm(matrix, axis=1, keepdims=True)
+
+
+@dataclass(frozen=True)
+class Parallel:
+    """Joints in parallel. Each number is found when it is first asked for."""
+
+    joints: tuple[Joint, ...]
+
+    @cached_property
+    def measure(self) -> Measure:
+        return Measure.of(self.joints)
+
+    @cached_property
+    def _spaces(self) -> tuple[Rank, np.ndarray, np.ndarray]:
+        """Rank and basis of the wrenches, basis of the twists that none of them opposes."""
+        at = self.measure
+        rows = [row for joint in self.joints for row in joint.wrenches(at.origin, at.length)]
+        return decompose(_unit_rows(rows), "the transmitted actions")
+
+    @property
+    def rank(self) -> Rank:
+        return self._spaces[0]
+
+    @property
+    def Ns(self) -> int:
+        """Unknown components of the actions of all the joints."""
+        return sum(6 - joint.freedoms for joint in self.joints)
+
+    @property
+    def rs(self) -> int:
+        """How many of them the six equations of equilibrium determine."""
+        return self.rank.value
+
+    @property
+    def h(self) -> int:
+        return self.Ns - self.rs
+
+    @property
+    def m(self) -> int:
+        return 6 - self.rs
+
+    @cached_property
+    def equivalent(self) -> Equivalent:
+        _, wrenches, twists = self._spaces
+        return recognise(twists, wrenches, self.measure)
+
+
+@dataclass(frozen=True)
+class Series:
+    """Joints in a row. Each number is found when it is first asked for."""
+
+    joints: tuple[Joint, ...]
+
+    @cached_property
+    def measure(self) -> Measure:
+        return Measure.of(self.joints)
+
+    @cached_property
+    def _spaces(self) -> tuple[Rank, np.ndarray, np.ndarray]:
+        """Rank and basis of the twists, basis of the wrenches that all joints transmit."""
+        at = self.measure
+        rows = [row for joint in self.joints for row in joint.twists(at.origin, at.length)]
+        return decompose(_unit_rows(rows), "the free motions")
+
+    @property
+    def rank(self) -> Rank:
+        return self._spaces[0]
+
+    @property
+    def Nc(self) -> int:
+        """Free rates of all the joints."""
+        return sum(joint.freedoms for joint in self.joints)
+
+    @property
+    def m(self) -> int:
+        return self.Nc
+
+    @property
+    def m_useful(self) -> int:
+        """Freedoms of the last body with respect to the first."""
+        return self.rank.value
+
+    @property
+    def m_internal(self) -> int:
+        """Freedoms that remain when the last body is held to the first."""
+        return self.Nc - self.m_useful
+
+    @property
+    def h(self) -> int:
+        """0: each action is that of the whole, so it is known."""
+        return 0
+
+    @cached_property
+    def equivalent(self) -> Equivalent:
+        _, twists, wrenches = self._spaces
+        return recognise(twists, wrenches, self.measure)

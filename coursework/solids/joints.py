@@ -1,0 +1,247 @@
+"""The joints of the course: what each lets move and what it transmits, at its own point.
+
+A joint has a right-handed frame (u, v, w) of unit vectors: u is its axis, or its normal where it has no axis;
+v is the normal of a contact along a line. In that frame each joint but the helical one leaves some of the
+six elementary motions free and transmits the actions that go with the others.
+
+Twists are written (rotation, velocity) and wrenches (moment, force) at one point, lengths divided by a length of
+the mechanism's size; the power of a wrench in a twist is then their plain scalar product.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from coursework.errors import WrongValue, unknown
+
+Vector = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A row of the table: free rotations and translations by the letters of the frame, and the keys needed."""
+
+    rotations: str
+    translations: str
+    needs: tuple[str, ...] = ()
+
+
+_KINDS: Mapping[str, Kind] = {
+    "rigid": Kind("", ""),
+    "revolute": Kind("u", "", ("axis", "point")),
+    "prismatic": Kind("", "u", ("axis",)),
+    "helical": Kind("u", "", ("axis", "point", "pitch")),
+    "cylindrical": Kind("u", "u", ("axis", "point")),
+    "spherical_pin": Kind("vw", "", ("axis", "point")),
+    "spherical": Kind("uvw", "", ("point",)),
+    "planar": Kind("u", "vw", ("normal",)),
+    "annular": Kind("uvw", "u", ("axis", "point")),
+    "line_contact": Kind("uv", "uw", ("axis", "normal", "point")),
+    "point_contact": Kind("uvw", "vw", ("normal", "point")),
+    "free": Kind("uvw", "uvw"),
+}
+
+JOINTS: tuple[str, ...] = tuple(_KINDS)  #: the names, from the fewest freedoms of a family to the most
+FREEDOMS: Mapping[str, int] = {name: len(k.rotations) + len(k.translations) for name, k in _KINDS.items()}
+
+_SQUARE = 1e-9  #: largest cosine between the line and the normal of a contact that are perpendicular
+
+
+def cross(a: Sequence[float], b: Sequence[float]) -> Vector:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def dot(a: Sequence[float], b: Sequence[float]) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def unit(a: Sequence[float]) -> Vector:
+    size = math.hypot(*a)
+    return (a[0] / size, a[1] / size, a[2] / size)
+
+
+def frame_about(u: Vector) -> tuple[Vector, Vector, Vector]:
+    """Unit vectors u, v, w, right-handed; v leans on the coordinate axis that is least along u."""
+    least = min(range(3), key=lambda i: abs(u[i]))
+    w = unit(cross(u, tuple(float(i == least) for i in range(3))))
+    return u, cross(w, u), w
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint at its place. ``frame`` holds u, v, w; ``point`` is None where no point counts."""
+
+    name: str
+    frame: tuple[Vector, Vector, Vector]
+    point: Vector | None = None
+    pitch: float = 0.0  #: advance a turn, in the unit of the points
+    between: tuple[int, int] = (0, 1)
+
+    @property
+    def freedoms(self) -> int:
+        """How many rates it leaves free."""
+        return FREEDOMS[self.name]
+
+    @property
+    def kind(self) -> Kind:
+        return _KINDS[self.name]
+
+    @cached_property
+    def _free(self) -> tuple[list[Vector], list[Vector]]:
+        return _named(self.frame, self.kind.rotations), _named(self.frame, self.kind.translations)
+
+    def twists(self, origin: Vector, length: float) -> list[list[float]]:
+        """Its free twists at a point: ``freedoms`` rows of 6, velocities divided by the length."""
+        arm = self.arm(origin, length)
+        advance = self.pitch / (2 * math.pi * length) if self.name == "helical" else 0.0
+        rotations, translations = self._free
+        rows = []
+        for turn in rotations:
+            x, y, z = cross(arm, turn)
+            rows.append([*turn, x + advance * turn[0], y + advance * turn[1], z + advance * turn[2]])
+        return rows + [[0.0, 0.0, 0.0, *along] for along in translations]
+
+    def wrenches(self, origin: Vector, length: float) -> list[list[float]]:
+        """What it transmits, at a point: ``6 - freedoms`` rows of 6, moments divided by the length."""
+        arm = self.arm(origin, length)
+        moments = _named(self.frame, _others(self.kind.rotations))
+        forces = _named(self.frame, _others(self.kind.translations))
+        rows = [[*moment, 0.0, 0.0, 0.0] for moment in moments]
+        rows += [[*cross(arm, force), *force] for force in forces]
+        if self.name == "helical":
+            # The force along the axis comes with the moment whose power it makes up for.
+            advance = self.pitch / (2 * math.pi * length)
+            along = len(moments) + "uvw".index("u")
+            for i, x in enumerate(self.frame[0]):
+                rows[along][i] -= advance * x
+        return rows
+
+    def arm(self, origin: Vector, length: float) -> Vector:
+        """From the origin to its point, in lengths."""
+        if self.point is None:
+            return (0.0, 0.0, 0.0)
+        return tuple((p - o) / length for p, o in zip(self.point, origin, strict=True))
+
+
+def _named(frame: Sequence[Vector], letters: str) -> list[Vector]:
+    return [frame["uvw".index(letter)] for letter in letters]
+
+
+def _others(letters: str) -> str:
+    return "".join(letter for letter in "uvw" if letter not in letters)
+
+
+def joint_of(given: Mapping[str, Any]) -> Joint:
+    """A joint from its mapping; keys that it does not need are passed over.
+
+    Raises
+    ------
+    UnknownName
+        No joint has this name.
+    WrongValue
+        A key is missing, a vector is no vector or has no direction, or the line and the normal of a
+        contact are not perpendicular.
+    """
+    if not isinstance(given, Mapping) or "joint" not in given:
+        raise WrongValue(f"a joint is a mapping with a key 'joint'; found {str(given)[:80]!r}")
+    name = given["joint"]
+    if name not in _KINDS:
+        raise unknown("joint", str(name), JOINTS)
+    kind = _KINDS[name]
+    for key in kind.needs:
+        if key not in given:
+            raise WrongValue(f"a joint {name!r} needs {', '.join(kind.needs)}; {key!r} is missing")
+    point = _vector(given, "point") if "point" in kind.needs else None
+    pitch = _number(given["pitch"], "pitch") if "pitch" in kind.needs else 0.0
+    between = given.get("between", (0, 1))
+    if len(between) != 2 or any(isinstance(b, bool) or int(b) != b or b < 0 for b in between):
+        raise WrongValue(f"'between' names two bodies by whole numbers from 0 on; found {between!r}")
+    return Joint(name, _frame(given, kind, name), point, pitch, (int(between[0]), int(between[1])))
+
+
+def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
+    """All the joints of a list, in its order; an empty list is refused."""
+    if isinstance(given, (Mapping, str)) or not isinstance(given, Iterable):
+        raise WrongValue(f"a list of joints is a list of mappings; found {str(given)[:60]!r}")
+    joints = tuple(joint_of(one) for one in given)
+    if not joints:
+        raise WrongValue("a list of joints must hold at least one")
+    return joints
+
+
+def _frame(given: Mapping[str, Any], kind: Kind, name: str) -> tuple[Vector, Vector, Vector]:
+    if not {"axis", "normal"} & set(kind.needs):
+        return (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+    u = _direction(given, "axis" if "axis" in kind.needs else "normal")
+    if not {"axis", "normal"} <= set(kind.needs):
+        return frame_about(u)
+    n = _direction(given, "normal")
+    if abs(dot(u, n)) > _SQUARE:
+        raise WrongValue(
+            f"the axis and the normal of a {name} must be perpendicular; the cosine of their angle is {dot(u, n):.3g}"
+        )
+    w = unit(cross(u, n))
+    return u, cross(w, u), w
+
+
+def _vector(given: Mapping[str, Any], key: str) -> Vector:
+    values = given[key]
+    if isinstance(values, str) or not hasattr(values, "__len__") or len(values) != 3:
+        raise WrongValue(f"{key!r} is three numbers; found {str(values)[:60]!r}")
+    return tuple(_number(value, key) for value in values)
+
+
+def _direction(given: Mapping[str, Any], key: str) -> Vector:
+    vector = _vector(given, key)
+    largest = max(abs(x) for x in vector)
+    if not largest:
+        raise WrongValue(f"{key!r} must have a direction; found (0, 0, 0)")
+    return unit([x / largest for x in vector])
+
+
+def _number(value: Any, key: str) -> float:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not math.isfinite(number):
+        raise WrongValue(f"{key!r} must hold finite numbers; found {str(value)[:60]!r}")
+    return number
+
+
+_TOGETHER = 1e-12  #: points nearer to one another than that, relative to their coordinates, coincide
+
+
+@dataclass(frozen=True)
+class Measure:
+    """Where twists are written and what their lengths are divided by, so that ranks do not hang on units."""
+
+    origin: Vector
+    length: float
+
+    @staticmethod
+    def of(joints: Sequence[Joint]) -> Measure:
+        """The middle of the joints' points and the largest distance from it.
+
+        Where all points coincide, a pitch is the only length; where there is none, any length does.
+        """
+        points = [joint.point for joint in joints if joint.point is not None]
+        origin: Vector = (0.0, 0.0, 0.0)
+        reach = 0.0
+        if points:
+            first = points[0]
+            offsets = [[p - f for p, f in zip(point, first, strict=True)] for point in points]
+            mean = [math.fsum(column) / len(points) for column in zip(*offsets, strict=True)]
+            origin = tuple(f + m for f, m in zip(first, mean, strict=True))
+            reach = max(math.dist(offset, mean) for offset in offsets)
+            if reach <= _TOGETHER * max(max(map(abs, point)) for point in points):
+                reach = 0.0
+        if reach:
+            return Measure(origin, reach)
+        advance = max((abs(joint.pitch) for joint in joints), default=0.0)
+        size = max(map(abs, origin))
+        return Measure(origin, advance / (2 * math.pi) or size or 1.0)

@@ -1,0 +1,88 @@
+"""Ranks as decisions: right, or not made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coursework.errors import CannotTell
+
+ZERO = 1e-11  #: what rounding leaves of a zero, relative to the largest; with it, what is smaller
+DISTINCT = 1e-7  #: what surely is no zero; two axes 1e-4 apart stay well above it
+
+
+@dataclass(frozen=True)
+class Rank:
+    """A rank and what it rests on: singular values, relative to the largest."""
+
+    value: int
+    smallest_kept: float  #: 1 where there is nothing to keep
+    largest_dropped: float  #: 0 where nothing was dropped
+
+    @property
+    def gap(self) -> float:
+        """The factor between the two; infinite where what was dropped is exactly zero."""
+        return self.smallest_kept / self.largest_dropped if self.largest_dropped else float("inf")
+
+
+def is_zero(value: float, what: str) -> bool:
+    """Whether a number that is of the order of 1 or vanishes does vanish.
+
+    Raises
+    ------
+    CannotTell
+        It lies between what rounding leaves and what is surely meant.
+    """
+    size = abs(value)
+    if ZERO < size < DISTINCT:
+        raise CannotTell(
+            f"cannot tell whether {what}: it is off by {size:.2g} of the whole, less than {DISTINCT:g}, "
+            f"which would be meant, and more than {ZERO:g}, which would be rounding"
+        )
+    return size <= ZERO
+
+
+def decompose(rows: np.ndarray, what: str, scale: float | None = None) -> tuple[Rank, np.ndarray, np.ndarray]:
+    """The rank of the rows, and orthonormal bases of what they span and of what is perpendicular to it.
+
+    ``rows`` has shape (k, d), the bases (rank, d) and (d - rank, d). Singular values are counted in
+    ``scale``, by default the largest of them.
+
+    Raises
+    ------
+    CannotTell
+        Some singular value is neither zero nor distinct from it; the message gives it.
+    """
+    count, width = rows.shape
+    if not count or not width:
+        return Rank(0, 1.0, 0.0), np.zeros((0, width)), np.eye(width)
+    _, sizes, directions = np.linalg.svd(rows)
+    whole = (float(sizes[0]) or 1.0) if scale is None else scale
+    relative = sizes / whole
+    doubtful = relative[(relative > ZERO) & (relative < DISTINCT)]
+    if len(doubtful):
+        raise CannotTell(
+            f"cannot tell the rank of {what}: a singular value is {doubtful[0]:.2g} of the largest, neither a zero "
+            f"(below {ZERO:g}) nor distinct from it (above {DISTINCT:g}); are two axes meant to be parallel, "
+            "or two points to coincide?"
+        )
+    rank = int((relative > ZERO).sum())
+    kept = float(relative[rank - 1]) if rank else 1.0
+    dropped = float(relative[rank]) if rank < len(relative) else 0.0
+    return Rank(rank, kept, dropped), directions[:rank], directions[rank:]
+
+
+def rank_of(matrix: np.ndarray, what: str = "the system") -> Rank:
+    """The rank of a matrix whose columns are scaled to the same length first.
+
+    Raises
+    ------
+    CannotTell
+        As :func:`decompose`.
+    """
+    matrix = np.asarray(matrix, dtype=float)
+    if not matrix.size:
+        return Rank(0, 1.0, 0.0)
+    sizes = np.linalg.norm(matrix, axis=0)
+    return decompose((matrix / np.where(sizes > 0, sizes, 1.0)).T, what)[0]

@@ -1,0 +1,55 @@
+"""Two joints in a row: kinematic unknowns, useful and internal mobility, and the joint that replaces the row."""
+
+from coursework.model import Exercise, Part
+from coursework.solids import EQUIVALENTS
+
+from ._solids import WITH_DIRECTION, WITH_LINE, coordinate, direction, equivalent_of, joint_kind
+
+
+def _name(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
+    second = (joint_2, direction_2, x2 != 0, y2 != 0, z2 != 0)
+    return equivalent_of("series", (joint_1, direction_1, 0, 0, 0), second)[1]
+
+
+def has_direction(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
+    return _name(joint_1, direction_1, joint_2, direction_2, x2, y2, z2) in WITH_DIRECTION
+
+
+def has_line(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
+    return _name(joint_1, direction_1, joint_2, direction_2, x2, y2, z2) in WITH_LINE
+
+
+EXERCISE = Exercise(
+    given={
+        "joint_1": joint_kind(),
+        "direction_1": direction(),
+        "joint_2": joint_kind(),
+        "direction_2": direction(),
+        "x2": coordinate(),
+        "y2": coordinate(),
+        "z2": coordinate(),
+    },
+    parts=(
+        Part("Nc", kind="integer", points=1),
+        Part("m", kind="integer", points=1),
+        Part("m_useful", kind="integer", points=2),
+        Part("m_internal", kind="integer", points=1),
+        Part("h", kind="integer", points=1),
+        Part("equivalent", kind="choice", choices=EQUIVALENTS, points=2),
+        Part("axis_dir", kind="direction", points=1, when=has_direction),
+        Part(
+            "axis_point", unit="mm", kind="point_on_line", along="axis_dir", atol=1.0, points=1, when=has_line
+        ),
+    ),
+    symbols={
+        "joint_1": "L_1",
+        "joint_2": "L_2",
+        "direction_1": r"\vec{u}_1",
+        "direction_2": r"\vec{u}_2",
+        "Nc": "N_c",
+        "m_useful": "m_u",
+        "m_internal": "m_i",
+        "axis_dir": r"\vec{u}",
+        "axis_point": "P",
+    },
+)

@@ -1,0 +1,50 @@
+"""What the solutions on chains of solids share. Names begin with an underscore: none of it is a quantity."""
+
+from functools import lru_cache
+
+import numpy as np
+
+from coursework.errors import WrongValue
+from coursework.solids import in_parallel, in_series, joints_of
+
+_in_parallel = lru_cache(maxsize=4096)(in_parallel)
+_in_series = lru_cache(maxsize=4096)(in_series)
+
+_NOWHERE = (np.nan, np.nan, np.nan)
+
+
+def _each(read, whole):
+    """``read`` of one thing, or of each in an array of objects; vectors along a last axis."""
+    if not isinstance(whole, np.ndarray):
+        return read(whole)
+    if whole.dtype != object or not whole.size:
+        raise WrongValue(f"joints is a list of joints, each a mapping; found {str(whole)[:60]!r}")
+    found = np.array([read(one) for one in whole.ravel()])
+    return found.reshape(whole.shape + found.shape[1:])
+
+
+def _parallel_of(joints):
+    return _each(lambda one: _in_parallel(joints_of(one)), joints)
+
+
+def _series_of(joints):
+    return _each(lambda one: _in_series(joints_of(one)), joints)
+
+
+def _stiffest(whole):
+    """The name of the joint that leaves the fewest freedoms; the first of them."""
+    return min(whole.joints, key=lambda joint: joint.freedoms).name
+
+
+def _freest(whole):
+    return max(whole.joints, key=lambda joint: joint.freedoms).name
+
+
+def _direction(whole):
+    """NaN where the equivalent joint has no direction."""
+    return np.array(whole.equivalent.direction or _NOWHERE)
+
+
+def _point(whole):
+    """NaN where no point of the equivalent joint counts."""
+    return np.array(whole.equivalent.point or _NOWHERE)

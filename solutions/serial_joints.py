@@ -1,0 +1,180 @@
+"""Joints in a row: their free motions add up, so the ranks are those of the added motions."""
+
+import numpy as np
+
+from coursework.solids import FREEDOMS, aligned, each_distinct, joint_of
+from coursework.solution import mistake
+
+from ._solids import _direction, _each, _freest, _in_parallel, _point, _series_of
+
+
+def _pair(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
+    return (
+        aligned(joint_1, direction_1, between=(0, 1)),
+        aligned(joint_2, direction_2, (x2, y2, z2), between=(1, 2)),
+    )
+
+
+def joints(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
+    """The first at A1, the origin; the second at A2."""
+    return each_distinct(_pair, joint_1, direction_1, joint_2, direction_2, x2, y2, z2)
+
+
+def _combined(joints):
+    return _series_of(joints)
+
+
+def Nc(_combined):
+    """The freedoms, joint by joint."""
+    return _each(lambda one: one.Nc, _combined)
+
+
+def m(Nc):
+    return Nc
+
+
+def m_useful(_combined):
+    """The rank of all the free motions at one point."""
+    return _each(lambda one: one.m_useful, _combined)
+
+
+def m_internal(m, m_useful):
+    return m - m_useful
+
+
+def h():
+    return 0
+
+
+def equivalent(_combined):
+    return _each(lambda one: one.equivalent.name, _combined)
+
+
+def axis_dir(_combined):
+    """Along the axis, or along the normal of a joint without axis."""
+    return _each(_direction, _combined)
+
+
+def axis_point(_combined):
+    return _each(_point, _combined)
+
+
+def _statics(whole):
+    """Static unknowns of all the joints."""
+    return sum(6 - joint.freedoms for joint in whole.joints)
+
+
+@mistake("Nc")
+def unknowns_for_freedoms(_combined):
+    return _each(_statics, _combined)
+
+
+@mistake("m")
+def m_is_useful(m_useful):
+    return m_useful
+
+
+@mistake("m_useful")
+def all_useful(Nc):
+    return Nc
+
+
+@mistake("m_useful")
+def useful_up_to_six(Nc):
+    return np.minimum(Nc, 6)
+
+
+@mistake("m_useful", "h")
+def statics_added(_combined):
+    return (
+        _each(lambda one: _in_parallel(one.joints).m, _combined),
+        _each(lambda one: _in_parallel(one.joints).h, _combined),
+    )
+
+
+@mistake("h")
+def h_from_six(_combined):
+    return _each(_statics, _combined) - 6
+
+
+@mistake("equivalent")
+def freer_joint_alone(_combined):
+    return _each(_freest, _combined)
+
+
+def residual(joints, Nc, m, m_useful, m_internal, h, equivalent):
+    """Mobility from the actions: the last body is free of what not every joint of the row transmits."""
+    known = [joint_of(joint) for joint in joints]
+    wrenches = [np.array(joint.wrenches((0.0, 0.0, 0.0), 20.0)).reshape(-1, 6).T for joint in known]
+    # An action of the whole is an action of the first joint that each of the others transmits as well.
+    first, others = wrenches[0], wrenches[1:]
+    places = np.cumsum([first.shape[1], *(w.shape[1] for w in others)])
+    system = np.zeros((6 * len(others), places[-1]))
+    for number, other in enumerate(others):
+        rows = slice(6 * number, 6 * number + 6)
+        system[rows, : places[0]] = first
+        system[rows, places[number] : places[number + 1]] = -other
+    shared = places[-1] - np.linalg.matrix_rank(system) if others else first.shape[1]
+    named = FREEDOMS.get(equivalent, m_useful)
+    freedoms = sum(joint.freedoms for joint in known)
+    return (
+        float(m_useful - (6 - shared)),
+        float(named - m_useful),
+        float(Nc - freedoms),
+        float(m - m_useful - m_internal),
+        float(h),
+    )
+
+
+_X, _Y, _Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
+_O = (0, 0, 0)
+
+KNOWN = (
+    # A ball in a shoe that slides on a plane: a point contact, and the ball may spin about the normal unseen.
+    (
+        {"joints": [{"joint": "planar", "normal": _Z}, {"joint": "spherical", "point": _O}]},
+        {
+            "Nc": 6,
+            "m": 6,
+            "m_useful": 5,
+            "m_internal": 1,
+            "h": 0,
+            "equivalent": "point_contact",
+            "axis_dir": np.array([0.0, 0.0, 1.0]),
+        },
+    ),
+    # A universal joint: two hinges whose axes meet at right angles.
+    (
+        {
+            "joint_1": "revolute",
+            "direction_1": "x",
+            "joint_2": "revolute",
+            "direction_2": "y",
+            "x2": 0,
+            "y2": 0,
+            "z2": 0,
+        },
+        {"Nc": 2, "m_useful": 2, "m_internal": 0, "equivalent": "spherical_pin"},
+    ),
+    # A drawing board's two-hinged arm with a third hinge holds a plane against the board.
+    (
+        {"joints": [{"joint": "revolute", "axis": _Z, "point": p} for p in (_O, (300, 0, 0), (300, 400, 0))]},
+        {"Nc": 3, "m_useful": 3, "m_internal": 0, "equivalent": "planar"},
+    ),
+    # A shaft that turns in a sleeve which turns in the frame about the same axis.
+    (
+        {"joints": [{"joint": "revolute", "axis": _Y, "point": (5, y, 7)} for y in (0, 30)]},
+        {"Nc": 2, "m": 2, "m_useful": 1, "m_internal": 1, "equivalent": "revolute"},
+    ),
+    # A rod between two balls: it pushes along its line and turns about it.
+    (
+        {"joints": [{"joint": "spherical", "point": p} for p in (_O, (0, 80, 0))]},
+        {
+            "Nc": 6,
+            "m_useful": 5,
+            "m_internal": 1,
+            "equivalent": "point_contact",
+            "axis_dir": np.array([0.0, 1.0, 0.0]),
+        },
+    ),
+)
