@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from coursework.course import Course, Variant, open_course
     from coursework.errors import CannotAssemble, CourseworkError, NoSolution, Undefined, UnknownName
+    from coursework.motion import show_motion
 
 __version__ = "0.1.0"
 __all__ = [
@@ -25,12 +26,15 @@ __all__ = [
     "UnknownName",
     "Variant",
     "open_course",
+    "show_motion",
 ]
+
+
+_HOMES = {"Course": "course", "Variant": "course", "open_course": "course", "show_motion": "motion"}
 
 
 def __getattr__(name: str) -> object:
     # Loaded on first use, so that the command line answers at once.
     if name not in __all__:
         raise AttributeError(f"module 'coursework' has no attribute {name!r}")
-    home = "course" if name in ("Course", "Variant", "open_course") else "errors"
-    return getattr(import_module(f"coursework.{home}"), name)
+    return getattr(import_module(f"coursework.{_HOMES.get(name, 'errors')}"), name)

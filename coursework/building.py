@@ -6,10 +6,12 @@ import os
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 
+from coursework import booklets
+from coursework.booklets import File
 from coursework.course import Course
+from coursework.handout import AnswerSheet, Handout
 from coursework.issuing import (
     Issue,
     csv_text,
@@ -19,18 +21,11 @@ from coursework.issuing import (
     key_content,
     key_rows,
 )
+from coursework.rendering import Renderer
 from coursework.submissions import COLUMNS
 
-FORMATS = ("pdf", "ipynb", "html")
+FORMATS = ("pdf", "ipynb", "html", "tex")
 KEY_COLUMNS = ("student", "exercise", "seed", "part", "value", "unit", "tolerance")
-
-
-@dataclass(frozen=True)
-class File:
-    """One file of the result: its path below the output folder, and how to make its bytes, if any."""
-
-    path: Path
-    make: Callable[[], bytes | None]
 
 
 def _text(make: Callable[[], str]) -> Callable[[], bytes]:
@@ -38,16 +33,26 @@ def _text(make: Callable[[], str]) -> Callable[[], bytes]:
 
 
 def files(
-    course: Course, issues: Sequence[Issue], formats: Sequence[str], *, practice: bool = False
+    course: Course,
+    issues: Sequence[Issue],
+    formats: Sequence[str],
+    *,
+    practice: bool = False,
+    paper: str = "a4",
+    booklet: bool = False,
 ) -> Iterator[File]:
     """Every file of a build, in order.
 
-    ``practice`` gives notebooks a cell that checks answers with the installed package. A students'
-    copy of the course gives the handouts alone.
+    ``practice`` gives notebooks a cell that checks answers with the installed package. ``paper`` is
+    ``a4`` or ``letter``. ``booklet`` adds the sheets of all students in one PDF for each exercise and
+    language. A students' copy of the course gives the handouts alone.
     """
+    renderer = course.renderer.on(paper)
     for issue in issues:
         for lang in issue.langs:
-            yield from _sheets(course, issue, lang, formats, practice)
+            yield from _sheets(course, renderer, issue, lang, formats, practice)
+    if booklet:
+        yield from booklets.files(course, renderer, issues)
     content = issued_content(course, issues)
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
     yield File(Path("answers.csv"), _text(lambda: csv_text(form_rows(issues), COLUMNS)))
@@ -59,9 +64,8 @@ def files(
 
 
 def _sheets(
-    course: Course, issue: Issue, lang: str, formats: Sequence[str], practice: bool
+    course: Course, renderer: Renderer, issue: Issue, lang: str, formats: Sequence[str], practice: bool
 ) -> Iterator[File]:
-    renderer = course.renderer
     variant = issue.variant.in_language(lang)
     name = variant.exercise.name
     for_student = Path("handouts") / name / f"{issue.stem}.{lang}"
@@ -81,10 +85,23 @@ def _sheets(
         yield File(
             _with(for_student, ".ipynb"), _text(lambda: renderer.notebook(handout(), practice=practice))
         )
+    if "tex" in formats:
+        yield from _tex(renderer, for_student, ".tex", "figure", handout)
     if course.has_solutions and "pdf" in formats:
         yield File(_with(for_staff, ".solution.pdf"), lambda: renderer.pdf(solution()))
     if course.has_solutions and "html" in formats:
         yield File(_with(for_staff, ".solution.html"), _text(lambda: renderer.html(solution())))
+    if course.has_solutions and "tex" in formats:
+        yield from _tex(renderer, for_staff, ".solution.tex", "solution-figure", solution)
+
+
+def _tex(
+    renderer: Renderer, path: Path, ending: str, what: str, sheet: Callable[[], Handout | AnswerSheet]
+) -> Iterator[File]:
+    """A source and its figure beside it; one dot in the figure's name, as every LaTeX reads it."""
+    figure = f"{path.name.replace('.', '-')}-{what}.pdf"
+    yield File(_with(path, ending), _text(lambda: renderer.tex(sheet(), figure)))
+    yield File(path.with_name(figure), lambda: renderer.figure_pdf(sheet()))
 
 
 def _with(path: Path, ending: str) -> Path:

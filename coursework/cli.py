@@ -164,7 +164,15 @@ def _progress(what: str, total: int | None) -> Iterator[Callable[..., None]]:
 
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(what, total=total)
-        yield lambda *_: bar.advance(task)
+
+        def advance(*progress: Any) -> None:
+            """One more, or so many of so many."""
+            if len(progress) == 2:
+                bar.update(task, completed=progress[0], total=progress[1])
+            else:
+                bar.advance(task)
+
+        yield advance
 
 
 # ------------------------------------------------------------------------- look
@@ -378,6 +386,35 @@ def _drive(exercise: Any, text: str) -> float:
     return exercise._accept(effort, value.strip())
 
 
+# ---------------------------------------------------------------------- animate
+
+
+@cli.command()
+@click.argument("exercise")
+@_seed_option
+@click.option(
+    "--effects",
+    default="",
+    metavar="E,E",
+    help="What is seen: position (paths), velocity, acceleration, coriolis; paths alone unless told.",
+)
+@_lang_option
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=".", help="Folder to write.")
+@click.pass_context
+def animate(context: click.Context, exercise: str, seed: int, effects: str, lang: str, out: Path) -> None:
+    """Show a mechanism over the cycle of its driver.
+
+    Writes a moving picture (SVG) and a page with a slider (HTML).
+    """
+    from coursework.building import write_whole
+
+    animation = _course(context)[exercise].variant(seed, lang).animation(_split(effects))
+    pages = {"svg": animation.svg(), "html": animation.html()}
+    for ending, text in pages.items():
+        write_whole(out / f"{exercise}.{ending}", text.encode("utf-8"))
+        click.echo(f"{out / exercise}.{ending}")
+
+
 # ----------------------------------------------------------------------- lesson
 
 
@@ -475,6 +512,14 @@ def accuracy(
 @click.option("--lang", "langs", type=_Lists(_known_languages), default="fr", show_default=True)
 @click.option("--practice", is_flag=True, help="Notebooks check answers with the installed package.")
 @click.option(
+    "--paper",
+    type=click.Choice(["a4", "letter"]),
+    default="a4",
+    show_default=True,
+    help="Paper of the sheets.",
+)
+@click.option("--booklet", is_flag=True, help="Also all students' sheets in one PDF, to print at once.")
+@click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."
 )
 @click.option("--overwrite", is_flag=True, help="Replace what was issued there before.")
@@ -488,6 +533,8 @@ def build(
     formats: Sequence[str],
     langs: Sequence[str],
     practice: bool,
+    paper: str,
+    booklet: bool,
     out: Path,
     overwrite: bool,
 ) -> None:
@@ -497,7 +544,18 @@ def build(
     course = _course(context)
     names = _exercise_names(course, exercises)
     written = build_files(
-        course, names, count or 1, seed, roster, formats, langs, out, practice=practice, overwrite=overwrite
+        course,
+        names,
+        count or 1,
+        seed,
+        roster,
+        formats,
+        langs,
+        out,
+        practice=practice,
+        paper=paper,
+        booklet=booklet,
+        overwrite=overwrite,
     )
     click.echo(f"{written} files in {out}: handouts/ to give away, issued.json and answers.csv to keep")
     if course.has_solutions:
@@ -515,6 +573,8 @@ def build_files(
     out: Path,
     *,
     practice: bool = False,
+    paper: str = "a4",
+    booklet: bool = False,
     overwrite: bool = False,
 ) -> int:
     """Issue and write a build; gives how many files were written."""
@@ -528,7 +588,7 @@ def build_files(
         raise BadInput(
             f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them"
         )
-    wanted = list(building.files(course, issues, formats, practice=practice))
+    wanted = list(building.files(course, issues, formats, practice=practice, paper=paper, booklet=booklet))
     with _progress("building", len(wanted)) as advance:
         building.write_tree(out, wanted, advance)
     return len(wanted)

@@ -45,6 +45,7 @@ if TYPE_CHECKING:
     from coursework.handout import AnswerSheet, Handout
     from coursework.key import Key
     from coursework.marking import Marking
+    from coursework.motion import Animation
     from coursework.rendering import Renderer
 
 _packages = itertools.count()
@@ -705,6 +706,12 @@ class Variant:
         from coursework.sheets import figure
 
         return figure(self)
+
+    def animation(self, effects: Sequence[str] = (), count: int = 72) -> Animation:
+        """The mechanism over the cycle of its driver; see :class:`~coursework.motion.Animation`."""
+        from coursework.motion import Animation
+
+        return Animation(self, effects, count)
 
     def handout(self, student: str = "") -> Handout:
         """What the student's sheet shows."""

@@ -38,6 +38,7 @@ class Question:
     choices: tuple[tuple[str, str], ...]  #: (key, label) pairs of a choice
     points: float
     tolerance: str  #: in words a student understands; empty for exact kinds
+    asks_unit: bool = False  #: the answer is to come with its unit, which the sheet does not print
 
 
 @dataclass(frozen=True)

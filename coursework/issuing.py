@@ -208,14 +208,11 @@ def record_with_answers(variant: Variant) -> dict[str, Any]:
     NoSolution
         The course folder has no solutions.
     """
-    solution = variant.solution()
+    key = variant.key
     answers = {}
     for part in variant.parts:
-        value = solution[part.quantity]
-        tolerance = None
-        if not part.is_exact:
-            size = 1.0 if part.kind == "direction" else float(np.linalg.norm(value))
-            tolerance = part.half_width(size)
+        value = key.reference[part.quantity]
+        tolerance = None if part.is_exact else key.half_width(part)
         answers[part.id] = {"value": plain_value(value), "unit": part.unit, "tolerance": tolerance}
     return {**variant.record, "answers": answers}
 

@@ -56,6 +56,13 @@ class Key:
         )
         return {name: self._bounded(name, float(np.ravel(width)[0])) for name, width in found.items()}
 
+    def half_width(self, part: Part) -> float:
+        """The largest accepted distance from the reference, in the part's unit; 0 for what is judged exactly."""
+        if part.is_exact:
+            return 0.0
+        size = 1.0 if part.kind == "direction" else float(np.linalg.norm(self.reference[part.quantity]))
+        return max(part.half_width(size), self.envelope.get(part.quantity, 0.0))
+
     @property
     def _quantities(self) -> tuple[str, ...]:
         return tuple(dict.fromkeys(p.quantity for p in self.variant.parts))

@@ -175,7 +175,8 @@ class Scene:
     def _evaluated(self) -> tuple[str, ...]:
         graph = self.exercise.solution.graph
         names = {**self.exercise._defaults, **self.given, self.driver.angle: 0.0}
-        return graph.plan(self.quantities, frozenset(names) & self.exercise.quantity_names, self._own)
+        plan = graph.plan(self.quantities, frozenset(names) & self.exercise.quantity_names, self._own)
+        return tuple(name for name in plan if not name.startswith("_"))  # a hidden one is the solution's own
 
     def _units(self, names: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
         known = {"t": "s", **self.exercise.units}

@@ -71,6 +71,7 @@ def _question(variant: Variant, number: int, part: Part) -> Question:
         choices=choices,
         points=part.points,
         tolerance=tolerance_words(part, variant.lang),
+        asks_unit=part.asks_unit,
     )
 
 
@@ -112,12 +113,11 @@ def answer_sheet(variant: Variant, student: str = "") -> AnswerSheet:
     NoSolution
         The course folder has no solutions.
     """
-    lang = variant.lang
     sheet = handout(variant, student)
     values, text = variant.walk, variant.solution_text
     steps = tuple(_step(variant, name, values, text) for name in values if name not in variant.given)
     answers = tuple(
-        Answer(question, answer_text(variant, part, values), _margin(part, values, lang))
+        Answer(question, answer_text(variant, part, values), _margin(variant, part))
         for question, part in zip(sheet.questions, variant.parts, strict=True)
     )
     return AnswerSheet(sheet, answers, steps, text.opening, _solution_figure(variant))
@@ -194,7 +194,7 @@ def _value_latex(variant: Variant, name: str, value: Any) -> str:
 def _unit_latex(unit: str) -> str:
     if unit in ("1", "deg"):
         return r"^{\circ}" if unit == "deg" else ""
-    text = unit.replace("*", r"\cdot ").replace("^2", "^{2}")
+    text = unit.replace("*", r"{\cdot}").replace("^2", "^{2}")
     return rf"\ \mathrm{{{text}}}"
 
 
@@ -215,11 +215,9 @@ def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
     return f"${latex}$"
 
 
-def _margin(part: Part, values: Mapping[str, Any], lang: str) -> str:
+def _margin(variant: Variant, part: Part) -> str:
     if part.is_exact or part.kind == "direction":
         return ""
-    reference = values[part.quantity]
-    size = float(np.linalg.norm(reference)) if isinstance(reference, np.ndarray) else reference
-    width = localise(significant(part.half_width(size), 2), lang)
-    unit = unit_text(part.unit, lang)
+    width = localise(significant(variant.key.half_width(part), 2), variant.lang)
+    unit = unit_text(part.unit, variant.lang)
     return width + (unit if unit == "°" else f" {unit}" if unit else "")

@@ -9,6 +9,7 @@
 * ``KNOWN`` lists pairs (given values, expected values); an expected text such as ``"319.80"`` is
   right to its last printed digit, a number to 1e-9 relative; a third item names the case's effects,
   where they are not those of the exercise's own parts;
+* ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
 * a name that begins with an underscore is the module's own; a function of such a name is computed once
   a request when a quantity takes it as a parameter, and is no quantity that one could ask for.
@@ -21,6 +22,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from types import ModuleType
 from typing import Any
+
+import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError, unknown
 from coursework.graph import Graph, Node, Replacement
@@ -99,6 +102,25 @@ def stable(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Calla
 
 
 @dataclass(frozen=True)
+class Moving:
+    """A point in motion: complex numbers, in mm, mm/s and mm/s^2; None for what is not shown.
+
+    ``coriolis`` is the Coriolis term of the point's acceleration, seen from the body it slides on. Each is a
+    scalar or an array over the driver's angles.
+    """
+
+    position: Any
+    velocity: Any = None
+    acceleration: Any = None
+    coriolis: Any = None
+
+    def over(self, count: int) -> Moving:
+        """The same as arrays of ``count`` instants."""
+        values = (self.position, self.velocity, self.acceleration, self.coriolis)
+        return Moving(*(v if v is None else np.broadcast_to(v, (count,)).astype(complex) for v in values))
+
+
+@dataclass(frozen=True)
 class Solution:
     """A loaded solution."""
 
@@ -108,6 +130,7 @@ class Solution:
     known: Sequence[tuple[Any, ...]]
     residual: Callable[..., Any] | None
     figure: Callable[..., Any] | None
+    motion: Callable[..., Mapping[str, Moving]] | None
     units: Mapping[str, str]
     symbols: Mapping[str, str]
 
@@ -129,7 +152,7 @@ class Solution:
             and _belongs(value, module)
         }
         mistakes = {k: f.__mistake__ for k, f in own.items() if hasattr(f, "__mistake__")}
-        special = {"residual", "figure"}
+        special = {"residual", "figure", "motion"}
         functions = {k: f for k, f in own.items() if k not in special and k not in mistakes}
         if not functions:
             raise BadCourse(f"solutions/{name}.py defines no quantity; a quantity is a function of its name")
@@ -147,6 +170,7 @@ class Solution:
             tuple(getattr(module, "KNOWN", ())),
             own.get("residual"),
             own.get("figure"),
+            own.get("motion"),
             dict(getattr(module, "UNITS", {})),
             dict(getattr(module, "SYMBOLS", {})),
         )

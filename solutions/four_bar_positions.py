@@ -12,7 +12,7 @@ from coursework.figures import Figure, circle, ground_pivot, line, link, pin
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.kinematics.margins import exact_sum
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 UNITS = {"phi": "deg", "psi": "deg", "AC": "mm"}
 SYMBOLS = {"phi": r"\varphi", "psi": r"\psi", "AC": "AC"}
@@ -246,6 +246,16 @@ def residual(r1, r2, r3, r4, theta2, a, b, c, theta3_open, theta4_open, theta3_c
         found.append(abs((np.conj(a + 1j * b) * unit(theta3)).real - c) / (abs(a) + abs(b) + abs(c)))
     found.append(abs(abs(r3 - r4 * unit(mu)) - abs(r1 - crank)) / size)
     return tuple(found)
+
+
+def motion(r1, r2, r3, r4, theta2, theta3_open, theta4_open):
+    """The two moving joints and the middle of the coupler, in the assembly that the figure shows."""
+    crank = polar(r2, theta2)
+    return {
+        "A": Moving(crank),
+        "B_1": Moving(r1 + polar(r4, theta4_open)),
+        "M": Moving(crank + polar(r3 / 2, theta3_open)),
+    }
 
 
 def figure(r1, r2, r3, r4, theta2, theta3_open, theta3_crossed):

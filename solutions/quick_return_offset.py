@@ -24,7 +24,7 @@ from coursework.figures import (
 )
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 from ._strokes import *
 
@@ -182,6 +182,17 @@ def T_is_frequency(omega2):
 @mistake("t_advance", "t_return", share=0.5)
 def advance_and_return_exchanged(t_advance, t_return):
     return t_return, t_advance
+
+
+def motion(r2, e, theta2, omega2, p, q, omega3, xC, v_C):
+    """The crank pin and the piston; the crank turns steadily."""
+    A = polar(r2, theta2)
+    a_A = -(omega2**2) * A
+    alpha3 = (p * omega3**2 - a_A.imag) / q
+    return {
+        "A": Moving(A, 1j * omega2 * A, a_A),
+        "C": Moving(xC + 1j * e, v_C, a_A.real - p * alpha3 - q * omega3**2),
+    }
 
 
 def figure(r2, e, omega2, x1, x2):

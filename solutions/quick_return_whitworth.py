@@ -25,7 +25,7 @@ from coursework.figures import (
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.kinematics.slotted_guide import SlottedGuidePose
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 from ._strokes import *
 
@@ -258,6 +258,21 @@ def T_is_frequency(omega2):
 @mistake("t_advance", "t_return", share=0.5)
 def advance_and_return_exchanged(t_advance, t_return):
     return t_return, t_advance
+
+
+def motion(r1, r2, theta2, omega2, rA, theta4, omega4, r4, h, p, q, omega5, xC, v_C):
+    """The crank pin, which slides on the guide, the guide's end and the ram; the crank turns steadily."""
+    crank, along = polar(r2, theta2), polar(1, theta4)
+    v_A, a_A = 1j * omega2 * crank, -(omega2**2) * crank
+    sliding = (v_A / along).real
+    alpha4 = ((a_A / along).imag - 2 * omega4 * sliding) / rA
+    a_P = (1j * alpha4 - omega4**2) * r4 * along
+    alpha5 = (p * omega5**2 - a_P.imag) / q
+    return {
+        "A": Moving(1j * r1 + crank, v_A, a_A, coriolis=2j * omega4 * sliding * along),
+        "P": Moving(r4 * along, 1j * omega4 * r4 * along, a_P),
+        "C": Moving(xC + 1j * h, v_C, a_P.real - p * alpha5 - q * omega5**2),
+    }
 
 
 def figure(r1, r2, r4, h, omega2, x1, x2, phi1, phi2, psi1, psi2):

@@ -15,7 +15,7 @@ from coursework.figures import Figure, ground_pivot, link, pin, point, rail, sli
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 UNITS = {"p": "mm", "q": "mm"}
 
@@ -146,6 +146,15 @@ def scales_exchanged(kv, ka):
 @mistake("kv", "ka")
 def multiplied_by_the_scale(kv, ka):
     return 1 / kv, 1 / ka
+
+
+def motion(r2, e, theta2, omega2, alpha2, r1, r1_dot, r1_ddot):
+    """The crank pin and the piston."""
+    A = polar(r2, theta2)
+    return {
+        "A": Moving(A, 1j * omega2 * A, (1j * alpha2 - omega2**2) * A),
+        "B": Moving(r1 + 1j * e, r1_dot, r1_ddot),
+    }
 
 
 def figure(r2, e, theta2, omega2, alpha2, r3, theta3, omega3, r1_dot, alpha3, r1_ddot):

@@ -13,7 +13,7 @@ from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slotted_guide import SlottedGuidePose
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
 SYMBOLS = {"delta": r"\delta"}
@@ -144,6 +144,19 @@ def coriolis_no_2(omega4, rA_dot):
 @mistake("rA_ddot")
 def no_centripetal(r2, alpha2, omega2, theta2, theta4):
     return -r2 * alpha2 * sin(theta2 - theta4) - r2 * omega2**2 * cos(theta2 - theta4)
+
+
+def motion(r1, theta1, r2, theta2, omega2, alpha2, rA_dot, theta4, omega4):
+    """The crank pin, which slides on the turning guide."""
+    crank = polar(r2, theta2)
+    return {
+        "A": Moving(
+            polar(r1, theta1) + crank,
+            1j * omega2 * crank,
+            (1j * alpha2 - omega2**2) * crank,
+            coriolis=2j * omega4 * rA_dot * polar(1, theta4),
+        )
+    }
 
 
 def residual(r1, r2, theta1, theta2, omega2, alpha2, rA, theta4, rA_dot, omega4, rA_ddot, alpha4):

@@ -198,6 +198,12 @@ def test_a_formula_fits_on_one_line_of_a_terminal(tex, line):
     assert to_line(tex, "en") == line
 
 
+def test_the_dot_of_a_unit_stands_close_in_every_back_end():
+    for tex in (r"\mathrm{N\cdot m}", r"\mathrm{N{\cdot}m}"):
+        assert to_typst(tex, "fr") == '"N·m"'
+        assert mathless(tex, "fr") == to_line(tex, "fr") == "N·m"
+
+
 def test_a_dot_over_a_letter_leaves_its_subscript_outside():
     assert to_typst(r"\dot\theta_4", "en") == "attach(dot(θ), b: 4)"
 
@@ -382,6 +388,23 @@ def test_a_long_exercise_and_a_formula_wider_than_the_page_still_compile(lang):
     long = replace(sheet, steps=(replace(sheet.steps[0], formula=wide, substitution=wide),) * 3)
     assert RENDERER.pdf(long).startswith(b"%PDF")
     assert pages_of(replace(sheet.handout, questions=questions)) in (2, 3)
+
+
+@every_language
+def test_an_answer_box_has_its_unit_or_the_words_that_ask_for_one(lang):
+    sheet = handout(lang)
+    (question,) = [q for q in sheet.questions if q.id == "rA_dot"]
+    asks = replace(sheet, questions=(replace(question, unit="", asks_unit=True),))
+    said = {"fr": "avec son unité", "en": "with its unit"}[lang]
+    for shown in (RENDERER.typst, RENDERER.html, RENDERER.notebook, RENDERER.terminal):
+        # A notebook's help has these words too.
+        assert shown(asks).count(said) > shown(sheet).count(said)
+        assert "mm/s" in shown(replace(sheet, questions=(question,), given=())).replace("\\/", "/")
+    (box,) = re.findall(
+        r'<div class="box">.*?</div>', RENDERER.html(replace(sheet, questions=(question,))), re.DOTALL
+    )
+    assert "<span>mm/s</span>" in box
+    assert RENDERER.pdf(asks).startswith(b"%PDF")
 
 
 # -- what a student's sheet never holds --------------------------------------------------------------

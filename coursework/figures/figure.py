@@ -154,6 +154,10 @@ class Figure:
         """The same with labels as outlines: looks the same on a machine without the font."""
         return self._written(outlined=True)
 
+    def _repr_svg_(self) -> str:
+        """What a notebook shows of a figure that ends a cell."""
+        return self.outlined_svg()
+
     def png(self, ppi: float = 200) -> bytes:
         """The drawing as PNG, ``ppi`` pixels an inch."""
         from coursework.figures.typesetting import converted

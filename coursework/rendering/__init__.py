@@ -4,42 +4,80 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from coursework.errors import unknown
 from coursework.handout import AnswerSheet, FeedbackSheet, Handout
 from coursework.report import Report
+
+if TYPE_CHECKING:
+    from coursework.motion import Animation
+
+PAPERS = ("a4", "letter")
 
 
 class Renderer:
     """Renders sheets through the templates of these folders, the first that has one.
 
     The same sheet gives the same bytes. Safe to share between threads; not to be carried into a
-    forked process.
+    forked process. ``paper`` is ``a4`` or ``letter``; another raises :class:`UnknownName`.
     """
 
-    def __init__(self, template_folders: Sequence[Path]) -> None:
+    def __init__(self, template_folders: Sequence[Path], paper: str = "a4") -> None:
+        if paper not in PAPERS:
+            raise unknown("paper", paper, PAPERS)
         self.template_folders = tuple(Path(folder) for folder in template_folders)
+        self.paper = paper
+
+    def on(self, paper: str) -> Renderer:
+        """The same renderer for another paper."""
+        return Renderer(self.template_folders, paper)
 
     def typst(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
         """The Typst source of a sheet; it stands alone."""
         from coursework.rendering import pdf
 
-        return pdf.source(self.template_folders, [sheet])
+        return pdf.source(self.template_folders, [sheet], self.paper)
 
     def pdf(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> bytes:
-        """A sheet as a tagged PDF, A4."""
+        """A sheet as a tagged PDF."""
         return self.booklet_pdf([sheet])
 
     def booklet_pdf(self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]) -> bytes:
         """Several sheets in one PDF, each from an odd page on, with its own page numbers."""
         from coursework.rendering import pdf
 
-        return pdf.compile_pdf(pdf.source(self.template_folders, sheets))
+        return pdf.compile_pdf(pdf.source(self.template_folders, sheets, self.paper))
+
+    def booklet(
+        self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]
+    ) -> tuple[bytes, tuple[tuple[int, int], ...]]:
+        """The PDF of :meth:`booklet_pdf`, and the first and last page of each sheet in it, from 1 on."""
+        from coursework.rendering import pdf
+
+        return pdf.compile_booklet(pdf.source(self.template_folders, sheets, self.paper))
 
     def html(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
         """A sheet as one web page that fetches nothing and runs no script."""
         from coursework.rendering import html
 
-        return html.page(self.template_folders, sheet)
+        return html.page(self.template_folders, sheet, self.paper)
+
+    def tex(self, sheet: Handout | AnswerSheet, figure: str) -> str:
+        """A sheet as LaTeX source for pdflatex.
+
+        ``figure`` names the PDF file beside it that holds the figure of :meth:`figure_pdf`, if any.
+        """
+        from coursework.rendering import latex
+
+        return latex.source(self.template_folders, sheet, self.paper, figure)
+
+    def figure_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
+        """The figure that a sheet shows, as a PDF of its own; nothing when it shows none."""
+        from coursework.rendering import views
+
+        figure = views.figure_of(sheet)
+        return None if figure is None else figure.pdf()
 
     def notebook(self, handout: Handout, *, practice: bool = False) -> str:
         """A handout as a notebook (JSON, nbformat 4.5); with practice, a cell that checks the answers."""
@@ -57,13 +95,19 @@ class Renderer:
         """A report as one web page that fetches nothing and runs no script."""
         from coursework.rendering import reports
 
-        return reports.page(self.template_folders, report)
+        return reports.page(self.template_folders, report, self.paper)
 
     def report_pdf(self, report: Report) -> bytes:
-        """A report as a tagged PDF, A4."""
+        """A report as a tagged PDF."""
         from coursework.rendering import pdf, reports
 
-        return pdf.compile_pdf(reports.source(self.template_folders, report))
+        return pdf.compile_pdf(reports.source(self.template_folders, report, self.paper))
+
+    def motion_html(self, animation: Animation) -> str:
+        """A mechanism in motion as one web page that fetches nothing; its one script is in the page."""
+        from coursework.rendering import motion
+
+        return motion.page(self.template_folders, animation, self.paper)
 
     def terminal(self, handout: Handout) -> str:
         """A handout as plain text."""

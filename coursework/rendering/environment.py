@@ -19,12 +19,17 @@ Writer = Callable[[str, str], str]
 
 
 def environment(
-    folders: Sequence[Path], lang: str, text: Writer, filters: Mapping[str, Callable[..., str]]
+    folders: Sequence[Path],
+    lang: str,
+    text: Writer,
+    filters: Mapping[str, Callable[..., str]],
+    marks: Mapping[str, str] | None = None,
 ) -> Environment:
     """An environment for one back end and one language.
 
     ``text`` escapes plain text. ``filters`` make text of the back end; the views' own filters
-    (``points``, ``verdict``, ...) make plain text, escaped like any other.
+    (``points``, ``verdict``, ...) make plain text, escaped like any other. ``marks`` are what opens and
+    closes an expression, a block and a comment, where the usual ones mean something to the back end.
     """
 
     def printed(value: object) -> object:
@@ -40,6 +45,7 @@ def environment(
         trim_blocks=True,
         lstrip_blocks=True,
         keep_trailing_newline=True,
+        **(marks or {}),
     )
     env.filters.update({name: _marked(make) for name, make in filters.items()})
     env.filters.update(

@@ -178,9 +178,14 @@ Node: TypeAlias = (
 
 
 def _upright(node: Node) -> Node:
-    """The same with each run of letters made one word: ``mm`` is a unit, not two variables."""
+    """The same with each run of letters made one word: ``mm`` is a unit, not two variables.
+
+    A dot between two units stands as close as their letters.
+    """
     if isinstance(node, Symbol) and (node.kind in ("letter", "digits") or node.text == "/"):
         return Text(node.text)
+    if node == Symbol(BINARY["cdot"], "binary"):
+        return Text("·")
     if isinstance(node, Script):
         return Script(_upright(node.base), node.below, node.above, node.primes)
     if not isinstance(node, Row):

@@ -16,10 +16,10 @@ from coursework.rendering.environment import environment, render
 from coursework.rendering.formulas import to_mathml
 
 
-def page(folders: Sequence[Path], sheet: views.Sheet) -> str:
+def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
     """The whole page."""
     env = environment_of(tuple(folders), views.handout_of(sheet).lang)
-    return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", views.context(sheet))
+    return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", views.context(sheet) | {"paper": paper})
 
 
 @lru_cache(maxsize=32)

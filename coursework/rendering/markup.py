@@ -30,11 +30,13 @@ def _reader() -> MarkdownIt:
 
 
 @lru_cache(maxsize=1024)
-def _tree(markdown: str) -> SyntaxTreeNode:
+def tree(markdown: str) -> SyntaxTreeNode:
+    """The tree of a text."""
     return SyntaxTreeNode(_reader().parse(markdown))
 
 
-def _no_image(source: str) -> BadStatement:
+def no_image(source: str) -> BadStatement:
+    """What is said of a text that shows an image."""
     return BadStatement(
         f"the text shows the image {source!r}: a sheet has one figure, drawn by its exercise, and no other"
     )
@@ -85,7 +87,7 @@ def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
 
 def to_typst_markup(markdown: str, lang: str) -> str:
     """Markdown as Typst markup."""
-    return _typst(_tree(markdown), lang).strip()
+    return _typst(tree(markdown), lang).strip()
 
 
 def _typst(node: SyntaxTreeNode, lang: str) -> str:
@@ -131,7 +133,7 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
         case "link":
             return f"#link({typst_string(str(node.attrs['href']))})[{inside()}];"
         case "image":
-            raise _no_image(str(node.attrs.get("src", "")))
+            raise no_image(str(node.attrs.get("src", "")))
         case "table":
             return _typst_table(node, lang)
     raise BadStatement(f"the text holds a {node.type}, which a sheet cannot print")
@@ -188,7 +190,7 @@ def _html_reader(lang: str) -> MarkdownIt:
         return f"<h{level}>" if token.nesting == 1 else f"</h{level}>\n"
 
     def image(renderer: RendererHTML, tokens: Sequence, at: int, *_: object) -> str:
-        raise _no_image(str(tokens[at].attrs.get("src", "")))
+        raise no_image(str(tokens[at].attrs.get("src", "")))
 
     reader = MarkdownIt("commonmark", {"html": False}).enable("table")
     reader.use(dollarmath_plugin, allow_digits=True, double_inline=True)
@@ -243,7 +245,7 @@ def to_notebook_markdown(markdown: str, lang: str) -> str:
 
 def to_text(markdown: str, lang: str, width: int = 88) -> str:
     """Markdown as plain text for a terminal, its lines at most ``width`` wide where words allow."""
-    return _text(_tree(markdown), lang, width).strip("\n")
+    return _text(tree(markdown), lang, width).strip("\n")
 
 
 def _text(node: SyntaxTreeNode, lang: str, width: int) -> str:
@@ -276,7 +278,7 @@ def _text(node: SyntaxTreeNode, lang: str, width: int) -> str:
         case "link":
             return inside()
         case "image":
-            raise _no_image(str(node.attrs.get("src", "")))
+            raise no_image(str(node.attrs.get("src", "")))
         case "table":
             rows = [
                 [_text(c, lang, width) for c in row.children]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import threading
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
 
@@ -17,9 +19,10 @@ from coursework.rendering.environment import environment, render
 from coursework.rendering.formulas import spoken, to_typst
 
 _LOCAL = threading.local()
+_OUTPUT = {"format": "pdf", "pdf_standards": "ua-1", "timestamp": 0}
 
 
-def source(folders: Sequence[Path], sheets: Sequence[views.Sheet]) -> str:
+def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = "a4") -> str:
     """The Typst source of one document that holds these sheets, each from an odd page on."""
     names = views.context(sheets[0])
     bodies = []
@@ -27,7 +30,8 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet]) -> str:
         env = environment_of(tuple(folders), views.handout_of(sheet).lang)
         body = render(env, views.TEMPLATES[type(sheet)] + ".typ.j2", views.context(sheet))
         bodies.append(Markup(body))
-    return render(environment_of(tuple(folders), names["lang"]), "_page.typ.j2", names | {"bodies": bodies})
+    page = names | {"bodies": bodies, "paper": paper}
+    return render(environment_of(tuple(folders), names["lang"]), "_page.typ.j2", page)
 
 
 def compile_pdf(typst_source: str) -> bytes:
@@ -41,9 +45,35 @@ def compile_pdf(typst_source: str) -> bytes:
     compiler = getattr(_LOCAL, "compiler", None)
     if compiler is None:
         compiler = _LOCAL.compiler = typst.Compiler(ignore_system_fonts=True)
+    with _complaints():
+        return compiler.compile(input=typst_source.encode(), **_OUTPUT)
+
+
+def compile_booklet(typst_source: str) -> tuple[bytes, tuple[tuple[int, int], ...]]:
+    """The PDF of a source of several sheets, and the first and last page of each.
+
+    Raises BadStatement as :func:`compile_pdf` does.
+    """
+    import typst
+
+    written = typst_source.encode()
+    with _complaints():
+        # Asked of the compiler that then writes the file, the pages are laid out once.
+        compiler = typst.Compiler(input=written, ignore_system_fonts=True)
+        ends = json.loads(compiler.query("<sheet-last>", field="value"))
+        made = compiler.compile(input=written, **_OUTPUT)
+    starts = [1, *(end + 1 + end % 2 for end in ends[:-1])]
+    return made, tuple(zip(starts, ends, strict=True))
+
+
+@contextmanager
+def _complaints() -> Iterator[None]:
+    """What the typesetter refuses, a query's plain error among it, as :class:`BadStatement`."""
+    import typst
+
     try:
-        return compiler.compile(input=typst_source.encode(), format="pdf", pdf_standards="ua-1", timestamp=0)
-    except typst.TypstError as wrong:
+        yield
+    except (typst.TypstError, RuntimeError) as wrong:
         raise BadStatement(f"the sheet does not compile: {wrong}") from wrong
 
 

@@ -44,7 +44,8 @@ def _given(given: Given, lang: str) -> str:
 
 def _question(question: Question, lang: str) -> str:
     mark = f"{question.number:2d}. "
-    details = [question.id, question.unit, views.points_text(question.points, lang)]
+    unit = words(lang)["sheet"]["with_unit"] if question.asks_unit else question.unit
+    details = [question.id, unit, views.points_text(question.points, lang)]
     body = to_text(question.prompt, lang, WIDTH - len(mark))
     lines = [body, f"[{', '.join(filter(None, details))}]"]
     lines += [f"( ) {key}: {to_text(label, lang)}" for key, label in question.choices]

@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 from typing import TypeAlias
 
+from coursework.figures import Figure
 from coursework.handout import AnswerSheet, FeedbackLine, FeedbackSheet, Given, Handout, Question, Step
 from coursework.language import localise, plain, words
 from coursework.rendering.formula_tree import tokens
@@ -33,10 +34,16 @@ def context(sheet: Sheet) -> dict[str, object]:
         "lang": handout.lang,
         "words": words(handout.lang),
         "title": title(sheet),
-        "figure": (sheet.figure if isinstance(sheet, AnswerSheet) else None) or handout.figure,
+        "figure": figure_of(sheet),
         "variant": f"{handout.exercise} · {handout.seed} · v{handout.version}",
         "tolerances": tolerances(handout.questions, handout.lang),
     }
+
+
+def figure_of(sheet: Sheet) -> Figure | None:
+    """The figure a sheet shows: a solution's own, else the handout's."""
+    own = sheet.figure if isinstance(sheet, AnswerSheet) else None
+    return own or handout_of(sheet).figure
 
 
 def title(sheet: Sheet) -> str:
@@ -192,5 +199,6 @@ def answer_comment(question: Question, lang: str) -> str:
         keys = ", ".join(f"{key} ({label})" if key != label else key for key, label in labels)
         note = said["notebook"]["one_of"].format(keys)
     else:
-        note = ", ".join(filter(None, (said["hints"].get(question.kind, ""), question.unit)))
+        unit = said["sheet"]["with_unit"] if question.asks_unit else question.unit
+        note = ", ".join(filter(None, (said["hints"].get(question.kind, ""), unit)))
     return f"  # {note}" if note else ""

@@ -1,0 +1,498 @@
+"""A figure that moves: the same elements at many instants, drawn to one scale in one frame.
+
+Every drawn line is a track, its numbers at every instant. What says where a thing stands for the whole cycle
+(a guide, an axis, the hatched side of a pivot, the side of a link on which its label is) is settled once for all
+instants, so that nothing jumps.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+
+from coursework.errors import WrongValue
+from coursework.figures.elements import Bars, Element, centre_line, line, rail, rotation_arrow
+from coursework.figures.ink import (
+    BLACK,
+    FILLS,
+    LINES,
+    MARKS,
+    PINS,
+    THIN,
+    WHITE,
+    Arc,
+    Disc,
+    Ink,
+    Path,
+    _paint,
+    number,
+    pair,
+    turn,
+)
+from coursework.figures.paper import Paper
+from coursework.figures.placing import NAMES, Label, Wish, _support
+from coursework.figures.text import SIZE, read
+from coursework.figures.writing import _label, _outlines
+
+COLOURS = {"position": "#1b7a4b", "velocity": "#0a58a8", "acceleration": "#b3261e", "coriolis": "#7a2f9e"}
+ARROW, TIP = 0.5, 2.6  #: width of a vector's shaft and length of its head, mm
+_MARGIN = 1.5
+_ROW = 6.0  #: height of a line of the legend, mm
+_SYMBOLS = complex(26, 24)  #: paper that symbols and labels take round the mechanism, mm
+_ARC_SIDES = 20
+_RIM = 30  #: white round letters, hundredths of their size
+
+
+@dataclass(frozen=True)
+class Track:
+    """One drawn thing over the instants.
+
+    ``numbers`` has a row an instant, mm on paper, y down, from the top left corner: of a ``path`` the coordinates
+    of its points in turn, of what is carried about (``mark``) those of its origin.
+    """
+
+    numbers: np.ndarray
+    paint: str = ""
+    closed: bool = False
+    mark: str = ""  #: SVG of a thing that is carried about as it is
+    layer: int = LINES
+    effect: str = ""  #: what must be switched on for it to be seen
+    point: str = ""  #: the point that it belongs to
+    key: bool = False  #: a part of the legend
+
+    @property
+    def moves(self) -> bool:
+        """Whether two instants differ in print."""
+        return bool(np.ptp(self.numbers, axis=0).max(initial=0.0) >= 0.005)
+
+    def value(self, instant: int) -> str:
+        """What changes, as an attribute: a path, or a translation."""
+        row = self.numbers[instant]
+        if self.mark:
+            return " ".join(map(number, row))
+        points = (pair(complex(x, y)) for x, y in row.reshape(-1, 2))
+        return "M" + "L".join(points) + ("Z" if self.closed else "")
+
+    def svg(self, instant: int, more: str = "", inside: str = "") -> str:
+        """The thing at an instant."""
+        if self.mark:
+            return f'<g transform="translate({self.value(instant)})"{more}>{self.mark}{inside}</g>'
+        tail = f">{inside}</path>" if inside else "/>"
+        return f'<path d="{self.value(instant)}"{self.paint}{more}{tail}'
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """A vector over the instants: ``v`` (complex, one an instant) at ``p``, mm of mechanism; NaN where none."""
+
+    p: np.ndarray
+    v: np.ndarray
+    effect: str
+    point: str
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A point over the instants, and its path; ``closed`` when it comes back to where it began."""
+
+    p: np.ndarray
+    point: str
+    closed: bool
+
+
+@dataclass(frozen=True)
+class Key:
+    """A line of the legend: an arrow of this many mm of mechanism, and what it stands for."""
+
+    effect: str
+    length: float
+    words: str
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Tracks in the order they are painted, and the size of the paper in mm."""
+
+    tracks: tuple[Track, ...]
+    size: tuple[float, float]
+    scale: float
+
+
+class _Stage(Paper):
+    """Paper for one instant: nothing is rounded, and the same marks are drawn whatever their size."""
+
+    def __init__(
+        self, scale: float, bars: Bars, middle: complex, ground: Callable[[complex], complex]
+    ) -> None:
+        super().__init__(scale, bars, middle)
+        self.ground = ground
+
+    def at(self, z: complex) -> complex:
+        return z * self.scale
+
+    def length(self, mm: float) -> float:
+        return mm * self.scale
+
+    def degrees(self, angle: float) -> float:
+        return angle
+
+    def ground_side(self, p: complex) -> complex:
+        return self.ground(p)
+
+    def room(self, p: complex) -> float:
+        return min(
+            (abs(b - a) for a, b in self._bars if min(abs(p - a), abs(p - b)) < 0.05), default=math.inf
+        )
+
+    def arrow(self, p: complex, q: complex, width: float = ARROW, size: float = TIP) -> None:
+        size = min(size, 0.7 * abs(q - p))
+        way = (q - p) / (abs(q - p) or 1.0)
+        self.draw(Path((p, q - way * size * 0.8), width, layer=MARKS))
+        self.head(q, way, size)
+
+    def arc_arrow(self, center: complex, radius: float, start: float, end: float, size: float) -> None:
+        sign = 1 if end >= start else -1
+        size = min(size, radius * math.radians(abs(end - start)) / 1.3)
+        spread = math.degrees(size / radius)
+        self.draw(Arc(center, radius, start, end - sign * 0.8 * spread, THIN + 0.05, layer=MARKS))
+        self.head(center + radius * turn(end), sign * 1j * turn(end - sign * spread / 2), size)
+
+
+Frames = Sequence[Sequence[Element]]
+
+
+def drawing(
+    frames: Frames,
+    *,
+    arrows: Sequence[Arrow] = (),
+    spots: Sequence[Spot] = (),
+    keys: Sequence[Key] = (),
+    paper_mm: tuple[float, float] = (130, 95),
+) -> Drawing:
+    """The elements at every instant, with vectors and paths of points, to one scale.
+
+    Raises
+    ------
+    WrongValue
+        The elements have no extent, or no element in common.
+    """
+    frames = _settled(_common(frames))
+    if not frames[0]:
+        raise WrongValue("no element of the figure is there at every instant, so nothing can be moved")
+    low, high = extent(frames, arrows, spots)
+    size = high - low
+    rooms = complex(*paper_mm) - _SYMBOLS
+    scale = min(r / s for r, s in ((rooms.real, size.real), (rooms.imag, size.imag)) if s > 0)
+    stages = _stages(frames, scale, (low + high) / 2)
+    tracks = [*_drawn(stages), *_moving_marks(arrows, spots, scale)]
+    named = {wish.label for wish in stages[0].wishes}
+    tracks += _labels(stages, [s for s in spots if s.point not in named], scale)
+    return _framed(tracks, keys, scale)
+
+
+def extent(
+    frames: Frames, arrows: Sequence[Arrow] = (), spots: Sequence[Spot] = ()
+) -> tuple[complex, complex]:
+    """Corners of all that is seen at some instant, mm of mechanism."""
+    points = [np.array([z for elements in frames for e in elements for z in e.reach()])]
+    points += [spot.p for spot in spots] + [arrow.p + arrow.v for arrow in arrows]
+    seen = np.concatenate(points)
+    seen = seen[np.isfinite(seen)]
+    low, high = complex(seen.real.min(), seen.imag.min()), complex(seen.real.max(), seen.imag.max())
+    if not abs(high - low) > 0:
+        raise WrongValue("the moving figure has no extent, so no scale")
+    return low, high
+
+
+def _common(frames: Frames) -> list[list[Element]]:
+    """The elements that are there at every instant: of one kind, label and rank among their like."""
+    keyed = [_by_kind(elements) for elements in frames]
+    common = [key for key in keyed[0] if all(key in one for one in keyed)]
+    return [[one[key] for key in common] for one in keyed]
+
+
+def _by_kind(elements: Sequence[Element]) -> Mapping[tuple, Element]:
+    found: dict[tuple, Element] = {}
+    for element in elements:
+        label, rank = getattr(element, "label", ""), 0
+        while (type(element), label, rank) in found:
+            rank += 1
+        found[type(element), label, rank] = element
+    return found
+
+
+def _settled(frames: list[list[Element]]) -> list[list[Element]]:
+    """What the frame carries stands still: its guides and axes at full length, a sense of rotation."""
+    columns = [_settled_one(column) for column in zip(*frames, strict=True)]
+    return [list(row) for row in zip(*columns, strict=True)]
+
+
+def _settled_one(column: tuple[Element, ...]) -> tuple[Element, ...]:
+    first = column[0]
+    if isinstance(first, rotation_arrow) and all(abs(e.center - first.center) < 1e-9 for e in column):
+        return (first,) * len(column)
+    if isinstance(first, rail | centre_line) or (isinstance(first, line) and not first.label):
+        return _on_one_line(column)
+    return column
+
+
+def _on_one_line(column: tuple) -> tuple:
+    """The union of segments of one line, at every instant; segments that turn stay as they are."""
+    p, way = column[0].p, column[0].q - column[0].p
+    if abs(way) == 0:
+        return column
+    way /= abs(way)
+    ends = [((e.p - p) / way, (e.q - p) / way) for e in column]
+    size = max(abs(z) for end in ends for z in end)
+    if any(abs(z.imag) > 1e-6 * size for end in ends for z in end):
+        return column
+    if any(q.real < p.real for p, q in ends):
+        return column
+    whole = replace(
+        column[0], p=p + way * min(a.real for a, _ in ends), q=p + way * max(b.real for _, b in ends)
+    )
+    return (whole,) * len(column)
+
+
+def _stages(frames: list[list[Element]], scale: float, middle: complex) -> list[_Stage]:
+    """One drawn sheet an instant."""
+    sides: dict[tuple[float, float], complex] = {}
+
+    def ground(p: complex) -> complex:
+        key = (round(p.real, 3), round(p.imag, 3))
+        if key not in sides:
+            sides[key] = _free_side([stage.directions(p) for stage in stages])
+        return sides[key]
+
+    bars = [[bar for element in elements for bar in element.bars()] for elements in frames]
+    stages = [_Stage(scale, own, middle, ground) for own in bars]
+    for stage, elements in zip(stages, frames, strict=True):
+        for element in elements:
+            element.draw(stage)
+    return stages
+
+
+def _free_side(taken: Sequence[Sequence[complex]]) -> complex:
+    """The side of a pivot where bars are least often, below first."""
+
+    def clashes(way: complex) -> int:
+        return sum(any((t * way.conjugate()).real > 0.64 for t in ways) for ways in taken)
+
+    return min((-1j, 1j, -1 + 0j, 1 + 0j), key=clashes)
+
+
+# ----------------------------------------------------------------------- lines
+
+
+def _drawn(stages: Sequence[_Stage]) -> list[Track]:
+    """A track for each thing that the elements drew."""
+    count = min(len(stage.ink) for stage in stages)
+    return [_track([stage.ink[i] for stage in stages]) for i in range(count)]
+
+
+def _track(things: Sequence[Ink]) -> Track:
+    first = things[0]
+    if all(isinstance(thing, Disc) and thing.radius == first.radius for thing in things):
+        mark = f'<circle r="{number(first.radius)}"{_paint(first.width, first.fill, first.dash)}/>'
+        return Track(_flat([[thing.center] for thing in things]), mark=mark, layer=first.layer)
+    closed = isinstance(first, Path) and first.closed
+    fill = first.fill if isinstance(first, Path | Disc) else "none"
+    points = [_points_of(thing) for thing in things]
+    most = max(map(len, points))
+    # A path with fewer points stands on its last one for the rest.
+    points = [[*row, *[row[-1]] * (most - len(row))] for row in points]
+    return Track(_flat(points), _paint(first.width, fill, first.dash), closed, layer=first.layer)
+
+
+def _points_of(thing: Ink) -> list[complex]:
+    if isinstance(thing, Path):
+        return list(thing.points)
+    if isinstance(thing, Arc):
+        steps = range(_ARC_SIDES + 1)
+        return [thing.at(thing.start + (thing.end - thing.start) * k / _ARC_SIDES) for k in steps]
+    return list(thing.outline())
+
+
+def _flat(points: Sequence[Sequence[complex]]) -> np.ndarray:
+    """Rows of x, y, x, y, …; y up as yet."""
+    grid = np.asarray(points, dtype=complex)
+    return np.stack([grid.real, grid.imag], axis=-1).reshape(len(grid), -1)
+
+
+def _moving_marks(arrows: Sequence[Arrow], spots: Sequence[Spot], scale: float) -> list[Track]:
+    tracks = [track for spot in spots for track in _spot_tracks(spot, scale)]
+    return tracks + [track for arrow in arrows for track in _arrow_tracks(arrow, scale)]
+
+
+def _spot_tracks(spot: Spot, scale: float) -> list[Track]:
+    """The path of a point, under the links, and its dot, on them."""
+    colour, count = COLOURS["position"], len(spot.p)
+    way = spot.p * scale
+    path = Track(
+        np.repeat(_flat([way]), count, axis=0),
+        f' stroke="{colour}"{_paint(0.25, "none")}',
+        spot.closed,
+        layer=FILLS,
+        effect="position",
+        point=spot.point,
+    )
+    dot = f'<circle r="0.7" fill="{colour}" stroke="none"/>'
+    return [path, Track(_flat(way[:, None]), mark=dot, layer=PINS, effect="position", point=spot.point)]
+
+
+def _arrow_tracks(arrow: Arrow, scale: float) -> list[Track]:
+    tail = arrow.p * scale
+    v = np.where(np.isfinite(arrow.v), arrow.v, 0) * scale
+    length = np.abs(v)
+    way = v / np.where(length > 0, length, 1.0)
+    size = np.minimum(TIP, 0.7 * length)
+    tip, base = tail + v, tail + v - way * size
+    wing = 0.25 * size * 1j * way
+    colour = COLOURS[arrow.effect]
+    shaft = f' stroke="{colour}"{_paint(ARROW, "none")}'
+    head = f' stroke="none" fill="{colour}"'
+    which = {"layer": MARKS, "effect": arrow.effect, "point": arrow.point}
+    return [
+        Track(_flat(np.stack([tail, tip - 0.8 * way * size], axis=-1)), shaft, **which),
+        Track(_flat(np.stack([tip, base + wing, base - wing], axis=-1)), head, True, **which),
+    ]
+
+
+# ---------------------------------------------------------------------- labels
+
+
+def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float) -> list[Track]:
+    """Labels that go with what they name, each on the side where it meets fewest lines over the cycle."""
+    looked_at = slice(0, None, max(1, len(stages) // 24))
+    segments = _segments([stage.ink for stage in stages[looked_at]])
+    count = min(len(stage.wishes) for stage in stages)
+    wishes = [[stage.wishes[i] for stage in stages] for i in range(count)]
+    wishes += [[Wish(s.point, z * scale, 1j, 1.2, NAMES) for z in s.p] for s in spots]
+    points = [""] * count + [s.point for s in spots]
+    placed: list[tuple[np.ndarray, complex]] = []
+    tracks = []
+    for own, point in zip(wishes, points, strict=True):
+        text = read(own[0].label)
+        half = complex(*text.box) / 2
+
+        def meetings(centres: np.ndarray, half: complex = half) -> float:
+            lines = _meets(segments, centres[looked_at], half)
+            return lines + 2 * sum(_overlaps(centres, half, *other) for other in placed)
+
+        ways = [(cost, np.array(centres)) for cost, centres in _candidates(own, half)]
+        costs = [cost + 12 * meetings(centres) for cost, centres in ways]
+        centres = ways[int(np.argmin(np.round(costs, 6)))][1]
+        placed.append((centres, half))
+        mark = _letters(own[0].label, BLACK)
+        effect = "position" if point else ""
+        tracks.append(Track(_flat(centres[:, None]), mark=mark, layer=MARKS, effect=effect, point=point))
+    return tracks
+
+
+def _letters(label: str, colour: str) -> str:
+    """A label centred on the origin, on a white rim of its own: lines may pass under it."""
+    text = read(label)
+    box = Label(label, text, 0j, *text.box)
+    left = 1j * SIZE * (text.top + text.bottom) / 2 - SIZE * text.width / 2
+    rim = f'<g fill="{WHITE}" stroke="{WHITE}" stroke-width="{_RIM}">{_outlines(text, left)}</g>'
+    return f'{rim}<g fill="{colour}" stroke="none">{_label(box, 0j, outlined=True)}</g>'
+
+
+def _candidates(wishes: Sequence[Wish], half: complex) -> list[tuple[float, list[complex]]]:
+    """Ways to carry a label about: a cost, and its centre at every instant."""
+    first = wishes[0]
+    if first.along:
+        return [
+            (cost, [_beside(wish, side, share, half) for wish in wishes])
+            for cost, share in ((0.0, 0.5), (0.3, 0.38), (0.3, 0.62), (0.6, 0.28), (0.6, 0.72))
+            for side in (1, -1)
+        ]
+    if first.rank != NAMES:
+        return [(0.0, [_away(wish, wish.toward, 0.0, half) for wish in wishes])]
+    ways = [turn(45 + 22.5 * k) for k in range(16)]
+    return [(step, [_away(w, way, step, half) for w in wishes]) for step in (0.0, 0.8, 2.0) for way in ways]
+
+
+def _beside(wish: Wish, side: int, share: float, half: complex) -> complex:
+    p, q = wish.along or (wish.anchor, wish.anchor)
+    normal = side * 1j * (q - p) / (abs(q - p) or 1.0)
+    return p + share * (q - p) + normal * (wish.start + _support(half, normal))
+
+
+def _away(wish: Wish, way: complex, step: float, half: complex) -> complex:
+    return wish.anchor + way * (wish.start + step + _support(half, way))
+
+
+def _segments(inks: Sequence[Sequence[Ink]]) -> tuple[np.ndarray, np.ndarray]:
+    """Ends of every drawn segment that a label should keep off, a row an instant."""
+    rows = [[side for thing in ink if thing.layer != FILLS for side in _sides(thing)] for ink in inks]
+    most = max(map(len, rows))
+    ends = np.array([[*row, *[row[-1]] * (most - len(row))] for row in rows])
+    return ends[..., 0], ends[..., 1]
+
+
+def _sides(thing: Ink) -> list[tuple[complex, complex]]:
+    points = _points_of(thing)
+    return list(pairwise([*points, points[0]] if isinstance(thing, Path) and thing.closed else points))
+
+
+def _meets(segments: tuple[np.ndarray, np.ndarray], centres: np.ndarray, half: complex) -> float:
+    """Share of the instants at which a segment comes into the ellipse round a box."""
+    wide, tall = half.real + 0.4, half.imag + 0.4
+    a, b = (z - centres[:, None] for z in segments)
+    a, b = a.real / wide + 1j * (a.imag / tall), b.real / wide + 1j * (b.imag / tall)
+    along = b - a
+    square = along.real**2 + along.imag**2
+    share = np.clip(-(a * along.conj()).real / np.where(square > 0, square, 1.0), 0.0, 1.0)
+    return float((np.abs(a + share * along) < 1.15).any(axis=1).mean())
+
+
+def _overlaps(centres: np.ndarray, half: complex, others: np.ndarray, other: complex) -> float:
+    """Share of the instants at which two labels meet."""
+    gap = centres - others
+    wide, tall = half.real + other.real + 0.3, half.imag + other.imag + 0.3
+    return float(np.mean((np.abs(gap.real) < wide) & (np.abs(gap.imag) < tall)))
+
+
+# ----------------------------------------------------------------------- frame
+
+
+def _framed(tracks: Sequence[Track], keys: Sequence[Key], scale: float) -> Drawing:
+    """All tracks in the frame's own coordinates, the legend below."""
+    xs = np.concatenate([t.numbers[:, 0::2].ravel() for t in tracks])
+    ys = np.concatenate([t.numbers[:, 1::2].ravel() for t in tracks])
+    around = 4.0  # symbols and letters reach this far from their origin
+    left, top = round(xs.min() - around - _MARGIN, 1), round(ys.max() + around + _MARGIN, 1)
+    bottom = ys.min() - around - _MARGIN
+    width = round(xs.max() + around + _MARGIN - left, 1)
+    indent = 2.0 + max((key.length * scale for key in keys), default=0.0)
+    widest = max((read(key.words).box[0] for key in keys), default=-indent)
+    width = max(width, round(indent + widest + 4 * _MARGIN, 1))
+    legend, count = [], len(tracks[0].numbers)
+    for row, key in enumerate(keys):
+        corner = complex(left + 2 * _MARGIN, bottom - _ROW * (row + 0.4))
+        legend += _key_tracks(key, count, corner, indent, scale)
+    height = round(top - bottom + _ROW * len(keys), 1)
+    flip = [replace(t, numbers=_downwards(t.numbers, left, top)) for t in [*tracks, *legend]]
+    return Drawing(tuple(sorted(flip, key=lambda t: t.layer)), (width, height), scale)
+
+
+def _downwards(numbers: np.ndarray, left: float, top: float) -> np.ndarray:
+    moved = numbers.copy()
+    moved[:, 0::2] -= left
+    moved[:, 1::2] = top - moved[:, 1::2]
+    return moved
+
+
+def _key_tracks(key: Key, count: int, corner: complex, indent: float, scale: float) -> list[Track]:
+    """An arrow of a round length, and its words."""
+    start = corner / scale
+    arrow = Arrow(np.full(count, start), np.full(count, key.length + 0j), key.effect, "")
+    centre = start * scale + indent + read(key.words).box[0] / 2
+    mark = _letters(key.words, COLOURS[key.effect])
+    words = Track(_flat([[centre]] * count), mark=mark, layer=MARKS, effect=key.effect)
+    return [replace(track, key=True) for track in (*_arrow_tracks(arrow, scale), words)]

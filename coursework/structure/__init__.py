@@ -1,0 +1,33 @@
+"""The structure of plane mechanisms: what is joined to what, whatever the lengths.
+
+A mechanism is a list of joints, records ``{"between": [i, j], "kind": "revolute" | "prismatic" | "higher",
+"at": label}``; bodies are numbered from 1, the frame is 1. Whole numbers and sets throughout: nothing is rounded.
+
+``joints``   the joint graph, its counts (mobility formula, independent cycles) and a basis of cycles
+``assour``   Assour groups behind a driver, their classes, the class of the mechanism
+``grashof``  the type of a four-bar, exact on the printed lengths
+``growing``  mechanisms grown group by group from a whole number, the same for ever
+``library``  the mechanisms of the course's figures
+``picture``  the joint graph as a figure
+``columns``  functions of one mechanism, applied to many
+"""
+
+from coursework.structure.assour import Decomposition, Group, decompose
+from coursework.structure.grashof import linkage_type
+from coursework.structure.growing import Grown, grow
+from coursework.structure.joints import FRAME, Counts, Joint, JointGraph
+from coursework.structure.library import LIBRARY
+
+__all__ = [
+    "FRAME",
+    "LIBRARY",
+    "Counts",
+    "Decomposition",
+    "Group",
+    "Grown",
+    "Joint",
+    "JointGraph",
+    "decompose",
+    "grow",
+    "linkage_type",
+]

@@ -1,0 +1,300 @@
+"""Assour groups: what a mechanism is made of, seen from its driver.
+
+With the driver taken away, the pairs hold the other bodies in place: two conditions a pair, three unknowns a
+body. Conditions are given out to the unknowns that they settle; bodies that settle each other, in a ring,
+are one group. This finds the smallest sets without trying sets, for any number of bodies.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from numbers import Integral
+from typing import Any
+
+from coursework.errors import Undefined, WrongValue
+from coursework.structure.joints import FRAME, JointGraph, Record
+
+Node = tuple[str, int]  #: ("body", number) or ("pin", index of a joint)
+
+
+@dataclass(frozen=True)
+class Group:
+    """Bodies that are placed together, in increasing order, and the number of their class, from 2 on."""
+
+    bodies: tuple[int, ...]
+    rank: int
+
+    @property
+    def class_name(self) -> str:
+        return roman(self.rank)
+
+
+@dataclass(frozen=True)
+class Decomposition:
+    """The groups of a mechanism in the order of assembly: of those that can be placed, the smallest first."""
+
+    driver: int
+    groups: tuple[Group, ...]
+
+    @property
+    def rank(self) -> int:
+        """The class of the mechanism as a number: that of its highest group, 1 if only the driver is left."""
+        return max((group.rank for group in self.groups), default=1)
+
+    @property
+    def class_name(self) -> str:
+        return roman(self.rank)
+
+    def group_of(self, body: int) -> Group | None:
+        """The group that holds a body; None for the frame and the driver."""
+        return next((group for group in self.groups if body in group.bodies), None)
+
+
+def roman(number: int) -> str:
+    """A small number, 1 to 39, in Roman figures."""
+    tens, ones = divmod(number, 10)
+    return "X" * tens + ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX")[ones]
+
+
+def decompose(joints: JointGraph | Iterable[Record], driver: Sequence[int]) -> Decomposition:
+    """The Assour groups of a mechanism with lower pairs alone, driven by the pair of ``driver``, [1, body].
+
+    Raises
+    ------
+    Undefined
+        A higher pair, a formula's count other than 1, or bodies that have more pairs than conditions to settle.
+    WrongValue
+        A driver that is no body joined to the frame.
+    """
+    graph = JointGraph.of(joints)
+    body = driven_body(graph, driver)
+    counts = graph.counts
+    if counts.h:
+        raise Undefined(f"Assour groups have lower pairs alone; this mechanism has {counts.h} higher")
+    if counts.w != 1:
+        raise Undefined(f"one driver asks for w = 3 n - 2 b = 1; this mechanism has w = {counts.w}")
+    if sum({FRAME, body} <= set(joint.bodies) for joint in graph.joints) > 1:
+        raise Undefined(f"several joints hold body {body} to the frame: as a driver it could not move")
+    return Decomposition(body, _ordered(graph, body, _rings(graph, body)))
+
+
+def driven_body(graph: JointGraph, driver: Sequence[int]) -> int:
+    """The body of a driver [1, body], which a lower pair joins to the frame."""
+    try:
+        numbers = [int(x) for x in driver if isinstance(x, Integral) and not isinstance(x, bool)]
+        wrong = len(numbers) != 2 or len(driver) != 2 or FRAME not in numbers
+    except TypeError:
+        wrong = True
+    if wrong:
+        raise WrongValue(f"driver must be [1, body], a body joined to the frame; found {driver!r}")
+    body = max(numbers)
+    if body not in drivers(graph):
+        able = ", ".join(map(str, drivers(graph)))
+        raise WrongValue(
+            f"driver: no lower pair joins body {body} to the frame; bodies that have one: {able}"
+        )
+    return body
+
+
+def drivers(graph: JointGraph) -> tuple[int, ...]:
+    """The bodies that a lower pair joins to the frame."""
+    joined = {b for j in graph.joints if FRAME in j.bodies and j.kind != "higher" for b in j.bodies}
+    return tuple(sorted(joined - {FRAME}))
+
+
+# ------------------------------------------------------------------ who settles whom
+
+
+def _conditions(graph: JointGraph) -> list[tuple[Node, Node]]:
+    """The ends of each pair of conditions. A pivot of several bodies holds each of them to a pin, a point with
+    two unknowns of its own: so no body of it is preferred."""
+    found: list[tuple[Node, Node]] = []
+    for index, joint in enumerate(graph.joints):
+        if len(joint.bodies) == 2:
+            found.append((("body", joint.bodies[0]), ("body", joint.bodies[1])))
+        else:
+            found += [(("pin", index), ("body", body)) for body in joint.bodies]
+    return found
+
+
+def _rings(graph: JointGraph, driver: int) -> list[tuple[int, ...]]:
+    """The sets of bodies that settle each other, in no order."""
+    conditions = _conditions(graph)
+    placed = {("body", FRAME), ("body", driver)}
+    # The driver's own pair is taken away: it stays among the conditions only in a multiple pivot, where
+    # frame and driver may both hold the pin, and one of the two holds is enough.
+    conditions = [ends for ends in conditions if not placed.issuperset(ends)]
+    own = _own_hold(graph, driver)
+    conditions = [ends for ends in conditions if ends != own]
+    settled = _given_out(conditions, placed)
+    arrows: dict[Node, set[Node]] = {node: set() for ends in conditions for node in ends}
+    for (one, other), (to_one, to_other) in zip(conditions, settled, strict=True):
+        if to_one:
+            arrows[other].add(one)
+        if to_other:
+            arrows[one].add(other)
+    components = _components({node: after for node, after in arrows.items() if node not in placed}, placed)
+    bodies = (tuple(sorted(n for kind, n in part if kind == "body")) for part in components)
+    return [ring for ring in bodies if ring]
+
+
+def _own_hold(graph: JointGraph, driver: int) -> tuple[Node, Node] | None:
+    """The driver's hold of a pin that the frame holds too."""
+    for index, joint in enumerate(graph.joints):
+        if len(joint.bodies) > 2 and {FRAME, driver} <= set(joint.bodies):
+            return ("pin", index), ("body", driver)
+    return None
+
+
+def _given_out(conditions: Sequence[tuple[Node, Node]], placed: set[Node]) -> list[list[int]]:
+    """How many of its two conditions each pair gives to its first and to its second end.
+
+    A body takes three, a pin two, what is placed none.
+    """
+    room = {node: 0 if node in placed else 3 if node[0] == "body" else 2 for e in conditions for node in e}
+    held: dict[Node, list[tuple[int, int]]] = {
+        node: [] for node in room
+    }  # (condition, end) it took, each once
+    shares = [[0, 0] for _ in conditions]
+
+    def settle(number: int, tried: set[Node]) -> bool:
+        """Give one more condition of a pair to an end that has room, or makes room."""
+        for end, node in enumerate(conditions[number]):
+            if node in tried or node in placed:
+                continue
+            tried.add(node)
+            if len(held[node]) < room[node]:
+                held[node].append((number, end))
+                shares[number][end] += 1
+                return True
+            for place, (other, its_end) in enumerate(held[node]):
+                if other != number and settle(other, tried):
+                    shares[other][its_end] -= 1
+                    held[node][place] = (number, end)
+                    shares[number][end] += 1
+                    return True
+        return False
+
+    for number, ends in enumerate(conditions):
+        for _ in range(2):
+            tried: set[Node] = set()
+            if not settle(number, tried):
+                crowd = sorted(n for kind, n in tried if kind == "body") or [n for _, n in ends]
+                raise Undefined(
+                    f"bodies {crowd} have more pairs than can move: a part of the mechanism is held twice"
+                )
+    return shares
+
+
+def _components(arrows: dict[Node, set[Node]], left_out: set[Node]) -> list[list[Node]]:
+    """Strongly connected parts: nodes that reach each other."""
+    back: dict[Node, set[Node]] = {node: set() for node in arrows}
+    for node, after in arrows.items():
+        for other in after - left_out:
+            back[other].add(node)
+    order: list[Node] = []
+    _visit_all(sorted(arrows), arrows, left_out, order.append)
+    parts: list[list[Node]] = []
+    seen: set[Node] = set(left_out)
+    for node in reversed(order):
+        if node not in seen:
+            part: list[Node] = []
+            _visit(node, back, seen, part.append)
+            parts.append(part)
+    return parts
+
+
+def _visit_all(nodes: Iterable[Node], arrows: dict[Node, set[Node]], left_out: set[Node], leave: Any) -> None:
+    seen = set(left_out)
+    for node in nodes:
+        if node not in seen:
+            _visit(node, arrows, seen, leave)
+
+
+def _visit(start: Node, arrows: dict[Node, set[Node]], seen: set[Node], leave: Any) -> None:
+    """Depth first, without recursion; ``leave`` is told each node when all after it are done."""
+    seen.add(start)
+    path = [(start, iter(sorted(arrows[start])))]
+    while path:
+        node, after = path[-1]
+        following = next((other for other in after if other not in seen), None)
+        if following is None:
+            leave(node)
+            path.pop()
+        else:
+            seen.add(following)
+            path.append((following, iter(sorted(arrows[following]))))
+
+
+# ------------------------------------------------------------------ order and classes
+
+
+def _ordered(graph: JointGraph, driver: int, rings: Sequence[tuple[int, ...]]) -> tuple[Group, ...]:
+    """Assembly: again and again the smallest set that has all its pairs, the lowest bodies first."""
+    placed = {FRAME, driver}
+    ready: list[tuple[int, tuple[int, ...]]] = []
+    waiting = set(rings)
+    found: list[Group] = []
+    while waiting or ready:
+        able = [ring for ring in waiting if 2 * _pairs_of(graph, ring, placed) == 3 * len(ring)]
+        for ring in able:
+            heapq.heappush(ready, (len(ring), ring))
+        waiting.difference_update(able)
+        _, ring = heapq.heappop(ready)
+        found.append(Group(ring, class_of(graph, ring, placed)))
+        placed.update(ring)
+    return tuple(found)
+
+
+def _pairs_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
+    """The pairs of some bodies among themselves and to what is placed."""
+    total = 0
+    for joint in graph.joints:
+        own = len(set(joint.bodies) & set(ring))
+        if own:
+            total += own if placed & set(joint.bodies) else own - 1
+    return total
+
+
+def class_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
+    """The larger of the longest chordless loop of the bodies and of the most joints on one of them.
+
+    A multiple pivot is one corner of each of its bodies.
+    """
+    own = set(ring)
+    used = [j for j in graph.joints if len(own & set(j.bodies)) + bool(placed & set(j.bodies)) > 1]
+    corners = max(sum(body in joint.bodies for joint in used) for body in ring)
+    return max(corners, longest_loop([own & set(joint.bodies) for joint in used], own))
+
+
+def longest_loop(joined: Sequence[set[int]], bodies: Iterable[int]) -> int:
+    """Sides of the longest loop of bodies that no joint shortens; 0 if there is none.
+
+    ``joined`` holds the bodies of each joint. Bodies on one common pivot are no loop.
+    """
+    neighbours: dict[int, set[int]] = {body: set() for body in bodies}
+    for several in joined:
+        for body in several:
+            neighbours[body] |= several - {body}
+    longest = 0
+
+    def extend(path: list[int]) -> None:
+        nonlocal longest
+        for body in neighbours[path[-1]]:
+            if body <= path[0] or body in path:
+                continue
+            chords = neighbours[body].intersection(path[:-1])
+            if not chords:
+                extend([*path, body])
+            elif chords == {path[0]} and not (len(path) == 2 and _one_joint(joined, {*path, body})):
+                longest = max(longest, len(path) + 1)
+
+    for body in neighbours:
+        extend([body])
+    return longest
+
+
+def _one_joint(joined: Sequence[set[int]], bodies: set[int]) -> bool:
+    return any(bodies <= several for several in joined)

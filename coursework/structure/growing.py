@@ -1,0 +1,194 @@
+"""Mechanisms from whole numbers: a driver or two, then groups attached one after another.
+
+Every mechanism grown here can move as its count says: no two of the joints by which a group hangs on what is
+placed lie on one body, so nothing is held twice. The same number gives the same mechanism for ever.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, TypeVar
+
+from coursework.structure.joints import FRAME, Joint, JointGraph, Record
+
+Item = TypeVar("Item")
+
+DYAD, TRIAD, TETRAD, FOLLOWER, STIFFENER = "dyad", "triad", "tetrad", "follower", "stiffener"
+#: How many joints each group hangs on.
+_HANGS_ON = {DYAD: 2, TRIAD: 3, TETRAD: 2, FOLLOWER: 2, STIFFENER: 2}
+
+
+class Choices:
+    """A stream of small whole numbers that a number fixes."""
+
+    def __init__(self, number: int, purpose: str):
+        self._bits = self._stream(f"coursework/structure/{purpose}/{number}")
+
+    @staticmethod
+    def _stream(key: str) -> Iterator[int]:
+        block = 0
+        while True:
+            digest = hashlib.shake_128(f"{key}/{block}".encode()).digest(256)
+            for start in range(0, 256, 4):
+                yield int.from_bytes(digest[start : start + 4], "little")
+            block += 1
+
+    def below(self, count: int) -> int:
+        """A number from 0 to ``count - 1``."""
+        return (next(self._bits) * count) >> 32
+
+    def one_of(self, items: Sequence[Item]) -> Item:
+        return items[self.below(len(items))]
+
+    def shuffled(self, items: Sequence[Item]) -> list[Item]:
+        rest = list(items)
+        return [rest.pop(self.below(len(rest))) for _ in items]
+
+
+class Grown(NamedTuple):
+    """A mechanism as a list of records, in the order a statement gives them, and its drivers."""
+
+    joints: tuple[Record, ...]
+    drivers: tuple[int, ...]
+
+    @property
+    def graph(self) -> JointGraph:
+        return JointGraph.of(self.joints)
+
+
+def grow(number: int, groups: Sequence[str], *, drivers: int = 1) -> Grown:
+    """The mechanism of a number, made of these groups in this order, its bodies and joints in any order.
+
+    ``groups`` holds ``dyad`` (class II), ``triad`` (III), ``tetrad`` (IV: a loop of four bodies), ``follower``
+    (one body, a lower and a higher pair) and ``stiffener`` (a bar, which takes a degree of freedom away).
+    """
+    plant = _Plant(Choices(number, "grow"), drivers)
+    for group in groups:
+        plant.attach(group)
+    return relabelled(number, plant.joints, tuple(range(2, 2 + drivers)))
+
+
+def relabelled(number: int, joints: Sequence[Joint], drivers: Sequence[int] = ()) -> Grown:
+    """Moving bodies numbered anew, joints listed in any order and lettered A, B, C, … along the list."""
+    choices = Choices(number, "relabel")
+    moving = sorted({body for joint in joints for body in joint.bodies} - {FRAME})
+    new = {FRAME: FRAME, **dict(zip(moving, choices.shuffled(moving), strict=True))}
+    records = tuple(
+        {"between": sorted(new[body] for body in joint.bodies), "kind": joint.kind, "at": _letter(place)}
+        for place, joint in enumerate(choices.shuffled(list(joints)))
+    )
+    return Grown(records, tuple(new[body] for body in drivers))
+
+
+def _letter(place: int) -> str:
+    """A to Z, then A1, B1, …"""
+    round_, letter = divmod(place, 26)
+    return chr(ord("A") + letter) + (str(round_) if round_ else "")
+
+
+class _Plant:
+    """A mechanism that grows."""
+
+    def __init__(self, choices: Choices, drivers: int):
+        self.choices = choices
+        self.joints: list[Joint] = []
+        self.bodies = [FRAME]
+        for _ in range(drivers):
+            body = self._new_body()
+            self._join(FRAME, body, self._kind(6))
+        self._idle = self.bodies[1:]  #: drivers that move nothing yet
+
+    def _new_body(self) -> int:
+        self.bodies.append(len(self.bodies) + 1)
+        return self.bodies[-1]
+
+    def _kind(self, one_in: int) -> str:
+        return "prismatic" if self.choices.below(one_in) == 0 else "revolute"
+
+    def _join(self, one: int, other: int, kind: str) -> None:
+        self.joints.append(Joint(tuple(sorted((one, other))), kind))
+
+    def attach(self, group: str) -> None:
+        hosts = self._hosts(_HANGS_ON[group])
+        getattr(self, f"_{group}")(hosts)
+
+    def _hosts(self, count: int) -> list[frozenset[int]]:
+        """Where a group hangs: on single bodies, or now and then on a pivot that is there, so on all its bodies.
+
+        No body twice, save for the third joint of a group, which may share a body: its loop still moves.
+        """
+        found = [self._first_host()]
+        found.append(self._second_host(found[0]))
+        taken = found[0] | found[1]
+        if count == 3:
+            alone = [host for host in found if len(host) == 1]
+            full = len(taken) == len(self.bodies)
+            again = alone and (full or self.choices.below(2) == 0)
+            found.append(self.choices.one_of(alone) if again else self._place(taken))
+        return found
+
+    def _first_host(self) -> frozenset[int]:
+        return frozenset([self._idle.pop()]) if self._idle else self._place(frozenset())
+
+    def _second_host(self, first: frozenset[int]) -> frozenset[int]:
+        if self._idle:
+            return frozenset([self._idle.pop()])
+        if len(self.bodies) == 2:
+            return frozenset(self.bodies) - first
+        return self._place(first)
+
+    def _place(self, taken: frozenset[int]) -> frozenset[int]:
+        """A body, or the bodies of a pivot, that are not taken; a pivot leaves some other body free."""
+        pivots = [
+            frozenset(joint.bodies)
+            for joint in self.joints
+            if joint.kind == "revolute"
+            and not taken & set(joint.bodies)
+            and len(taken) + len(joint.bodies) < len(self.bodies)
+        ]
+        if pivots and self.choices.below(4) == 0:
+            return self.choices.one_of(pivots)
+        return frozenset([self.choices.one_of([body for body in self.bodies if body not in taken])])
+
+    def _hang(self, body: int, host: frozenset[int], kind: str) -> None:
+        """A joint of a new body with its host; on a pivot it makes the pivot a multiple one."""
+        if len(host) == 1:
+            self._join(body, min(host), kind)
+            return
+        bodies = tuple(sorted(host))
+        place = self.joints.index(Joint(bodies, "revolute"))
+        self.joints[place] = Joint((*bodies, body), "revolute")
+
+    def _dyad(self, hosts: list[frozenset[int]]) -> None:
+        one, other = self._new_body(), self._new_body()
+        # At most one of the three joints is a slide.
+        slide = self.choices.below(5)
+        self._hang(one, hosts[0], "prismatic" if slide == 0 else "revolute")
+        self._join(one, other, "prismatic" if slide == 1 else "revolute")
+        self._hang(other, hosts[1], "revolute")
+
+    def _triad(self, hosts: list[frozenset[int]]) -> None:
+        centre = self._new_body()
+        slide = self.choices.below(8)
+        for index, host in enumerate(hosts):
+            arm = self._new_body()
+            self._join(centre, arm, "revolute")
+            self._hang(arm, host, "prismatic" if slide == index else "revolute")
+
+    def _tetrad(self, hosts: list[frozenset[int]]) -> None:
+        loop = [self._new_body() for _ in range(4)]
+        for one, other in zip(loop, [*loop[1:], loop[0]], strict=True):
+            self._join(one, other, "revolute")
+        self._hang(loop[0], hosts[0], "revolute")
+        self._hang(loop[2], hosts[1], "revolute")
+
+    def _follower(self, hosts: list[frozenset[int]]) -> None:
+        body = self._new_body()
+        self._hang(body, hosts[1], self._kind(3) if len(hosts[1]) == 1 else "revolute")
+        self._join(body, min(hosts[0]), "higher")
+
+    def _stiffener(self, hosts: list[frozenset[int]]) -> None:
+        body = self._new_body()
+        for host in hosts:
+            self._hang(body, host, "revolute")

@@ -1,0 +1,218 @@
+"""The joint graph of a plane mechanism: which bodies each joint holds together.
+
+Answers depend on the mechanism alone: not on the order of the list, nor of the bodies in a record, nor on how
+a multiple pivot is written (one record of k bodies, or records of the same ``at`` label that share bodies).
+"""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from numbers import Integral
+from typing import Any, NamedTuple
+
+from coursework.errors import WrongValue, nearest
+
+FRAME = 1  #: the number of the frame
+KINDS = ("revolute", "prismatic", "higher")
+_KEYS = ("between", "kind", "at")
+
+Record = Mapping[str, Any]
+Pair = tuple[int, int]
+
+
+class Joint(NamedTuple):
+    """Bodies held together at one place, in increasing order; only a pivot holds more than two."""
+
+    bodies: tuple[int, ...]
+    kind: str
+    at: str = ""
+
+    @property
+    def pairs(self) -> int:
+        """How many kinematic pairs it counts: a pivot of k bodies is k - 1 pairs."""
+        return len(self.bodies) - 1
+
+
+class Counts(NamedTuple):
+    """What the formulas count, under the course's letters."""
+
+    n: int  #: moving bodies
+    b: int  #: lower pairs
+    h: int  #: higher pairs
+    w: int  #: 3 n - 2 b - h, the formula's count of degrees of freedom, not the real mobility
+    L: int  #: pairs, b + h
+    N: int  #: bodies, the frame among them
+    gamma: int  #: independent cycles, L - N + 1
+
+
+@dataclass(frozen=True)
+class JointGraph:
+    """A mechanism as its joints, in one canonical order: equal mechanisms are equal values."""
+
+    joints: tuple[Joint, ...]
+
+    @staticmethod
+    def of(records: JointGraph | Iterable[Record]) -> JointGraph:
+        """Read a list of joint records.
+
+        Raises
+        ------
+        WrongValue
+            A record that is none, a joint that cannot be, bodies that are not numbered from 1 without a gap
+            or not linked to the frame; the message names the record or the bodies.
+        """
+        if isinstance(records, JointGraph):
+            return records
+        if isinstance(records, (str, Mapping)) or not isinstance(records, Iterable):
+            raise WrongValue(f"joints must be a list of records; found {str(records)[:60]!r}")
+        joints = _merged([_joint(record, number) for number, record in enumerate(records, start=1)])
+        _check_bodies(joints)
+        return JointGraph(tuple(sorted(joints)))
+
+    def records(self) -> tuple[dict[str, Any], ...]:
+        """The joints as records, a multiple pivot in one of them."""
+        return tuple(
+            {"between": list(j.bodies), "kind": j.kind, **({"at": j.at} if j.at else {})} for j in self.joints
+        )
+
+    @cached_property
+    def bodies(self) -> tuple[int, ...]:
+        """1, the frame, to N."""
+        return tuple(sorted({body for joint in self.joints for body in joint.bodies}))
+
+    @property
+    def moving(self) -> tuple[int, ...]:
+        return tuple(body for body in self.bodies if body != FRAME)
+
+    @cached_property
+    def counts(self) -> Counts:
+        """Pairs, bodies, and what the formulas of the course make of them."""
+        higher = sum(joint.pairs for joint in self.joints if joint.kind == "higher")
+        pairs = sum(joint.pairs for joint in self.joints)
+        lower, total = pairs - higher, len(self.bodies)
+        freedoms = 3 * (total - 1) - 2 * lower - higher
+        return Counts(total - 1, lower, higher, freedoms, pairs, total, pairs - total + 1)
+
+    def joints_of(self, body: int) -> tuple[Joint, ...]:
+        """The joints that a body takes part in."""
+        return tuple(joint for joint in self.joints if body in joint.bodies)
+
+    def pairs(self) -> tuple[Pair, ...]:
+        """The kinematic pairs, a multiple pivot as pairs with its lowest body."""
+        return tuple(sorted((joint.bodies[0], other) for joint in self.joints for other in joint.bodies[1:]))
+
+    def cycles(self) -> tuple[tuple[int, ...], ...]:
+        """Independent cycles, as many as ``counts.gamma``: the bodies met, in order.
+
+        Each closes by one pair that no other cycle uses. A cycle of two bodies is two pairs between them.
+        """
+        parents = self._parents
+        closing = Counter(self.pairs()) - Counter(tuple(sorted(edge)) for edge in parents.items() if edge[1])
+        return tuple(_cycle(parents, *pair) for pair in sorted(closing.elements()))
+
+    @cached_property
+    def _parents(self) -> dict[int, int]:
+        """For each body, its neighbour on a shortest way to the frame; 0 for the frame."""
+        neighbours: dict[int, set[int]] = {body: set() for body in self.bodies}
+        for one, other in self.pairs():
+            neighbours[one].add(other)
+            neighbours[other].add(one)
+        parents, waiting = {FRAME: 0}, deque([FRAME])
+        while waiting:
+            body = waiting.popleft()
+            for other in sorted(neighbours[body] - parents.keys()):
+                parents[other] = body
+                waiting.append(other)
+        return parents
+
+
+def _cycle(parents: Mapping[int, int], one: int, other: int) -> tuple[int, ...]:
+    """The cycle that a pair closes with the ways of its two bodies towards the frame."""
+    left, right = _way(parents, one), _way(parents, other)
+    while len(left) > 1 and len(right) > 1 and left[-2] == right[-2]:
+        left.pop()
+        right.pop()
+    return (*reversed(left), *right[:-1])
+
+
+def _way(parents: Mapping[int, int], body: int) -> list[int]:
+    way = [body]
+    while parents[way[-1]]:
+        way.append(parents[way[-1]])
+    return way
+
+
+def _joint(record: Any, number: int) -> Joint:
+    where = f"joint {number} of the list"
+    if isinstance(record, Joint):
+        record = {"between": record.bodies, "kind": record.kind, "at": record.at}
+    if not isinstance(record, Mapping):
+        raise WrongValue(f"{where} must be a record with 'between' and 'kind'; found {str(record)[:60]!r}")
+    for key in record:
+        if key not in _KEYS:
+            raise WrongValue(f"{where} has a key {key!r}{nearest(str(key), _KEYS)}")
+    for key in _KEYS[:2]:
+        if key not in record:
+            raise WrongValue(f"{where} lacks {key!r}")
+    kind = record["kind"]
+    if kind not in KINDS:
+        raise WrongValue(f"{where}: no kind {kind!r}{nearest(str(kind), KINDS)}")
+    bodies = _bodies(record["between"], where)
+    if len(bodies) > 2 and kind != "revolute":
+        raise WrongValue(f"{where}: only a pivot joins more than two bodies; found {kind} between {bodies}")
+    at = record.get("at")
+    return Joint(bodies, str(kind), "" if at is None else str(at))
+
+
+def _bodies(between: Any, where: str) -> tuple[int, ...]:
+    if not isinstance(between, Sequence) or isinstance(between, str):
+        raise WrongValue(f"{where}: 'between' must list bodies; found {between!r}")
+    for body in between:
+        if isinstance(body, bool) or not isinstance(body, Integral) or body < 1:
+            raise WrongValue(f"{where}: a body is a whole number from 1, the frame, on; found {body!r}")
+    bodies = tuple(sorted({int(body) for body in between}))
+    if len(bodies) < 2 or len(bodies) < len(between):
+        raise WrongValue(f"{where} must join different bodies, two at least; found {list(between)}")
+    return bodies
+
+
+def _merged(joints: Sequence[Joint]) -> list[Joint]:
+    """Pivots of one label as one pivot."""
+    found = [joint for joint in joints if joint.kind != "revolute" or not joint.at]
+    labelled: dict[str, list[Joint]] = {}
+    for joint in joints:
+        if joint.kind == "revolute" and joint.at:
+            labelled.setdefault(joint.at, []).append(joint)
+    return found + [_one_pivot(label, several) for label, several in labelled.items()]
+
+
+def _one_pivot(label: str, joints: list[Joint]) -> Joint:
+    together, rest = set(joints[0].bodies), joints[1:]
+    while rest:
+        touching = [joint for joint in rest if together & set(joint.bodies)]
+        if not touching:
+            apart = " and ".join(str(list(b)) for b in (sorted(together), rest[0].bodies))
+            raise WrongValue(f"the pivots at {label!r} share no body: {apart}; give them different labels")
+        together = together.union(*[joint.bodies for joint in touching])
+        rest = [joint for joint in rest if joint not in touching]
+    return Joint(tuple(sorted(together)), "revolute", label)
+
+
+def _check_bodies(joints: Sequence[Joint]) -> None:
+    if not joints:
+        raise WrongValue("a mechanism needs joints; the list is empty")
+    linked: set[int] = {FRAME}
+    rest = list(joints)
+    while touching := [joint for joint in rest if linked & set(joint.bodies)]:
+        linked = linked.union(*[joint.bodies for joint in touching])
+        rest = [joint for joint in rest if joint not in touching]
+    bodies = {body for joint in joints for body in joint.bodies}
+    missing = sorted(set(range(1, max(bodies) + 1)) - bodies) if len(bodies) < max(bodies) else []
+    if missing:
+        what = "the frame, 1," if missing[0] == FRAME else f"body {missing[0]}"
+        raise WrongValue(f"{what} has no joint; bodies are numbered from 1 without a gap")
+    if bodies - linked:
+        raise WrongValue(f"bodies {sorted(bodies - linked)} are not linked to the frame, 1")

@@ -1,0 +1,111 @@
+"""The joint graph as a figure: a circle a body, a line a joint, a dot where a pivot holds more than two."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterable, Sequence
+from itertools import combinations
+
+from coursework.figures import Figure, circle, line, note, point
+from coursework.structure.joints import FRAME, Joint, JointGraph, Record
+
+_LETTERS = {"revolute": "R", "prismatic": "P", "higher": "H"}
+_RADIUS = 4.5  #: of a body's circle
+_RING = 30.0  #: of the circle on which the bodies stand
+
+Line = tuple[complex, complex]
+
+
+def kinematic_graph(joints: JointGraph | Iterable[Record]) -> Figure:
+    """Bodies as numbered circles (the frame has a second one), joints as lines with the letter of their kind.
+
+    Two joints of the same two bodies are drawn side by side; a pivot of several bodies is a dot with a line to each.
+    """
+    graph = JointGraph.of(joints)
+    places = _places(graph)
+    elements = []
+    for body, place in places.items():
+        elements += [circle(place, _RADIUS), note(place, str(body))]
+    elements.append(circle(places[FRAME], _RADIUS * 1.2))
+    for joint in graph.joints:
+        if len(joint.bodies) > 2:
+            hub = _hub(joint, places)
+            elements.append(point(hub, _LETTERS[joint.kind]))
+            elements += [line(*_between(places[body], hub, ends=False), thin=False) for body in joint.bodies]
+    for bodies in dict.fromkeys(j.bodies for j in graph.joints if len(j.bodies) == 2):
+        several = [j for j in graph.joints if j.bodies == bodies]
+        p, q = (places[body] for body in bodies)
+        for index, joint in enumerate(several):
+            aside = 1j * (q - p) / abs(q - p) * 2.5 * (2 * index + 1 - len(several))
+            one, other = _between(p, q)
+            elements.append(line(one + aside, other + aside, thin=False, label=_LETTERS[joint.kind]))
+    return Figure(*elements)
+
+
+def _between(p: complex, q: complex, *, ends: bool = True) -> Line:
+    """From rim to rim, or from the rim of p to the point q."""
+    way = (q - p) / abs(q - p) * _RADIUS * 1.2
+    return p + way, q - way if ends else q
+
+
+def _hub(joint: Joint, places: dict[int, complex]) -> complex:
+    """Where a multiple pivot is drawn: amid its bodies, drawn towards the middle of the figure."""
+    return 0.8 * sum(places[body] for body in joint.bodies) / len(joint.bodies)
+
+
+def _places(graph: JointGraph) -> dict[int, complex]:
+    """Bodies around a circle, the frame below, in an order in which few lines cross."""
+    order = list(graph.moving)
+    best = _tangle(graph, order)
+    improving = True
+    while improving and best:
+        improving = False
+        for i, j in combinations(range(len(order)), 2):
+            other = order[:]
+            other[i], other[j] = other[j], other[i]
+            crossings = _tangle(graph, other)
+            if crossings < best:
+                order, best, improving = other, crossings, True
+    return _on_circle(order)
+
+
+def _on_circle(order: Sequence[int]) -> dict[int, complex]:
+    count = len(order) + 1
+    ring = _RING * max(1.0, count / 8)
+    return {
+        body: 1.25 * z.real + 1j * z.imag
+        for index, body in enumerate((FRAME, *order))
+        for z in (cmath.rect(ring, -math.pi / 2 + 2 * math.pi * index / count),)
+    }
+
+
+def _tangle(graph: JointGraph, order: Sequence[int]) -> int:
+    """How often lines cross, or pass through a circle that they do not belong to."""
+    places = _on_circle(order)
+    lines: list[Line] = []
+    for joint in graph.joints:
+        if len(joint.bodies) > 2:
+            lines += [(places[body], _hub(joint, places)) for body in joint.bodies]
+        else:
+            lines.append((places[joint.bodies[0]], places[joint.bodies[1]]))
+    crossings = sum(_cross(one, other) for one, other in combinations(lines, 2))
+    return 3 * crossings + sum(_passes(a, b, z) for a, b in lines for z in places.values())
+
+
+def _cross(one: Line, other: Line) -> bool:
+    if set(one) & set(other):
+        return False
+
+    def side(a: complex, b: complex, c: complex) -> bool:
+        return ((b - a).conjugate() * (c - a)).imag > 0
+
+    (a, b), (c, d) = one, other
+    return side(a, b, c) != side(a, b, d) and side(c, d, a) != side(c, d, b)
+
+
+def _passes(a: complex, b: complex, place: complex) -> bool:
+    if place in (a, b):
+        return False
+    along = ((place - a) * (b - a).conjugate()).real / abs(b - a) ** 2
+    return 0 < along < 1 and abs(a + along * (b - a) - place) < 1.3 * _RADIUS

@@ -1,0 +1,126 @@
+"""Promises of booklets and papers: where each sheet is, and on which paper."""
+
+from __future__ import annotations
+
+import csv
+import io
+from dataclasses import replace
+from itertools import pairwise
+
+import pytest
+import typst
+from rendering_samples import answer_sheet, feedback_sheet, handout, many_given
+
+from coursework import booklets, building, issuing
+from coursework.cli import DONE, run
+from coursework.course import builtin_root
+from coursework.errors import BadStatement, UnknownName
+from coursework.rendering import PAPERS, Renderer
+from coursework.rendering.pdf import source
+
+TEMPLATES = [builtin_root() / "templates"]
+WIDTHS = {"a4": "595.27", "letter": "612"}
+
+
+def pages_of(sheets, paper="a4") -> list[str]:
+    pages = typst.compile(source(TEMPLATES, sheets, paper).encode(), format="svg")
+    return [p.decode() for p in (pages if isinstance(pages, list) else [pages])]
+
+
+@pytest.mark.parametrize("paper", PAPERS)
+@pytest.mark.parametrize("make", [handout, answer_sheet, feedback_sheet, many_given])
+def test_every_page_of_a_sheet_has_the_size_of_its_paper(make, paper):
+    for page in pages_of([make("fr")], paper):
+        assert f'width="{WIDTHS[paper]}' in page[:400]
+
+
+def test_a_page_to_print_names_its_paper():
+    for paper, css in (("a4", "size: a4"), ("letter", "size: letter")):
+        assert css in Renderer(TEMPLATES, paper).html(handout("en"))
+
+
+def test_an_unknown_paper_is_refused_by_name():
+    with pytest.raises(UnknownName, match="'letter'"):
+        Renderer(TEMPLATES, "leter")
+
+
+def test_a_booklet_says_the_pages_of_each_sheet():
+    long = replace(handout("en"), questions=handout("en").questions * 3)
+    sheets = [handout("fr"), long, handout("en"), answer_sheet("fr")]
+    made, pages = Renderer(TEMPLATES).booklet(sheets)
+    assert made == Renderer(TEMPLATES).booklet_pdf(sheets)
+    lengths = [len(pages_of([sheet])) for sheet in sheets]
+    assert lengths[1] > 1, "a sheet of several pages is among them"
+    assert [last - first + 1 for first, last in pages] == lengths
+    assert all(first % 2 for first, _ in pages)
+    assert pages[-1][1] == len(pages_of(sheets))
+    assert all(then - last in (1, 2) for (_, last), (then, _) in pairwise(pages))
+
+
+def test_a_booklet_of_a_broken_template_is_an_error_of_the_course(tmp_path):
+    (tmp_path / "_figure_and_data.typ.j2").write_text("#nonsense", "utf-8")
+    with pytest.raises(BadStatement, match="nonsense"):
+        Renderer([tmp_path, *TEMPLATES]).booklet([handout("en")])
+
+
+def issues_of(course, count, langs=("fr",)):
+    return issuing.issue(course, ["slotted_mechanism"], first_seed=0, count=count, langs=langs)
+
+
+def test_a_large_class_has_several_booklets_named_with_their_sheets(course, monkeypatch):
+    monkeypatch.setattr(booklets, "SHEETS", 4)
+    names = [str(f.path) for f in booklets.files(course, course.renderer, issues_of(course, 10))]
+    assert names == [
+        "handouts/slotted_mechanism.fr.01-04.pdf",
+        "instructor/slotted_mechanism.fr.01-04.solutions.pdf",
+        "handouts/slotted_mechanism.fr.05-08.pdf",
+        "instructor/slotted_mechanism.fr.05-08.solutions.pdf",
+        "handouts/slotted_mechanism.fr.09-10.pdf",
+        "instructor/slotted_mechanism.fr.09-10.solutions.pdf",
+        "handouts/pages.csv",
+    ]
+
+
+def test_the_table_of_pages_has_a_line_for_each_sheet_whichever_booklet_holds_it(
+    course, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(booklets, "SHEETS", 2)
+    issues = issues_of(course, 3, ("fr", "en"))
+    building.write(tmp_path, list(booklets.files(course, course.renderer, issues)))
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "handouts" / "pages.csv").read_text("utf-8"))))
+    assert [(r["lang"], int(r["seed"])) for r in rows] == [
+        (lang, issue.variant.seed) for lang in ("fr", "en") for issue in issues
+    ]
+    assert [r["first page"] for r in rows] == ["1", "3", "1"] * 2
+    assert all((tmp_path / "handouts" / r["file"]).exists() for r in rows)
+
+
+def test_build_writes_booklets_beside_the_single_files(tmp_path):
+    roster = tmp_path / "class.csv"
+    roster.write_text("student,lang\nZoé,fr\nJohn & Mary,en\nÉlodie #1,fr\n", "utf-8")
+    command = ["build", "slotted_mechanism", "--roster", str(roster), "--formats", "pdf", "--paper", "letter"]
+    assert run([*command, "--booklet", "--out", str(tmp_path / "out")]) == DONE
+    made = {str(p.relative_to(tmp_path / "out")) for p in (tmp_path / "out").rglob("*.pdf")}
+    assert made >= {
+        "handouts/slotted_mechanism.fr.pdf",
+        "handouts/slotted_mechanism.en.pdf",
+        "handouts/slotted_mechanism/zoe.fr.pdf",
+        "instructor/slotted_mechanism.fr.solutions.pdf",
+        "instructor/slotted_mechanism/zoe.fr.solution.pdf",
+    }
+    rows = csv.DictReader(io.StringIO((tmp_path / "out" / "handouts" / "pages.csv").read_text("utf-8")))
+    assert [(r["student"], r["lang"]) for r in rows] == [
+        ("Zoé", "fr"),
+        ("Élodie #1", "fr"),
+        ("John & Mary", "en"),
+    ]
+
+
+def test_a_sheet_that_cannot_be_made_ends_the_build_with_its_fault(course, tmp_path):
+    class Broken(Renderer):
+        def booklet(self, sheets):
+            raise BadStatement("no")
+
+    wanted = list(booklets.files(course, Broken(TEMPLATES), issues_of(course, 1)))
+    with pytest.raises(BadStatement, match="no"):
+        building.write(tmp_path, wanted)
