@@ -99,7 +99,7 @@ def _handouts(renderer: Renderer, booklet: _Booklet, found: Future[Pages]) -> by
 
 
 def _solutions(renderer: Renderer, booklet: _Booklet) -> bytes:
-    return renderer.booklet_pdf(booklet.answer_sheets())
+    return renderer.booklet(booklet.answer_sheets())[0]
 
 
 def _table(booklets: Sequence[_Booklet], pages: Sequence[Future[Pages]]) -> bytes:

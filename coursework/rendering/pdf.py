@@ -19,6 +19,7 @@ from coursework.rendering.environment import environment, render
 from coursework.rendering.formulas import spoken, to_typst
 
 _LOCAL = threading.local()
+_FORGETTING = 40  #: documents, a third of a millisecond each
 _OUTPUT = {"format": "pdf", "pdf_standards": ["a-2a", "ua-1"], "timestamp": 0}
 
 
@@ -62,6 +63,10 @@ def compile_booklet(typst_source: str) -> tuple[bytes, tuple[tuple[int, int], ..
         compiler = typst.Compiler(input=written, ignore_system_fonts=True)
         ends = json.loads(compiler.query("<sheet-last>", field="value"))
         made = compiler.compile(input=written, **_OUTPUT)
+        # The typesetter remembers what the last documents were made of, and a booklet is large: small
+        # documents make it forget.
+        for _ in range(_FORGETTING):
+            compiler.compile(input=b"", format="pdf", timestamp=0)
     starts = [1, *(end + 1 + end % 2 for end in ends[:-1])]
     return made, tuple(zip(starts, ends, strict=True))
 
