@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import itertools
+import json
 import math
 import sys
 import tomllib
@@ -357,7 +358,7 @@ class CourseExercise:
     def _accept(self, name: str, value: Any) -> Any:
         """A given value as a float, an array or a case's name, in the canonical unit, within its domain."""
         if name in self.solution.structures:
-            return value
+            return _structure(name, value)
         spec = self.spec.given.get(name)
         if type(value) is float and value > 0 and value < math.inf and (spec is None or not spec.choices):
             return value
@@ -553,6 +554,16 @@ def _check_shapes(values: Mapping[str, Any]) -> None:
     except ValueError:
         told = ", ".join(f"{n} {shape}" for n, shape in shapes.items())
         raise WrongValue(f"the arrays do not broadcast together: {told}") from None
+
+
+def _structure(name: str, value: Any) -> Any:
+    """A list or a record as it comes, or from its JSON."""
+    if not isinstance(value, str):
+        return value
+    try:
+        return json.loads(value)
+    except ValueError:
+        raise WrongValue(f"{name} is a list of records, or its JSON; found {value[:60]!r}") from None
 
 
 def _rounded(value: Any, lang: str) -> Any:

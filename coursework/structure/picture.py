@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterable, Sequence
 from itertools import combinations
 
-from coursework.figures import Figure, circle, line, note, point
+from coursework.figures import Figure, circle, contact, line, note
 from coursework.structure.joints import FRAME, Joint, JointGraph, Record
 
 _LETTERS = {"revolute": "R", "prismatic": "P", "higher": "H"}
@@ -31,7 +31,7 @@ def kinematic_graph(joints: JointGraph | Iterable[Record]) -> Figure:
     for joint in graph.joints:
         if len(joint.bodies) > 2:
             hub = _hub(joint, places)
-            elements.append(point(hub, _LETTERS[joint.kind]))
+            elements.append(contact(hub, _LETTERS[joint.kind]))
             elements += [line(*_between(places[body], hub, ends=False), thin=False) for body in joint.bodies]
     for bodies in dict.fromkeys(j.bodies for j in graph.joints if len(j.bodies) == 2):
         several = [j for j in graph.joints if j.bodies == bodies]
@@ -81,7 +81,7 @@ def _on_circle(order: Sequence[int]) -> dict[int, complex]:
 
 
 def _tangle(graph: JointGraph, order: Sequence[int]) -> int:
-    """How often lines cross, or pass through a circle that they do not belong to."""
+    """How often lines cross, and above all pass through a circle or a dot that they do not belong to."""
     places = _on_circle(order)
     lines: list[Line] = []
     for joint in graph.joints:
@@ -90,7 +90,8 @@ def _tangle(graph: JointGraph, order: Sequence[int]) -> int:
         else:
             lines.append((places[joint.bodies[0]], places[joint.bodies[1]]))
     crossings = sum(_cross(one, other) for one, other in combinations(lines, 2))
-    return 3 * crossings + sum(_passes(a, b, z) for a, b in lines for z in places.values())
+    dots = [*places.values(), *(_hub(joint, places) for joint in graph.joints if len(joint.bodies) > 2)]
+    return crossings + 3 * sum(_passes(a, b, z) for a, b in lines for z in dots)
 
 
 def _cross(one: Line, other: Line) -> bool:

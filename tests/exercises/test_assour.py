@@ -77,3 +77,7 @@ def test_the_worked_solution_lists_the_groups():
             for group in parts.groups:
                 listed = f"{word} {', '.join(map(str, group.bodies))}"
                 assert listed in variant.solution_text.opening
+
+
+def test_labels_need_no_variant_though_the_statement_lists_joints():
+    assert EXERCISE.constants("exercises", "fr").labels["assour_class", "II"] == "classe II"

@@ -1,5 +1,7 @@
 """Mobility: lists of joints given by hand, variants, and the mistakes that the course's notes make."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -19,6 +21,7 @@ def test_a_list_of_joints_answers_under_the_asked_names():
     ]
     assert EXERCISE.solve(joints=joints) == {"n": 2, "b": 2, "h": 1, "w": 1, "L": 3, "N": 3, "gamma": 1}
     assert EXERCISE.solve(joints=tuple(reversed(joints)), only="w") == {"w": 1}
+    assert EXERCISE.solve(joints=json.dumps(joints), only="gamma") == {"gamma": 1}
 
 
 @pytest.mark.parametrize("joints", [[], 3, "four-bar", [[1, 2]], None, np.arange(3.0)])
