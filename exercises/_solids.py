@@ -2,8 +2,10 @@
 
 from functools import cache
 
+import numpy as np
+
 from coursework.model import GivenSpec, chosen, drawn
-from coursework.solids import aligned, in_parallel, in_series
+from coursework.solids import aligned, in_parallel, in_series, joint_of
 
 COMBINE = {"parallel": in_parallel, "series": in_series}
 
@@ -32,8 +34,12 @@ WITH_DIRECTION = (
 WITH_LINE = ("revolute", "helical", "cylindrical", "point_contact")
 
 
-def joint_kind() -> GivenSpec:
-    return chosen(*DRAWN)
+#: The joints of the chains that are drawn: few freedoms, so that a loop of four does not fall apart.
+IN_CHAINS = ("revolute", "prismatic", "cylindrical", "spherical", "planar", "annular")
+
+
+def joint_kind(names: tuple[str, ...] = DRAWN) -> GivenSpec:
+    return chosen(*names)
 
 
 def direction() -> GivenSpec:
@@ -54,3 +60,37 @@ def equivalent_of(combination: str, *joints: tuple) -> tuple[int, str]:
     """
     made = COMBINE[combination]([aligned(name, along, point) for name, along, *point in joints])
     return made.rank.value, made.equivalent.name
+
+
+@cache
+def _motions() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Names "joint direction" in order, the freedoms of each, and the products T' T of its twists at its point."""
+    pairs = sorted((f"{name} {along}", name, along) for name in DRAWN for along in "xyz")
+    twists = [np.array(joint_of(aligned(n, a)).twists((0.0, 0.0, 0.0), 1.0)) for _, n, a in pairs]
+    return (
+        np.array([key for key, _, _ in pairs]),
+        np.array([len(t) for t in twists]),
+        np.array([t.T @ t for t in twists]),
+    )
+
+
+def mobility_of_loop(joints, directions, points):
+    """Mobility of one closed loop: columns of names, of directions, and of points as triples of columns in mm.
+
+    The rank is that of a matrix of small whole numbers: its zeros are zeros but for rounding.
+    """
+    keys, freedoms, products = _motions()
+    total, count = 0.0, 0
+    for joint, along, point in zip(joints, directions, points, strict=True):
+        joint, along = np.atleast_1d(joint), np.atleast_1d(along)
+        row = np.searchsorted(keys, np.char.add(np.char.add(joint, " "), along))
+        x, y, z = (np.broadcast_to(np.asarray(c, float) / 20, row.shape) for c in point)
+        carry = np.zeros((*row.shape, 6, 6))
+        carry[..., range(6), range(6)] = 1.0
+        # The velocity at the origin of a rotation about an axis through (x, y, z).
+        carry[..., 0, 4], carry[..., 0, 5] = z, -y
+        carry[..., 1, 3], carry[..., 1, 5] = -z, x
+        carry[..., 2, 3], carry[..., 2, 4] = y, -x
+        total = total + np.swapaxes(carry, -1, -2) @ products[row] @ carry
+        count = count + freedoms[row]
+    return count - (np.linalg.eigvalsh(total) > 1e-6).sum(axis=-1)

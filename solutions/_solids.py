@@ -5,9 +5,10 @@ from functools import lru_cache
 import numpy as np
 
 from coursework.errors import WrongValue
-from coursework.solids import in_parallel, in_series, joints_of
+from coursework.solids import Chain, in_parallel, in_series, joints_of
 
 _in_parallel = lru_cache(maxsize=4096)(in_parallel)
+_chain = lru_cache(maxsize=4096)(Chain)
 _in_series = lru_cache(maxsize=4096)(in_series)
 
 _NOWHERE = (np.nan, np.nan, np.nan)
@@ -48,3 +49,7 @@ def _direction(whole):
 def _point(whole):
     """NaN where no point of the equivalent joint counts."""
     return np.array(whole.equivalent.point or _NOWHERE)
+
+
+def _chain_of(joints):
+    return _each(lambda one: _chain(joints_of(one)), joints)

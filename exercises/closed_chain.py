@@ -1,0 +1,65 @@
+"""A closed chain of four joints: loops, ranks, mobility and static indeterminacy."""
+
+from coursework.model import Exercise, Part
+
+from ._solids import IN_CHAINS, coordinate, direction, joint_kind, mobility_of_loop
+
+
+def mobility(
+    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
+    x2, y2, z2, x3, y3, z3, x4, y4, z4,
+):  # fmt: skip
+    """Of the whole chain, at the given position."""
+    return mobility_of_loop(
+        (joint_1, joint_2, joint_3, joint_4),
+        (direction_1, direction_2, direction_3, direction_4),
+        ((0, 0, 0), (x2, y2, z2), (x3, y3, z3), (x4, y4, z4)),
+    )
+
+
+def moves(mobility):
+    return mobility >= 1
+
+
+def mobility_is_small(mobility):
+    return mobility <= 3
+
+
+EXERCISE = Exercise(
+    given={
+        "joint_1": joint_kind(IN_CHAINS),
+        "direction_1": direction(),
+        "joint_2": joint_kind(IN_CHAINS),
+        "direction_2": direction(),
+        "joint_3": joint_kind(IN_CHAINS),
+        "direction_3": direction(),
+        "joint_4": joint_kind(IN_CHAINS),
+        "direction_4": direction(),
+        **{f"{axis}{k}": coordinate() for k in (2, 3, 4) for axis in "xyz"},
+    },
+    helpers=(mobility,),
+    keep=(moves, mobility_is_small),
+    parts=(
+        Part("gamma", kind="integer", points=1),
+        Part("Nc", kind="integer", points=1),
+        Part("rc", kind="integer", points=2),
+        Part("m", kind="integer", points=1),
+        Part("Ns", kind="integer", points=1),
+        Part("rs", kind="integer", points=1),
+        Part("h", kind="integer", points=1),
+        Part("i", kind="integer", points=1),
+        Part("m_internal", kind="integer", points=2),
+        Part("m_useful", kind="integer", points=1),
+        Part("statics", kind="choice", choices=("isostatic", "hyperstatic"), points=1),
+    ),
+    symbols={
+        **{f"joint_{k}": f"L_{k}" for k in (1, 2, 3, 4)},
+        **{f"direction_{k}": rf"\vec{{u}}_{k}" for k in (1, 2, 3, 4)},
+        "Nc": "N_c",
+        "rc": "r_c",
+        "Ns": "N_s",
+        "rs": "r_s",
+        "m_internal": "m_i",
+        "m_useful": "m_u",
+    },
+)
