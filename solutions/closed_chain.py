@@ -7,6 +7,8 @@ from coursework.solution import mistake
 
 from ._solids import _chain, _chain_of, _each
 
+SYMBOLS = {"input_body": "b_e", "output_body": "b_s"}
+
 
 def _ring(
     joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
