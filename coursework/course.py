@@ -364,8 +364,6 @@ class CourseExercise:
             return value
         if spec is not None and spec.is_choice:
             return self._accept_case(name, spec, value)
-        if spec is None and _is_structured(value):
-            return tuple(value)
         if isinstance(value, str):
             value = self._accept_text(name, value)
         elif type(value) is not float:
@@ -542,11 +540,6 @@ class CourseExercise:
         return self.variant(0, lang).text.title
 
 
-def _is_structured(value: Any) -> bool:
-    """Whether a value is a list of mappings, such as joints: its own quantity knows what may stand in it."""
-    return isinstance(value, (list, tuple)) and bool(value) and all(isinstance(v, Mapping) for v in value)
-
-
 def _check_shapes(values: Mapping[str, Any]) -> None:
     shapes = {n: v.shape for n, v in values.items() if isinstance(v, np.ndarray)}
     try:
@@ -559,9 +552,9 @@ def _check_shapes(values: Mapping[str, Any]) -> None:
 def _structure(name: str, value: Any) -> Any:
     """A list or a record as it comes, or from its JSON."""
     if not isinstance(value, str):
-        return value
+        return tuple(value) if isinstance(value, list) else value
     try:
-        return json.loads(value)
+        return _structure(name, json.loads(value))
     except ValueError:
         raise WrongValue(f"{name} is a list of records, or its JSON; found {value[:60]!r}") from None
 

@@ -7,6 +7,8 @@ from coursework.solution import mistake
 
 from ._solids import _chain, _chain_of, _each
 
+STRUCTURES = ("joints",)
+
 SYMBOLS = {"input_body": "b_e", "output_body": "b_s"}
 
 

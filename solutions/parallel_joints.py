@@ -7,6 +7,8 @@ from coursework.solution import mistake
 
 from ._solids import _direction, _each, _parallel_of, _point, _stiffest
 
+STRUCTURES = ("joints",)
+
 
 def _pair(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
     return aligned(joint_1, direction_1), aligned(joint_2, direction_2, (x2, y2, z2))
