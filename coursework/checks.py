@@ -28,7 +28,7 @@ from coursework.rounding import student_who_rounds
 from coursework.worth import SHOWN, conditioning, visibility, worthy
 
 RESIDUAL = 1e-9  #: largest relative residual of the governing equations
-RENDERED = 2  #: variants whose sheets are rendered in every format and language
+RENDERED = 1  #: variants whose sheets are rendered in every format and language
 NONSENSICAL = 20  #: variants that are answered by nonsense; it is read alike on all
 KEPT_DIGITS = (3, 4, 5)  #: of simulated students who round at every step
 NONSENSE = ("?", "je ne sais pas", "12 +", "nan", "9**9**9", "1 = 1 = 1", "__import__('os')", "((((")
@@ -87,13 +87,23 @@ def check_all(
         return [_told(_check_one(str(course.root), name, variants), progress) for name in names]
     # New processes, not forked ones: the typesetter must not be carried over.
     with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
-        tasks = [pool.submit(_check_one, str(course.root), name, variants) for name in names]
-        for task in tasks:
+        # The longest first, so that no process waits for another at the end.
+        longest = sorted(names, key=lambda name: -_length(course, name))
+        tasks = {name: pool.submit(_check_one, str(course.root), name, variants) for name in longest}
+        for task in tasks.values():
             task.add_done_callback(lambda _: progress())
-        return [task.result() for task in tasks]
+        return [tasks[name].result() for name in names]
 
 
 _WORTH_PROCESSES = 50  #: variants an exercise; fewer are done before a process has started
+
+
+def _length(course: Course, name: str) -> int:
+    """Roughly how long an exercise takes to check."""
+    try:
+        return len(course[name].spec.parts)
+    except CourseworkError:
+        return 0  # it says what is wrong when it is checked
 
 
 def _told(report: Report, progress: Callable[[], None]) -> Report:
