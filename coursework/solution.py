@@ -228,12 +228,15 @@ def _belongs(function: Any, module: ModuleType) -> bool:
 
 
 def _hidden(functions: Mapping[str, Callable[..., Any]], module: ModuleType) -> dict[str, Callable[..., Any]]:
-    """The module's functions of hidden names that quantities take as parameters."""
+    """Functions of hidden names that quantities take as parameters: the module's, or those that stand beside
+    a shared quantity."""
     found: dict[str, Callable[..., Any]] = {}
     waiting = list(functions.values())
     while waiting:
-        for name in Node.of(waiting.pop()).needs:
-            if name.startswith("_") and name not in found and callable(getattr(module, name, None)):
-                found[name] = getattr(module, name)
-                waiting.append(found[name])
+        function = waiting.pop()
+        for name in Node.of(function).needs:
+            hidden = getattr(module, name, function.__globals__.get(name)) if name.startswith("_") else None
+            if callable(hidden) and name not in found:
+                found[name] = hidden
+                waiting.append(hidden)
     return found

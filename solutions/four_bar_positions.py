@@ -11,8 +11,8 @@ from coursework.degrees import acos, atan, atan2, cos, from_radians, polar, sin,
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
-from coursework.kinematics.margins import exact_sum
 from coursework.solution import Moving, formula, mistake, stable
+from coursework.structure import grashof
 
 UNITS = {"phi": "deg", "psi": "deg", "AC": "mm"}
 SYMBOLS = {"phi": r"\varphi", "psi": r"\psi", "AC": "AC"}
@@ -27,48 +27,9 @@ def _crossed(r1, r2, r3, r4, theta2):
     return FourBar(r1, r2, r3, r4, "crossed").at(Degrees(theta2))
 
 
-def _shortest(r1, r2, r3, r4):
-    return np.minimum(np.minimum(r1, r2), np.minimum(r3, r4))
-
-
-def _longest(r1, r2, r3, r4):
-    return np.maximum(np.maximum(r1, r2), np.maximum(r3, r4))
-
-
-def _exactly(excess, r1, r2, r3, r4):
-    """A signed sum of the lengths; zero when it is less than the rounding of four printed lengths to doubles."""
-    return np.where(abs(excess) <= 2.0**-53 * (r1 + r2 + r3 + r4), 0.0, excess)
-
-
-def _grashof_excess(r1, r2, r3, r4):
-    """Of p + q over s + l."""
-    excess = exact_sum(r1, r2, r3, r4, -2 * _shortest(r1, r2, r3, r4), -2 * _longest(r1, r2, r3, r4))
-    return _exactly(excess, r1, r2, r3, r4)
-
-
-def _closing_excess(r1, r2, r3, r4):
-    """Of s + p + q over l: the linkage closes somewhere when it is positive."""
-    return _exactly(exact_sum(r1, r2, r3, r4, -2 * _longest(r1, r2, r3, r4)), r1, r2, r3, r4)
-
-
-def _type_by_shortest(r1, r2, r3, r4):
-    """Of a linkage that satisfies Grashof's rule: r1 is the frame, r2 the input, r4 the output."""
-    shortest = _shortest(r1, r2, r3, r4)
-    return np.select(
-        [r2 == shortest, r4 == shortest, r1 == shortest],
-        ["crank-rocker", "rocker-crank", "double-crank"],
-        "double-rocker",
-    )
-
-
 def linkage_type(r1, r2, r3, r4):
     """Can it close at all; does s + l reach p + q; and if not, which bar is the shortest?"""
-    excess = _grashof_excess(r1, r2, r3, r4)
-    return np.select(
-        [_closing_excess(r1, r2, r3, r4) <= 0, excess == 0, excess < 0],
-        ["impossible", "change-point", "triple-rocker"],
-        _type_by_shortest(r1, r2, r3, r4),
-    )
+    return grashof.linkage_type(r1, r2, r3, r4)
 
 
 @formula(r"2 \times <r2> \times <r3> \times \cos <theta2> - 2 \times <r1> \times <r3>")
@@ -206,19 +167,19 @@ def inverse_angle_B(mu):
 
 @mistake("linkage_type")
 def fixed_plus_input(r1, r2, r3, r4):
-    by_shortest = _type_by_shortest(r1, r2, r3, r4)
+    by_shortest = grashof.type_by_shortest(r1, r2, r3, r4)
     return np.where(r1 + r2 < r3 + r4, by_shortest, "triple-rocker")
 
 
 @mistake("linkage_type")
 def grashof_not_tested(r1, r2, r3, r4):
-    return _type_by_shortest(r1, r2, r3, r4)
+    return grashof.type_by_shortest(r1, r2, r3, r4)
 
 
 @mistake("linkage_type")
 def always_crank_rocker(linkage_type):
-    grashof = np.isin(linkage_type, ("crank-rocker", "rocker-crank", "double-crank", "double-rocker"))
-    return np.where(grashof, "crank-rocker", linkage_type)
+    turns = np.isin(linkage_type, ("crank-rocker", "rocker-crank", "double-crank", "double-rocker"))
+    return np.where(turns, "crank-rocker", linkage_type)
 
 
 @mistake("linkage_type")

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from coursework.degrees import acos, asin, atan, atan2, cos, from_radians, polar, sin, sqrt, wrap
+from coursework.degrees import acos, asin, atan, atan2, cos, polar, sin, sqrt
 from coursework.errors import CannotAssemble, Undefined
 from coursework.figures import (
     Figure,
@@ -22,11 +22,10 @@ from coursework.figures import (
     point,
     rotation_arrow,
 )
-from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.kinematics.slotted_guide import SlottedGuidePose
-from coursework.solution import Moving, formula, mistake, stable
+from coursework.solution import formula, mistake, stable
 
+from ._slotted_ram import *
 from ._strokes import *
 
 UNITS = {
@@ -54,11 +53,6 @@ SYMBOLS = {
 }
 
 
-def _arm(r1, r2, theta2):
-    """The guide at its crank angle, by the numeric core; it counts angles from the frame's direction."""
-    return SlottedGuidePose(r1, r2, Degrees.between(90.0, theta2))
-
-
 def _turning(r1, r2, r4, r5, h):
     """Guide, rod and ram as a slider-crank whose crank turns fully, by the numeric core."""
     if isinstance(r1 + r2 + r4 + r5 + h, float):
@@ -74,63 +68,6 @@ def _turning(r1, r2, r4, r5, h):
             )
         return linkage
     return SliderCrank(np.where(r2 > r1, r4, np.nan), r5, h)
-
-
-@formula(r"\sqrt{<r1>^2 + <r2>^2 + 2 \times <r1> \times <r2> \times \sin <theta2>}")
-@stable(lambda _arm: _arm.arm)
-def rA(r1, r2, theta2):
-    """Distance O4A, by the law of cosines."""
-    return sqrt(r1**2 + r2**2 + 2 * r1 * r2 * sin(theta2))
-
-
-@formula(r"\operatorname{atan2}\left(<r1> + <r2> \sin <theta2>;\ <r2> \cos <theta2>\right)")
-@stable(lambda _arm: wrap(90 + from_radians(_arm.guide_angle)))
-def theta4(r1, r2, theta2):
-    """Direction of the guide, by its quadrant."""
-    return atan2(r1 + r2 * sin(theta2), r2 * cos(theta2))
-
-
-@stable(lambda omega2, _arm: _arm.guide_ratio * omega2)
-def omega4(r2, omega2, theta2, theta4, rA):
-    """Component of the velocity of A across the guide, over its distance."""
-    return r2 * omega2 * cos(theta2 - theta4) / rA
-
-
-@formula(r"<r4> \cos <theta4>")
-def xP(r4, theta4):
-    return r4 * cos(theta4)
-
-
-@formula(r"<r4> \sin <theta4>")
-def yP(r4, theta4):
-    return r4 * sin(theta4)
-
-
-def p(h, yP):
-    """Height of C above P."""
-    return h - yP
-
-
-@stable(lambda r4, r5, h, theta4: SliderCrank(r4, r5, h).run(Degrees(theta4)))
-def q(r5, p):
-    """How far C lies to the right of P."""
-    return sqrt(r5**2 - p**2)
-
-
-def xC(xP, q):
-    return xP + q
-
-
-@formula(r"-\frac{<omega4> \times <xP>}{<q>}")
-def omega5(omega4, xP, q):
-    """C keeps to its line: no velocity across it."""
-    return -omega4 * xP / q
-
-
-@formula(r"-<omega4> \times <yP> - <omega5> \times <p>")
-def v_C(omega4, yP, omega5, p):
-    """Velocity of the ram, positive to the right."""
-    return -omega4 * yP - omega5 * p
 
 
 @stable(lambda r4, r5, h, _turning: _root(r5 + r4 - h, r5 + r4 + h, _turning))
@@ -258,21 +195,6 @@ def T_is_frequency(omega2):
 @mistake("t_advance", "t_return", share=0.5)
 def advance_and_return_exchanged(t_advance, t_return):
     return t_return, t_advance
-
-
-def motion(r1, r2, theta2, omega2, rA, theta4, omega4, r4, h, p, q, omega5, xC, v_C):
-    """The crank pin, which slides on the guide, the guide's end and the ram; the crank turns steadily."""
-    crank, along = polar(r2, theta2), polar(1, theta4)
-    v_A, a_A = 1j * omega2 * crank, -(omega2**2) * crank
-    sliding = (v_A / along).real
-    alpha4 = ((a_A / along).imag - 2 * omega4 * sliding) / rA
-    a_P = (1j * alpha4 - omega4**2) * r4 * along
-    alpha5 = (p * omega5**2 - a_P.imag) / q
-    return {
-        "A": Moving(1j * r1 + crank, v_A, a_A, coriolis=2j * omega4 * sliding * along),
-        "P": Moving(r4 * along, 1j * omega4 * r4 * along, a_P),
-        "C": Moving(xC + 1j * h, v_C, a_P.real - p * alpha5 - q * omega5**2),
-    }
 
 
 def figure(r1, r2, r4, h, omega2, x1, x2, phi1, phi2, psi1, psi2):
