@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from coursework.course import Course
 
 DONE, FOUND, BAD = 0, 1, 2  #: exit statuses
-FEEDBACK_STUDENTS = 1000  #: for so many at most, feedback sheets are printed unless told
 
 
 def main() -> None:
@@ -608,7 +607,7 @@ def build_files(
 @click.option(
     "--feedback/--no-feedback",
     default=None,
-    help=f"Feedback sheets, a PDF a student; unless told, for up to {FEEDBACK_STUDENTS} students.",
+    help="Feedback sheets, a PDF a student; unless told, for up to 1000 students.",
 )
 @click.option(
     "--accepted",
@@ -654,11 +653,7 @@ def grade_with_bar(
 ):
     """Mark files and write the tables, with a bar on a terminal."""
     from coursework.grading import grade_files
-    from coursework.issued import Issued
 
-    if feedback is None:
-        read = Issued.read(issued)
-        feedback = max(len(read.students), len(read.records)) <= FEEDBACK_STUDENTS
     with _progress("marking", None) as advance:
         return grade_files(
             course, submissions, issued, out, feedback=feedback, accepted=accepted, progress=advance

@@ -24,6 +24,9 @@ from coursework.marking import localised
 from coursework.regrading import CHANGES_COLUMNS, Accepted, Before
 from coursework.submissions import Rejected, Row, find, read_file
 
+#: For so many students at most, feedback sheets are printed unless told.
+FEEDBACK_STUDENTS = 1000
+
 #: Called with how many are done, and of how many.
 Progress = Callable[[int, int], None]
 
@@ -34,16 +37,19 @@ def grade_files(
     issued_path: Path,
     out: Path,
     *,
-    feedback: bool,
+    feedback: bool | None,
     accepted: Path | None = None,
     progress: Progress = lambda done, of: None,
 ) -> Gradebook:
     """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets.
 
     Where marks were there before, ``changes.csv`` says what differs now. ``accepted`` names answers that
-    a person accepts; unless told, those of ``accepted.csv`` in ``out``.
+    a person accepts; unless told, those of ``accepted.csv`` in ``out``. ``feedback`` None prints sheets for a
+    class of usual size.
     """
     issued = Issued.read(issued_path)
+    if feedback is None:
+        feedback = max(len(issued.students), len(issued.records)) <= FEEDBACK_STUDENTS
     kept = out / "accepted.csv"
     by_hand = Accepted(accepted if accepted is not None else kept if kept.exists() else None)
     before = Before(out / "marks.csv")

@@ -20,6 +20,7 @@ from coursework.course import Course, CourseExercise, Variant
 from coursework.errors import BadInput, Starved
 from coursework.issued import ISSUED_FORMAT
 from coursework.language import languages
+from coursework.submissions import delimiter_of
 from coursework.worth import worthy
 
 _STUDENT_COLUMNS = ("student", "name", "étudiant", "etudiant", "élève", "eleve", "nom")
@@ -49,8 +50,7 @@ def read_roster(path: Path) -> list[Student]:
         raise BadInput(f"the roster {path} cannot be read: {fault.strerror}") from fault
     except UnicodeDecodeError as fault:
         raise BadInput(f"the roster {path} is not UTF-8; save it as “CSV UTF-8”") from fault
-    first = text.split("\n", 1)[0]
-    lines = csv.DictReader(io.StringIO(text), delimiter=max((";", ",", "\t"), key=first.count))
+    lines = csv.DictReader(io.StringIO(text), delimiter=delimiter_of(text.split("\n", 1)[0]))
     header = {(h or "").strip().casefold(): h for h in lines.fieldnames or ()}
     column = next((header[c] for c in _STUDENT_COLUMNS if c in header), None)
     if column is None:

@@ -167,16 +167,16 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
     before = _Before({}, set())
-    number_kinds = ("number", "angle")
     marks = {}
     for i, part in asked.items():
         if i in known:
             before.own[part.quantity] = float(known[i])
             continue
         judged_by, reading = asked[target[i]], readings[i]
-        marks[i] = _mark_part(variant, key, part, reading, judged_by, before)
-        if reading.status == "read" and part.kind in number_kinds:
-            before.own[judged_by.quantity] = reading.values[_nearest(part, reading, key, judged_by)[0]]
+        nearest = _nearest(part, reading, key, judged_by)
+        marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
+        if reading.status == "read" and part.kind in ("number", "angle"):
+            before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
                 before.wrong.add(judged_by.quantity)
     for i in marks:
@@ -253,7 +253,13 @@ class _Before(NamedTuple):
 
 
 def _mark_part(
-    variant: Variant, key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before
+    variant: Variant,
+    key: Key,
+    part: Part,
+    reading: Reading,
+    judged_by: Part,
+    nearest: tuple[int, float],
+    before: _Before,
 ) -> Mark:
     def made(
         verdict: str, share: float, read_as: str, tell: Callable[[], _Said], matches: tuple[str, ...] = ()
@@ -274,7 +280,7 @@ def _mark_part(
 
     if reading.status != "read":
         return made(reading.status, 0.0, "", lambda: _say_not_read(variant, part, reading))
-    index, gap = _nearest(part, reading, key, judged_by)
+    index, gap = nearest
     read_as = reading.read_as[index]
     if part.kind == "choice":
         read_as = _plain(variant.label(part.id, str(reading.values[index])), variant.lang)

@@ -10,6 +10,7 @@ from typing import Any
 from coursework.errors import BadInput
 from coursework.gradebook import Graded, Line
 from coursework.language import words
+from coursework.submissions import delimiter_of
 
 ACCEPTED = "accepted"
 CHANGES_COLUMNS = (
@@ -120,9 +121,8 @@ def _change(row: Mapping[str, Any], before: tuple[str, str], now: tuple[str, str
 def _rows(path: Path) -> Iterator[dict[str, str]]:
     try:
         with path.open(encoding="utf-8-sig", newline="") as file:
-            first = file.readline()
+            delimiter = delimiter_of(file.readline())
             file.seek(0)
-            delimiter = max((",", ";", "\t"), key=first.count)
             for row in csv.DictReader(file, delimiter=delimiter):
                 yield {(k or "").strip().casefold(): (v or "") for k, v in row.items() if isinstance(v, str)}
     except OSError as fault:

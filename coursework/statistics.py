@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import BadInput
+from coursework.submissions import delimiter_of
 
 #: Verdicts without what follows their colon, in the order they are tried.
 FAMILIES = (
@@ -191,9 +192,9 @@ def _lines(
     """The named columns of a CSV, line by line; with ``decimals``, the last two of them as floats."""
     try:
         with path.open(encoding="utf-8-sig", newline="") as file, _long_cells():
-            first = file.readline()
+            delimiter = delimiter_of(file.readline())
             file.seek(0)
-            reader = csv.reader(file, delimiter=max((",", ";", "\t"), key=first.count))
+            reader = csv.reader(file, delimiter=delimiter)
             places = _places(path, next(reader, []), columns)
             named = itemgetter(*places)
             for cells in reader:

@@ -41,6 +41,11 @@ class Rejected:
     row: dict[str, str] = field(default_factory=dict)
 
 
+def delimiter_of(header: str) -> str:
+    """What parts the cells of a CSV, by its first line: semicolon, comma or tab."""
+    return max((";", ",", "\t"), key=header.count)
+
+
 def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
     """The files to read, folders walked in name order."""
     for path in paths:
@@ -114,7 +119,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
         return
     lines = re.split(r"\r\n|\n|\r", text)
     del text
-    delimiter = max((";", ",", "\t"), key=lines[0].count)
+    delimiter = delimiter_of(lines[0])
     header: list[str] = []
     columns: list[int] = []
     number = 0

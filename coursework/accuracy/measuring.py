@@ -92,20 +92,21 @@ class _Trial:
             self.compared = np.asarray(given.pop(self.driver), dtype=float)
             self.timed = np.resize(self.compared, count)
         else:
-            given.pop(self.driver, None)
             self.timed = np.random.default_rng(1).uniform(-180.0, 180.0, count)
             self.compared = self.timed[: 60 if quick else 400]
-        self.given = {n: v if isinstance(v, str) else float(v) for n, v in given.items()}
+        given = {**exercise._defaults, **given}
+        self.given = {
+            n: v if isinstance(v, str) else float(v)
+            for n, v in given.items()
+            if n in exercise.quantity_names and n != self.driver
+        }
         self.size = max(
             v for n, v in self.given.items() if exercise.units.get(n) == "mm" and isinstance(v, float)
         )
 
     def rows(self) -> Iterator[Row]:
-        used = {n: v for n, v in self.given.items() if n in self.exercise.quantity_names}
         wanted = (*self.study.positions, *self.study.rates)
-        used = {**self.exercise._defaults, **used}
-        used = {n: v for n, v in used.items() if n in self.exercise.quantity_names and n != self.driver}
-        reference = exactly(self.exercise, used, self.driver, self.compared, wanted, _DIGITS)
+        reference = exactly(self.exercise, self.given, self.driver, self.compared, wanted, _DIGITS)
         for way in ways(self.exercise, self.study, self.given):
             compared, timed = self.compared, self.timed
             if way.one_by_one:

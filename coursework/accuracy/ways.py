@@ -42,7 +42,7 @@ class Way:
 
 
 def ways(exercise: CourseExercise, study: Study, given: Mapping[str, Any]) -> Iterator[Way]:
-    """Every way that the study allows, for a mechanism whose driver is moved."""
+    """Every way that the study allows, for a mechanism whose driver is moved: ``given`` is all the rest."""
     bench = _Bench(exercise, study, given)
     if study.positions:
         yield from bench.positions()
@@ -56,8 +56,7 @@ class _Bench:
     def __init__(self, exercise: CourseExercise, study: Study, given: Mapping[str, Any]) -> None:
         self.exercise, self.study = exercise, study
         self.angle, self.speed = exercise.spec.driver.angle, exercise.spec.driver.speed
-        self.given = {**exercise._defaults, **{n: v for n, v in given.items() if n != self.angle}}
-        self.given = {n: v for n, v in self.given.items() if n in exercise.quantity_names}
+        self.given = given
         self.degrees = {n for n, unit in exercise.units.items() if unit == "deg"}
         self.closure = Closure(study.loops, study.unknowns) if study.loops else None
 
