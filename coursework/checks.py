@@ -21,6 +21,7 @@ from coursework.comparing import distance
 from coursework.course import Course, CourseExercise, Variant, open_course
 from coursework.errors import CourseworkError, Starved
 from coursework.issuing import distinct_variants
+from coursework.judging import judged, judges_of
 from coursework.key import Key, envelopes, keys_of
 from coursework.language import languages, plain, significant
 from coursework.model import Part
@@ -237,7 +238,7 @@ def check_solves(variant: Variant, key: Key, report: Report) -> None:
             report.fail(f"seed {variant.seed}: {name} is {value}")
     for part in variant.parts:
         value = key.reference[part.quantity]
-        if part.kind == "number" and part.atol == 0 and value == 0:
+        if part.kind == "number" and part.has_margin and part.atol == 0 and value == 0:
             report.fail(f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance")
     graph = variant.exercise.solution.residual_graph
     residual = graph.evaluate(("residual",), variant.used, variant.effects)["residual"]
@@ -312,6 +313,8 @@ def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
             full[part.id] = value
             printed[part.id] = significant(value, 4 if part.kind != "integer" else 9) + unit
             comma[part.id] = printed[part.id].replace(".", ",")
+            if not part.has_margin:
+                continue
             if part.kind == "number":
                 edge[part.id] = plain(value + part.half_width(value))
             elif part.kind == "angle":
@@ -332,8 +335,9 @@ def check_rounding_students(
         found = student_who_rounds(graph, wanted, given, effects, kept)
         widths = envelopes(exercise, wanted, given, effects, min(kept, exercise.course.rules.digits))
         for index, variant in enumerate(drawn):
+            _check_rounded_together(variant, {q: _at(v, index, len(drawn)) for q, v in found.items()}, report)
             for part in variant.parts:
-                if part.is_exact:
+                if not part.has_margin:
                     continue
                 own, width = (_at(c[part.quantity], index, len(drawn)) for c in (found, widths))
                 along = variant.key.reference.get(part.along)
@@ -347,6 +351,16 @@ def check_rounding_students(
                         f"seed {variant.seed}: who rounds each step to {kept} digits lands {gap:.3g} half-widths "
                         f"from {part.id}"
                     )
+
+
+def _check_rounded_together(variant: Variant, own: Mapping[str, Any], report: Report) -> None:
+    """The same for parts that are judged together."""
+    parts = {part.id: part for part in variant.parts}
+    for name, ids in judges_of(variant):
+        for i, verdict in judged(variant, name, {i: own[parts[i].quantity] for i in ids}).items():
+            report.counts["rounded, judged together"] += 1
+            if verdict.share != 1:
+                report.fail(f"seed {variant.seed}: {name} refuses {i} of who rounds each step")
 
 
 def _at(column: Any, index: int, count: int) -> Any:
@@ -397,7 +411,7 @@ def check_slips(variant: Variant, key: Key, report: Report) -> None:
 
 def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
     """Who errs once and goes on rightly is marked wrong once."""
-    numeric = [p for p in variant.parts if p.kind in ("number", "angle")]
+    numeric = [p for p in variant.parts if p.kind in ("number", "angle") and not p.judge]
     for first in numeric[: len(numeric) // 2 or 1]:
         value = key.reference[first.quantity]
         wrong = value + 11.0 if first.unit == "deg" else 1.13 * value

@@ -31,6 +31,8 @@ def distance(part: Part, value: Any, reference: Any, along: Any = None, envelope
         case "angle":
             gap = abs(math.remainder(value - reference, 360.0))
             return _over(gap, max(part.half_width(reference), envelope), 360.0)
+        case "point":
+            return _off_point(part, value, reference, envelope)
         case "point_on_line":
             return _off_line(part, value, reference, along, envelope)
         case "direction":
@@ -60,6 +62,12 @@ def _over(gap: float, half_width: float, scale: float) -> float:
     if gap <= half_width + SLACK * max(half_width, abs(scale)):
         return min(1.0, gap / half_width) if half_width else 0.0
     return gap / half_width if half_width else math.inf
+
+
+def _off_point(part: Part, point: Any, reference: Any, envelope: float) -> float:
+    gap = float(np.linalg.norm(np.asarray(point, dtype=float) - reference))
+    size = float(np.linalg.norm(reference))
+    return _over(gap, max(part.half_width(size), envelope), size)
 
 
 def _off_line(part: Part, point: Any, reference: Any, along: Any, envelope: float) -> float:

@@ -212,7 +212,7 @@ def record_with_answers(variant: Variant) -> dict[str, Any]:
     answers = {}
     for part in variant.parts:
         value = key.reference[part.quantity]
-        tolerance = None if part.is_exact else key.half_width(part)
+        tolerance = key.half_width(part) if part.has_margin else None
         answers[part.id] = {"value": plain_value(value), "unit": part.unit, "tolerance": tolerance}
     return {**variant.record, "answers": answers}
 

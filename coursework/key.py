@@ -58,7 +58,7 @@ class Key:
 
     def half_width(self, part: Part) -> float:
         """The largest accepted distance from the reference, in the part's unit; 0 for what is judged exactly."""
-        if part.is_exact:
+        if not part.has_margin:
             return 0.0
         size = 1.0 if part.kind == "direction" else float(np.linalg.norm(self.reference[part.quantity]))
         return max(part.half_width(size), self.envelope.get(part.quantity, 0.0))
@@ -125,7 +125,7 @@ class Key:
     def slips(self, part: Part) -> Iterator[tuple[str, Any]]:
         """Wrong values that need nobody to declare them, by kind of slip."""
         reference = self.reference[part.quantity]
-        if part.kind not in ("number", "angle"):
+        if part.kind not in ("number", "angle") or part.judge:
             return
         if reference:
             yield "sign", -reference
@@ -179,7 +179,7 @@ def envelopes(
 ) -> dict[str, Any]:
     """Envelopes for given scalars or arrays: shape ``(n,)`` each, 0 for a quantity that has none."""
     parts = {p.quantity: p for p in exercise.spec.parts}
-    numeric = tuple(q for q in quantities if not parts[q].is_exact and parts[q].kind != "direction")
+    numeric = tuple(q for q in quantities if parts[q].has_margin and parts[q].kind != "direction")
     directions = {q for q in numeric if parts[q].kind == "angle"}
     found = envelope(exercise.solution.graph, numeric, given, effects, digits, directions)
     return {q: found.get(q, 0.0) for q in quantities}

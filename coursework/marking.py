@@ -12,13 +12,14 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from coursework.comparing import distance
 from coursework.errors import WrongValue, unknown
+from coursework.judging import best_judged
 from coursework.key import Key
-from coursework.language import localise, unit_text, words
+from coursework.language import localise, significant, unit_text, with_unit, words
 from coursework.model import Part
 from coursework.reading import (
     Reading,
@@ -31,6 +32,7 @@ from coursework.reading import (
 
 if TYPE_CHECKING:
     from coursework.course import CourseExercise, Variant
+    from coursework.solution import Judged
 
 ECHO = 60  #: characters of an answer quoted back in feedback
 
@@ -166,6 +168,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     key, known = variant.key, known or {}
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
+    together = best_judged(variant, readings)
     before = _Before({}, set())
     marks = {}
     for i, part in asked.items():
@@ -173,8 +176,12 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             before.own[part.quantity] = float(known[i])
             continue
         judged_by, reading = asked[target[i]], readings[i]
-        nearest = _nearest(part, reading, key, judged_by)
-        marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
+        if i in together:
+            nearest = together[i][0], math.inf
+            marks[i] = _mark_judged(variant, key, part, reading, *together[i])
+        else:
+            nearest = _nearest(part, reading, key, judged_by)
+            marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
         if reading.status == "read" and part.kind in ("number", "angle"):
             before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
@@ -222,7 +229,7 @@ def _nearest(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[i
     along = key.reference.get(judged_by.along)
     gaps = [distance(part, v, reference, along) for v in reading.values]
     index = min(range(len(gaps)), key=gaps.__getitem__)
-    if 1 < gaps[index] < math.inf and not part.is_exact:
+    if 1 < gaps[index] < math.inf and part.has_margin:
         # Outside the part's own tolerance: rounding on the way may have brought it there.
         width = key.envelope.get(judged_by.quantity, 0.0)
         gaps = [distance(part, v, reference, along, width) for v in reading.values]
@@ -252,6 +259,52 @@ class _Before(NamedTuple):
     wrong: set[str]
 
 
+def _made(
+    variant: Variant, part: Part, reading: Reading, verdict: str, share: float, read_as: str,
+    tell: Callable[[], _Said], matches: tuple[str, ...] = (),
+) -> Mark:  # fmt: skip
+    points = float(part.points)
+    return Mark(
+        part.id, reading.text, read_as, verdict, share * points, points, variant.lang, matches, False, tell
+    )
+
+
+def _mark_judged(
+    variant: Variant, key: Key, part: Part, reading: Reading, index: int, verdict: Judged
+) -> Mark:
+    """The mark of a part that is judged together with others."""
+    share, read_as = min(1.0, max(0.0, float(verdict.share))), reading.read_as[index]
+
+    def say(sentence: str, **pieces: str) -> _Said:
+        said = _say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
+        return said._replace(sentence=said.sentence + found, pieces={**said.pieces, **told})
+
+    told = {f"found{n}": _quantity(variant, q, v) for n, (q, v) in enumerate(verdict.found.items())}
+    listed = ", ".join("{" + name + "}" for name in told)
+    found = f" {words(variant.lang)['marking']['found'].format(listed)}" if listed else ""
+    if share == 1.0:
+        return _made(variant, part, reading, "correct", 1.0, read_as, lambda: say("correct"))
+    name = verdict.mistake
+    if not name:
+        name = next((n for n, v in key.wrong_ways(part.quantity) if _fits(part, reading, v, None, 0.0)), "")
+    if name:
+        share = share if verdict.mistake and share else key.solution.mistakes[name].share
+        kind = f"mistake:{name}"
+
+        def tell() -> _Said:
+            return say("mistake", says=variant.told(name))
+
+        return _made(variant, part, reading, kind, share, read_as, tell, (kind,))
+    return _made(variant, part, reading, "wrong", share, read_as, lambda: say("wrong"))
+
+
+def _quantity(variant: Variant, name: str, value: float) -> str:
+    """A quantity and its value as Markdown: ``$r_3$ = 120,4 mm``."""
+    exercise = variant.exercise
+    symbol = exercise.solution.symbols.get(name) or exercise.symbol(name)
+    return f"${symbol}$ = {with_unit(significant(value), exercise.units.get(name, '1'), variant.lang)}"
+
+
 def _mark_part(
     variant: Variant,
     key: Key,
@@ -261,23 +314,7 @@ def _mark_part(
     nearest: tuple[int, float],
     before: _Before,
 ) -> Mark:
-    def made(
-        verdict: str, share: float, read_as: str, tell: Callable[[], _Said], matches: tuple[str, ...] = ()
-    ) -> Mark:
-        points = float(part.points)
-        return Mark(
-            part.id,
-            reading.text,
-            read_as,
-            verdict,
-            share * points,
-            points,
-            variant.lang,
-            matches,
-            False,
-            tell,
-        )
-
+    made = partial(_made, variant, part, reading)
     if reading.status != "read":
         return made(reading.status, 0.0, "", lambda: _say_not_read(variant, part, reading))
     index, gap = nearest

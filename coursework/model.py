@@ -26,7 +26,7 @@ from typing import Any
 
 from coursework.errors import BadCourse, WrongValue, nearest
 
-KINDS = ("number", "angle", "integer", "choice", "point_on_line", "direction", "equation")
+KINDS = ("number", "angle", "integer", "choice", "point", "point_on_line", "direction", "equation")
 _EXACT_KINDS = ("integer", "choice", "equation")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 
@@ -99,12 +99,15 @@ class Part:
     """One question: which quantity, in which unit, for how many points, how judged.
 
     ``kind`` is ``number``, ``angle`` (compared modulo 360), ``integer``, ``choice`` (of ``choices``),
-    ``point_on_line`` (a point of the line through the reference along the quantity ``along``),
+    ``point`` (by its distance to the reference), ``point_on_line`` (a point of the line through the reference
+    along the quantity ``along``),
     ``direction`` (any non-zero multiple of the reference vector) or ``equation`` (in the exercise's
     symbols ``variables``, up to a factor, which may hold those of them that are ``parameters``: lengths).
     A numeric answer is right within max(``atol``, ``rtol`` · |reference|), by default 1 %, or 1° for what
     is measured in degrees. ``when``, a function of given quantities, says whether a variant asks the part.
     With ``asks_unit`` the sheet prints no unit beside the box, and an answer without one lacks something.
+    Parts that name the same ``judge``, a function of the solution, are judged together by it: where many
+    answers are right, and the quantity is only one of them. Their ``atol`` and ``rtol`` are the judge's.
     """
 
     quantity: str
@@ -120,6 +123,7 @@ class Part:
     parameters: tuple[str, ...] = ()
     when: Callable[..., Any] | None = None
     asks_unit: bool = False
+    judge: str = ""
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -136,9 +140,9 @@ class Part:
             raise BadCourse(f"part {self.quantity!r}: points must be positive; found {self.points}")
         in_degrees = self.kind == "angle" or self.unit == "deg"
         if self.atol is None:
-            object.__setattr__(self, "atol", 1.0 if in_degrees else 0.0)
+            object.__setattr__(self, "atol", 1.0 if in_degrees and not self.judge else 0.0)
         if self.rtol is None:
-            object.__setattr__(self, "rtol", 0.0 if in_degrees else 0.01)
+            object.__setattr__(self, "rtol", 0.0 if in_degrees or self.judge else 0.01)
         if self.kind == "angle" and self.unit == "1":
             object.__setattr__(self, "unit", "deg")
         if not self.id:
@@ -148,6 +152,11 @@ class Part:
     def is_exact(self) -> bool:
         """Judged by identity: no tolerance."""
         return self.kind in _EXACT_KINDS
+
+    @property
+    def has_margin(self) -> bool:
+        """Right within a margin about its reference."""
+        return not self.is_exact and not self.judge
 
     def half_width(self, reference: float) -> float:
         """The largest accepted distance from a reference, in the part's unit."""

@@ -26,7 +26,8 @@ def plainly_right(
     exchangeable = {i for group in exercise.spec.either_order for i in group}
     for part in exercise.spec.parts:
         column = batch.reference.get(part.quantity)
-        if part.kind not in ("number", "angle") or part.asks_unit or part.id in exchangeable or not column:
+        by_value = part.kind in ("number", "angle") and not part.judge
+        if not by_value or part.asks_unit or part.id in exchangeable or not column:
             continue
         texts = [sheet.get(part.id) for sheet in answers]
         values, _ = read_numbers(texts, part.unit)

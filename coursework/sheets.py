@@ -77,7 +77,7 @@ def _question(variant: Variant, number: int, part: Part) -> Question:
 
 def tolerance_words(part: Part, lang: str) -> str:
     """The accepted margin as a student reads it; empty for what is judged exactly."""
-    if part.is_exact:
+    if part.is_exact or not (part.atol or part.rtol):
         return ""
     table = words(lang)["accepted"]
     percent = localise(plain(round(100 * part.rtol, 6)), lang)
@@ -219,7 +219,7 @@ def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
 
 
 def _margin(variant: Variant, part: Part) -> str:
-    if part.is_exact or part.kind == "direction":
+    if not part.has_margin or part.kind == "direction":
         return ""
     width = localise(significant(variant.key.half_width(part), 2), variant.lang)
     unit = unit_text(part.unit, variant.lang)

@@ -5,6 +5,7 @@
 * a public function defined in it is a quantity, and its parameters are what it needs; so is one that it imports
   from a sibling whose name begins with an underscore: ``from ._strokes import *``;
 * a function marked :func:`mistake` is a wrong way to get a quantity;
+* a function marked :func:`judge` says which answers are right, where many are;
 * ``residual`` gives the governing equations, written independently, relative to their terms: 0 when right;
 * ``KNOWN`` lists pairs (given values, expected values); an expected text such as ``"319.80"`` is
   right to its last printed digit, a number to 1e-9 relative; a third item names the case's effects,
@@ -20,7 +21,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
 from typing import Any
@@ -104,6 +105,36 @@ def stable(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Calla
 
 
 @dataclass(frozen=True)
+class Judged:
+    """What a judge says of one answer.
+
+    ``share``, 0 to 1, is the part of the points that it earns; ``mistake`` the named mistake that it shows, if
+    any; ``found`` what follows from the student's own answers, by quantity, in canonical units: it is told.
+    """
+
+    share: float = 1.0
+    mistake: str = ""
+    found: Mapping[str, float] = field(default_factory=dict)
+
+
+def judge(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Mark a function as the judge of the parts that name it, which are judged together.
+
+    Its first parameter is ``answers``: by part id, what was read, in the part's unit; a float, or an array of
+    coordinates. An answer that is missing or unreadable is not among them. The others are quantities of the
+    exercise. It returns a :class:`Judged` for each answer, by part id::
+
+        @judge
+        def meets_the_demands(answers, stroke):
+            if "r2" not in answers:
+                return {}
+            return {"r2": Judged(abs(2 * answers["r2"] - stroke) <= 0.01 * stroke, found={"stroke": ...})}
+    """
+    function.__judge__ = True  # type: ignore[attr-defined]
+    return function
+
+
+@dataclass(frozen=True)
 class Moving:
     """A point in motion: complex numbers, in mm, mm/s and mm/s^2; None for what is not shown.
 
@@ -136,6 +167,7 @@ class Solution:
     units: Mapping[str, str]
     symbols: Mapping[str, str]
     structures: frozenset[str] = frozenset()  #: quantities that are no numbers: passed on as they come
+    judges: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
 
     @staticmethod
     def of(name: str, module: ModuleType) -> Solution:
@@ -156,7 +188,8 @@ class Solution:
         }
         mistakes = {k: f.__mistake__ for k, f in own.items() if hasattr(f, "__mistake__")}
         special = {"residual", "figure", "motion"}
-        functions = {k: f for k, f in own.items() if k not in special and k not in mistakes}
+        judges = {k: f for k, f in own.items() if hasattr(f, "__judge__")}
+        functions = {k: f for k, f in own.items() if k not in {*special, *mistakes, *judges}}
         if not functions:
             raise BadCourse(f"solutions/{name}.py defines no quantity; a quantity is a function of its name")
         functions |= _hidden(functions, module)
@@ -177,7 +210,20 @@ class Solution:
             dict(getattr(module, "UNITS", {})),
             dict(getattr(module, "SYMBOLS", {})),
             frozenset(getattr(module, "STRUCTURES", ())),
+            judges,
         )
+
+    def judge(self, name: str) -> Callable[..., Any]:
+        """The judge that parts name.
+
+        Raises
+        ------
+        UnknownName
+            The solution has no such judge.
+        """
+        if name not in self.judges:
+            raise unknown("judge", name, self.judges, f"solution {self.name}")
+        return self.judges[name]
 
     def mistaken(self, name: str) -> Graph:
         """The graph with one named mistake in it."""

@@ -8,8 +8,9 @@ same variant for everybody; who issues variants passes such seeds over.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -17,8 +18,10 @@ from coursework.comparing import distance
 from coursework.course import CourseExercise, Variant
 from coursework.errors import CourseworkError
 from coursework.expressions import parse_equation
+from coursework.judging import judged, judges_of
 from coursework.key import Key, ill_limit, keys_of
 from coursework.model import Part
+from coursework.solution import Judged
 
 SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
 HIDDEN = 0.25  #: half-widths within which nothing can tell it
@@ -29,9 +32,13 @@ ILL, MURKY, UNSOLVED = "ill-conditioned", "murky", "unsolved"
 def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
     """For each part that a mistake reaches: ``shown``, ``murky`` or ``hidden``."""
     values = key.wrong[mistake]
+    judged = dict(_judged_wrong(key, values))
     for part in key.variant.parts:
         wrong = values.get(part.quantity)
         if wrong is None or not (isinstance(wrong, str) or np.all(np.isfinite(wrong))):
+            continue
+        if part.judge:
+            yield part, "hidden" if judged[part.id].share == 1 else "shown"
             continue
         along, width = key.reference.get(part.along), key.envelope.get(part.quantity, 0.0)
         reference = key.reference[part.quantity]
@@ -40,6 +47,16 @@ def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
         else:
             gap = distance(part, wrong, reference, along, width)
         yield part, "shown" if gap > SHOWN else "hidden" if gap <= HIDDEN else "murky"
+
+
+def _judged_wrong(key: Key, values: Mapping[str, Any]) -> Iterator[tuple[str, Judged]]:
+    """What judges say of the right answers with a mistake's values in their places."""
+    parts = {part.id: part for part in key.variant.parts}
+    for name, ids in judges_of(key.variant):
+        quantities = {i: parts[i].quantity for i in ids}
+        if values.keys() & quantities.values():
+            answers = {i: values.get(q, key.reference[q]) for i, q in quantities.items()}
+            yield from judged(key.variant, name, answers).items()
 
 
 @lru_cache(maxsize=1024)
@@ -53,7 +70,7 @@ def conditioning(key: Key) -> float:
     shares = [
         key.envelope.get(part.quantity, 0.0) / limit
         for part in key.variant.parts
-        if not part.is_exact and (limit := ill_limit(part, key.reference[part.quantity])) > 0
+        if part.has_margin and (limit := ill_limit(part, key.reference[part.quantity])) > 0
     ]
     return max(shares, default=0.0)
 
@@ -66,7 +83,7 @@ def flaws(key: Key) -> Iterator[str]:
         yield f"{UNSOLVED}: {fault}"
         return
     for part in key.variant.parts:
-        if not part.is_exact and key.envelope.get(part.quantity, 0.0) > ill_limit(
+        if part.has_margin and key.envelope.get(part.quantity, 0.0) > ill_limit(
             part, reference[part.quantity]
         ):
             yield f"{ILL}: {part.id}"
