@@ -26,7 +26,7 @@ from coursework.key import Key, envelopes, keys_of
 from coursework.language import languages, plain, significant
 from coursework.model import Part
 from coursework.rounding import student_who_rounds
-from coursework.worth import SHOWN, conditioning, visibility, worthy
+from coursework.worth import SHOWN, conditioning, judged_wrong, visibility, worthy
 
 RESIDUAL = 1e-9  #: largest relative residual of the governing equations
 RENDERED = 1  #: variants whose sheets are rendered in every format and language
@@ -376,11 +376,9 @@ def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
         for part, seen in visibility(key, name):
             tally[seen] += 1
             if seen == "shown":
-                wrong = key.wrong[name][part.quantity]
-                shown[part.id] = (
-                    "; ".join(map(repr, wrong.tolist())) if isinstance(wrong, np.ndarray) else wrong
-                )
-        _check_recognised(variant, name, shown, report)
+                shown[part.id] = _written(key.wrong[name][part.quantity])
+        together = {i: _written(v) for _, answers in judged_wrong(key, name) for i, v in answers.items()}
+        _check_recognised(variant, name, shown, together, report)
 
 
 def check_slips(variant: Variant, key: Key, report: Report) -> None:
@@ -431,10 +429,38 @@ def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
                 report.fail(
                     f"seed {variant.seed}: {part_id} follows from a wrong {first.id} but marks {mark.verdict}"
                 )
+        _check_follows_together(variant, key, first, wrong, report)
 
 
-def _check_recognised(variant: Variant, name: str, shown: Mapping[str, Any], report: Report) -> None:
-    marking = variant.grade(shown)
+def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: float, report: Report) -> None:
+    """The same for parts that are judged together."""
+    parts = {part.id: part for part in variant.parts}
+    own = {first.quantity: wrong}
+    for name, ids in judges_of(variant):
+        follows = {i: key.followed(parts[i], own, own) for i in ids}
+        if None in follows.values() or any(
+            v.share != 1 for v in judged(variant, name, follows, own).values()
+        ):
+            continue  # what is asked cannot be had from there
+        marking = variant.grade({first.id: wrong, **follows})
+        report.counts["follow-through"] += len(ids)
+        for i in ids:
+            if marking[i].verdict not in ("correct", "follow_through"):
+                report.fail(
+                    f"seed {variant.seed}: {i} follows from a wrong {first.id} but marks {marking[i].verdict}"
+                )
+
+
+def _written(value: Any) -> Any:
+    """A value as a student may write it: a vector by its coordinates."""
+    return "; ".join(map(repr, value.tolist())) if isinstance(value, np.ndarray) else value
+
+
+def _check_recognised(
+    variant: Variant, name: str, shown: Mapping[str, Any], together: Mapping[str, Any], report: Report
+) -> None:
+    """``together``: what stands beside the shown answers where they are judged as a group."""
+    marking = variant.grade({**together, **shown})
     for part_id, answer in shown.items():
         mark = marking[part_id]
         report.counts["mistakes recognised"] += 1

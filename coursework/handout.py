@@ -39,6 +39,7 @@ class Question:
     points: float
     tolerance: str  #: in words a student understands; empty for exact kinds
     asks_unit: bool = False  #: the answer is to come with its unit, which the sheet does not print
+    judge: str = ""  #: of the parts that are judged together with this one
 
 
 @dataclass(frozen=True)

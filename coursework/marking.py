@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from coursework.comparing import distance
 from coursework.errors import WrongValue, unknown
-from coursework.judging import best_judged
+from coursework.judging import Verdict, best_judged
 from coursework.key import Key
 from coursework.language import localise, significant, unit_text, with_unit, words
 from coursework.model import Part
@@ -32,7 +32,6 @@ from coursework.reading import (
 
 if TYPE_CHECKING:
     from coursework.course import CourseExercise, Variant
-    from coursework.solution import Judged
 
 ECHO = 60  #: characters of an answer quoted back in feedback
 
@@ -168,7 +167,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     key, known = variant.key, known or {}
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
-    together = best_judged(variant, readings)
+    together: dict[str, Verdict] = {}
     before = _Before({}, set())
     marks = {}
     for i, part in asked.items():
@@ -176,9 +175,11 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             before.own[part.quantity] = float(known[i])
             continue
         judged_by, reading = asked[target[i]], readings[i]
+        if part.judge and i not in together:
+            together |= best_judged(variant, part.judge, readings, before.own, before.wrong)
         if i in together:
-            nearest = together[i][0], math.inf
-            marks[i] = _mark_judged(variant, key, part, reading, *together[i])
+            nearest = together[i].reading, math.inf
+            marks[i] = _mark_judged(variant, key, part, reading, together[i])
         else:
             nearest = _nearest(part, reading, key, judged_by)
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
@@ -269,11 +270,13 @@ def _made(
     )
 
 
-def _mark_judged(
-    variant: Variant, key: Key, part: Part, reading: Reading, index: int, verdict: Judged
-) -> Mark:
+def _mark_judged(variant: Variant, key: Key, part: Part, reading: Reading, judged: Verdict) -> Mark:
     """The mark of a part that is judged together with others."""
-    share, read_as = min(1.0, max(0.0, float(verdict.share))), reading.read_as[index]
+    read_as, verdict = reading.read_as[judged.reading], judged.said
+    if verdict is None:
+        alone = partial(_say, variant, part, "incomplete", read=echo(read_as, variant.lang))
+        return _made(variant, part, reading, "wrong", 0.0, read_as, alone)
+    share = min(1.0, max(0.0, float(verdict.share)))
 
     def say(sentence: str, **pieces: str) -> _Said:
         said = _say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
@@ -283,7 +286,8 @@ def _mark_judged(
     listed = ", ".join("{" + name + "}" for name in told)
     found = f" {words(variant.lang)['marking']['found'].format(listed)}" if listed else ""
     if share == 1.0:
-        return _made(variant, part, reading, "correct", 1.0, read_as, lambda: say("correct"))
+        kind, share = ("follow_through", key.rules.follow_through) if judged.followed else ("correct", 1.0)
+        return _made(variant, part, reading, kind, share, read_as, lambda: say(kind))
     name = verdict.mistake
     if not name:
         name = next((n for n, v in key.wrong_ways(part.quantity) if _fits(part, reading, v, None, 0.0)), "")

@@ -72,6 +72,7 @@ def _question(variant: Variant, number: int, part: Part) -> Question:
         points=part.points,
         tolerance=tolerance_words(part, variant.lang),
         asks_unit=part.asks_unit,
+        judge=part.judge,
     )
 
 

@@ -122,7 +122,8 @@ def judge(function: Callable[..., Any]) -> Callable[..., Any]:
 
     Its first parameter is ``answers``: by part id, what was read, in the part's unit; a float, or an array of
     coordinates. An answer that is missing or unreadable is not among them. The others are quantities of the
-    exercise. It returns a :class:`Judged` for each answer, by part id::
+    exercise. It returns a :class:`Judged` for each answer, by part id, and none for one that cannot be judged
+    because others are missing::
 
         @judge
         def meets_the_demands(answers, stroke):

@@ -30,15 +30,20 @@ ILL, MURKY, UNSOLVED = "ill-conditioned", "murky", "unsolved"
 
 
 def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
-    """For each part that a mistake reaches: ``shown``, ``murky`` or ``hidden``."""
+    """For each part that a mistake reaches: ``shown``, ``murky`` or ``hidden``.
+
+    Not for parts that are judged together and whose quantities the mistake is not about: they follow from
+    what is wrong before them.
+    """
     values = key.wrong[mistake]
-    judged = dict(_judged_wrong(key, values))
+    together = dict(_judged_wrong(key, mistake))
     for part in key.variant.parts:
         wrong = values.get(part.quantity)
         if wrong is None or not (isinstance(wrong, str) or np.all(np.isfinite(wrong))):
             continue
         if part.judge:
-            yield part, "hidden" if judged[part.id].share == 1 else "shown"
+            if part.id in together:
+                yield part, "hidden" if together[part.id].share == 1 else "shown"
             continue
         along, width = key.reference.get(part.along), key.envelope.get(part.quantity, 0.0)
         reference = key.reference[part.quantity]
@@ -49,14 +54,19 @@ def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
         yield part, "shown" if gap > SHOWN else "hidden" if gap <= HIDDEN else "murky"
 
 
-def _judged_wrong(key: Key, values: Mapping[str, Any]) -> Iterator[tuple[str, Judged]]:
-    """What judges say of the right answers with a mistake's values in their places."""
+def judged_wrong(key: Key, mistake: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """The judges of the quantities that a mistake is about, each with the answers by part that it gives."""
+    values, about = key.wrong[mistake], key.solution.mistakes[mistake].targets
     parts = {part.id: part for part in key.variant.parts}
     for name, ids in judges_of(key.variant):
         quantities = {i: parts[i].quantity for i in ids}
-        if values.keys() & quantities.values():
-            answers = {i: values.get(q, key.reference[q]) for i, q in quantities.items()}
-            yield from judged(key.variant, name, answers).items()
+        if not set(about).isdisjoint(quantities.values()):
+            yield name, {i: values.get(q, key.reference[q]) for i, q in quantities.items()}
+
+
+def _judged_wrong(key: Key, mistake: str) -> Iterator[tuple[str, Judged]]:
+    for name, answers in judged_wrong(key, mistake):
+        yield from judged(key.variant, name, answers).items()
 
 
 @lru_cache(maxsize=1024)

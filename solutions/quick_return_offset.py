@@ -11,21 +11,11 @@ import numpy as np
 
 from coursework.degrees import asin, atan2, cos, from_radians, polar, sin, sqrt
 from coursework.errors import CannotAssemble
-from coursework.figures import (
-    Figure,
-    centre_line,
-    circle,
-    ground_pivot,
-    line,
-    link,
-    pin,
-    point,
-    rotation_arrow,
-)
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import Moving, formula, mistake, stable
 
+from ._in_line import _in_line
 from ._strokes import *
 
 UNITS = {
@@ -196,26 +186,7 @@ def motion(r2, e, theta2, omega2, p, q, omega3, xC, v_C):
 
 
 def figure(r2, e, omega2, x1, x2):
-    """The two positions in line, and the arc that the crank covers during the advance."""
-    C1, C2 = complex(x1, e), complex(x2, e)
-    folded, stretched = atan2(e, x1) + 180, atan2(e, x2)
-    A1, A2 = polar(r2, folded), polar(r2, stretched)
-    longer = (stretched, folded) if e >= 0 else (folded, stretched + 360)
-    start, end = longer if omega2 > 0 else longer[::-1]
-    return Figure(
-        circle(0j, r2, dashed=True),
-        line(C1, C2, dashed=True),
-        centre_line(0j, x2, label="x"),
-        link(A1, C1),
-        link(0j, A2),
-        link(A2, C2),
-        rotation_arrow(0j, 0.6 * r2, start, end, label=r"\alpha"),
-        ground_pivot(0j, "O"),
-        pin(A1, "A_1"),
-        pin(A2, "A_2"),
-        point(C1, "C_1"),
-        point(C2, "C_2"),
-    )
+    return _in_line(r2, e, x1, x2, anticlockwise=omega2 > 0)
 
 
 def residual(r2, r3, e, theta2, omega2, xC, v_C, omega3, stroke, alpha, beta, Q, t_advance, t_return):
