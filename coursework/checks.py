@@ -335,7 +335,9 @@ def check_rounding_students(
         found = student_who_rounds(graph, wanted, given, effects, kept)
         widths = envelopes(exercise, wanted, given, effects, min(kept, exercise.course.rules.digits))
         for index, variant in enumerate(drawn):
-            _check_rounded_together(variant, {q: _at(v, index, len(drawn)) for q, v in found.items()}, report)
+            if kept >= exercise.course.rules.digits:
+                own_answers = {q: _at(v, index, len(drawn)) for q, v in found.items()}
+                _check_rounded_together(variant, own_answers, report)
             for part in variant.parts:
                 if not part.has_margin:
                     continue
@@ -354,7 +356,7 @@ def check_rounding_students(
 
 
 def _check_rounded_together(variant: Variant, own: Mapping[str, Any], report: Report) -> None:
-    """The same for parts that are judged together."""
+    """The same for parts that are judged together, whose margin does not follow the rounding."""
     parts = {part.id: part for part in variant.parts}
     for name, ids in judges_of(variant):
         for i, verdict in judged(variant, name, {i: own[parts[i].quantity] for i in ids}).items():

@@ -12,20 +12,10 @@ from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import Judged, formula, judge, mistake
 
 from ._in_line import _in_line
+from ._slow_arc import *
 
 UNITS = {"phi": "deg", "lean": "deg"}
 SYMBOLS = {"phi": r"\varphi", "lean": r"\left|\theta_3\right|_{\max}"}
-
-
-@formula(r"360^{\circ} \times \frac{<Q>}{1 + <Q>}")
-def alpha(Q):
-    """The slow stroke takes this of a turn."""
-    return 360 * Q / (1 + Q)
-
-
-@formula(r"<alpha> - 180^{\circ}")
-def phi(alpha):
-    return alpha - 180
 
 
 @formula(r"\tan \frac{<phi>}{2}")
@@ -86,21 +76,6 @@ def _judged(r2, r3, e, stroke, alpha, delta, mode):
     # A half for the stroke, a half for the ratio; what jams is worth half of that.
     share = 1 - 0.5 * failed["stroke_missed"] - 0.5 * failed["ratio_missed"]
     return Judged(share / 2 if failed["rod_leans_too_much"] else share, first, found)
-
-
-@mistake("alpha")
-def share_of_half_a_turn(Q):
-    return 180 * Q
-
-
-@mistake("alpha", share=0.5)
-def angle_of_the_return(Q):
-    return 360 / (1 + Q)
-
-
-@mistake("alpha")
-def excess_twice(alpha):
-    return 2 * alpha - 180
 
 
 @mistake("r2", "r3", "e")

@@ -1,0 +1,185 @@
+"""Parts that are judged together, where many answers are right."""
+
+from __future__ import annotations
+
+import pytest
+
+import coursework
+from coursework import checks
+from coursework.errors import BadCourse, UnknownName
+
+EXERCISE = """
+from coursework.model import Exercise, Part, drawn
+
+EXERCISE = Exercise(
+    given={"sum": drawn(10, 90, step=1, unit="mm")},
+    parts=(
+        Part("half", unit="mm"),
+        Part("x", unit="mm", points=2, judge="adds_up"),
+        Part("y", unit="mm", points=2, judge="adds_up"),
+        Part("corner", unit="mm", kind="point", atol=0.5, rtol=0),
+    ),
+)
+"""
+SOLUTION = """
+import numpy as np
+
+from coursework.solution import Judged, judge, mistake
+
+
+def half(sum):
+    return sum / 2
+
+
+def x(half):
+    return half
+
+
+def y(half):
+    return half
+
+
+def corner(sum):
+    return np.stack([sum, 2 * sum], axis=-1)
+
+
+@judge
+def adds_up(answers, half):
+    if len(answers) < 2:
+        return {}
+    total = answers["x"] + answers["y"]
+    if abs(total - 2 * half) <= 0.1:
+        return dict.fromkeys(answers, Judged())
+    name = "twice" if abs(total - 4 * half) <= 0.1 else ""
+    return dict.fromkeys(answers, Judged(0.5 if total > 0 else 0.0, name, {"sum": total}))
+
+
+@mistake("x", "y", share=0.25)
+def twice(x, y):
+    return 2 * x, 2 * y
+
+
+def residual(sum, half, x, y):
+    return abs(x + y - sum), abs(2 * half - sum)
+
+
+KNOWN = (({"sum": 10}, {"half": 5, "corner": (10, 20)}),)
+"""
+TEXT = "# Sums\n\nFind two numbers.\n\n## half\nHalf.\n\n## x\nOne.\n\n## y\nOther.\n\n## corner\nA point.\n"
+WORDS = "# Sums\n\nMany are right.\n\n## mistake twice\nTwice too much.\n"
+
+
+@pytest.fixture
+def course(tmp_path):
+    for folder in ("exercises", "solutions"):
+        (tmp_path / folder).mkdir()
+    (tmp_path / "exercises" / "sums.py").write_text(EXERCISE, "utf-8")
+    (tmp_path / "solutions" / "sums.py").write_text(SOLUTION, "utf-8")
+    for lang in ("fr", "en"):
+        (tmp_path / "exercises" / f"sums.{lang}.md.j2").write_text(TEXT, "utf-8")
+        (tmp_path / "solutions" / f"sums.{lang}.md.j2").write_text(WORDS, "utf-8")
+    return tmp_path
+
+
+@pytest.fixture
+def variant(course):
+    return coursework.open_course(course)["sums"].variant(3, "en")
+
+
+def verdicts(variant, **answers):
+    return {part: mark.verdict for part, mark in variant.grade(answers).items() if part in answers}
+
+
+def test_many_answers_are_right_in_any_unit(variant):
+    total = variant.given["sum"]
+    for x in (0, 1, -300, total):
+        answers = {"x": f"{x} mm", "y": f"{(total - x) / 10} cm"}
+        assert set(verdicts(variant, **answers).values()) == {"correct"}
+
+
+def test_a_named_mistake_says_what_follows_from_the_answers(variant):
+    total = variant.given["sum"]
+    marking = variant.grade({"x": total, "y": total})
+    assert marking["x"].verdict == "mistake:twice"
+    assert marking["x"].points == 1.0  # the judge's own share of 2 points
+    assert "Twice too much." in marking["x"].feedback
+    assert f"{2 * total:g} mm" in marking["x"].feedback
+
+
+def test_what_is_not_right_and_has_no_name_is_wrong_and_keeps_its_share(variant):
+    marking = variant.grade({"x": 1, "y": 1})
+    assert (marking["x"].verdict, marking["x"].points) == ("wrong", 1.0)
+    assert variant.grade({"x": -1, "y": -1})["y"].points == 0.0
+
+
+def test_one_answer_of_a_group_cannot_be_judged_alone(variant):
+    mark = variant.grade({"x": 5, "y": "?"})["x"]
+    assert (mark.verdict, mark.points) == ("wrong", 0.0)
+    assert "missing" in mark.feedback
+
+
+def test_answers_are_judged_from_the_students_own_earlier_ones(variant):
+    total = variant.given["sum"]
+    answers = {"half": total, "x": total / 2, "y": 1.5 * total}
+    assert verdicts(variant, **answers) == {
+        "half": "wrong", "x": "follow_through", "y": "follow_through",
+    }  # fmt: skip
+    # What is right needs no earlier error to explain it.
+    assert verdicts(variant, half=total, x=0, y=total)["x"] == "correct"
+
+
+def test_an_answer_that_may_be_read_in_two_ways_is_read_the_way_that_is_right(course):
+    variant = next(
+        v for v in coursework.open_course(course)["sums"].variants(range(200), "en") if v.given["sum"] == 12
+    )
+    # "1,234" is 1.234 or 1234.
+    assert verdicts(variant, x="1,234", y=10.766) == {"x": "correct", "y": "correct"}
+    assert verdicts(variant, x="1,234", y=-1222) == {"x": "correct", "y": "correct"}
+
+
+def test_a_point_is_right_within_its_distance(variant):
+    x, y = variant.given["sum"], 2 * variant.given["sum"]
+    right = (f"({x}; {y})", f"{x / 10} ; {y / 10} cm", [x + 0.3, y - 0.39])
+    wrong = (f"({x + 0.4}; {y + 0.4})", [y, x], f"({x}; {y}) deg")
+    assert [verdicts(variant, corner=a)["corner"] for a in right] == ["correct"] * 3
+    assert "correct" not in [verdicts(variant, corner=a)["corner"] for a in wrong]
+    assert verdicts(variant, corner=x)["corner"] == "unreadable"
+
+
+def test_the_promises_hold_for_it(course):
+    report = checks.check(coursework.open_course(course)["sums"], 30)
+    assert report.failures == []
+    assert report.counts["rounded, judged together"] > 0
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('judge="adds_up"', 'judge="add_up"', "no judge 'add_up'"),
+        ("def adds_up(answers, half)", "def adds_up(half, answers)", "first parameter must be 'answers'"),
+        ('name = "twice"', 'name = "thrice"', "names a mistake 'thrice'"),
+        ("dict.fromkeys(answers, Judged())", '{"x": Judged()}', "says nothing of 'y'"),
+    ],
+)
+def test_a_judge_that_cannot_judge_is_the_authors_fault_and_says_so(course, old, new, message):
+    for folder in ("exercises", "solutions"):
+        path = course / folder / "sums.py"
+        path.write_text(path.read_text("utf-8").replace(old, new), "utf-8")
+    variant = coursework.open_course(course)["sums"].variant(3, "en")
+    total = variant.given["sum"]
+    with pytest.raises((BadCourse, UnknownName), match=message):
+        [variant.grade(answers) for answers in ({"x": total, "y": total}, {"x": total, "y": 0})]
+
+
+def test_the_bulk_marker_gives_the_same_marks(course, tmp_path):
+    from coursework.gradebook import _Job, _mark_chunk
+
+    opened = coursework.open_course(course)
+    variants = opened["sums"].variants(range(20), "en")
+    jobs = [
+        _Job(v.record, {"half": str(v.given["sum"] / 2), "x": "1", "y": str(v.given["sum"] - 1 - i % 2)})
+        for i, v in enumerate(variants)
+    ]
+    for variant, job, lines in zip(variants, jobs, _mark_chunk(opened, jobs, False), strict=True):
+        alone = {p: (m.verdict, m.points) for p, m in variant.grade(job.answers).items()}
+        assert {line[0]: (line[3], line[4]) for line in lines} == alone
