@@ -10,6 +10,7 @@
   right to its last printed digit, a number to 1e-9 relative; a third item names the case's effects,
   where they are not those of the exercise's own parts;
 * ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
+* ``polygons`` gives the velocity and acceleration polygons, each a :class:`~coursework.polygons.Polygon`;
 * ``STRUCTURES`` names the quantities whose value is a list or a record, such as a list of joints: a request
   may give them, and they are passed to the functions as they come;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
@@ -23,12 +24,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError, unknown
 from coursework.graph import Graph, Node, Replacement
+
+if TYPE_CHECKING:
+    from coursework.polygons import Polygon
 
 
 @dataclass(frozen=True)
@@ -136,6 +140,7 @@ class Solution:
     units: Mapping[str, str]
     symbols: Mapping[str, str]
     structures: frozenset[str] = frozenset()  #: quantities that are no numbers: passed on as they come
+    polygons: Callable[..., Sequence[Polygon]] | None = None
 
     @staticmethod
     def of(name: str, module: ModuleType) -> Solution:
@@ -155,7 +160,7 @@ class Solution:
             and _belongs(value, module)
         }
         mistakes = {k: f.__mistake__ for k, f in own.items() if hasattr(f, "__mistake__")}
-        special = {"residual", "figure", "motion"}
+        special = {"residual", "figure", "motion", "polygons"}
         functions = {k: f for k, f in own.items() if k not in special and k not in mistakes}
         if not functions:
             raise BadCourse(f"solutions/{name}.py defines no quantity; a quantity is a function of its name")
@@ -177,6 +182,7 @@ class Solution:
             dict(getattr(module, "UNITS", {})),
             dict(getattr(module, "SYMBOLS", {})),
             frozenset(getattr(module, "STRUCTURES", ())),
+            own.get("polygons"),
         )
 
     def mistaken(self, name: str) -> Graph:
@@ -219,6 +225,11 @@ class Solution:
         if self.residual is None:
             raise BadCourse(f"solutions/{self.name}.py states no residual; write the governing equations")
         return self.graph.with_functions({"residual": self.residual})
+
+    @cached_property
+    def polygon_graph(self) -> Graph:
+        """The graph with the polygons as one more quantity; only where the solution states some."""
+        return self.graph.with_functions({"polygons": self.polygons})
 
 
 def _belongs(function: Any, module: ModuleType) -> bool:
