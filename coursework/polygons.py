@@ -272,3 +272,35 @@ class Polygon:
 def moving(polygons: Sequence[Polygon]) -> tuple[Polygon, ...]:
     """Those polygons in which something moves."""
     return tuple(p for p in polygons if p.size > 0)
+
+
+# ------------------------------------------------------------------------- usual sides
+
+
+def turning(
+    start: str, end: str, of: str, line: str, vector: complex, omega: float, length: str = ""
+) -> Side:
+    r"""The velocity that a turning bar gives one of its points about another: square to the bar.
+
+    ``of`` names it (``B/A``, or ``B`` about a fixed point), ``line`` is the bar (``AB``), ``vector`` its vector in
+    mm, ``omega`` its rate in rad/s; ``length`` is stated where it is known before the drawing.
+    """
+    return Side(
+        start, end, rf"\vec{{V}}_{{{of}}}", 1j * omega * vector, rf"\perp {line}", length, 1j * vector
+    )
+
+
+def normal(start: str, end: str, of: str, line: str, vector: complex, omega: float, length: str) -> Side:
+    """The normal acceleration of a bar's point about another, along the bar: known once the velocities are."""
+    return Side(
+        start, end, rf"\vec{{a}}^n_{{{of}}}", -(omega**2) * vector, rf"\parallel {line}", length, -vector
+    )
+
+
+def tangential(
+    start: str, end: str, of: str, line: str, vector: complex, alpha: float, length: str = ""
+) -> Side:
+    """The tangential acceleration of a bar's point about another, square to the bar; ``alpha`` in rad/s^2."""
+    return Side(
+        start, end, rf"\vec{{a}}^t_{{{of}}}", 1j * alpha * vector, rf"\perp {line}", length, 1j * vector
+    )

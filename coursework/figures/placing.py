@@ -9,6 +9,7 @@ from __future__ import annotations
 import cmath
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 
 from coursework.figures.ink import BAR, THIN, Ink, turn
@@ -58,30 +59,41 @@ class Wish:
         """The point that the label must be in sight of: on its arc for an angle."""
         return self.anchor + self.toward * max(0.0, self.start) if self.rank == ANGLES else self.anchor
 
-    def candidates(self, half: complex) -> Iterator[tuple[float, complex]]:
-        """Pairs (cost, centre of the box)."""
-        if self.along:
-            yield from self._beside(half)
-        late = 3.0 if self.along else 0.0
-        turning = 1.6 if self.rank == ANGLES else 0.7
-        for sixteenth in range(16):
-            way = self.toward * turn(22.5 * sixteenth)
-            away = abs(cmath.phase(way / self.toward))
-            for step in _STEPS:
-                yield (
-                    late + step + turning * away,
-                    self.anchor + way * (self.start + step + _support(half, way)),
-                )
-
-    def _beside(self, half: complex) -> Iterator[tuple[float, complex]]:
+    def candidates(self, half: complex) -> Iterator[tuple[complex, float]]:
+        """Pairs (centre of the box, white to its lines), the cheapest first."""
         p, q = self.along or (self.anchor, self.anchor)
+        for around, turned, step, clear in _order(self.along is not None, self.rank == ANGLES):
+            foot = self.anchor if around else p + (q - p) * step[0]
+            way = self.toward * turned
+            yield foot + way * (self.start + step[1] + _support(half, way)), clear
+
+
+@cache
+def _order(beside: bool, at_arc: bool) -> tuple[tuple[bool, complex, tuple[float, float], float], ...]:
+    """Places for a label, the cheapest first: whether around the anchor, the turn from the preferred direction,
+    the fraction of the segment and the distance from it, and the white that is asked.
+
+    The same for all labels of a kind, so it is put in order once.
+    """
+    places = []
+    if beside:
         for side in (1, -1):
-            way = side * self.toward
             for fraction in _FRACTIONS:
-                foot = p + (q - p) * fraction
                 for step in _STEPS[:6]:
                     cost = step + 4 * abs(fraction - 0.5) + 0.4 * (side < 0)
-                    yield cost, foot + way * (self.start + step + _support(half, way))
+                    places.append((cost, False, side, (fraction, step)))
+    late, turning = (3.0 if beside else 0.0), (1.6 if at_arc else 0.7)
+    for sixteenth in range(16):
+        turned = turn(22.5 * sixteenth)
+        for step in _STEPS:
+            cost = late + step + turning * abs(cmath.phase(turned))
+            places.append((cost, True, turned, (0.0, step)))
+    tries = [
+        (round(place[0] + more, 6), number, place[1:], clear)
+        for number, place in enumerate(places)
+        for clear, more in ((_AIRY, 0.0), (_CLEAR, 1.2))
+    ]
+    return tuple((*place, clear) for _, _, place, clear in sorted(tries, key=lambda t: t[:2]))
 
 
 def _support(half: complex, way: complex) -> float:
@@ -187,15 +199,9 @@ def _choose(wish: Wish, obstacles: Obstacles) -> Label:
     text = read(wish.label)
     width, height = text.box
     half = complex(width, height) / 2
-    tries = [
-        (round(cost + late, 6), number, center, clear)
-        for number, (cost, center) in enumerate(wish.candidates(half))
-        for clear, late in ((_AIRY, 0.0), (_CLEAR, 1.2))
-    ]
-    tries.sort(key=lambda t: t[:2])
     # A label is in sight of what it names; failing that, a leader may pass over a bar.
     for in_sight in (True, False):
-        for _, _, center, clear in tries:
+        for center, clear in wish.candidates(half):
             if not obstacles.free(center, half, clear, wish.inside):
                 continue
             leader = _leader(wish, center, half)
