@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -267,11 +267,6 @@ class Polygon:
         if anchor != self.pole:
             yield from self._path(self.hangs[anchor][0], anchor)
         yield side, 1 if side.end == target else -1
-
-
-def moving(polygons: Sequence[Polygon]) -> tuple[Polygon, ...]:
-    """Those polygons in which something moves."""
-    return tuple(p for p in polygons if p.size > 0)
 
 
 # ------------------------------------------------------------------------- usual sides

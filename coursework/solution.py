@@ -226,11 +226,6 @@ class Solution:
             raise BadCourse(f"solutions/{self.name}.py states no residual; write the governing equations")
         return self.graph.with_functions({"residual": self.residual})
 
-    @cached_property
-    def polygon_graph(self) -> Graph:
-        """The graph with the polygons as one more quantity; only where the solution states some."""
-        return self.graph.with_functions({"polygons": self.polygons})
-
 
 def _belongs(function: Any, module: ModuleType) -> bool:
     """Whether a function is the module's own, or comes from a module that solutions share: ``_strokes``."""

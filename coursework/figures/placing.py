@@ -184,15 +184,16 @@ def distance(z: complex, a: complex, b: complex) -> float:
     return abs(z - a - t * d)
 
 
-def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[Label, ...]:
-    """Places every label, in order of rank then of writing."""
+def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[tuple[Label, ...], tuple[int, ...]]:
+    """Places every label, in order of rank then of writing; with each, the place of its wish among them."""
     obstacles = Obstacles(ink)
-    for wish in sorted(wishes, key=lambda w: w.rank):
-        label = _choose(wish, obstacles)
+    order = sorted(range(len(wishes)), key=lambda k: wishes[k].rank)
+    for k in order:
+        label = _choose(wishes[k], obstacles)
         obstacles.labels.append(label)
         if label.leader:
             obstacles.add([(*label.leader, THIN / 2)])
-    return tuple(obstacles.labels)
+    return tuple(obstacles.labels), tuple(order)
 
 
 def _choose(wish: Wish, obstacles: Obstacles) -> Label:
