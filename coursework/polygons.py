@@ -223,7 +223,9 @@ class Polygon:
         gap = abs(found[side.end] - found[side.start] - side.value)
         across = abs((side.value * side.along.conjugate()).imag) if side.is_line else 0.0
         if max(gap, across) > _CLOSED * self.size:
-            raise BadCourse(f"{side}: the polygon does not close; {max(gap, across):.3g} {self.unit} are left")
+            raise BadCourse(
+                f"{side}: the polygon does not close; {max(gap, across):.3g} {self.unit} are left"
+            )
 
     # ------------------------------------------------------------------------ scale
 

@@ -15,7 +15,7 @@ from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import Moving, formula, mistake, stable
 
-from ._slider_crank import _accelerations, _velocities
+from ._polygons import _accelerations, _crank_a, _crank_v, _slider_a, _slider_v, _velocities
 
 UNITS = {"p": "mm", "q": "mm"}
 
@@ -159,10 +159,14 @@ def motion(r2, e, theta2, omega2, alpha2, r1, r1_dot, r1_ddot):
 
 def polygons(r2, theta2, omega2, alpha2, p, q, omega3, r1_dot, alpha3, r1_ddot, kv, ka):
     """At the scales of the statement."""
-    rod = q + 1j * p
+    OA, AB = polar(r2, theta2), q + 1j * p
     return (
-        _velocities(r2, theta2, omega2, rod, omega3, r1_dot, scale=kv),
-        _accelerations(r2, theta2, omega2, alpha2, rod, omega3, alpha3, r1_ddot, scale=ka),
+        _velocities(_crank_v("A", "OA", OA, omega2), _slider_v("B", "A", AB, omega3, r1_dot), scale=kv),
+        _accelerations(
+            _crank_a("A", "OA", OA, omega2, alpha2),
+            _slider_a("B", "A", AB, omega3, alpha3, "r_3", r1_ddot),
+            scale=ka,
+        ),
     )
 
 
