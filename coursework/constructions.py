@@ -18,10 +18,11 @@ from coursework.polygons import Polygon, Side, Stage
 
 BOX_MM = (110.0, 90.0)  #: width and height of a whole drawing on paper
 SCALES = {"velocity": "k_v", "acceleration": "k_a"}
-_SYMBOLS_MM = (26.0, 34.0)  #: of the box: what labels, ends of lines and the bar of the scale take
+_SYMBOLS_MM = (22.0, 30.0)  #: of the box: what labels, ends of lines and the bar of the scale take
 _SMALL_MM = (38.0, 30.0)  #: the points of a drawing of a step
 _BEYOND = (3.0, 5.0)  #: mm by which a line passes its ends, on the drawing of a step and on the whole
 _BAR_MM = 20.0
+_NAMES = 10  #: of vectors that a drawing bears; where there are more, the points tell them
 _SAME = 0.25  #: mm on paper under which two points are one
 
 
@@ -127,12 +128,16 @@ class Construction:
 
     @cached_property
     def figure(self) -> Figure:
-        """The whole polygon at :attr:`scale`: a mm of it is a mm on paper."""
-        low, high = (corner / self.scale for corner in self.polygon.extent())
+        """The whole polygon at :attr:`scale`: a mm of it is a mm on paper.
+
+        Its vectors bear their names where they are few.
+        """
+        corner = self.polygon.extent()[0] / self.scale
         value = _BAR_MM * self.scale
         told = f"{self._number(significant(value))} {self.unit}"
-        bar = scale_bar(complex(low.real, low.imag - 10), _BAR_MM, told)
-        drawn = _Drawing(self.polygon, self.scale, _BEYOND[1], named=True)
+        bar = scale_bar(corner - 10j, _BAR_MM, told)
+        named = len(self.polygon.sides) <= _NAMES
+        drawn = _Drawing(self.polygon, self.scale, _BEYOND[1], named=named)
         return Figure(*drawn.elements, bar, paper_mm=BOX_MM, scale=1)
 
     @cached_property

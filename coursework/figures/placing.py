@@ -114,6 +114,15 @@ class Obstacles:
         self.areas = [item.outline() for item in ink if item.solid]
         self.bars = [(a, b) for a, b, half in segments if half >= BAR / 2]
         self.labels: list[Label] = []
+        self._boxes: list[tuple[float, float, float, float]] = []  #: of the labels, centres and half-sides
+
+    def take(self, label: Label) -> None:
+        """A label has its place: others keep clear of it, and lines of its leader."""
+        self.labels.append(label)
+        sides = label.width / 2 + _APART, label.height / 2 + _APART
+        self._boxes.append((label.center.real, label.center.imag, *sides))
+        if label.leader:
+            self.add([(*label.leader, THIN / 2)])
 
     def add(self, segments: Iterable[Segment]) -> None:
         for a, b, half in segments:
@@ -122,10 +131,15 @@ class Obstacles:
             self._bounded.append((*low, *high, (a, b, half)))
 
     def free(self, center: complex, half: complex, clear: float, inside: bool = False) -> bool:
-        if any(_boxes_meet(center, half, label) for label in self.labels):
-            return False
-        x, y = half.real + clear, half.imag + clear
-        left, right, bottom, top = center.real - x, center.real + x, center.imag - y, center.imag + y
+        middle_x, middle_y, half_x, half_y = center.real, center.imag, half.real, half.imag
+        for other_x, other_y, other_half_x, other_half_y in self._boxes:
+            if (
+                abs(middle_x - other_x) < half_x + other_half_x
+                and abs(middle_y - other_y) < half_y + other_half_y
+            ):
+                return False
+        x, y = half_x + clear, half_y + clear
+        left, right, bottom, top = middle_x - x, middle_x + x, middle_y - y, middle_y + y
         for x0, y0, x1, y1, segment in self._bounded:
             if x0 <= right and x1 >= left and y0 <= top and y1 >= bottom and _crosses(center, x, y, segment):
                 return False
@@ -143,12 +157,6 @@ class Obstacles:
     def leader_free(self, a: complex, b: complex) -> bool:
         thin = (a, b, 0.3)
         return not any(_crosses(it.center, it.width / 2, it.height / 2, thin) for it in self.labels)
-
-
-def _boxes_meet(center: complex, half: complex, label: Label) -> bool:
-    apart = center - label.center
-    across = abs(apart.real) < half.real + label.width / 2 + _APART
-    return across and abs(apart.imag) < half.imag + label.height / 2 + _APART
 
 
 def _crosses(center: complex, hx: float, hy: float, segment: Segment) -> bool:
@@ -189,10 +197,7 @@ def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[tuple[Label, ...]
     obstacles = Obstacles(ink)
     order = sorted(range(len(wishes)), key=lambda k: wishes[k].rank)
     for k in order:
-        label = _choose(wishes[k], obstacles)
-        obstacles.labels.append(label)
-        if label.leader:
-            obstacles.add([(*label.leader, THIN / 2)])
+        obstacles.take(_choose(wishes[k], obstacles))
     return tuple(obstacles.labels), tuple(order)
 
 
