@@ -98,10 +98,12 @@ def _sheets(
 def _tex(
     renderer: Renderer, path: Path, ending: str, what: str, sheet: Callable[[], Handout | AnswerSheet]
 ) -> Iterator[File]:
-    """A source and its figure beside it; one dot in the figure's name, as every LaTeX reads it."""
-    figure = f"{path.name.replace('.', '-')}-{what}.pdf"
-    yield File(_with(path, ending), _text(lambda: renderer.tex(sheet(), figure)))
+    """A source and its drawings beside it; one dot in their names, as every LaTeX reads it."""
+    stem = path.name.replace(".", "-")
+    figure, polygons = f"{stem}-{what}.pdf", f"{stem}-polygons.pdf"
+    yield File(_with(path, ending), _text(lambda: renderer.tex(sheet(), figure, polygons)))
     yield File(path.with_name(figure), lambda: renderer.figure_pdf(sheet()))
+    yield File(path.with_name(polygons), lambda: renderer.polygons_pdf(sheet()))
 
 
 def _with(path: Path, ending: str) -> Path:

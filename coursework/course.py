@@ -42,6 +42,7 @@ from coursework.rules import Rules
 from coursework.solution import Solution
 
 if TYPE_CHECKING:
+    from coursework.constructions import Construction
     from coursework.figures import Figure
     from coursework.handout import AnswerSheet, Handout
     from coursework.key import Key
@@ -732,6 +733,24 @@ class Variant:
         from coursework.motion import Animation
 
         return Animation(self, effects, count)
+
+    def polygons(self) -> tuple[Construction, ...]:
+        """The velocity and acceleration polygons that the solution states, drawn to scale.
+
+        None where it states none, and none in which nothing moves.
+
+        Raises
+        ------
+        NoSolution
+            The course folder has no solutions.
+        """
+        return self._polygons
+
+    @cached_property
+    def _polygons(self) -> tuple[Construction, ...]:
+        from coursework.sheets import polygons
+
+        return polygons(self)
 
     def handout(self, student: str = "") -> Handout:
         """What the student's sheet shows."""

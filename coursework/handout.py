@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from coursework.constructions import Construction
 from coursework.figures import Figure
 
 
@@ -98,6 +99,7 @@ class AnswerSheet:
     introduction: str  #: Markdown, the solution text's opening words
     figure: Figure | None  #: the solution's own figure, if it has one
     figure_alt: str = ""  #: what that figure shows; empty when the handout's words say it
+    polygons: tuple[Construction, ...] = ()  #: of velocities and accelerations
 
 
 @dataclass(frozen=True)

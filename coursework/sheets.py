@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coursework.constructions import Construction
 from coursework.errors import BadCourse, BadStatement
 from coursework.expressions import latex_of_equation
 from coursework.graph import Graph
@@ -95,7 +96,7 @@ def tolerance_words(part: Part, lang: str) -> str:
 
 
 def _call(function: Any, values: Mapping[str, Any], helpers: tuple = ()) -> Any:
-    """Call a figure function with the quantities its parameters name."""
+    """Call a function that draws, or states what is drawn, with the quantities its parameters name."""
     graph = Graph({**{f.__name__: f for f in helpers}, "figure": function})
     return graph.evaluate(("figure",), {n: v for n, v in values.items() if n in graph.leaves})["figure"]
 
@@ -124,16 +125,30 @@ def answer_sheet(variant: Variant, student: str = "") -> AnswerSheet:
     figure = _solution_figure(variant)
     says = text.sections.get("figure") if figure is not None else None
     alt = " ".join(says.text.split()) if says else ""
-    return AnswerSheet(sheet, answers, steps, text.opening, figure, alt)
+    return AnswerSheet(sheet, answers, steps, text.opening, figure, alt, variant.polygons())
 
 
 def _solution_figure(variant: Variant) -> Figure | None:
     solution = variant.exercise.solution
     if solution.figure is None:
         return None
+    return _call(solution.figure, _quantities(variant, solution.figure))
+
+
+def _quantities(variant: Variant, function: Any) -> dict[str, Any]:
+    """The quantities of a variant's solution, and those besides that a function of the solution needs."""
     values = dict(variant.walk)
-    more = tuple(n for n in inspect.signature(solution.figure).parameters if n not in values)
-    return _call(solution.figure, {**values, **solution.graph.evaluate(more, variant.used, variant.effects)})
+    more = tuple(n for n in inspect.signature(function).parameters if n not in values)
+    return {**values, **variant.exercise.solution.graph.evaluate(more, variant.used, variant.effects)}
+
+
+def polygons(variant: Variant) -> tuple[Construction, ...]:
+    """The polygons that the solution states, less those in which nothing moves."""
+    solution = variant.exercise.solution
+    if solution.polygons is None:
+        return ()
+    stated = _call(solution.polygons, _quantities(variant, solution.polygons))
+    return tuple(Construction(p, variant.lang) for p in stated if p.size > 0)
 
 
 def _symbol(variant: Variant, name: str) -> str:

@@ -11,6 +11,7 @@
   right to its last printed digit, a number to 1e-9 relative; a third item names the case's effects,
   where they are not those of the exercise's own parts;
 * ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
+* ``polygons`` gives the velocity and acceleration polygons, each a :class:`~coursework.polygons.Polygon`;
 * ``STRUCTURES`` names the quantities whose value is a list or a record, such as a list of joints: a request
   may give them, and they are passed to the functions as they come;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
@@ -24,12 +25,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError, unknown
 from coursework.graph import Graph, Node, Replacement
+
+if TYPE_CHECKING:
+    from coursework.polygons import Polygon
 
 
 @dataclass(frozen=True)
@@ -169,6 +173,7 @@ class Solution:
     symbols: Mapping[str, str]
     structures: frozenset[str] = frozenset()  #: quantities that are no numbers: passed on as they come
     judges: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
+    polygons: Callable[..., Sequence[Polygon]] | None = None
 
     @staticmethod
     def of(name: str, module: ModuleType) -> Solution:
@@ -188,8 +193,8 @@ class Solution:
             and _belongs(value, module)
         }
         mistakes = {k: f.__mistake__ for k, f in own.items() if hasattr(f, "__mistake__")}
-        special = {"residual", "figure", "motion"}
         judges = {k: f for k, f in own.items() if hasattr(f, "__judge__")}
+        special = {"residual", "figure", "motion", "polygons"}
         functions = {k: f for k, f in own.items() if k not in {*special, *mistakes, *judges}}
         if not functions:
             raise BadCourse(f"solutions/{name}.py defines no quantity; a quantity is a function of its name")
@@ -212,6 +217,7 @@ class Solution:
             dict(getattr(module, "SYMBOLS", {})),
             frozenset(getattr(module, "STRUCTURES", ())),
             judges,
+            own.get("polygons"),
         )
 
     def judge(self, name: str) -> Callable[..., Any]:

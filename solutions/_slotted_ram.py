@@ -7,7 +7,10 @@ from coursework.degrees import atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.kinematics.slotted_guide import SlottedGuidePose
+from coursework.polygons import turning
 from coursework.solution import Moving, formula, stable
+
+from ._polygons import _crank_v, _guide_v, _slider_v, _velocities
 
 
 def _arm(r1, r2, theta2):
@@ -70,6 +73,19 @@ def omega5(omega4, xP, q):
 def v_C(omega4, yP, omega5, p):
     """Velocity of the ram, positive to the right."""
     return -omega4 * yP - omega5 * p
+
+
+def polygons(r2, theta2, omega2, rA, theta4, omega4, r4, p, q, omega5, v_C):
+    """The crank pin is A_2, A_4 the point of the guide under it; P is farther along the guide."""
+    crank, along = polar(r2, theta2), polar(1, theta4)
+    return (
+        _velocities(
+            _crank_v("A_2", "O_2A", crank, omega2),
+            _guide_v("A_2", "A_4", "O_4A", rA * along, omega4, (1j * omega2 * crank / along).real),
+            (turning("p_v", "p", "P", "O_4P", r4 * along, omega4, "r_4 V_{A_4} / r_A"),),
+            _slider_v("C", "P", q + 1j * p, omega5, v_C),
+        ),
+    )
 
 
 def motion(r1, r2, theta2, omega2, rA, theta4, omega4, r4, h, p, q, omega5, xC, v_C):

@@ -14,6 +14,7 @@ from coursework.kinematics.dyads import side_of
 from coursework.solution import Moving, formula, mistake, stable
 
 from ._four_bar import *
+from ._polygons import _accelerations, _crank_a, _crank_v, _two_bars_a, _two_bars_v, _velocities
 
 UNITS = {"AC": "mm", "phi": "deg", "psi": "deg", "side": "1"}
 SYMBOLS = {"AC": "AC", "phi": r"\varphi", "psi": r"\psi", "side": r"\varepsilon"}
@@ -124,6 +125,17 @@ def motion(r1, r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha
         "B": Moving(r1 + rocker, 1j * omega4 * rocker, (1j * alpha4 - omega4**2) * rocker),
         "M": Moving(crank + half, v_A + 1j * omega3 * half, a_A + (1j * alpha3 - omega3**2) * half),
     }
+
+
+def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4):
+    OA, AB, CB = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4)
+    return (
+        _velocities(_crank_v("A", "OA", OA, omega2), _two_bars_v("B", "A", "C", AB, omega3, CB, omega4)),
+        _accelerations(
+            _crank_a("A", "OA", OA, omega2, alpha2),
+            _two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
+        ),
+    )
 
 
 def figure(r1, r2, theta2, r3, theta3, omega2, omega4):

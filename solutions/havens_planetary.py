@@ -11,7 +11,10 @@ from coursework.degrees import atan, atan2, cos, from_radians, polar, sin, sqrt,
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slotted_guide import SlottedGuidePose
+from coursework.polygons import Side, turning
 from coursework.solution import formula, mistake, stable
+
+from ._polygons import _crank_v, _guide_v, _velocities
 
 UNITS = {"e": "mm"}
 
@@ -161,6 +164,23 @@ def willis_no_arm(r2, omega2, r3):
 @mistake("v_I")
 def v_I_of_crank(r3, omega1):
     return r3 * omega1
+
+
+def polygons(e, r2, b, theta1, omega1, theta4, rA, omega4, v_slide, v_B2_x, v_B2_y, v_I):
+    """The crank's point A_1, the guide's point A_4 under it; B_2 and I are points of the wheel, about A_1."""
+    crank, along = polar(1.0, theta1), polar(1.0, theta4)
+    return (
+        _velocities(
+            _crank_v("A_1", "O_1A_1", e * crank, omega1, "1", "e"),
+            _guide_v("A_1", "A_4", "O_4A_1", rA * along, omega4, v_slide),
+            (
+                turning("a_1", "b_2", "B_2/A_1", "A_1B_2", b * along, omega4, "b V_{A_4} / r_A"),
+                turning("a_1", "i", "I/A_1", "O_1A_1", -r2 * crank, omega4, "r_2 V_{A_4} / r_A"),
+                Side("p_v", "b_2", r"\vec{V}_{B_2}", v_B2_x + 1j * v_B2_y),
+                Side("p_v", "i", r"\vec{V}_I", 1j * v_I * crank),
+            ),
+        ),
+    )
 
 
 def figure(d, r2, r3, b, e, theta1, omega1, theta4, rA, omega4, v_slide, v_B2_x, v_B2_y, v_I):

@@ -13,6 +13,7 @@ from coursework.kinematics.dyads import side_of
 from coursework.solution import formula, mistake
 
 from ._four_bar import *
+from ._polygons import _crank_v, _two_bars_v, _velocities
 
 UNITS = {
     "AC": "mm",
@@ -139,6 +140,16 @@ def torque_ratio_of_forces(mechanical_advantage):
 @mistake("Gamma_s")
 def torque_with_the_crank_arm(r2, F_s):
     return r2 * F_s / 1000
+
+
+def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4):
+    AB, CB = polar(r3, theta3), polar(r4, theta4)
+    return (
+        _velocities(
+            _crank_v("A", "OA", polar(r2, theta2), omega2),
+            _two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
+        ),
+    )
 
 
 def figure(r1, r2, theta2, r3, theta3, omega2, omega4):

@@ -16,6 +16,16 @@ from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.kinematics.margins import grashof_margins
 from coursework.solution import formula, mistake
 
+from ._polygons import (
+    _accelerations,
+    _crank_a,
+    _crank_v,
+    _slider_a,
+    _slider_v,
+    _two_bars_a,
+    _two_bars_v,
+    _velocities,
+)
 from ._strokes import *
 
 UNITS = {
@@ -403,6 +413,26 @@ def advantage_inverse(r2, omega2, v_C):
 @mistake("mechanical_advantage")
 def advantage_angular(omega2, omega4):
     return abs(omega2 / omega4)
+
+
+def polygons(
+    r2, r3, r4, r5, theta2, theta3, theta4, theta5, omega2, omega3, omega4, omega5, v_C, a_C, alpha4, alpha5
+):
+    """Two bars meet at B, then the rod from B to the piston; the coupler's own acceleration is what is left."""
+    OA, AB, DB, BC = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r5, theta5)
+    alpha3 = (((1j * alpha4 - omega4**2) * DB + omega2**2 * OA) / AB).imag
+    return (
+        _velocities(
+            _crank_v("A", "OA", OA, omega2),
+            _two_bars_v("B", "A", "D", AB, omega3, DB, omega4),
+            _slider_v("C", "B", BC, omega5, v_C),
+        ),
+        _accelerations(
+            _crank_a("A", "OA", OA, omega2),
+            _two_bars_a("B", "A", "D", AB, omega3, alpha3, "r_3", DB, omega4, alpha4, "r_4"),
+            _slider_a("C", "B", BC, omega5, alpha5, "r_5", a_C),
+        ),
+    )
 
 
 def residual(

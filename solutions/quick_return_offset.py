@@ -16,6 +16,7 @@ from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import Moving, formula, mistake, stable
 
 from ._in_line import _in_line
+from ._polygons import _crank_v, _slider_v, _velocities
 from ._strokes import *
 
 UNITS = {
@@ -183,6 +184,14 @@ def motion(r2, e, theta2, omega2, p, q, omega3, xC, v_C):
         "A": Moving(A, 1j * omega2 * A, a_A),
         "C": Moving(xC + 1j * e, v_C, a_A.real - p * alpha3 - q * omega3**2),
     }
+
+
+def polygons(r2, theta2, omega2, p, q, omega3, v_C):
+    return (
+        _velocities(
+            _crank_v("A", "OA", polar(r2, theta2), omega2), _slider_v("C", "A", q + 1j * p, omega3, v_C)
+        ),
+    )
 
 
 def figure(r2, e, omega2, x1, x2):

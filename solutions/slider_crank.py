@@ -4,18 +4,18 @@ Its two projections p and q carry everything: sin theta3 = p / r3, cos theta3 = 
 taken from the numeric core, which keeps its digits where the rod is hardly longer than the crank.
 """
 
-from itertools import pairwise
 from math import pi
 
 import numpy as np
 
 from coursework.accuracy import Study
 from coursework.degrees import atan2, cos, polar, sin, sqrt
-from coursework.figures import Figure, ground_pivot, link, pin, point, rail, slider, vector
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import Moving, formula, mistake, stable
+
+from ._polygons import _accelerations, _crank_a, _crank_v, _slider_a, _slider_v, _velocities
 
 UNITS = {"p": "mm", "q": "mm"}
 
@@ -157,37 +157,17 @@ def motion(r2, e, theta2, omega2, alpha2, r1, r1_dot, r1_ddot):
     }
 
 
-def figure(r2, e, theta2, omega2, alpha2, r3, theta3, omega3, r1_dot, alpha3, r1_ddot):
-    """The linkage, and under it the two polygons, each at a scale of its own."""
-    A, AB = polar(r2, theta2), polar(r3, theta3)
-    B, half_rail = A + AB, 0.3 * r2
-    left, right = min(A.real, 0.0), B.real + half_rail
-    width = right - left
-    under = complex(left, min(A.imag, e, 0.0) - 0.12 * width)
-    a_A = (1j * alpha2 - omega2**2) * A
-    velocities = (0j, 1j * omega2 * A, complex(r1_dot))
-    accelerations = (0j, a_A, a_A - omega3**2 * AB, complex(r1_ddot))
-    return Figure(
-        rail(B - half_rail, B + half_rail),
-        link(0, A, label="r_2"),
-        link(A, B, label="r_3"),
-        slider(B),
-        ground_pivot(0, "O"),
-        pin(A, "A"),
-        pin(B, "B"),
-        *_polygon(velocities, ("p_v", "a", "b"), under, width),
-        *_polygon(accelerations, ("p_a", "a", "b'", "b"), under + 0.55 * width, width),
-        paper_mm=(108, 54),
+def polygons(r2, theta2, omega2, alpha2, p, q, omega3, r1_dot, alpha3, r1_ddot, kv, ka):
+    """At the scales of the statement."""
+    OA, AB = polar(r2, theta2), q + 1j * p
+    return (
+        _velocities(_crank_v("A", "OA", OA, omega2), _slider_v("B", "A", AB, omega3, r1_dot), scale=kv),
+        _accelerations(
+            _crank_a("A", "OA", OA, omega2, alpha2),
+            _slider_a("B", "A", AB, omega3, alpha3, "r_3", r1_ddot),
+            scale=ka,
+        ),
     )
-
-
-def _polygon(corners, names, top_left, width):
-    """Arrows from corner to corner and from the first, the pole, to the last; under half of the linkage."""
-    x, y = [z.real for z in corners], [z.imag for z in corners]
-    scale = width / max((max(x) - min(x)) / 0.45, (max(y) - min(y)) / 0.35)
-    at = [top_left + scale * (z - complex(min(x), max(y))) for z in corners]
-    sides = [vector(p, q - p) for p, q in pairwise(at)]
-    return (*sides, vector(at[0], at[-1] - at[0]), *map(point, at, names))
 
 
 def residual(r2, r3, e, theta2, omega2, alpha2, theta3, r1, omega3, r1_dot, alpha3, r1_ddot):

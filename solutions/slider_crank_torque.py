@@ -13,11 +13,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.accuracy import Motion, Study
-from coursework.degrees import atan2, cos, sin, sqrt
+from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
+from coursework.polygons import Side
 from coursework.solution import formula, mistake, stable
+
+from ._polygons import _accelerations, _crank_a, _crank_v, _slider_a, _slider_v, _velocities
 
 GRAVITY = 9.81  #: m/s^2, along -y
 
@@ -343,6 +346,23 @@ def rod_obliquity_forgotten(r2, theta2, F):
 @mistake("torque", share=0.5)
 def torque_of_the_rod_on_the_crank(torque):
     return -torque
+
+
+def polygons(r2, theta2, omega2, alpha2, s3, p, q, omega3, r1_dot, alpha3, r1_ddot):
+    """With the centre of mass of the rod, whose image divides ab as G divides AB."""
+    OA, AB = polar(r2, theta2), q + 1j * p
+    a_GA = s3 * (1j * alpha3 - omega3**2) * AB
+    return (
+        _velocities(_crank_v("A", "OA", OA, omega2), _slider_v("B", "A", AB, omega3, r1_dot)),
+        _accelerations(
+            _crank_a("A", "OA", OA, omega2, alpha2),
+            _slider_a("B", "A", AB, omega3, alpha3, "r_3", r1_ddot),
+            (
+                Side("a", "g", r"\vec{a}_{G/A}", a_GA, r"\parallel ab", r"s_3\,ab"),
+                Side("p_a", "g", r"\vec{a}_G", (1j * alpha2 - omega2**2) * OA + a_GA),
+            ),
+        ),
+    )
 
 
 def residual(

@@ -16,6 +16,17 @@ from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
 from coursework.solution import Moving, formula, mistake, stable
 
+from ._polygons import (
+    _accelerations,
+    _crank_a,
+    _crank_v,
+    _slider_a,
+    _slider_v,
+    _two_bars_a,
+    _two_bars_v,
+    _velocities,
+)
+
 UNITS = {"A": "1", "side": "1"}
 SYMBOLS = {"side": r"\varepsilon"}
 
@@ -329,6 +340,26 @@ def motion(r1, r2, theta2, omega2, r4, theta4, omega4, alpha4, r6, r6_dot, r6_dd
         "B": Moving(rocker, 1j * omega4 * rocker, (1j * alpha4 - omega4**2) * rocker),
         "P": Moving(r6, r6_dot, r6_ddot),
     }
+
+
+def polygons(
+    r2, r3, r4, r5, theta2, theta3, theta4, theta5, omega2, omega3, omega4, omega5, r6_dot,
+    alpha3, alpha4, alpha5, r6_ddot,
+):  # fmt: skip
+    """Two bars meet at B, then the rod from B to the slider."""
+    OA, AB, DB, BP = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), -polar(r5, theta5)
+    return (
+        _velocities(
+            _crank_v("A", "OA", OA, omega2),
+            _two_bars_v("B", "A", "D", AB, omega3, DB, omega4),
+            _slider_v("P", "B", BP, omega5, r6_dot),
+        ),
+        _accelerations(
+            _crank_a("A", "OA", OA, omega2),
+            _two_bars_a("B", "A", "D", AB, omega3, alpha3, "r_3", DB, omega4, alpha4, "r_4"),
+            _slider_a("P", "B", BP, omega5, alpha5, "r_5", r6_ddot),
+        ),
+    )
 
 
 def residual(

@@ -15,6 +15,8 @@ from coursework.kinematics.chains import Vector
 from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.solution import Moving, formula, mistake, stable
 
+from ._polygons import _accelerations, _crank_a, _crank_v, _guide_a, _guide_v, _velocities
+
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
 SYMBOLS = {"delta": r"\delta"}
 
@@ -157,6 +159,20 @@ def motion(r1, theta1, r2, theta2, omega2, alpha2, rA_dot, theta4, omega4):
             coriolis=2j * omega4 * rA_dot * polar(1, theta4),
         )
     }
+
+
+def polygons(r2, theta2, omega2, alpha2, rA, theta4, rA_dot, omega4, rA_ddot, alpha4):
+    """The crank pin is A_2; A_4 is the point of the guide under it."""
+    crank, arm = polar(r2, theta2), polar(rA, theta4)
+    return (
+        _velocities(
+            _crank_v("A_2", "O_2A", crank, omega2), _guide_v("A_2", "A_4", "O_4A", arm, omega4, rA_dot)
+        ),
+        _accelerations(
+            _crank_a("A_2", "O_2A", crank, omega2, alpha2),
+            _guide_a("A_2", "A_4", "O_4A", arm, omega4, alpha4, rA_dot, rA_ddot, "r_A", r"\omega_4"),
+        ),
+    )
 
 
 def residual(r1, r2, theta1, theta2, omega2, alpha2, rA, theta4, rA_dot, omega4, rA_ddot, alpha4):

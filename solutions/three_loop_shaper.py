@@ -14,7 +14,21 @@ from coursework.figures import Figure, ground_pivot, link, pin, rail, slider, ve
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.dyads import rrp, side_of
 from coursework.kinematics.four_bar import FourBar
+from coursework.polygons import normal, tangential, turning
 from coursework.solution import formula, mistake, stable
+
+from ._polygons import (
+    _accelerations,
+    _crank_a,
+    _crank_v,
+    _guide_a,
+    _guide_v,
+    _slider_a,
+    _slider_v,
+    _two_bars_a,
+    _two_bars_v,
+    _velocities,
+)
 
 UNITS = {
     "AC": "mm",
@@ -368,6 +382,41 @@ def no_coriolis(alpha5, d5, d5_dot, omega5):
 @mistake("d5_ddot")
 def no_centripetal(d5_ddot, d5, omega5):
     return d5_ddot - d5 * omega5**2
+
+
+def polygons(
+    r2, r3, r4, r5, r6, r7, theta2, theta3, theta4, theta5, theta6, theta7, d5,
+    omega2, omega3, omega4, omega5, d5_dot, omega7, x8_dot,
+    alpha3, alpha4, alpha5, d5_ddot, alpha7, x8_ddot,
+):  # fmt: skip
+    """Two bars meet at B; E turns with B about A, and slides on the bar, whose point under it is E_5; the bar's
+    end F carries the rod of the ram."""
+    OA, AB, CB, AE = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r6, theta6)
+    DE, DF, FG = polar(d5, theta5), polar(r5, theta5), polar(r7, theta7)
+    return (
+        _velocities(
+            _crank_v("A", "OA", OA, omega2),
+            _two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
+            (turning("a", "e", "E/A", "AE", AE, omega3, "r_6 V_{B/A} / r_3"),),
+            _guide_v("E", "E_5", "DE", DE, omega5, d5_dot),
+            (turning("p_v", "f", "F", "DF", DF, omega5, "r_5 V_{E_5} / d_5"),),
+            _slider_v("G", "F", FG, omega7, x8_dot),
+        ),
+        _accelerations(
+            _crank_a("A", "OA", OA, omega2),
+            _two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
+            (
+                normal("a", "e'", "E/A", "AE", AE, omega3, "V_{E/A}^2 / r_6"),
+                tangential("e'", "e", "E/A", "AE", AE, alpha3, "r_6 a_{B/A}^t / r_3"),
+            ),
+            _guide_a("E", "E_5", "DE", DE, omega5, alpha5, d5_dot, d5_ddot, "d_5", r"\omega_5"),
+            (
+                normal("p_a", "f'", "F", "DF", DF, omega5, "V_F^2 / r_5"),
+                tangential("f'", "f", "F", "DF", DF, alpha5, "r_5 a_{E_5}^t / d_5"),
+            ),
+            _slider_a("G", "F", FG, omega7, alpha7, "r_7", x8_ddot),
+        ),
+    )
 
 
 def figure(xC, yC, xD, yD, r2, theta2, omega2, r3, theta3, r5, theta5, omega5, r6, theta6, x8, x8_dot, d3):

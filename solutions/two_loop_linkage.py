@@ -14,7 +14,10 @@ from coursework.figures import Figure, ground_pivot, link, pin, vector
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
+from coursework.polygons import normal, tangential, turning
 from coursework.solution import formula, mistake, stable
+
+from ._polygons import _accelerations, _crank_a, _crank_v, _two_bars_a, _two_bars_v, _velocities
 
 UNITS = {
     "AC": "mm",
@@ -346,6 +349,32 @@ def no_normal_terms():
 @mistake("alpha6", "alpha7")
 def alpha4_left_out_loop2(omega4, alpha4, omega6, omega7, alpha6, alpha7):
     return alpha6 - omega6 / omega4 * alpha4, alpha7 - omega7 / omega4 * alpha4
+
+
+def polygons(
+    r2, r3, r4, r5, r6, r7, theta2, theta3, theta4, theta5, theta6, theta7,
+    omega2, omega3, omega4, omega6, omega7, alpha3, alpha4, alpha6, alpha7,
+):  # fmt: skip
+    """Two bars meet at B; D turns with B about C; two bars meet at E."""
+    OA, AB, CB, CD = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r5, theta5)
+    DE, FE = polar(r6, theta6), polar(r7, theta7)
+    return (
+        _velocities(
+            _crank_v("A", "OA", OA, omega2),
+            _two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
+            (turning("p_v", "d", "D", "CD", CD, omega4, "r_5 V_B / r_4"),),
+            _two_bars_v("E", "D", "F", DE, omega6, FE, omega7),
+        ),
+        _accelerations(
+            _crank_a("A", "OA", OA, omega2),
+            _two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
+            (
+                normal("p_a", "d'", "D", "CD", CD, omega4, "V_D^2 / r_5"),
+                tangential("d'", "d", "D", "CD", CD, alpha4, "r_5 a_B^t / r_4"),
+            ),
+            _two_bars_a("E", "D", "F", DE, omega6, alpha6, "r_6", FE, omega7, alpha7, "r_7"),
+        ),
+    )
 
 
 def figure(xC, yC, xF, yF, r2, theta2, omega2, r4, theta4, omega4, r5, theta5, r7, theta7, omega7):

@@ -15,7 +15,8 @@ numbers in mm, y up; angles are degrees from +x, counter-clockwise::
     figure.scale, figure.size_mm, figure.labels()
 
 The drawing is scaled to the largest size whose frame, labels included, fits ``paper_mm``
-(110 by 75 mm unless told), with one scale for x and y. Symbols (pins, hatching, blocks,
+(110 by 75 mm unless told), with one scale for x and y; ``Figure(..., scale=1)`` has that scale
+instead, and ``figure.beginning(n)`` is its first n elements in the same frame. Symbols (pins, hatching, blocks,
 arrow heads, letters) keep their size on paper. Mechanism points are printed to 0.1 mm and
 directions of symbols to a whole degree: the file says no more than a ruler and a protractor.
 
@@ -38,7 +39,8 @@ beyond q; ``trace(points)`` a dotted path.
 to p + v; ``dimension(p, q, label, offset=)``, offset in mm of mechanism, positive on the left of p→q,
 by default 7 mm on paper or as far as it must to miss the links; ``angle_mark(center, from_deg, to_deg, label,
 radius=)`` and ``rotation_arrow(center, radius, from_deg, to_deg, label)``, whose heads are at
-``to_deg``, so clockwise when it is the smaller; ``note(p, words)`` words on a point.
+``to_deg``, so clockwise when it is the smaller; ``note(p, words)`` words on a point;
+``scale_bar(p, length, label)`` what a length of paper stands for.
 
 **Sections.** ``section(points, label, angle=45)`` a cut body, hatched, its label in a gap of the
 hatching (use ``angle=-45`` for its neighbour); ``ball(center, radius, label)`` a tinted circle.
@@ -71,6 +73,7 @@ from coursework.figures.elements import (
     point,
     rail,
     rotation_arrow,
+    scale_bar,
     section,
     slider,
     slot_link,
@@ -100,6 +103,7 @@ __all__ = [
     "point",
     "rail",
     "rotation_arrow",
+    "scale_bar",
     "section",
     "slider",
     "slot_link",

@@ -510,6 +510,23 @@ class vector(Element):
 
 
 @dataclass(frozen=True)
+class scale_bar(Element):
+    """A bar from ``p`` to the right with a tick at each end: what so long a line stands for."""
+
+    p: complex
+    length: Positive
+    label: str | None = None
+
+    def reach(self) -> tuple[complex, ...]:
+        return self.p, self.p + self.length
+
+    def draw(self, paper: Paper) -> None:
+        p, q = paper.at(self.p), paper.at(self.p + self.length)
+        paper.draw(Path((p, q), BAR), *(Path((z - 1j, z + 1j), EDGE) for z in (p, q)))
+        paper.beside(self.label, p, q, _AWAY, -1j)
+
+
+@dataclass(frozen=True)
 class trace(Element):
     """The path of a point: a thin dotted curve."""
 

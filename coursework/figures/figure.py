@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -37,6 +37,20 @@ class _Layout:
     labels: tuple[Label, ...]
     low: complex
     high: complex
+    drew: tuple[int, ...]  #: the element, by its place, that each piece of ink comes from
+    named: tuple[int, ...]  #: the same for labels
+
+    def beginning(self, count: int) -> _Layout:
+        """What the first elements drew, in the frame of them all."""
+        ink = [(item, k) for item, k in zip(self.ink, self.drew, strict=True) if k < count]
+        labels = [(label, k) for label, k in zip(self.labels, self.named, strict=True) if k < count]
+        return replace(
+            self,
+            ink=tuple(item for item, _ in ink),
+            drew=tuple(k for _, k in ink),
+            labels=tuple(label for label, _ in labels),
+            named=tuple(k for _, k in labels),
+        )
 
 
 @dataclass(frozen=True, init=False)
@@ -44,7 +58,8 @@ class Figure:
     """Elements in mechanism coordinates (complex, mm, y up), drawn to one scale in a paper box.
 
     ``paper_mm`` is the largest width and height the drawing may take, labels included; the
-    aspect is kept, so one of the two is usually not used up.
+    aspect is kept, so one of the two is usually not used up. With ``scale``, mm on paper for one of mechanism,
+    the drawing has that scale and whatever size comes of it.
 
     Raises WrongValue if an element is not one of this package's, if the drawing has no
     extent, or if the box is too small for the symbols and labels.
@@ -52,13 +67,22 @@ class Figure:
 
     elements: tuple[Element, ...]
     paper_mm: tuple[float, float]
+    fixed_scale: float | None
 
-    def __init__(self, *elements: Element, paper_mm: tuple[float, float] = (110, 75)) -> None:
+    def __init__(
+        self,
+        *elements: Element,
+        paper_mm: tuple[float, float] = (110, 75),
+        scale: float | None = None,
+    ) -> None:
         for element in elements:
             if not isinstance(element, Element):
                 raise WrongValue(f"a figure is made of elements such as pin(0, 'A'); found {element!r}")
         object.__setattr__(self, "elements", elements)
         object.__setattr__(self, "paper_mm", (float(paper_mm[0]), float(paper_mm[1])))
+        if scale is not None and not 0 < scale < float("inf"):
+            raise WrongValue(f"the scale of a figure is a positive number; found {scale!r}")
+        object.__setattr__(self, "fixed_scale", scale)
         self._extent  # noqa: B018  a figure without extent is refused where it is written
 
     @cached_property
@@ -73,6 +97,8 @@ class Figure:
 
     @cached_property
     def _layout(self) -> _Layout:
+        if self.fixed_scale is not None:
+            return self._laid_out(self.fixed_scale)
         low, high = self._extent
         size = high - low
         symbols = complex(14, 12)  # a first guess of the paper that symbols and labels take
@@ -103,17 +129,36 @@ class Figure:
         low, high = self._extent
         bars = [bar for element in self.elements for bar in element.bars()]
         paper = Paper(scale, bars, (low + high) / 2)
-        for element in self.elements:
+        drew: list[int] = []
+        wished: list[int] = []
+        for number, element in enumerate(self.elements):
             element.draw(paper)
-        labels = place(paper.wishes, paper.ink)
-        leaders = [Path(label.leader, THIN, layer=MARKS) for label in labels if label.leader]
-        ink = (*paper.ink, *leaders)
+            drew += [number] * (len(paper.ink) - len(drew))
+            wished += [number] * (len(paper.wishes) - len(wished))
+        labels, order = place(paper.wishes, paper.ink)
+        named = [wished[k] for k in order]
+        led = [(label.leader, k) for label, k in zip(labels, named, strict=True) if label.leader]
+        ink = (*paper.ink, *(Path(leader, THIN, layer=MARKS) for leader, _ in led))
+        drew += [k for _, k in led]
         half = [complex(item.width, item.width) / 2 for item in ink]
         edges = [z + d for item, h in zip(ink, half, strict=True) for z in item.outline() for d in (h, -h)]
         first, last = _corners([*edges, *(z for label in labels for z in label.corners)])
         margin = complex(_MARGIN, _MARGIN)
         # The frame lies on tenths of a mm too, so that rounded points stay rounded in the file.
-        return _Layout(scale, ink, labels, _tenths(first - margin), _tenths(last + margin))
+        corners = _tenths(first - margin), _tenths(last + margin)
+        return _Layout(scale, ink, labels, *corners, tuple(drew), tuple(named))
+
+    def beginning(self, count: int) -> Figure:
+        """The figure with only its first elements, each where it is in the whole and in the same frame.
+
+        So a construction is shown step by step, laid out once.
+        """
+        part = object.__new__(Figure)
+        for name in ("paper_mm", "fixed_scale"):
+            object.__setattr__(part, name, getattr(self, name))
+        object.__setattr__(part, "elements", self.elements[:count])
+        part.__dict__["_layout"] = self._layout.beginning(count)
+        return part
 
     @property
     def scale(self) -> float:

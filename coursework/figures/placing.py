@@ -9,6 +9,7 @@ from __future__ import annotations
 import cmath
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 
 from coursework.figures.ink import BAR, THIN, Ink, turn
@@ -58,30 +59,41 @@ class Wish:
         """The point that the label must be in sight of: on its arc for an angle."""
         return self.anchor + self.toward * max(0.0, self.start) if self.rank == ANGLES else self.anchor
 
-    def candidates(self, half: complex) -> Iterator[tuple[float, complex]]:
-        """Pairs (cost, centre of the box)."""
-        if self.along:
-            yield from self._beside(half)
-        late = 3.0 if self.along else 0.0
-        turning = 1.6 if self.rank == ANGLES else 0.7
-        for sixteenth in range(16):
-            way = self.toward * turn(22.5 * sixteenth)
-            away = abs(cmath.phase(way / self.toward))
-            for step in _STEPS:
-                yield (
-                    late + step + turning * away,
-                    self.anchor + way * (self.start + step + _support(half, way)),
-                )
-
-    def _beside(self, half: complex) -> Iterator[tuple[float, complex]]:
+    def candidates(self, half: complex) -> Iterator[tuple[complex, float]]:
+        """Pairs (centre of the box, white to its lines), the cheapest first."""
         p, q = self.along or (self.anchor, self.anchor)
+        for around, turned, step, clear in _order(self.along is not None, self.rank == ANGLES):
+            foot = self.anchor if around else p + (q - p) * step[0]
+            way = self.toward * turned
+            yield foot + way * (self.start + step[1] + _support(half, way)), clear
+
+
+@cache
+def _order(beside: bool, at_arc: bool) -> tuple[tuple[bool, complex, tuple[float, float], float], ...]:
+    """Places for a label, the cheapest first: whether around the anchor, the turn from the preferred direction,
+    the fraction of the segment and the distance from it, and the white that is asked.
+
+    The same for all labels of a kind, so it is put in order once.
+    """
+    places = []
+    if beside:
         for side in (1, -1):
-            way = side * self.toward
             for fraction in _FRACTIONS:
-                foot = p + (q - p) * fraction
                 for step in _STEPS[:6]:
                     cost = step + 4 * abs(fraction - 0.5) + 0.4 * (side < 0)
-                    yield cost, foot + way * (self.start + step + _support(half, way))
+                    places.append((cost, False, side, (fraction, step)))
+    late, turning = (3.0 if beside else 0.0), (1.6 if at_arc else 0.7)
+    for sixteenth in range(16):
+        turned = turn(22.5 * sixteenth)
+        for step in _STEPS:
+            cost = late + step + turning * abs(cmath.phase(turned))
+            places.append((cost, True, turned, (0.0, step)))
+    tries = [
+        (round(place[0] + more, 6), number, place[1:], clear)
+        for number, place in enumerate(places)
+        for clear, more in ((_AIRY, 0.0), (_CLEAR, 1.2))
+    ]
+    return tuple((*place, clear) for _, _, place, clear in sorted(tries, key=lambda t: t[:2]))
 
 
 def _support(half: complex, way: complex) -> float:
@@ -102,6 +114,15 @@ class Obstacles:
         self.areas = [item.outline() for item in ink if item.solid]
         self.bars = [(a, b) for a, b, half in segments if half >= BAR / 2]
         self.labels: list[Label] = []
+        self._boxes: list[tuple[float, float, float, float]] = []  #: of the labels, centres and half-sides
+
+    def take(self, label: Label) -> None:
+        """A label has its place: others keep clear of it, and lines of its leader."""
+        self.labels.append(label)
+        sides = label.width / 2 + _APART, label.height / 2 + _APART
+        self._boxes.append((label.center.real, label.center.imag, *sides))
+        if label.leader:
+            self.add([(*label.leader, THIN / 2)])
 
     def add(self, segments: Iterable[Segment]) -> None:
         for a, b, half in segments:
@@ -110,10 +131,15 @@ class Obstacles:
             self._bounded.append((*low, *high, (a, b, half)))
 
     def free(self, center: complex, half: complex, clear: float, inside: bool = False) -> bool:
-        if any(_boxes_meet(center, half, label) for label in self.labels):
-            return False
-        x, y = half.real + clear, half.imag + clear
-        left, right, bottom, top = center.real - x, center.real + x, center.imag - y, center.imag + y
+        middle_x, middle_y, half_x, half_y = center.real, center.imag, half.real, half.imag
+        for other_x, other_y, other_half_x, other_half_y in self._boxes:
+            if (
+                abs(middle_x - other_x) < half_x + other_half_x
+                and abs(middle_y - other_y) < half_y + other_half_y
+            ):
+                return False
+        x, y = half_x + clear, half_y + clear
+        left, right, bottom, top = middle_x - x, middle_x + x, middle_y - y, middle_y + y
         for x0, y0, x1, y1, segment in self._bounded:
             if x0 <= right and x1 >= left and y0 <= top and y1 >= bottom and _crosses(center, x, y, segment):
                 return False
@@ -131,12 +157,6 @@ class Obstacles:
     def leader_free(self, a: complex, b: complex) -> bool:
         thin = (a, b, 0.3)
         return not any(_crosses(it.center, it.width / 2, it.height / 2, thin) for it in self.labels)
-
-
-def _boxes_meet(center: complex, half: complex, label: Label) -> bool:
-    apart = center - label.center
-    across = abs(apart.real) < half.real + label.width / 2 + _APART
-    return across and abs(apart.imag) < half.imag + label.height / 2 + _APART
 
 
 def _crosses(center: complex, hx: float, hy: float, segment: Segment) -> bool:
@@ -172,30 +192,22 @@ def distance(z: complex, a: complex, b: complex) -> float:
     return abs(z - a - t * d)
 
 
-def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[Label, ...]:
-    """Places every label, in order of rank then of writing."""
+def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[tuple[Label, ...], tuple[int, ...]]:
+    """Places every label, in order of rank then of writing; with each, the place of its wish among them."""
     obstacles = Obstacles(ink)
-    for wish in sorted(wishes, key=lambda w: w.rank):
-        label = _choose(wish, obstacles)
-        obstacles.labels.append(label)
-        if label.leader:
-            obstacles.add([(*label.leader, THIN / 2)])
-    return tuple(obstacles.labels)
+    order = sorted(range(len(wishes)), key=lambda k: wishes[k].rank)
+    for k in order:
+        obstacles.take(_choose(wishes[k], obstacles))
+    return tuple(obstacles.labels), tuple(order)
 
 
 def _choose(wish: Wish, obstacles: Obstacles) -> Label:
     text = read(wish.label)
     width, height = text.box
     half = complex(width, height) / 2
-    tries = [
-        (round(cost + late, 6), number, center, clear)
-        for number, (cost, center) in enumerate(wish.candidates(half))
-        for clear, late in ((_AIRY, 0.0), (_CLEAR, 1.2))
-    ]
-    tries.sort(key=lambda t: t[:2])
     # A label is in sight of what it names; failing that, a leader may pass over a bar.
     for in_sight in (True, False):
-        for _, _, center, clear in tries:
+        for center, clear in wish.candidates(half):
             if not obstacles.free(center, half, clear, wish.inside):
                 continue
             leader = _leader(wish, center, half)

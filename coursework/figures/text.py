@@ -100,7 +100,8 @@ class Text:
 
     @property
     def top(self) -> float:
-        return max(run.top for run in self.runs) + (0.24 if self.accents else 0.0)
+        above = 0.36 if any(accent.kind == "arrow" for accent in self.accents) else 0.24
+        return max(run.top for run in self.runs) + (above if self.accents else 0.0)
 
     @property
     def bottom(self) -> float:

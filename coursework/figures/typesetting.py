@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import re
 import threading
+from collections.abc import Sequence
 from functools import lru_cache
 
 import typst
@@ -12,6 +14,11 @@ from coursework.figures.writing import FONT
 
 _PAGE = b"""#set page(width: auto, height: auto, margin: 0pt)
 #image(bytes(sys.inputs.svg), format: "svg", width: float(sys.inputs.width) * 1mm)"""
+
+_PAGES = b"""#set page(width: auto, height: auto, margin: 0pt)
+#for drawing in json(bytes(sys.inputs.drawings)) {
+  page(image(bytes(drawing.svg), format: "svg", width: drawing.width * 1mm))
+}"""
 
 # One letter at 100 pt on its baseline, so that outlines are in hundredths of an em, y up.
 _LETTER = f"""#set page(width: auto, height: auto, margin: 0pt, fill: none)
@@ -32,6 +39,12 @@ def converted(svg: str, width_mm: float, form: str, ppi: float | None = None) ->
     """An SVG drawing as ``png`` or ``pdf``, with the fonts that typst brings and no other."""
     inputs = {"svg": svg, "width": str(width_mm)}
     return _compiler().compile(input=_PAGE, format=form, ppi=ppi, sys_inputs=inputs, timestamp=0)
+
+
+def pages(drawings: Sequence[tuple[str, float]]) -> bytes:
+    """SVG drawings, each with its width in mm, as the pages of one PDF, each of its own size."""
+    listed = json.dumps([{"svg": svg, "width": width} for svg, width in drawings])
+    return _compiler().compile(input=_PAGES, format="pdf", sys_inputs={"drawings": listed}, timestamp=0)
 
 
 @lru_cache(maxsize=512)

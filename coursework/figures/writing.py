@@ -90,7 +90,8 @@ def _accent(text: Text, accent: Accent, left: complex) -> str:
     width = SIZE * sum(run.width for run in runs)
     # Italic letters lean: what stands above them stands a little to the right.
     lean = 0.08 * SIZE if runs[0].italic else 0.0
-    top = left.imag - SIZE * (max(run.top for run in runs) + 0.13)
+    # The head of an arrow hangs below its shaft.
+    top = left.imag - SIZE * (max(run.top for run in runs) + (0.22 if accent.kind == "arrow" else 0.13))
     middle = start + width / 2 + lean
     if accent.kind in ("dot", "ddot"):
         shifts = (0.0,) if accent.kind == "dot" else (-0.11 * SIZE, 0.11 * SIZE)

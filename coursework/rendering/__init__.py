@@ -11,6 +11,7 @@ from coursework.handout import AnswerSheet, FeedbackSheet, Handout
 from coursework.report import Report
 
 if TYPE_CHECKING:
+    from coursework.constructions import Construction
     from coursework.motion import Animation
 
 PAPERS = ("a4", "letter")
@@ -63,14 +64,15 @@ class Renderer:
 
         return html.page(self.template_folders, sheet, self.paper)
 
-    def tex(self, sheet: Handout | AnswerSheet, figure: str) -> str:
+    def tex(self, sheet: Handout | AnswerSheet, figure: str, polygons: str = "polygons.pdf") -> str:
         """A sheet as LaTeX source for pdflatex.
 
-        ``figure`` names the PDF file beside it that holds the figure of :meth:`figure_pdf`, if any.
+        ``figure`` names the PDF file beside it that holds the figure of :meth:`figure_pdf`, if any, and
+        ``polygons`` that of :meth:`polygons_pdf`.
         """
         from coursework.rendering import latex
 
-        return latex.source(self.template_folders, sheet, self.paper, figure)
+        return latex.source(self.template_folders, sheet, self.paper, figure, polygons)
 
     def figure_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
         """The figure that a sheet shows, as a PDF of its own; nothing when it shows none."""
@@ -78,6 +80,23 @@ class Renderer:
 
         figure = views.figure_of(sheet)
         return None if figure is None else figure.pdf()
+
+    def polygons_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
+        """The drawings of a solution's polygons, one a page of its own size; nothing when it has none."""
+        from coursework.rendering import views
+
+        drawings = views.polygon_drawings(sheet)
+        if not drawings:
+            return None
+        from coursework.figures.typesetting import pages
+
+        return pages([(figure.svg(), figure.size_mm[0]) for figure in drawings])
+
+    def construction_html(self, construction: Construction) -> str:
+        """A polygon, its equations, table and steps, as a piece of a web page."""
+        from coursework.rendering import html
+
+        return html.construction(self.template_folders, construction)
 
     def notebook(self, handout: Handout, *, practice: bool = False) -> str:
         """A handout as a notebook (JSON, nbformat 4.5); with practice, a cell that checks the answers."""

@@ -10,7 +10,9 @@ from pathlib import Path
 
 from jinja2 import Environment
 
+from coursework.constructions import Construction
 from coursework.figures import Figure
+from coursework.language import words
 from coursework.rendering import markup, views
 from coursework.rendering.environment import environment, render
 from coursework.rendering.formulas import to_mathml
@@ -32,6 +34,12 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "drawing": _drawing,
     }
     return environment(folders, lang, markup.html_text, filters)
+
+
+def construction(folders: Sequence[Path], drawn: Construction) -> str:
+    """A polygon as a piece of a page."""
+    names = {"polygons": (drawn,), "words": words(drawn.lang)}
+    return render(environment_of(tuple(folders), drawn.lang), "_polygons.html.j2", names)
 
 
 def _drawing(figure: Figure, alt: str) -> str:

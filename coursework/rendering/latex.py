@@ -29,10 +29,17 @@ BABEL = {"fr": "french", "en": "english"}
 _LARGER = 1.25  #: a figure is drawn so much above its own size at most
 
 
-def source(folders: Sequence[Path], sheet: views.Sheet, paper: str, figure_file: str) -> str:
-    """The LaTeX source of one sheet; ``figure_file`` is the PDF of its figure, beside it."""
+def source(
+    folders: Sequence[Path], sheet: views.Sheet, paper: str, figure_file: str, polygons_file: str
+) -> str:
+    """The LaTeX source of one sheet; beside it are the PDF of its figure and that of its polygons."""
     lang = views.handout_of(sheet).lang
-    names = {"paper": paper, "figure_file": figure_file, "babel": BABEL.get(lang, lang)}
+    names = {
+        "paper": paper,
+        "figure_file": figure_file,
+        "polygons_file": polygons_file,
+        "babel": BABEL.get(lang, lang),
+    }
     env = _environment(tuple(folders), lang)
     text = render(env, views.TEMPLATES[type(sheet)] + ".tex.j2", views.context(sheet) | names)
     return re.sub(r"\n{3,}", "\n\n", text)

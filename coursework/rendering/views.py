@@ -47,6 +47,12 @@ def figure_of(sheet: Sheet) -> Figure | None:
     return own or handout_of(sheet).figure
 
 
+def polygon_drawings(sheet: Sheet) -> tuple[Figure, ...]:
+    """The drawings of a solution's polygons in the order in which it shows them: steps, then the whole."""
+    stated = sheet.polygons if isinstance(sheet, AnswerSheet) else ()
+    return tuple(figure for one in stated for figure in (*(step.figure for step in one.steps), one.figure))
+
+
 def title(sheet: Sheet) -> str:
     """The document's title: the exercise's, and what this sheet is when it is not the student's."""
     handout = handout_of(sheet)
