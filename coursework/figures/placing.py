@@ -6,10 +6,12 @@ Labels are placed in a fixed order, so the same figure always comes out the same
 
 from __future__ import annotations
 
-import cmath
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import pairwise
+from typing import NamedTuple
 
 from coursework.figures.ink import BAR, THIN, Ink, turn
 from coursework.figures.text import Text, read
@@ -22,6 +24,39 @@ _AT_ARC = 3.0  #: the same for an angle, from the middle of its arc, mm
 _STEPS = (0.0, 0.5, 1.0, 1.7, 2.5, 3.5, 5.0, 7.0, 9.5, 12.5, 16.0, 20.0, 26.0, 34.0, 45.0, 60.0)
 INSIDE, NAMES, ANGLES, SIDES = range(4)  #: ranks of labels: those with least choice first
 _FRACTIONS = (0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75)
+_CELL = 8.0  #: side of the squares in which the lines near a place are looked up, mm
+
+
+class Place(NamedTuple):
+    """A place for a label, told from what it names: the same list serves every label of a kind."""
+
+    way: complex  #: from the preferred direction, a unit complex number
+    step: float  #: beyond where labels begin, mm
+    fraction: float | None  #: of the segment beside which it lies; none for a place round the anchor
+    clear: float  #: white asked for between it and the lines, mm
+
+
+@lru_cache(maxsize=4)
+def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
+    """All places of a kind of label, cheapest first; the costs are in mm away from the best place."""
+    costed = []
+    if beside:
+        for side in (1, -1):
+            for fraction in _FRACTIONS:
+                for step in _STEPS[:6]:
+                    cost = step + 4 * abs(fraction - 0.5) + 0.4 * (side < 0)
+                    costed.append((cost, (complex(side), step, fraction)))
+    late, turning = (3.0 if beside else 0.0), (1.6 if angle else 0.7)
+    for sixteenth in range(16):
+        away = math.radians(22.5 * min(sixteenth, 16 - sixteenth))
+        for step in _STEPS:
+            costed.append((late + step + turning * away, (turn(22.5 * sixteenth), step, None)))
+    tries = [
+        (round(cost + more, 6), number, Place(*place, clear))
+        for number, (cost, place) in enumerate(costed)
+        for clear, more in ((_AIRY, 0.0), (_CLEAR, 1.2))
+    ]
+    return tuple(place for _, _, place in sorted(tries, key=lambda one: one[:2]))
 
 
 @dataclass(frozen=True)
@@ -58,30 +93,13 @@ class Wish:
         """The point that the label must be in sight of: on its arc for an angle."""
         return self.anchor + self.toward * max(0.0, self.start) if self.rank == ANGLES else self.anchor
 
-    def candidates(self, half: complex) -> Iterator[tuple[float, complex]]:
-        """Pairs (cost, centre of the box)."""
-        if self.along:
-            yield from self._beside(half)
-        late = 3.0 if self.along else 0.0
-        turning = 1.6 if self.rank == ANGLES else 0.7
-        for sixteenth in range(16):
-            way = self.toward * turn(22.5 * sixteenth)
-            away = abs(cmath.phase(way / self.toward))
-            for step in _STEPS:
-                yield (
-                    late + step + turning * away,
-                    self.anchor + way * (self.start + step + _support(half, way)),
-                )
-
-    def _beside(self, half: complex) -> Iterator[tuple[float, complex]]:
+    def places(self, half: complex) -> Iterator[tuple[complex, float]]:
+        """Pairs (centre of the box, white to keep round it), cheapest first."""
         p, q = self.along or (self.anchor, self.anchor)
-        for side in (1, -1):
-            way = side * self.toward
-            for fraction in _FRACTIONS:
-                foot = p + (q - p) * fraction
-                for step in _STEPS[:6]:
-                    cost = step + 4 * abs(fraction - 0.5) + 0.4 * (side < 0)
-                    yield cost, foot + way * (self.start + step + _support(half, way))
+        for turned, step, fraction, clear in _places(self.along is not None, self.rank == ANGLES):
+            way = self.toward * turned
+            foot = self.anchor if fraction is None else p + (q - p) * fraction
+            yield foot + way * (self.start + step + _support(half, way)), clear
 
 
 def _support(half: complex, way: complex) -> float:
@@ -97,26 +115,57 @@ class Obstacles:
 
     def __init__(self, ink: Sequence[Ink]) -> None:
         self._bounded: list[tuple[float, float, float, float, Segment]] = []
+        self._cells: dict[tuple[int, int], list[tuple[float, float, float, float, Segment]]] = {}
         segments = [(a, b, item.width / 2) for item in ink for a, b in pairwise(item.outline())]
         self.add(segments)
         self.areas = [item.outline() for item in ink if item.solid]
         self.bars = [(a, b) for a, b, half in segments if half >= BAR / 2]
         self.labels: list[Label] = []
+        self._boxes: list[tuple[float, float, float, float]] = []  #: of the labels, with the white round them
+
+    def put(self, label: Label) -> None:
+        """A label that is placed, with its leader."""
+        self.labels.append(label)
+        reach = complex(label.width, label.height) / 2 + complex(_APART, _APART)
+        self._boxes.append((label.center.real, label.center.imag, reach.real, reach.imag))
+        if label.leader:
+            self.add([(*label.leader, THIN / 2)])
 
     def add(self, segments: Iterable[Segment]) -> None:
+        self._cells.clear()
         for a, b, half in segments:
-            low = min(a.real, b.real) - half, min(a.imag, b.imag) - half
-            high = max(a.real, b.real) + half, max(a.imag, b.imag) + half
-            self._bounded.append((*low, *high, (a, b, half)))
+            left, right = (a.real, b.real) if a.real < b.real else (b.real, a.real)
+            low, high = (a.imag, b.imag) if a.imag < b.imag else (b.imag, a.imag)
+            self._bounded.append((left - half, low - half, right + half, high + half, (a, b, half)))
+
+    def _near(self, column: int, row: int) -> list[tuple[float, float, float, float, Segment]]:
+        """The segments that come into a square of the paper."""
+        if (column, row) not in self._cells:
+            left, bottom, half = column * _CELL, row * _CELL, _CELL / 2
+            right, top, middle = left + _CELL, bottom + _CELL, complex(left + half, bottom + half)
+            self._cells[column, row] = [
+                it
+                for it in self._bounded
+                if it[0] <= right
+                and it[2] >= left
+                and it[1] <= top
+                and it[3] >= bottom
+                and _crosses(middle, half, half, it[4])
+            ]
+        return self._cells[column, row]
 
     def free(self, center: complex, half: complex, clear: float, inside: bool = False) -> bool:
-        if any(_boxes_meet(center, half, label) for label in self.labels):
-            return False
+        for across, up, wide, tall in self._boxes:
+            if abs(center.real - across) < half.real + wide and abs(center.imag - up) < half.imag + tall:
+                return False
         x, y = half.real + clear, half.imag + clear
         left, right, bottom, top = center.real - x, center.real + x, center.imag - y, center.imag + y
-        for x0, y0, x1, y1, segment in self._bounded:
-            if x0 <= right and x1 >= left and y0 <= top and y1 >= bottom and _crosses(center, x, y, segment):
-                return False
+        for column in range(math.floor(left / _CELL), math.floor(right / _CELL) + 1):
+            for row in range(math.floor(bottom / _CELL), math.floor(top / _CELL) + 1):
+                for x0, y0, x1, y1, segment in self._near(column, row):
+                    near = x0 <= right and x1 >= left and y0 <= top and y1 >= bottom
+                    if near and _crosses(center, x, y, segment):
+                        return False
         return inside or not any(within(center, area) for area in self.areas)
 
     @property
@@ -131,12 +180,6 @@ class Obstacles:
     def leader_free(self, a: complex, b: complex) -> bool:
         thin = (a, b, 0.3)
         return not any(_crosses(it.center, it.width / 2, it.height / 2, thin) for it in self.labels)
-
-
-def _boxes_meet(center: complex, half: complex, label: Label) -> bool:
-    apart = center - label.center
-    across = abs(apart.real) < half.real + label.width / 2 + _APART
-    return across and abs(apart.imag) < half.imag + label.height / 2 + _APART
 
 
 def _crosses(center: complex, hx: float, hy: float, segment: Segment) -> bool:
@@ -176,10 +219,7 @@ def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[Label, ...]:
     """Places every label, in order of rank then of writing."""
     obstacles = Obstacles(ink)
     for wish in sorted(wishes, key=lambda w: w.rank):
-        label = _choose(wish, obstacles)
-        obstacles.labels.append(label)
-        if label.leader:
-            obstacles.add([(*label.leader, THIN / 2)])
+        obstacles.put(_choose(wish, obstacles))
     return tuple(obstacles.labels)
 
 
@@ -187,15 +227,9 @@ def _choose(wish: Wish, obstacles: Obstacles) -> Label:
     text = read(wish.label)
     width, height = text.box
     half = complex(width, height) / 2
-    tries = [
-        (round(cost + late, 6), number, center, clear)
-        for number, (cost, center) in enumerate(wish.candidates(half))
-        for clear, late in ((_AIRY, 0.0), (_CLEAR, 1.2))
-    ]
-    tries.sort(key=lambda t: t[:2])
     # A label is in sight of what it names; failing that, a leader may pass over a bar.
     for in_sight in (True, False):
-        for _, _, center, clear in tries:
+        for center, clear in wish.places(half):
             if not obstacles.free(center, half, clear, wish.inside):
                 continue
             leader = _leader(wish, center, half)
