@@ -11,7 +11,7 @@ from coursework.degrees import atan, atan2, cos, from_radians, polar, sin, sqrt,
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slotted_guide import SlottedGuidePose
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 UNITS = {"e": "mm"}
 
@@ -161,6 +161,16 @@ def willis_no_arm(r2, omega2, r3):
 @mistake("v_I")
 def v_I_of_crank(r3, omega1):
     return r3 * omega1
+
+
+def motion(r3, b, e, theta1, omega1, theta4, v_B2_x, v_B2_y):
+    """The crank pin, the other pin of the slot, and where the wheels touch."""
+    crank, along = polar(1.0, theta1), polar(1.0, theta4)
+    return {
+        "A_1": Moving(e * crank, 1j * omega1 * e * crank),
+        "B_2": Moving(e * crank + b * along, v_B2_x + 1j * v_B2_y),
+        "I": Moving(r3 * crank),
+    }
 
 
 def figure(d, r2, r3, b, e, theta1, omega1, theta4, rA, omega4, v_slide, v_B2_x, v_B2_y, v_I):

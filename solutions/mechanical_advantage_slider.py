@@ -6,11 +6,11 @@ line. The linkage is that of slider_crank: p and q are the projections of its ro
 
 import numpy as np
 
-from coursework.degrees import atan2, cos, sin, sqrt
+from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 UNITS = {
     "p": "mm",
@@ -116,6 +116,12 @@ def torque_by_the_rod(r3, Gamma_e):
 @mistake("F_s")
 def force_divided(F_e, mechanical_advantage):
     return F_e / mechanical_advantage
+
+
+def motion(r2, theta2, omega2, p, q, r1_dot):
+    """The crank pin and the piston."""
+    crank = polar(r2, theta2)
+    return {"A": Moving(crank, 1j * omega2 * crank), "B": Moving(crank + q + 1j * p, r1_dot)}
 
 
 def residual(r2, r3, e, theta2, omega2, Gamma_e, theta3, omega3, r1_dot, mechanical_advantage, F_e, F_s):

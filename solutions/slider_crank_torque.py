@@ -13,11 +13,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.accuracy import Motion, Study
-from coursework.degrees import atan2, cos, sin, sqrt
+from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 GRAVITY = 9.81  #: m/s^2, along -y
 
@@ -343,6 +343,17 @@ def rod_obliquity_forgotten(r2, theta2, F):
 @mistake("torque", share=0.5)
 def torque_of_the_rod_on_the_crank(torque):
     return -torque
+
+
+def motion(r2, theta2, omega2, alpha2, p, q, s3, r1_dot, r1_ddot, a_G_x, a_G_y):
+    """The crank pin, the centre of mass of the rod, and the piston."""
+    A, rod = polar(r2, theta2), q + 1j * p
+    v_A = 1j * omega2 * A
+    return {
+        "A": Moving(A, v_A, (1j * alpha2 - omega2**2) * A),
+        "G": Moving(A + s3 * rod, v_A + s3 * (r1_dot - v_A), a_G_x + 1j * a_G_y),
+        "B": Moving(A + rod, r1_dot, r1_ddot),
+    }
 
 
 def residual(

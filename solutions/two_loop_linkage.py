@@ -14,7 +14,7 @@ from coursework.figures import Figure, ground_pivot, link, pin, vector
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 UNITS = {
     "AC": "mm",
@@ -346,6 +346,24 @@ def no_normal_terms():
 @mistake("alpha6", "alpha7")
 def alpha4_left_out_loop2(omega4, alpha4, omega6, omega7, alpha6, alpha7):
     return alpha6 - omega6 / omega4 * alpha4, alpha7 - omega7 / omega4 * alpha4
+
+
+def motion(
+    xC, yC, xF, yF, r2, theta2, omega2, r4, theta4, omega4, alpha4, r5, theta5, r7, theta7, omega7, alpha7
+):
+    """The four moving pins: each turns about one of the frame's."""
+
+    def on_circle(centre, length, theta, omega, alpha):
+        arm = polar(length, theta)
+        return Moving(centre + arm, 1j * omega * arm, (1j * alpha - omega**2) * arm)
+
+    C, F = xC + 1j * yC, xF + 1j * yF
+    return {
+        "A": on_circle(0j, r2, theta2, omega2, 0.0),
+        "B": on_circle(C, r4, theta4, omega4, alpha4),
+        "D": on_circle(C, r5, theta5, omega4, alpha4),
+        "E": on_circle(F, r7, theta7, omega7, alpha7),
+    }
 
 
 def figure(xC, yC, xF, yF, r2, theta2, omega2, r4, theta4, omega4, r5, theta5, r7, theta7, omega7):

@@ -7,7 +7,7 @@ Labels are placed in a fixed order, so the same figure always comes out the same
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -34,6 +34,7 @@ class Place(NamedTuple):
     step: float  #: beyond where labels begin, mm
     fraction: float | None  #: of the segment beside which it lies; none for a place round the anchor
     clear: float  #: white asked for between it and the lines, mm
+    number: int  #: the same for the same place with less white
 
 
 @lru_cache(maxsize=4)
@@ -52,7 +53,7 @@ def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
         for step in _STEPS:
             costed.append((late + step + turning * away, (turn(22.5 * sixteenth), step, None)))
     tries = [
-        (round(cost + more, 6), number, Place(*place, clear))
+        (round(cost + more, 6), number, Place(*place, clear, number))
         for number, (cost, place) in enumerate(costed)
         for clear, more in ((_AIRY, 0.0), (_CLEAR, 1.2))
     ]
@@ -93,13 +94,16 @@ class Wish:
         """The point that the label must be in sight of: on its arc for an angle."""
         return self.anchor + self.toward * max(0.0, self.start) if self.rank == ANGLES else self.anchor
 
-    def places(self, half: complex) -> Iterator[tuple[complex, float]]:
-        """Pairs (centre of the box, white to keep round it), cheapest first."""
-        p, q = self.along or (self.anchor, self.anchor)
-        for turned, step, fraction, clear in _places(self.along is not None, self.rank == ANGLES):
-            way = self.toward * turned
-            foot = self.anchor if fraction is None else p + (q - p) * fraction
-            yield foot + way * (self.start + step + _support(half, way)), clear
+    def places(self) -> tuple[Place, ...]:
+        """Where the label may go, the best place first."""
+        return _places(self.along is not None, self.rank == ANGLES)
+
+    def center(self, place: Place, half: complex) -> complex:
+        """Centre of a box of these half-sides at a place."""
+        way, foot = self.toward * place.way, self.anchor
+        if self.along and place.fraction is not None:
+            foot = self.along[0] + (self.along[1] - self.along[0]) * place.fraction
+        return foot + way * (self.start + place.step + _support(half, way))
 
 
 def _support(half: complex, way: complex) -> float:
@@ -116,6 +120,7 @@ class Obstacles:
     def __init__(self, ink: Sequence[Ink]) -> None:
         self._bounded: list[tuple[float, float, float, float, Segment]] = []
         self._cells: dict[tuple[int, int], list[tuple[float, float, float, float, Segment]]] = {}
+        self._columns: dict[int, list[tuple[float, float, float, float, Segment]]] = {}
         segments = [(a, b, item.width / 2) for item in ink for a, b in pairwise(item.outline())]
         self.add(segments)
         self.areas = [item.outline() for item in ink if item.solid]
@@ -133,6 +138,7 @@ class Obstacles:
 
     def add(self, segments: Iterable[Segment]) -> None:
         self._cells.clear()
+        self._columns.clear()
         for a, b, half in segments:
             left, right = (a.real, b.real) if a.real < b.real else (b.real, a.real)
             low, high = (a.imag, b.imag) if a.imag < b.imag else (b.imag, a.imag)
@@ -141,32 +147,36 @@ class Obstacles:
     def _near(self, column: int, row: int) -> list[tuple[float, float, float, float, Segment]]:
         """The segments that come into a square of the paper."""
         if (column, row) not in self._cells:
-            left, bottom, half = column * _CELL, row * _CELL, _CELL / 2
-            right, top, middle = left + _CELL, bottom + _CELL, complex(left + half, bottom + half)
+            if column not in self._columns:
+                left, right = column * _CELL, (column + 1) * _CELL
+                self._columns[column] = [it for it in self._bounded if it[0] <= right and it[2] >= left]
+            low, high, half = row * _CELL, (row + 1) * _CELL, _CELL / 2
+            middle = complex(column * _CELL + half, low + half)
             self._cells[column, row] = [
                 it
-                for it in self._bounded
-                if it[0] <= right
-                and it[2] >= left
-                and it[1] <= top
-                and it[3] >= bottom
-                and _crosses(middle, half, half, it[4])
+                for it in self._columns[column]
+                if it[1] <= high and it[3] >= low and _crosses(middle, half, half, it[4])
             ]
         return self._cells[column, row]
 
-    def free(self, center: complex, half: complex, clear: float, inside: bool = False) -> bool:
+    def white(self, center: complex, half: complex, inside: bool = False) -> float:
+        """The white that a box has: the one that labels prefer, the least there may be, or 0 for too little."""
         for across, up, wide, tall in self._boxes:
             if abs(center.real - across) < half.real + wide and abs(center.imag - up) < half.imag + tall:
-                return False
-        x, y = half.real + clear, half.imag + clear
+                return 0.0
+        found, x, y = _AIRY, half.real + _AIRY, half.imag + _AIRY
         left, right, bottom, top = center.real - x, center.real + x, center.imag - y, center.imag + y
         for column in range(math.floor(left / _CELL), math.floor(right / _CELL) + 1):
             for row in range(math.floor(bottom / _CELL), math.floor(top / _CELL) + 1):
                 for x0, y0, x1, y1, segment in self._near(column, row):
                     near = x0 <= right and x1 >= left and y0 <= top and y1 >= bottom
                     if near and _crosses(center, x, y, segment):
-                        return False
-        return inside or not any(within(center, area) for area in self.areas)
+                        if found == _CLEAR or _crosses(
+                            center, half.real + _CLEAR, half.imag + _CLEAR, segment
+                        ):
+                            return 0.0
+                        found, x, y = _CLEAR, half.real + _CLEAR, half.imag + _CLEAR
+        return 0.0 if not inside and any(within(center, area) for area in self.areas) else found
 
     @property
     def right(self) -> float:
@@ -228,9 +238,13 @@ def _choose(wish: Wish, obstacles: Obstacles) -> Label:
     width, height = text.box
     half = complex(width, height) / 2
     # A label is in sight of what it names; failing that, a leader may pass over a bar.
+    white: dict[int, float] = {}
     for in_sight in (True, False):
-        for center, clear in wish.places(half):
-            if not obstacles.free(center, half, clear, wish.inside):
+        for place in wish.places():
+            center = wish.center(place, half)
+            if place.number not in white:
+                white[place.number] = obstacles.white(center, half, wish.inside)
+            if white[place.number] < place.clear:
                 continue
             leader = _leader(wish, center, half)
             if (in_sight or leader is None) and obstacles.hides(wish.source, center):
