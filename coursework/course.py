@@ -35,7 +35,7 @@ from coursework.errors import (
     nearest,
     unknown,
 )
-from coursework.graph import plain_scalar
+from coursework.graph import Graph, plain_scalar
 from coursework.language import languages, localise, plain, significant, with_unit
 from coursework.model import Exercise, GivenSpec, Part
 from coursework.rules import Rules
@@ -356,6 +356,34 @@ class CourseExercise:
                     raise Undefined(f"{self.name}: {name} does not exist for {told}")
         return found
 
+    def driver_angle(self, given: Mapping[str, Any]) -> float:
+        """Where the driver stands for these given quantities, degrees.
+
+        Raises
+        ------
+        BadCourse
+            Neither a given quantity nor a helper says it.
+        """
+        name = self.spec.driver.angle
+        if name in given:
+            return float(given[name])
+        helpers = Graph({f.__name__: f for f in self.spec.helpers})
+        if self.spec.driver.poses is None or name not in helpers.quantities:
+            raise BadCourse(
+                f"{self.name}: its driver's angle {name} is no given quantity; where it is an answer, "
+                "a helper of that name says it, and Driver(poses=…) moves the mechanism"
+            )
+        return float(helpers.evaluate((name,), _known_to(helpers, given))[name])
+
+    def posed(self, given: Mapping[str, Any], angle: Any) -> dict[str, Any]:
+        """What places the mechanism with its driver at an angle, degrees, or at each of an array of angles."""
+        driver = self.spec.driver
+        if driver.poses is None:
+            return {driver.angle: angle}
+        graph = Graph({**{f.__name__: f for f in self.spec.helpers}, "poses": driver.poses})
+        values = _known_to(graph, {**given, "driven": angle})
+        return dict(graph.evaluate(("poses",), values)["poses"])
+
     def _accept(self, name: str, value: Any) -> Any:
         """A given value as a float, an array or a case's name, in the canonical unit, within its domain."""
         if name in self.solution.structures:
@@ -578,6 +606,10 @@ def _holds(part: Part, given: Mapping[str, Any]) -> bool:
     if any(n not in given for n in names):
         return True
     return bool(part.when(*[given[n] for n in names]))
+
+
+def _known_to(graph: Graph, values: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if name in graph.leaves}
 
 
 class Variant:

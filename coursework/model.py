@@ -170,6 +170,10 @@ class Driver:
     ``angle`` in degrees, ``speed`` in rad/s and ``acceleration`` in rad/s^2 of the driving crank; a name
     is empty where the exercise has no such quantity. ``effort`` (N*m, along ``angle``) is what the drive
     must supply, ``output`` a velocity that vanishes at the dead centres.
+
+    Where the angle is an answer, so not among what is given, a helper of its name says it of the figure, and
+    ``poses`` moves the mechanism: a function of given quantities, of helpers, and of the angle as ``driven``, to
+    the given quantities that place the mechanism there, on arrays.
     """
 
     angle: str
@@ -177,6 +181,7 @@ class Driver:
     acceleration: str = ""
     effort: str = ""
     output: str = ""
+    poses: Callable[..., Mapping[str, Any]] | None = None
 
 
 @dataclass(frozen=True)

@@ -77,10 +77,6 @@ class Animation:
         spec = variant.exercise.spec
         if spec.driver is None:
             raise BadCourse(f"{variant.exercise.name} names no driver=Driver(…), so it cannot be moved")
-        if spec.driver.angle not in variant.given:
-            raise BadCourse(
-                f"{variant.exercise.name}: its driver's angle {spec.driver.angle} is no given quantity"
-            )
         if spec.figure is None:
             raise BadCourse(f"{variant.exercise.name} has no figure to move")
         if count < 3:
@@ -111,7 +107,8 @@ class Animation:
             return None
 
     def _elements_or_fault(self, angle: float) -> tuple[Element, ...]:
-        given = {**self.variant.given, self._driver.angle: wrap(float(angle))}
+        given = self.variant.given
+        given = {**given, **self.variant.exercise.posed(given, wrap(float(angle)))}
         values = {n: v for n, v in given.items() if n in self._graph.leaves}
         return self._graph.evaluate(("figure",), values)["figure"].elements
 
@@ -123,8 +120,8 @@ class Animation:
     @cached_property
     def _cycle(self) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
         """Angles of the driver, increasing; elements at each; the variant's own; whether it turns fully."""
-        start, step = float(self.variant.given[self._driver.angle]), 360.0 / self.count
-        found = {0: self._elements_or_fault(start)}
+        start, step = self.variant.exercise.driver_angle(self.variant.given), 360.0 / self.count
+        found = {0: self.variant.figure.elements}
         for k in range(1, self.count):
             if (elements := self._elements(start + k * step)) is None:
                 break
@@ -207,8 +204,9 @@ class Animation:
         if not exercise.course.has_solutions or exercise.solution.motion is None:
             return {}
         graph = exercise.solution.graph.with_functions({"motion": exercise.solution.motion})
-        given = {n: v for n, v in self.variant.given.items() if n in exercise.quantity_names | graph.leaves}
-        found = graph.evaluate(("motion",), {**given, self._driver.angle: self.angles}, self.variant.effects)
+        given = {**self.variant.given, **exercise.posed(self.variant.given, self.angles)}
+        known = {n: v for n, v in given.items() if n in exercise.quantity_names | graph.leaves}
+        found = graph.evaluate(("motion",), known, self.variant.effects)
         return {name: point.over(len(self.angles)) for name, point in found["motion"].items()}
 
     @cached_property
@@ -345,7 +343,7 @@ class Animation:
                 continue
             for name in names:
                 effects_of.setdefault(name, []).append(effect)
-        given = {**self.variant.used, self._driver.angle: self.angles}
+        given = {**self.variant.used, **exercise.posed(self.variant.given, self.angles)}
         found = exercise.solve(**given, only=tuple(effects_of)) if effects_of else {}
         told = [
             self._reading(

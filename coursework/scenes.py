@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -101,12 +102,23 @@ class Scene:
             raise WrongValue(
                 f"{self.exercise.name}: nothing to show for the effects {', '.join(self.effects)}"
             )
-        return tuple(dict.fromkeys(shown))
+        return tuple(n for n in dict.fromkeys(shown) if n != self.driver.angle)
+
+    @cached_property
+    def _accepted(self) -> dict[str, Any]:
+        """The given values in canonical units."""
+        return {n: self.exercise._accept(n, v) for n, v in self.given.items()}
+
+    def _driven(self, angle: Any) -> dict[str, Any]:
+        """The given values with the driver at an angle."""
+        return {**self.given, **self.exercise.posed(self._accepted, angle)}
 
     def _moving(self) -> frozenset[str]:
-        driver = self.driver
-        names = (driver.angle, driver.speed, driver.acceleration)
-        return self.exercise.solution.graph.descendants(n for n in names if n)
+        driver, graph = self.driver, self.exercise.solution.graph
+        names = {n for n in (driver.angle, driver.speed, driver.acceleration) if n}
+        if driver.poses is not None:
+            names = names - {driver.angle} | self.exercise.posed(self._accepted, 0.0).keys()
+        return graph.descendants(names)
 
     def over_cycle(self, count: int = 360) -> Table:
         """The scene over one turn of the driver, ``count`` equal steps and the end.
@@ -117,7 +129,7 @@ class Scene:
             raise WrongValue(f"a cycle has at least one step; found {count}")
         angle = np.arange(count + 1) * 360.0 / count
         driver = self.driver.angle
-        found = self.exercise.solve(**{**self.given, driver: angle}, only=self.quantities, effects=self._own)
+        found = self.exercise.solve(**self._driven(angle), only=self.quantities, effects=self._own)
         columns = {driver: angle, **{n: np.broadcast_to(v, angle.shape) for n, v in found.items()}}
         open_somewhere = int(np.logical_or.reduce([np.isnan(column) for column in columns.values()]).sum())
         notes = (
@@ -174,7 +186,7 @@ class Scene:
 
     def _evaluated(self) -> tuple[str, ...]:
         graph = self.exercise.solution.graph
-        names = {**self.exercise._defaults, **self.given, self.driver.angle: 0.0}
+        names = {**self.exercise._defaults, **self._driven(0.0)}
         plan = graph.plan(self.quantities, frozenset(names) & self.exercise.quantity_names, self._own)
         return tuple(name for name in plan if not name.startswith("_"))  # a hidden one is the solution's own
 

@@ -122,13 +122,13 @@ def answer_sheet(variant: Variant, student: str = "") -> AnswerSheet:
         Answer(question, answer_text(variant, part, values), _margin(variant, part))
         for question, part in zip(sheet.questions, variant.parts, strict=True)
     )
-    figure = _solution_figure(variant)
+    figure = solution_figure(variant)
     says = text.sections.get("figure") if figure is not None else None
     alt = " ".join(says.text.split()) if says else ""
     return AnswerSheet(sheet, answers, steps, text.opening, figure, alt, variant.polygons())
 
 
-def _solution_figure(variant: Variant) -> Figure | None:
+def solution_figure(variant: Variant) -> Figure | None:
     solution = variant.exercise.solution
     if solution.figure is None:
         return None

@@ -19,7 +19,7 @@ from coursework.figures import (
     slider,
 )
 from coursework.kinematics.dyads import rrp, rrr, side_of
-from coursework.model import Exercise, Part, chosen, drawn
+from coursework.model import Driver, Exercise, Part, chosen, drawn
 
 
 def B(r1, theta1, r2, r3, r4, angle_OAB, B_side):
@@ -33,6 +33,23 @@ def A(B, r2, r3, A_side):
 
 def C(B, r5, h):
     return rrp(B, r5, h)
+
+
+def theta2(A):
+    """Where the crank stands in the figure."""
+    return angle(A)
+
+
+def with_the_crank_at(driven, A, B, r1, theta1, r2, r3, r4):
+    """The same assembly at another crank angle, told as the data tell it."""
+    D = polar(r1, theta1)
+    crank = polar(r2, driven)
+    pin_B = rrr(crank, D, r3, r4, np.sign(_cross(D - A, B - A)))
+    return {
+        "angle_OAB": abs(angle((pin_B - crank) / -crank)),
+        "B_side": np.where(_cross(D, pin_B) > 0, "left", "right")[()],
+        "A_side": np.where(_cross(pin_B, crank) > 0, "left", "right")[()],
+    }
 
 
 def coupler(A, B):
@@ -234,6 +251,7 @@ EXERCISE = Exercise(
     helpers=(
         B,
         A,
+        theta2,
         C,
         coupler,
         rocker,
@@ -293,4 +311,5 @@ EXERCISE = Exercise(
         "mechanical_advantage": r"\lambda",
     },
     figure=figure,
+    driver=Driver("theta2", "omega2", output="v_C", poses=with_the_crank_at),
 )

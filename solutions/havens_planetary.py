@@ -12,7 +12,7 @@ from coursework.figures import Figure, circle, contact, ground_pivot, link, pin,
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.polygons import Side, turning
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 from ._polygons import _crank_v, _guide_v, _velocities
 
@@ -181,6 +181,16 @@ def polygons(e, r2, b, theta1, omega1, theta4, rA, omega4, v_slide, v_B2_x, v_B2
             ),
         ),
     )
+
+
+def motion(r3, b, e, theta1, omega1, theta4, v_B2_x, v_B2_y):
+    """The crank pin, the other pin of the slot, and where the wheels touch."""
+    crank, along = polar(1.0, theta1), polar(1.0, theta4)
+    return {
+        "A_1": Moving(e * crank, 1j * omega1 * e * crank),
+        "B_2": Moving(e * crank + b * along, v_B2_x + 1j * v_B2_y),
+        "I": Moving(r3 * crank),
+    }
 
 
 def figure(d, r2, r3, b, e, theta1, omega1, theta4, rA, omega4, v_slide, v_B2_x, v_B2_y, v_I):

@@ -10,7 +10,7 @@ from coursework.degrees import polar, sin
 from coursework.errors import Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
 from coursework.kinematics.dyads import side_of
-from coursework.solution import formula, mistake
+from coursework.solution import Moving, formula, mistake
 
 from ._four_bar import *
 from ._polygons import _crank_v, _two_bars_v, _velocities
@@ -150,6 +150,12 @@ def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4):
             _two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
         ),
     )
+
+
+def motion(r1, r2, r4, theta2, theta4, omega2, omega4):
+    """The pins of input and output."""
+    crank, rocker = polar(r2, theta2), polar(r4, theta4)
+    return {"A": Moving(crank, 1j * omega2 * crank), "B": Moving(r1 + rocker, 1j * omega4 * rocker)}
 
 
 def figure(r1, r2, theta2, r3, theta3, omega2, omega4):

@@ -10,7 +10,7 @@ from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 from ._polygons import _crank_v, _slider_v, _velocities
 
@@ -126,6 +126,12 @@ def polygons(r2, theta2, omega2, p, q, omega3, r1_dot):
             _crank_v("A", "OA", polar(r2, theta2), omega2), _slider_v("B", "A", q + 1j * p, omega3, r1_dot)
         ),
     )
+
+
+def motion(r2, theta2, omega2, p, q, r1_dot):
+    """The crank pin and the piston."""
+    crank = polar(r2, theta2)
+    return {"A": Moving(crank, 1j * omega2 * crank), "B": Moving(crank + q + 1j * p, r1_dot)}
 
 
 def residual(r2, r3, e, theta2, omega2, Gamma_e, theta3, omega3, r1_dot, mechanical_advantage, F_e, F_s):

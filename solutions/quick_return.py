@@ -14,7 +14,7 @@ from coursework.errors import CannotAssemble, Undefined
 from coursework.kinematics.cycle import turning_points
 from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.kinematics.margins import grashof_margins
-from coursework.solution import formula, mistake
+from coursework.solution import Moving, formula, mistake
 
 from ._polygons import (
     _accelerations,
@@ -433,6 +433,16 @@ def polygons(
             _slider_a("C", "B", BC, omega5, alpha5, "r_5", a_C),
         ),
     )
+
+
+def motion(r1, theta1, r2, theta2, omega2, r4, theta4, omega4, alpha4, xC, h, v_C, a_C):
+    """Crank pin, rocker pin and piston."""
+    crank, rocker = polar(r2, theta2), polar(r4, theta4)
+    return {
+        "A": Moving(crank, 1j * omega2 * crank, -(omega2**2) * crank),
+        "B": Moving(polar(r1, theta1) + rocker, 1j * omega4 * rocker, (1j * alpha4 - omega4**2) * rocker),
+        "C": Moving(xC + 1j * h, v_C, a_C),
+    }
 
 
 def residual(

@@ -15,7 +15,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
 from coursework.polygons import normal, tangential, turning
-from coursework.solution import formula, mistake, stable
+from coursework.solution import Moving, formula, mistake, stable
 
 from ._polygons import _accelerations, _crank_a, _crank_v, _two_bars_a, _two_bars_v, _velocities
 
@@ -375,6 +375,24 @@ def polygons(
             _two_bars_a("E", "D", "F", DE, omega6, alpha6, "r_6", FE, omega7, alpha7, "r_7"),
         ),
     )
+
+
+def motion(
+    xC, yC, xF, yF, r2, theta2, omega2, r4, theta4, omega4, alpha4, r5, theta5, r7, theta7, omega7, alpha7
+):
+    """The four moving pins: each turns about one of the frame's."""
+
+    def on_circle(centre, length, theta, omega, alpha):
+        arm = polar(length, theta)
+        return Moving(centre + arm, 1j * omega * arm, (1j * alpha - omega**2) * arm)
+
+    C, F = xC + 1j * yC, xF + 1j * yF
+    return {
+        "A": on_circle(0j, r2, theta2, omega2, 0.0),
+        "B": on_circle(C, r4, theta4, omega4, alpha4),
+        "D": on_circle(C, r5, theta5, omega4, alpha4),
+        "E": on_circle(F, r7, theta7, omega7, alpha7),
+    }
 
 
 def figure(xC, yC, xF, yF, r2, theta2, omega2, r4, theta4, omega4, r5, theta5, r7, theta7, omega7):

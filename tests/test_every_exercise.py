@@ -83,7 +83,7 @@ def test_sheets_render_in_every_format_and_language(name):
 def test_just_beyond_the_tolerance_is_not_right(name):
     for key in keys(name)[:10]:
         for part in key.variant.parts:
-            if part.kind not in ("number", "angle"):
+            if part.kind not in ("number", "angle") or not part.has_margin:
                 continue
             value = key.reference[part.quantity]
             for side in (-1, 1):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
@@ -12,6 +13,7 @@ import pytest
 
 import coursework
 from coursework.cli import run
+from coursework.course import CourseExercise
 from coursework.errors import BadCourse, UnknownName, WrongValue
 from coursework.figures import link, pin, rail, rotation_arrow
 from coursework.figures.moving import drawing
@@ -68,7 +70,7 @@ def test_the_sheets_position_comes_first_and_a_loop_ends_where_it_began(name):
     moved = animation(name)
     assert moved.order[0] == moved.order[-1] == moved.first
     assert moved.frames[moved.first] == moved.variant.figure.elements
-    angle = moved.variant.given[moved.variant.exercise.spec.driver.angle]
+    angle = moved.variant.exercise.driver_angle(moved.variant.given)
     assert (moved.angles[moved.first] - angle) % 360 == pytest.approx(0, abs=1e-9)
 
 
@@ -120,18 +122,23 @@ def motion_at(name, seed, turn, speed, acceleration):
     """The points of a variant, its driver at another angle, turning otherwise."""
     exercise = COURSE[name]
     variant, driver = exercise.variant(seed), exercise.spec.driver
-    given = {**variant.used, driver.angle: variant.used[driver.angle] + turn}
+    given = {**variant.used, **exercise.posed(variant.used, exercise.driver_angle(variant.used) + turn)}
     given |= {n: v for n, v in ((driver.speed, speed), (driver.acceleration, acceleration)) if n in given}
     graph = exercise.solution.graph.with_functions({"motion": exercise.solution.motion})
-    return graph.evaluate(("motion",), given)["motion"]
+    return graph.evaluate(("motion",), given, exercise.spec.effects)["motion"]
+
+
+def test_every_mechanism_with_a_driver_states_its_points():
+    assert WITH_POINTS == DRIVEN
 
 
 @pytest.mark.parametrize("name", WITH_POINTS)
-def test_velocities_and_accelerations_are_the_slopes_of_positions(name):
+@pytest.mark.parametrize("seed", [2, 9])
+def test_velocities_and_accelerations_are_the_slopes_of_positions(name, seed):
     step, speed, sped_up = 0.01, 3.0, 7.0
     acceleration = sped_up if COURSE[name].spec.driver.acceleration else 0.0
     turns = np.arange(0.0, 360.0, 15.0)
-    before, now, after = (motion_at(name, 2, turns + d, speed, acceleration) for d in (-step, 0.0, step))
+    before, now, after = (motion_at(name, seed, turns + d, speed, acceleration) for d in (-step, 0.0, step))
     for point, moving in now.items():
         p, q, r = (np.asarray(one[point].position) for one in (before, now, after))
         slope, bend = (r - p) / (2 * np.radians(step)), (r - 2 * q + p) / np.radians(step) ** 2
@@ -154,14 +161,22 @@ def test_a_point_of_that_name_is_drawn_where_the_solution_says_that_it_is(name):
             assert abs(at - moved.points[point].position[k]) < 1e-9 * abs(at)
 
 
-@pytest.mark.parametrize("name", ["slotted_mechanism", "quick_return_shaper", "quick_return_whitworth"])
-def test_a_coriolis_term_is_what_neither_guide_nor_slide_explains(name):
+@pytest.mark.parametrize(
+    ("name", "pivot", "block"),
+    [
+        ("slotted_mechanism", None, "A"),
+        ("quick_return_shaper", None, "A"),
+        ("quick_return_whitworth", None, "A"),
+        ("three_loop_shaper", ("xD", "yD"), "E"),
+    ],
+)
+def test_a_coriolis_term_is_what_neither_guide_nor_slide_explains(name, pivot, block):
     """In a frame that turns with the guide: a = a of the guide's point + a of the slide + the Coriolis term."""
     step, speed = 0.02, 2.0
     turns = np.arange(0.0, 360.0, 15.0)
-    arms = [
-        motion_at(name, 2, turns + d, speed, 0.0)["A"].position for d in (-step, 0.0, step)
-    ]  # O4 is the origin
+    given = COURSE[name].variant(2).used
+    O4 = complex(*(given[n] for n in pivot)) if pivot else 0j
+    arms = [motion_at(name, 2, turns + d, speed, 0.0)[block].position - O4 for d in (-step, 0.0, step)]
     length = np.abs(arms)
     angle = np.unwrap(np.angle(arms), axis=0)
     rate = speed / np.radians(step)
@@ -169,7 +184,7 @@ def test_a_coriolis_term_is_what_neither_guide_nor_slide_explains(name):
     slide_2 = (length[2] - 2 * length[1] + length[0]) * rate**2
     turning_2 = (angle[2] - 2 * angle[1] + angle[0]) * rate**2
     along = np.exp(1j * angle[1])
-    A = motion_at(name, 2, turns, speed, 0.0)["A"]
+    A = motion_at(name, 2, turns, speed, 0.0)[block]
     guide = (1j * turning_2 - turning**2) * arms[1]
     assert abs(A.acceleration - guide - slide_2 * along - A.coriolis).max() < 1e-4 * abs(A.acceleration).max()
     assert abs(A.coriolis - 2j * turning * slide * along).max() < 1e-5 * abs(A.coriolis).max()
@@ -200,6 +215,31 @@ def test_the_readings_are_the_quantities_of_the_scene():
     asked = {**moved.variant.used, "theta2": float(moved.angles[7])}
     alone = COURSE["slotted_mechanism"].solve(**asked, only="omega4")["omega4"]
     assert float(reading.values[7].replace("−", "-")) == pytest.approx(alone, rel=1e-3)
+
+
+def test_a_crank_angle_that_is_an_answer_is_shown_and_the_assembly_kept():
+    """The instant is given by the angle OAB, which takes every value twice a turn, its points on either side."""
+    exercise = COURSE["quick_return"]
+    variant = exercise.variant(3)
+    given = variant.used
+    assert exercise.driver_angle(given) == pytest.approx(
+        exercise.solve(**given, only="theta2")["theta2"], abs=1e-9
+    )
+    turn = exercise.posed(given, np.arange(0.0, 360.0, 10.0) + 1.0)
+    assert set(turn["A_side"]) == {"left", "right"}
+    solved = exercise.solve(**{**given, **turn}, only=("theta2", "theta3", "theta4"))
+    assert (solved["theta2"] % 360) == pytest.approx(np.arange(0.0, 360.0, 10.0) + 1.0, abs=1e-7)
+    # The angle from rod AB to rocker DB keeps its sign: the dyad never passes through a straight line.
+    between = np.sin(np.radians(solved["theta4"] - solved["theta3"]))
+    assert abs(np.sign(between).sum()) == len(between)
+    assert np.abs(np.diff(np.unwrap(solved["theta4"], period=360))).max() < 15
+
+
+def test_a_driver_angle_that_nothing_says_is_a_fault_of_the_course():
+    exercise = CourseExercise(COURSE, "quick_return")
+    exercise.spec = replace(exercise.spec, driver=replace(exercise.spec.driver, poses=None))
+    with pytest.raises(BadCourse, match="theta2 is no given quantity"):
+        exercise.variant(0).animation().svg()
 
 
 # ----------------------------------------------------------------------- files

@@ -571,20 +571,19 @@ def _hole(points: tuple[complex, ...], box: tuple[float, float]) -> tuple[comple
     rim = (*corners, half.real, -half.real, 1j * half.imag, -1j * half.imag)
     xs, ys = [z.real for z in points], [z.imag for z in points]
     grid = [
-        complex(min(xs) + (max(xs) - min(xs)) * j / 16, min(ys) + (max(ys) - min(ys)) * k / 16)
-        for j in range(1, 16)
-        for k in range(1, 16)
+        complex(min(xs) + (max(xs) - min(xs)) * j / 12, min(ys) + (max(ys) - min(ys)) * k / 12)
+        for j in range(1, 12)
+        for k in range(1, 12)
     ]
     closed = (*points, points[0])
 
     def room(center: complex) -> float:
-        if not all(within(center + z, closed) for z in rim):
-            return -1.0
-        return min(distance(center + z, a, b) for z in rim for a, b in _sides(points))
+        return min(distance(center + z, a, b) for z in rim for a, b in pairwise(closed))
 
+    fitting = [center for center in grid if all(within(center + z, closed) for z in rim)]
     middle = sum(grid) / len(grid)
-    best = max(grid, key=lambda z: (round(room(z), 1), -round(abs(z - middle), 3)))
-    return tuple(best + z for z in corners) if room(best) >= 0 else ()
+    best = max(fitting, key=lambda z: (round(room(z), 1), -round(abs(z - middle), 3)), default=None)
+    return () if best is None else tuple(best + z for z in corners)
 
 
 def _hatching(

@@ -6,11 +6,12 @@ Labels are placed in a fixed order, so the same figure always comes out the same
 
 from __future__ import annotations
 
-import cmath
-from collections.abc import Iterable, Iterator, Sequence
+import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import lru_cache
 from itertools import pairwise
+from typing import NamedTuple
 
 from coursework.figures.ink import BAR, THIN, Ink, turn
 from coursework.figures.text import Text, read
@@ -23,6 +24,40 @@ _AT_ARC = 3.0  #: the same for an angle, from the middle of its arc, mm
 _STEPS = (0.0, 0.5, 1.0, 1.7, 2.5, 3.5, 5.0, 7.0, 9.5, 12.5, 16.0, 20.0, 26.0, 34.0, 45.0, 60.0)
 INSIDE, NAMES, ANGLES, SIDES = range(4)  #: ranks of labels: those with least choice first
 _FRACTIONS = (0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75)
+_CELL = 8.0  #: side of the squares in which the lines near a place are looked up, mm
+
+
+class Place(NamedTuple):
+    """A place for a label, told from what it names: the same list serves every label of a kind."""
+
+    way: complex  #: from the preferred direction, a unit complex number
+    step: float  #: beyond where labels begin, mm
+    fraction: float | None  #: of the segment beside which it lies; none for a place round the anchor
+    clear: float  #: white asked for between it and the lines, mm
+    number: int  #: the same for the same place with less white
+
+
+@lru_cache(maxsize=4)
+def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
+    """All places of a kind of label, cheapest first; the costs are in mm away from the best place."""
+    costed = []
+    if beside:
+        for side in (1, -1):
+            for fraction in _FRACTIONS:
+                for step in _STEPS[:6]:
+                    cost = step + 4 * abs(fraction - 0.5) + 0.4 * (side < 0)
+                    costed.append((cost, (complex(side), step, fraction)))
+    late, turning = (3.0 if beside else 0.0), (1.6 if angle else 0.7)
+    for sixteenth in range(16):
+        away = math.radians(22.5 * min(sixteenth, 16 - sixteenth))
+        for step in _STEPS:
+            costed.append((late + step + turning * away, (turn(22.5 * sixteenth), step, None)))
+    tries = [
+        (round(cost + more, 6), number, Place(*place, clear, number))
+        for number, (cost, place) in enumerate(costed)
+        for clear, more in ((_AIRY, 0.0), (_CLEAR, 1.2))
+    ]
+    return tuple(place for _, _, place in sorted(tries, key=lambda one: one[:2]))
 
 
 @dataclass(frozen=True)
@@ -59,41 +94,16 @@ class Wish:
         """The point that the label must be in sight of: on its arc for an angle."""
         return self.anchor + self.toward * max(0.0, self.start) if self.rank == ANGLES else self.anchor
 
-    def candidates(self, half: complex) -> Iterator[tuple[complex, float]]:
-        """Pairs (centre of the box, white to its lines), the cheapest first."""
-        p, q = self.along or (self.anchor, self.anchor)
-        for around, turned, step, clear in _order(self.along is not None, self.rank == ANGLES):
-            foot = self.anchor if around else p + (q - p) * step[0]
-            way = self.toward * turned
-            yield foot + way * (self.start + step[1] + _support(half, way)), clear
+    def places(self) -> tuple[Place, ...]:
+        """Where the label may go, the best place first."""
+        return _places(self.along is not None, self.rank == ANGLES)
 
-
-@cache
-def _order(beside: bool, at_arc: bool) -> tuple[tuple[bool, complex, tuple[float, float], float], ...]:
-    """Places for a label, the cheapest first: whether around the anchor, the turn from the preferred direction,
-    the fraction of the segment and the distance from it, and the white that is asked.
-
-    The same for all labels of a kind, so it is put in order once.
-    """
-    places = []
-    if beside:
-        for side in (1, -1):
-            for fraction in _FRACTIONS:
-                for step in _STEPS[:6]:
-                    cost = step + 4 * abs(fraction - 0.5) + 0.4 * (side < 0)
-                    places.append((cost, False, side, (fraction, step)))
-    late, turning = (3.0 if beside else 0.0), (1.6 if at_arc else 0.7)
-    for sixteenth in range(16):
-        turned = turn(22.5 * sixteenth)
-        for step in _STEPS:
-            cost = late + step + turning * abs(cmath.phase(turned))
-            places.append((cost, True, turned, (0.0, step)))
-    tries = [
-        (round(place[0] + more, 6), number, place[1:], clear)
-        for number, place in enumerate(places)
-        for clear, more in ((_AIRY, 0.0), (_CLEAR, 1.2))
-    ]
-    return tuple((*place, clear) for _, _, place, clear in sorted(tries, key=lambda t: t[:2]))
+    def center(self, place: Place, half: complex) -> complex:
+        """Centre of a box of these half-sides at a place."""
+        way, foot = self.toward * place.way, self.anchor
+        if self.along and place.fraction is not None:
+            foot = self.along[0] + (self.along[1] - self.along[0]) * place.fraction
+        return foot + way * (self.start + place.step + _support(half, way))
 
 
 def _support(half: complex, way: complex) -> float:
@@ -109,41 +119,64 @@ class Obstacles:
 
     def __init__(self, ink: Sequence[Ink]) -> None:
         self._bounded: list[tuple[float, float, float, float, Segment]] = []
+        self._cells: dict[tuple[int, int], list[tuple[float, float, float, float, Segment]]] = {}
+        self._columns: dict[int, list[tuple[float, float, float, float, Segment]]] = {}
         segments = [(a, b, item.width / 2) for item in ink for a, b in pairwise(item.outline())]
         self.add(segments)
         self.areas = [item.outline() for item in ink if item.solid]
         self.bars = [(a, b) for a, b, half in segments if half >= BAR / 2]
         self.labels: list[Label] = []
-        self._boxes: list[tuple[float, float, float, float]] = []  #: of the labels, centres and half-sides
+        self._boxes: list[tuple[float, float, float, float]] = []  #: of the labels, with the white round them
 
-    def take(self, label: Label) -> None:
-        """A label has its place: others keep clear of it, and lines of its leader."""
+    def put(self, label: Label) -> None:
+        """A label that is placed, with its leader."""
         self.labels.append(label)
-        sides = label.width / 2 + _APART, label.height / 2 + _APART
-        self._boxes.append((label.center.real, label.center.imag, *sides))
+        reach = complex(label.width, label.height) / 2 + complex(_APART, _APART)
+        self._boxes.append((label.center.real, label.center.imag, reach.real, reach.imag))
         if label.leader:
             self.add([(*label.leader, THIN / 2)])
 
     def add(self, segments: Iterable[Segment]) -> None:
+        self._cells.clear()
+        self._columns.clear()
         for a, b, half in segments:
-            low = min(a.real, b.real) - half, min(a.imag, b.imag) - half
-            high = max(a.real, b.real) + half, max(a.imag, b.imag) + half
-            self._bounded.append((*low, *high, (a, b, half)))
+            left, right = (a.real, b.real) if a.real < b.real else (b.real, a.real)
+            low, high = (a.imag, b.imag) if a.imag < b.imag else (b.imag, a.imag)
+            self._bounded.append((left - half, low - half, right + half, high + half, (a, b, half)))
 
-    def free(self, center: complex, half: complex, clear: float, inside: bool = False) -> bool:
-        middle_x, middle_y, half_x, half_y = center.real, center.imag, half.real, half.imag
-        for other_x, other_y, other_half_x, other_half_y in self._boxes:
-            if (
-                abs(middle_x - other_x) < half_x + other_half_x
-                and abs(middle_y - other_y) < half_y + other_half_y
-            ):
-                return False
-        x, y = half_x + clear, half_y + clear
-        left, right, bottom, top = middle_x - x, middle_x + x, middle_y - y, middle_y + y
-        for x0, y0, x1, y1, segment in self._bounded:
-            if x0 <= right and x1 >= left and y0 <= top and y1 >= bottom and _crosses(center, x, y, segment):
-                return False
-        return inside or not any(within(center, area) for area in self.areas)
+    def _near(self, column: int, row: int) -> list[tuple[float, float, float, float, Segment]]:
+        """The segments that come into a square of the paper."""
+        if (column, row) not in self._cells:
+            if column not in self._columns:
+                left, right = column * _CELL, (column + 1) * _CELL
+                self._columns[column] = [it for it in self._bounded if it[0] <= right and it[2] >= left]
+            low, high, half = row * _CELL, (row + 1) * _CELL, _CELL / 2
+            middle = complex(column * _CELL + half, low + half)
+            self._cells[column, row] = [
+                it
+                for it in self._columns[column]
+                if it[1] <= high and it[3] >= low and _crosses(middle, half, half, it[4])
+            ]
+        return self._cells[column, row]
+
+    def white(self, center: complex, half: complex, inside: bool = False) -> float:
+        """The white that a box has: the one that labels prefer, the least there may be, or 0 for too little."""
+        for across, up, wide, tall in self._boxes:
+            if abs(center.real - across) < half.real + wide and abs(center.imag - up) < half.imag + tall:
+                return 0.0
+        found, x, y = _AIRY, half.real + _AIRY, half.imag + _AIRY
+        left, right, bottom, top = center.real - x, center.real + x, center.imag - y, center.imag + y
+        for column in range(math.floor(left / _CELL), math.floor(right / _CELL) + 1):
+            for row in range(math.floor(bottom / _CELL), math.floor(top / _CELL) + 1):
+                for x0, y0, x1, y1, segment in self._near(column, row):
+                    near = x0 <= right and x1 >= left and y0 <= top and y1 >= bottom
+                    if near and _crosses(center, x, y, segment):
+                        if found == _CLEAR or _crosses(
+                            center, half.real + _CLEAR, half.imag + _CLEAR, segment
+                        ):
+                            return 0.0
+                        found, x, y = _CLEAR, half.real + _CLEAR, half.imag + _CLEAR
+        return 0.0 if not inside and any(within(center, area) for area in self.areas) else found
 
     @property
     def right(self) -> float:
@@ -197,7 +230,7 @@ def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[tuple[Label, ...]
     obstacles = Obstacles(ink)
     order = sorted(range(len(wishes)), key=lambda k: wishes[k].rank)
     for k in order:
-        obstacles.take(_choose(wishes[k], obstacles))
+        obstacles.put(_choose(wishes[k], obstacles))
     return tuple(obstacles.labels), tuple(order)
 
 
@@ -206,9 +239,13 @@ def _choose(wish: Wish, obstacles: Obstacles) -> Label:
     width, height = text.box
     half = complex(width, height) / 2
     # A label is in sight of what it names; failing that, a leader may pass over a bar.
+    white: dict[int, float] = {}
     for in_sight in (True, False):
-        for center, clear in wish.candidates(half):
-            if not obstacles.free(center, half, clear, wish.inside):
+        for place in wish.places():
+            center = wish.center(place, half)
+            if place.number not in white:
+                white[place.number] = obstacles.white(center, half, wish.inside)
+            if white[place.number] < place.clear:
                 continue
             leader = _leader(wish, center, half)
             if (in_sight or leader is None) and obstacles.hides(wish.source, center):

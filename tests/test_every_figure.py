@@ -1,0 +1,97 @@
+"""Every exercise's figures over 200 variants: no label on a line or on another label, none off the paper."""
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import coursework
+from coursework.figures import Figure, link, pin
+from coursework.sheets import solution_figure
+
+COURSE = coursework.open_course()
+WITH_FIGURE = [n for n in COURSE.names if COURSE[n].spec.figure is not None]
+VARIANTS = 200
+
+_RING = np.exp(2j * np.pi * np.arange(61) / 60)
+_THING = re.compile(r'<path d="([^"]*)"|<circle cx="([^"]*)" cy="([^"]*)" r="([^"]*)"')
+_STEP = re.compile(r"([MLA])([^MLAZ]*)|Z")
+
+
+def arc(a, b, radius, clockwise):
+    """Points of an SVG arc of less than half a turn, y down."""
+    half = abs(b - a) / 2
+    up = 1j * (b - a) / abs(b - a) * (1 if clockwise else -1)
+    center = (a + b) / 2 + up * math.sqrt(max(0.0, radius**2 - half**2))
+    turn = 2 * math.asin(min(1.0, half / radius)) * (1 if clockwise else -1)
+    return center + (a - center) * np.exp(1j * turn * np.arange(21) / 20)
+
+
+def points(way):
+    found = []
+    for command, text in _STEP.findall(way):
+        numbers = [float(x) for x in text.split()]
+        if command == "A":
+            found += list(arc(found[-1], complex(*numbers[5:]), numbers[0], numbers[4] == 1))
+        else:
+            found.append(complex(*numbers) if command else found[0])
+    return np.array(found)
+
+
+def strokes(svg):
+    """Both ends of every drawn piece of line, mm, y down, read back from the file alone."""
+    drawing = svg[: svg.index("</g>")]
+    ways = []
+    for way, x, y, r in _THING.findall(drawing):
+        ways.append(points(way) if way else complex(float(x), float(y)) + float(r) * _RING)
+    return np.concatenate([w[:-1] for w in ways]), np.concatenate([w[1:] for w in ways])
+
+
+def faults(figure):
+    """What is wrong with the labels of a figure: pairs that overlap, labels on a line, labels off the paper."""
+    boxes = figure.labels()
+    if not boxes:
+        return []
+    x, y, width, height = np.array([box[1:] for box in boxes]).T
+    low, high = np.stack([x, y]), np.stack([x + width, y + height])
+    meets = np.triu((low[:, :, None] < high[:, None, :]).all(axis=0), 1)
+    meets &= (low[:, None, :] < high[:, :, None]).all(axis=0)
+    found = [f"{boxes[i].label} on {boxes[k].label}" for i, k in np.argwhere(meets)]
+    a, b = strokes(figure.svg())
+    half_x, half_y = width[:, None] / 2, height[:, None] / 2
+    middle = (a + b) / 2 - ((x + width / 2) + 1j * (y + height / 2))[:, None]
+    d = (b - a) / 2
+    # A box and a segment are apart when some axis parts them: x, y, or square to the segment.
+    apart = (abs(middle.real) >= half_x + abs(d.real)) | (abs(middle.imag) >= half_y + abs(d.imag))
+    reach = half_x * abs(d.imag) + half_y * abs(d.real)
+    apart |= abs(middle.real * d.imag - middle.imag * d.real) >= reach
+    found += [f"{boxes[i].label} on a line" for i in np.flatnonzero((~apart).any(axis=1))]
+    off = (low < -1e-9).any(axis=0) | (high > np.array(figure.size_mm)[:, None] + 1e-9).any(axis=0)
+    return found + [f"{boxes[i].label} off the paper" for i in np.flatnonzero(off)]
+
+
+@pytest.mark.parametrize("name", WITH_FIGURE)
+def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(name):
+    found = {}
+    for seed in range(VARIANTS):
+        variant = COURSE[name].variant(seed)
+        figures = (variant.figure, solution_figure(variant))
+        found[seed] = [fault for figure in figures if figure is not None for fault in faults(figure)]
+    assert not {seed: bad for seed, bad in found.items() if bad}
+
+
+def test_the_measure_sees_a_label_on_a_line_and_on_another_label():
+    """A label moved onto the bar that it names, and onto its neighbour, is found."""
+    figure = Figure(link(0, 100, label="a"), pin(0, "O"))
+    assert faults(figure) == []
+    layout = figure._layout
+    letter, other = sorted(layout.labels, key=lambda label: label.label, reverse=True)
+    for center, fault in (
+        (60 * layout.scale + 0j, "a on a line"),
+        (other.center, "a on O"),
+        (-30 + 0j, "a off the paper"),
+    ):
+        figure.__dict__["_layout"] = replace(layout, labels=(replace(letter, center=center), other))
+        assert fault in faults(figure)
