@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from coursework.errors import unknown
-from coursework.figures import Element, Figure, line, point, scale_bar, vector
+from coursework.figures import Beginning, Element, Figure, line, point, scale_bar, vector
 from coursework.language import languages, localise, significant, unit_text, words
 from coursework.polygons import Polygon, Side, Stage
 
@@ -44,7 +44,7 @@ class Step:
 
     number: int
     text: str  #: Markdown
-    figure: Figure  #: all that is drawn up to here, small
+    figure: Beginning  #: all that is drawn up to here, small
 
 
 class Construction:
@@ -148,15 +148,17 @@ class Construction:
         scale = max(size.real / _SMALL_MM[0], size.imag / _SMALL_MM[1])
         drawn = _Drawing(self.polygon, scale, _BEYOND[0], named=False)
         whole = Figure(*drawn.elements, scale=1)
-        return tuple(
-            Step(number, self._told(stage, number), whole.beginning(count))
-            for number, (stage, count) in enumerate(
-                zip(self.polygon.stages, drawn.counts, strict=True), start=1
-            )
-        )
+        steps: list[Step] = []
+        for stage, count in zip(self.polygon.stages, drawn.counts, strict=True):
+            text = self._told(stage)
+            if stage.kind == "result" and steps:
+                # Vectors that join points already found are no step of their own.
+                text = f"{steps.pop().text} {text}"
+            steps.append(Step(len(steps) + 1, text, whole.beginning(count)))
+        return tuple(steps)
 
-    def _told(self, stage: Stage, number: int) -> str:
-        """A step in words."""
+    def _told(self, stage: Stage) -> str:
+        """A stage in words."""
         said = self._said
         first, last = stage.sides[0], stage.sides[-1]
         text = said[stage.kind].format(
@@ -167,7 +169,9 @@ class Construction:
             vector=f"${last.name}$",
             first=f"${first.name}$",
         )
-        return f"{said['pole'].format(f'${self.polygon.pole}$')} {text}" if number == 1 else text
+        if stage is not self.polygon.stages[0]:
+            return text
+        return f"{said['pole'].format(f'${self.polygon.pole}$')} {text}"
 
     def svg(self) -> str:
         """The whole polygon as SVG, at true size."""

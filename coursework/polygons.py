@@ -254,7 +254,7 @@ class Polygon:
     def _equation(self, stage: Stage) -> str:
         target = stage.points[0]
         first, second = (list(self._path(side, target)) for side in stage.sides)
-        while first and second and first[0] == second[0]:
+        while first[0] == second[0]:
             del first[0], second[0]
         # What a way goes against its arrow stands on the other side of the equation.
         left = [s for s, sign in first if sign > 0] + [s for s, sign in second if sign < 0]
@@ -267,7 +267,8 @@ class Polygon:
         """The sides from the pole to a point, the last of them told, each with its sign."""
         anchor = side.start if side.end == target else side.end
         if anchor != self.pole:
-            yield from self._path(self.hangs[anchor][0], anchor)
+            straight = [s for s in self.sides if (s.start, s.end) == (self.pole, anchor)]
+            yield from self._path((straight or self.hangs[anchor])[0], anchor)
         yield side, 1 if side.end == target else -1
 
 

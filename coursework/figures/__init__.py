@@ -80,9 +80,10 @@ from coursework.figures.elements import (
     trace,
     vector,
 )
-from coursework.figures.figure import Figure, LabelBox
+from coursework.figures.figure import Beginning, Figure, LabelBox
 
 __all__ = [
+    "Beginning",
     "Element",
     "Figure",
     "LabelBox",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -12,7 +12,7 @@ from coursework.figures.elements import Element
 from coursework.figures.ink import MARKS, THIN, Ink, Path
 from coursework.figures.paper import Paper
 from coursework.figures.placing import Label, place
-from coursework.figures.writing import written
+from coursework.figures.writing import pieces, written
 
 _MARGIN = 1.0  #: white round the drawing, mm
 _TRIES = 40
@@ -40,17 +40,31 @@ class _Layout:
     drew: tuple[int, ...]  #: the element, by its place, that each piece of ink comes from
     named: tuple[int, ...]  #: the same for labels
 
-    def beginning(self, count: int) -> _Layout:
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        size = self.high - self.low
+        return round(size.real, 1), round(size.imag, 1)
+
+    @cached_property
+    def _written(self) -> dict[bool, tuple[list[tuple[int, str]], list[tuple[int, str]]]]:
+        return {}
+
+    def svg(self, count: int | None, outlined: bool) -> str:
         """What the first elements drew, in the frame of them all."""
-        ink = [(item, k) for item, k in zip(self.ink, self.drew, strict=True) if k < count]
-        labels = [(label, k) for label, k in zip(self.labels, self.named, strict=True) if k < count]
-        return replace(
-            self,
-            ink=tuple(item for item, _ in ink),
-            drew=tuple(k for _, k in ink),
-            labels=tuple(label for label, _ in labels),
-            named=tuple(k for _, k in labels),
+        if outlined not in self._written:
+            # Every piece is written once, however many times a part of the drawing is shown.
+            corner = complex(self.low.real, self.high.imag)
+            lines, texts = pieces(self.ink, self.labels, corner, outlined=outlined)
+            pile = sorted(range(len(lines)), key=lambda k: self.ink[k].layer)
+            self._written[outlined] = (
+                [(self.drew[k], lines[k]) for k in pile],
+                list(zip(self.named, texts, strict=True)),
+            )
+        kept = (
+            [text for element, text in pieces_ if count is None or element < count]
+            for pieces_ in self._written[outlined]
         )
+        return written(*kept, self.size_mm, outlined=outlined)
 
 
 @dataclass(frozen=True, init=False)
@@ -148,17 +162,12 @@ class Figure:
         corners = _tenths(first - margin), _tenths(last + margin)
         return _Layout(scale, ink, labels, *corners, tuple(drew), tuple(named))
 
-    def beginning(self, count: int) -> Figure:
-        """The figure with only its first elements, each where it is in the whole and in the same frame.
+    def beginning(self, count: int) -> Beginning:
+        """The first elements of the figure, each where it is in the whole and in the same frame.
 
         So a construction is shown step by step, laid out once.
         """
-        part = object.__new__(Figure)
-        for name in ("paper_mm", "fixed_scale"):
-            object.__setattr__(part, name, getattr(self, name))
-        object.__setattr__(part, "elements", self.elements[:count])
-        part.__dict__["_layout"] = self._layout.beginning(count)
-        return part
+        return Beginning(self, count)
 
     @property
     def scale(self) -> float:
@@ -168,8 +177,7 @@ class Figure:
     @property
     def size_mm(self) -> tuple[float, float]:
         """Width and height of the drawing on paper."""
-        size = self._layout.high - self._layout.low
-        return round(size.real, 1), round(size.imag, 1)
+        return self._layout.size_mm
 
     def labels(self) -> tuple[LabelBox, ...]:
         """The boxes of the labels as placed."""
@@ -187,9 +195,7 @@ class Figure:
         )
 
     def _written(self, outlined: bool) -> str:
-        layout = self._layout
-        corner = complex(layout.low.real, layout.high.imag)
-        return written(layout.ink, layout.labels, corner, self.size_mm, outlined=outlined)
+        return self._layout.svg(None, outlined)
 
     def svg(self) -> str:
         """The drawing as SVG, in mm, labels as text."""
@@ -214,6 +220,30 @@ class Figure:
         from coursework.figures.typesetting import converted
 
         return converted(self.svg(), self.size_mm[0], "pdf")
+
+
+@dataclass(frozen=True)
+class Beginning:
+    """The first elements of a figure: a step of a construction."""
+
+    whole: Figure
+    count: int
+
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        """Width and height on paper, those of the whole."""
+        return self.whole.size_mm
+
+    def svg(self) -> str:
+        """The drawing as SVG, in mm, labels as text."""
+        return self.whole._layout.svg(self.count, outlined=False)
+
+    def outlined_svg(self) -> str:
+        """The same with labels as outlines."""
+        return self.whole._layout.svg(self.count, outlined=True)
+
+    def _repr_svg_(self) -> str:
+        return self.outlined_svg()
 
 
 def _corners(points: Sequence[complex]) -> tuple[complex, complex]:

@@ -13,17 +13,22 @@ FONT = "Libertinus Serif"
 _FALLBACK = f"{FONT}, Linux Libertine O, Times New Roman, serif"
 
 
-def written(
-    ink: Sequence[Ink], labels: Sequence[Label], corner: complex, size: tuple[float, float], *, outlined: bool
-) -> str:
-    """SVG of paper-mm drawing; ``corner`` is the frame's top left, which becomes (0, 0), y down."""
+def pieces(
+    ink: Sequence[Ink], labels: Sequence[Label], corner: complex, *, outlined: bool
+) -> tuple[list[str], list[str]]:
+    """Each piece of a paper-mm drawing and each label as SVG; ``corner`` is the frame's top left, which becomes
+    (0, 0), y down."""
 
     def place(z: complex) -> complex:
         return complex(z.real - corner.real, corner.imag - z.imag)
 
+    lines = [item.svg(place) for item in ink]
+    return lines, [_label(label, place(label.center), outlined) for label in labels]
+
+
+def written(lines: Sequence[str], texts: Sequence[str], size: tuple[float, float], *, outlined: bool) -> str:
+    """A whole SVG from its pieces, from the bottom to the top of the pile."""
     width, height = map(number, size)
-    lines = [item.svg(place) for item in sorted(ink, key=lambda item: item.layer)]
-    texts = [_label(label, place(label.center), outlined) for label in labels]
     style = "" if outlined else f' font-family="{_FALLBACK}" font-size="{number(SIZE)}" text-anchor="middle"'
     return "\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '

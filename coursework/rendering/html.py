@@ -11,7 +11,7 @@ from pathlib import Path
 from jinja2 import Environment
 
 from coursework.constructions import Construction
-from coursework.figures import Figure
+from coursework.figures import Beginning, Figure
 from coursework.language import words
 from coursework.rendering import markup, views
 from coursework.rendering.environment import environment, render
@@ -42,7 +42,7 @@ def construction(folders: Sequence[Path], drawn: Construction) -> str:
     return render(environment_of(tuple(folders), drawn.lang), "_polygons.html.j2", names)
 
 
-def _drawing(figure: Figure, alt: str) -> str:
+def _drawing(figure: Figure | Beginning, alt: str) -> str:
     """The figure as an image inside the page, its letters as outlines: it looks the same everywhere."""
     data = base64.b64encode(figure.outlined_svg().encode()).decode()
     return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(alt)}">'

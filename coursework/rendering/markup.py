@@ -75,6 +75,7 @@ def typst_string(text: str) -> str:
 _WHOLE = 24  #: characters of a formula written out that a line of text does not cut
 
 
+@lru_cache(maxsize=4096)
 def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
     """A formula as Typst markup, with its words as alternative text.
 
@@ -85,6 +86,7 @@ def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
     return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${whole});"
 
 
+@lru_cache(maxsize=1024)
 def to_typst_markup(markdown: str, lang: str) -> str:
     """Markdown as Typst markup."""
     return _typst(tree(markdown), lang).strip()

@@ -13,7 +13,7 @@ from jinja2 import Environment
 from markupsafe import Markup
 
 from coursework.errors import BadStatement
-from coursework.figures import Figure
+from coursework.figures import Beginning, Figure
 from coursework.rendering import markup, views
 from coursework.rendering.environment import environment, render
 from coursework.rendering.formulas import spoken, to_typst
@@ -96,7 +96,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
     return environment(folders, lang, markup.typst_text, filters)
 
 
-def _drawing(figure: Figure, alt: str) -> str:
+def _drawing(figure: Figure | Beginning, alt: str) -> str:
     """The figure's SVG inside the source: a sheet's source stands alone."""
     svg = markup.typst_string(figure.svg())
     return f"bytes({svg}), alt: {markup.typst_string(alt)}"

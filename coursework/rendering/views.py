@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from coursework.figures import Figure
+from coursework.figures import Beginning, Figure
 from coursework.handout import AnswerSheet, FeedbackLine, FeedbackSheet, Given, Handout, Question, Step
 from coursework.language import localise, plain, words
 from coursework.rendering.formula_tree import tokens
@@ -47,7 +47,7 @@ def figure_of(sheet: Sheet) -> Figure | None:
     return own or handout_of(sheet).figure
 
 
-def polygon_drawings(sheet: Sheet) -> tuple[Figure, ...]:
+def polygon_drawings(sheet: Sheet) -> tuple[Figure | Beginning, ...]:
     """The drawings of a solution's polygons in the order in which it shows them: steps, then the whole."""
     stated = sheet.polygons if isinstance(sheet, AnswerSheet) else ()
     return tuple(figure for one in stated for figure in (*(step.figure for step in one.steps), one.figure))
