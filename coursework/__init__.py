@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from coursework.course import Course, Variant, open_course
     from coursework.errors import CannotAssemble, CourseworkError, NoSolution, Undefined, UnknownName
     from coursework.motion import show_motion
+    from coursework.selfstudy.lessons import compare, plot
+    from coursework.selfstudy.session import study
 
 __version__ = "0.1.0"
 __all__ = [
@@ -25,12 +27,23 @@ __all__ = [
     "Undefined",
     "UnknownName",
     "Variant",
+    "compare",
     "open_course",
+    "plot",
     "show_motion",
+    "study",
 ]
 
 
-_HOMES = {"Course": "course", "Variant": "course", "open_course": "course", "show_motion": "motion"}
+_HOMES = {
+    "Course": "course",
+    "Variant": "course",
+    "compare": "selfstudy.lessons",
+    "open_course": "course",
+    "plot": "selfstudy.lessons",
+    "show_motion": "motion",
+    "study": "selfstudy.session",
+}
 
 
 def __getattr__(name: str) -> object:

@@ -43,7 +43,7 @@ def files(
 ) -> Iterator[File]:
     """Every file of a build, in order.
 
-    ``practice`` gives notebooks a cell that checks answers with the installed package. ``paper`` is
+    ``practice`` makes the notebooks self-study notebooks, which check answers with the installed package. ``paper`` is
     ``a4`` or ``letter``. ``booklet`` adds the sheets of all students in one PDF for each exercise and
     language. A students' copy of the course gives the handouts alone.
     """
@@ -77,13 +77,16 @@ def _sheets(
     def solution():
         return variant.answer_sheet(issue.student)
 
+    def study():
+        return renderer.study(variant.study_sheet(issue.student))
+
     if "pdf" in formats:
         yield File(_with(for_student, ".pdf"), lambda: renderer.pdf(handout()))
     if "html" in formats:
         yield File(_with(for_student, ".html"), _text(lambda: renderer.html(handout())))
     if "ipynb" in formats:
         yield File(
-            _with(for_student, ".ipynb"), _text(lambda: renderer.notebook(handout(), practice=practice))
+            _with(for_student, ".ipynb"), _text(study if practice else lambda: renderer.notebook(handout()))
         )
     if "tex" in formats:
         yield from _tex(renderer, for_student, ".tex", "figure", handout)

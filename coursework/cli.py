@@ -437,6 +437,39 @@ def lesson(context: click.Context, lessons: Sequence[str], lang: str, out: Path 
             click.echo(f"{out / name}.{lang}.ipynb")
 
 
+# --------------------------------------------------------------------- notebook
+
+
+@cli.command()
+@click.argument("exercises", nargs=-1)
+@_seed_option
+@click.option("--lang", "langs", type=_Lists(_known_languages), default="fr", show_default=True)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    default="notebooks",
+    show_default=True,
+    help="Folder for the notebooks.",
+)
+@click.pass_context
+def notebook(
+    context: click.Context, exercises: Sequence[str], seed: int, langs: Sequence[str], out: Path
+) -> None:
+    """Write self-study notebooks: predictions, instant feedback, hints, plots, fresh variants.
+
+    One for each exercise named, else for every exercise of the course.
+    """
+    from coursework.building import write_whole
+
+    course = _course(context)
+    for name in _exercise_names(course, exercises):
+        for lang in langs:
+            sheet = course[name].variant(seed, lang).study_sheet()
+            path = out / f"{name}.{lang}.ipynb"
+            write_whole(path, course.renderer.study(sheet).encode("utf-8"))
+            click.echo(str(path))
+
+
 # --------------------------------------------------------------------- accuracy
 
 
@@ -509,7 +542,7 @@ def accuracy(
 )
 @click.option("--formats", type=_Lists(_known_formats), default="pdf,ipynb,html", show_default=True)
 @click.option("--lang", "langs", type=_Lists(_known_languages), default="fr", show_default=True)
-@click.option("--practice", is_flag=True, help="Notebooks check answers with the installed package.")
+@click.option("--practice", is_flag=True, help="Self-study notebooks, which check answers.")
 @click.option(
     "--paper",
     type=click.Choice(["a4", "letter"]),

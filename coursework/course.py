@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from coursework.marking import Marking
     from coursework.motion import Animation
     from coursework.rendering import Renderer
+    from coursework.selfstudy.sheet import StudySheet
 
 _packages = itertools.count()
 
@@ -789,6 +790,12 @@ class Variant:
         from coursework.sheets import handout
 
         return handout(self, student)
+
+    def study_sheet(self, student: str = "") -> StudySheet:
+        """What the self-study notebook of this variant shows."""
+        from coursework.selfstudy.sheet import study_sheet
+
+        return study_sheet(self, student)
 
     def answer_sheet(self, student: str = "") -> AnswerSheet:
         """The handout with its answers and worked solution."""

@@ -12,6 +12,10 @@ from collections.abc import Iterable
 class CourseworkError(Exception):
     """Base class of all deliberate errors."""
 
+    def _render_traceback_(self) -> list[str]:
+        """What a notebook shows: the message, which says all that its reader needs."""
+        return [f"{type(self).__name__}: {self}"]
+
 
 class UnknownName(CourseworkError, LookupError):
     """A name that is not there; the message offers the nearest one."""

@@ -111,6 +111,8 @@ class _Printer:
         if name not in self.shown:
             raise Unprintable
         text, is_number = self.shown[name]
+        if not is_number and re.search(r"(?<=[\w}]) [+-] ", text):
+            return text, _SUM  # a symbol that is a sum by itself: "s + l"
         negative = text.startswith(r"\num{-") or text.startswith("-")
         return text, (_UNARY if negative else _ATOM) if is_number else _ATOM
 

@@ -13,6 +13,7 @@ from coursework.report import Report
 if TYPE_CHECKING:
     from coursework.constructions import Construction
     from coursework.motion import Animation
+    from coursework.selfstudy.sheet import StudySheet
 
 PAPERS = ("a4", "letter")
 
@@ -98,11 +99,17 @@ class Renderer:
 
         return html.construction(self.template_folders, construction)
 
-    def notebook(self, handout: Handout, *, practice: bool = False) -> str:
-        """A handout as a notebook (JSON, nbformat 4.5); with practice, a cell that checks the answers."""
+    def notebook(self, handout: Handout) -> str:
+        """A handout as a notebook to hand in (JSON, nbformat 4.5): nothing in it checks an answer."""
         from coursework.rendering import notebook
 
-        return notebook.notebook(self.template_folders, handout, practice=practice)
+        return notebook.notebook(self.template_folders, handout)
+
+    def study(self, sheet: StudySheet) -> str:
+        """A self-study notebook (JSON, nbformat 4.5)."""
+        from coursework.rendering import notebook
+
+        return notebook.study(self.template_folders, sheet)
 
     def lesson(self, name: str, text: str, lang: str) -> str:
         """A lesson's Markdown as a notebook (JSON, nbformat 4.5)."""

@@ -10,9 +10,10 @@ import base64
 import hashlib
 import json
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from jinja2 import Environment
 
@@ -20,6 +21,9 @@ from coursework.handout import Handout
 from coursework.rendering import markup, views
 from coursework.rendering.environment import environment, render
 from coursework.rendering.formulas import number_text
+
+if TYPE_CHECKING:
+    from coursework.selfstudy.sheet import StudySheet
 
 CELL_END = "<!-- cell -->"
 FIGURE = "figure.png"
@@ -29,10 +33,22 @@ _FENCE = re.compile(
 )
 
 
-def notebook(folders: Sequence[Path], handout: Handout, *, practice: bool) -> str:
-    """The notebook's JSON text, valid nbformat 4.5; the same text for the same handout."""
+def notebook(folders: Sequence[Path], handout: Handout) -> str:
+    """The notebook to hand in, as JSON text, valid nbformat 4.5; the same text for the same handout.
+
+    It holds the statement, the data and a cell for the answers: nothing in it checks them.
+    """
+    return _of_handout(folders, handout, "notebook.md.j2", {})
+
+
+def study(folders: Sequence[Path], sheet: StudySheet) -> str:
+    """The self-study notebook, as JSON text, valid nbformat 4.5; the same text for the same sheet."""
+    return _of_handout(folders, sheet.handout, "study.md.j2", {"study": sheet})
+
+
+def _of_handout(folders: Sequence[Path], handout: Handout, template: str, more: Mapping[str, object]) -> str:
     env = _environment(tuple(folders), handout.lang)
-    text = render(env, "notebook.md.j2", views.context(handout) | {"practice": practice})
+    text = render(env, template, {**views.context(handout), **more})
     identity = f"{handout.exercise} {handout.version} {handout.seed} {handout.student}"
     cells = [_cell(f"{identity} {number}", *piece) for number, piece in enumerate(_pieces(text))]
     for cell in cells:

@@ -1,0 +1,240 @@
+"""Curves over one variable as SVG, a panel each, drawn without any library; the same data, the same bytes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from coursework.errors import UnknownName, WrongValue
+from coursework.figures.ink import number
+from coursework.figures.text import SIZE, Text, read
+from coursework.figures.writing import _accent, _outlines
+from coursework.language import localise, significant
+
+_WIDTH, _HEIGHT = 112.0, 26.0  #: of a panel, mm
+_LEFT, _RIGHT, _TOP, _BOTTOM, _GAP = 19.0, 5.0, 7.5, 11.5, 9.5
+_SMALL = 0.78  #: size of the numbers on the axes, relative to a label
+LINE, RIGHT, WRONG, GRID = "#1b3a57", "#1b7a4b", "#b3261e", "#d5d9de"
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A point beside a curve: somebody's answer. ``right`` None when nobody has judged it."""
+
+    x: float
+    y: float
+    right: bool | None = None
+
+
+@dataclass(frozen=True)
+class Axis:
+    """A variable: its LaTeX symbol (or plain words), its unit as printed, its values."""
+
+    label: str
+    unit: str
+    values: np.ndarray
+
+    @property
+    def title(self) -> Text:
+        unit = rf"\ \ [\mathrm{{{self.unit}}}]" if self.unit else ""
+        try:
+            # Words stay upright; a symbol that the label's reader does not know is written as it comes.
+            symbol = self.label if not _is_words(self.label) else rf"\mathrm{{{_spaced(self.label)}}}"
+            return read(symbol + unit)
+        except (UnknownName, WrongValue):
+            return read(rf"\mathrm{{{''.join(c for c in self.label if c.isalnum())}}}" + unit)
+
+
+def _is_words(label: str) -> bool:
+    return not any(c in label for c in "\\_^{}") and len(label) > 2
+
+
+def _spaced(words: str) -> str:
+    return words.replace(" ", r"\ ")
+
+
+class Plot:
+    """Panels one above the other, over one variable.
+
+    Parameters
+    ----------
+    horizontal
+        The variable that all panels share.
+    panels
+        Curves, each with as many values as the variable; NaN where there is none.
+    lang
+        Language of the numbers on the axes.
+    at
+        A place on the variable that is marked through all panels.
+    spots
+        Points beside the curve of each panel, by the panel's place.
+
+    Raises
+    ------
+    WrongValue
+        No panel, or a panel of another length than the variable, or without one finite value.
+    """
+
+    def __init__(
+        self,
+        horizontal: Axis,
+        panels: Sequence[Axis],
+        lang: str = "en",
+        at: float | None = None,
+        spots: Sequence[Sequence[Spot]] = (),
+    ):
+        if not panels:
+            raise WrongValue("a plot has one curve at least; found none")
+        for panel in panels:
+            if np.shape(panel.values) != np.shape(horizontal.values):
+                raise WrongValue(
+                    f"the curve {panel.label} has {np.size(panel.values)} values, "
+                    f"its variable {horizontal.label} has {np.size(horizontal.values)}"
+                )
+            if not np.isfinite(panel.values).any():
+                raise WrongValue(f"the curve {panel.label} has no finite value")
+        self.horizontal, self.panels, self.lang, self.at = horizontal, tuple(panels), lang, at
+        self.spots = tuple(tuple(s) for s in spots) or ((),) * len(panels)
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height, mm."""
+        count = len(self.panels)
+        return _LEFT + _WIDTH + _RIGHT, _TOP + count * _HEIGHT + (count - 1) * _GAP + _BOTTOM
+
+    @cached_property
+    def _reach(self) -> tuple[float, float]:
+        x = np.asarray(self.horizontal.values, dtype=float)
+        low, high = float(np.min(x)), float(np.max(x))
+        return (low, high) if high > low else (low - 1, high + 1)
+
+    def _x(self, value: float) -> float:
+        low, high = self._reach
+        return _LEFT + _WIDTH * (value - low) / (high - low)
+
+    def svg(self) -> str:
+        """The plot as SVG; letters are outlines, so that it looks the same everywhere."""
+        width, height = map(number, self.size)
+        body = [line for k in range(len(self.panels)) for line in self._panel(k)]
+        low, high = self._reach
+        base = self.size[1] - _BOTTOM
+        ticks = _turn_ticks(low, high) if self.horizontal.unit == "°" else _ticks(low, high, 6)
+        body += [self._number(value, complex(self._x(value), base + 4.2), "middle") for value in ticks]
+        middle = complex(_LEFT + _WIDTH / 2, base + 9.4)
+        body.append(_letters(self.horizontal.title, middle, "middle"))
+        return "\n".join([
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
+            f'viewBox="0 0 {width} {height}" role="img">',
+            f'<rect width="{width}" height="{height}" fill="#fff"/>', *body, "</svg>\n",
+        ])  # fmt: skip
+
+    def _repr_svg_(self) -> str:
+        return self.svg()
+
+    def _panel(self, place: int) -> list[str]:
+        panel, spots = self.panels[place], self.spots[place]
+        top = _TOP + place * (_HEIGHT + _GAP)
+        values = np.asarray(panel.values, dtype=float)
+        low, high = _range(values, [s.y for s in spots])
+
+        def y(value: float) -> float:
+            inside = min(max(value, low), high)
+            return top + _HEIGHT * (high - inside) / (high - low)
+
+        out = [_letters(panel.title, complex(_LEFT, top - 2.0), "start")]
+        across = _turn_ticks(*self._reach) if self.horizontal.unit == "°" else _ticks(*self._reach, 6)
+        grid = [f"M{number(self._x(t))} {number(top)}v{number(_HEIGHT)}" for t in across]
+        ticks = _ticks(low, high, 4)
+        grid += [f"M{number(_LEFT)} {number(y(t))}h{number(_WIDTH)}" for t in ticks]
+        out.append(f'<path d="{"".join(grid)}" fill="none" stroke="{GRID}" stroke-width="0.2"/>')
+        if low < 0 < high:
+            out.append(
+                f'<path d="M{number(_LEFT)} {number(y(0))}h{number(_WIDTH)}" stroke="#000" stroke-width="0.25"/>'
+            )
+        out += [self._number(t, complex(_LEFT - 1.6, y(t) + 1.0), "end") for t in ticks]
+        if self.at is not None:
+            out.append(
+                f'<path d="M{number(self._x(self.at))} {number(top)}v{number(_HEIGHT)}" stroke="#000" '
+                'stroke-width="0.3" stroke-dasharray="1.4 1"/>'
+            )
+        curve = "".join(
+            "M" + "L".join(f"{number(self._x(a))} {number(y(b))}" for a, b in run)
+            for run in _runs(np.asarray(self.horizontal.values, dtype=float), values, panel.unit == "°")
+        )
+        out.append(
+            f'<path d="{curve}" fill="none" stroke="{LINE}" stroke-width="0.5" stroke-linejoin="round"/>'
+        )
+        out += [_dot(self._x(s.x), y(s.y), s.right) for s in spots]
+        return out
+
+    def _number(self, value: float, at: complex, anchor: str) -> str:
+        return _letters(read(localise(significant(value, 6), self.lang)), at, anchor, _SMALL)
+
+
+def _dot(x: float, y: float, right: bool | None) -> str:
+    """A full disc for what is right, a cross for what is not: told apart without colour."""
+    if right is False:
+        return (
+            f'<path d="M{number(x - 1.3)} {number(y - 1.3)}l2.6 2.6m0 -2.6l-2.6 2.6" stroke="{WRONG}" '
+            'stroke-width="0.6" stroke-linecap="round"/>'
+        )
+    fill = RIGHT if right else "#fff"
+    return f'<circle cx="{number(x)}" cy="{number(y)}" r="1.3" fill="{fill}" stroke="{RIGHT if right else LINE}" stroke-width="0.4"/>'
+
+
+def _letters(text: Text, at: complex, anchor: str, size: float = 1.0) -> str:
+    """A text as outlines; ``at`` is its start, middle or end on the baseline."""
+    width = text.width * SIZE * size
+    start = at - {"start": 0.0, "middle": width / 2, "end": width}[anchor]
+    inner = _outlines(text, 0j) + "".join(_accent(text, accent, 0j) for accent in text.accents)
+    scale = f" scale({number(size)})" if size != 1 else ""
+    return (
+        f'<g fill="#000" transform="translate({number(start.real)} {number(start.imag)}){scale}">{inner}</g>'
+    )
+
+
+def _range(values: np.ndarray, others: Sequence[float]) -> tuple[float, float]:
+    """What a panel shows: all values, and of the other points those that are not far off."""
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    span = high - low
+    if span <= 1e-9 * max(abs(low), abs(high)):
+        span = max(abs(high), 1.0)
+        low, high = low - span / 2, high + span / 2
+    for y in others:
+        if low - span < y < high + span:
+            low, high = min(low, y), max(high, y)
+    margin = 0.06 * (high - low)
+    return low - margin, high + margin
+
+
+def _ticks(low: float, high: float, count: int) -> list[float]:
+    """Round values between two, about so many."""
+    rough = (high - low) / count
+    power = 10.0 ** math.floor(math.log10(rough))
+    step = next(m * power for m in (1, 2, 5, 10) if m * power >= rough * (1 - 1e-9))
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [k * step for k in range(first, last + 1)]
+
+
+def _turn_ticks(low: float, high: float) -> list[float]:
+    """Multiples of 60 degrees over a turn, round values over less."""
+    if high - low < 180:
+        return _ticks(low, high, 6)
+    return [60.0 * k for k in range(math.ceil(low / 60 - 1e-9), math.floor(high / 60 + 1e-9) + 1)]
+
+
+def _runs(x: np.ndarray, y: np.ndarray, turns: bool) -> list[list[tuple[float, float]]]:
+    """The curve in pieces: cut where there is no value, and where a direction passes from 180 to -180."""
+    runs: list[list[tuple[float, float]]] = []
+    before = math.nan
+    for a, b in zip(x.tolist(), y.tolist(), strict=True):
+        if math.isfinite(b):
+            if not math.isfinite(before) or (turns and abs(b - before) > 180):
+                runs.append([])
+            runs[-1].append((a, b))
+        before = b
+    return [run for run in runs if len(run) > 1]

@@ -1,0 +1,59 @@
+"""What a self-study notebook holds beside the handout: the predictions to make, and what it can run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from coursework.course import builtin_root
+from coursework.handout import Handout, Question
+from coursework.selfstudy import predictions
+from coursework.selfstudy.predictions import Prediction
+
+if TYPE_CHECKING:
+    from coursework.course import Variant
+
+
+@dataclass(frozen=True)
+class Ask:
+    """A prediction to make: its name, the question (Markdown), and what may be written (plain text)."""
+
+    id: str
+    question: str
+    options: str
+
+
+@dataclass(frozen=True)
+class StudySheet:
+    """All that a self-study notebook shows; like its handout it holds no answer."""
+
+    handout: Handout
+    file: str  #: where answers are kept, beside the notebook
+    course: str  #: name of the course's folder; empty for the course that the package brings
+    before: tuple[Ask, ...]  #: predictions before any computation
+    cycle: tuple[Ask, ...]  #: predictions before the curves
+    moves: bool  #: whether there are curves over a cycle
+    animates: bool  #: whether the figure moves
+    questions: tuple[Question, ...]  #: of the first fresh variant
+
+
+def study_sheet(variant: Variant, student: str = "") -> StudySheet:
+    """The self-study notebook of a variant, before it is printed."""
+    exercise = variant.exercise
+    own = exercise.course.root != builtin_root().resolve()
+    return StudySheet(
+        handout=variant.handout(student),
+        file=f"{exercise.name}.study.json",
+        course=exercise.course.root.name if own else "",
+        before=tuple(_ask(variant, p) for p in predictions.before_answers(variant)),
+        cycle=tuple(_ask(variant, p) for p in predictions.over_the_cycle(variant)),
+        moves=bool(predictions.moving(variant)),
+        animates=exercise.spec.driver is not None and exercise.spec.figure is not None,
+        questions=exercise.variant(variant.seed + 1, variant.lang).handout().questions,
+    )
+
+
+def _ask(variant: Variant, prediction: Prediction) -> Ask:
+    return Ask(
+        prediction.id, predictions.asked(variant, prediction), predictions.options(variant, prediction)
+    )
