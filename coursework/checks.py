@@ -20,8 +20,9 @@ from coursework.blocks import processors
 from coursework.comparing import distance
 from coursework.course import Course, CourseExercise, Variant, open_course
 from coursework.errors import CourseworkError, Starved
+from coursework.graph import plain_scalar
 from coursework.issuing import distinct_variants
-from coursework.key import Key, envelopes, keys_of
+from coursework.key import Key, envelopes, exists
 from coursework.language import languages, plain, significant
 from coursework.model import Part
 from coursework.rounding import student_who_rounds
@@ -129,7 +130,6 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
     report.variants = len(drawn)
     if not drawn:
         return
-    keys_of(exercise, drawn)
     _describe(drawn, report)
     check_arrays(exercise, drawn, report)
     check_rounding_students(exercise, drawn, report)
@@ -233,16 +233,17 @@ def agrees(found: Any, expected: Any, *, is_angle: bool = False) -> bool:
 def check_solves(variant: Variant, key: Key, report: Report) -> None:
     """Every asked quantity is finite, and the governing equations hold."""
     for name, value in key.reference.items():
-        if not isinstance(value, str) and not np.all(np.isfinite(value)):
+        if not exists(value):
             report.fail(f"seed {variant.seed}: {name} is {value}")
     for part in variant.parts:
         value = key.reference[part.quantity]
         if part.kind == "number" and part.atol == 0 and value == 0:
             report.fail(f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance")
     graph = variant.exercise.solution.residual_graph
-    residual = graph.evaluate(("residual",), variant.used, variant.effects)["residual"]
+    values = graph.evaluate(("residual",), variant.used, variant.effects, variant.found)
+    residual = values["residual"]
     for number, value in enumerate(residual if isinstance(residual, tuple) else (residual,), start=1):
-        worst = float(np.max(np.abs(value)))
+        worst = abs(value) if isinstance(value, float) else float(np.max(np.abs(value)))
         report.counts["residuals"] += 1
         if not worst < RESIDUAL:
             report.fail(f"seed {variant.seed}: residual {number} is {worst:.3g}")
@@ -254,7 +255,7 @@ def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: Rep
     wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
     together = exercise.solve(**given, only=wanted, effects=exercise.spec.effects)
     for index, variant in enumerate(drawn):
-        alone = variant.solution()
+        alone = {name: plain_scalar(value) for name, value in variant.found.items()}
         for part in variant.parts:
             value = together[part.quantity]
             one = value[index] if isinstance(value, np.ndarray) and len(value) == len(drawn) else value
@@ -268,9 +269,11 @@ def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: Rep
 def _same(one: Any, other: Any, part: Part) -> bool:
     if isinstance(other, str):
         return str(one) == other
+    if isinstance(other, (int, float)):
+        gap = one - other
+        gap = math.remainder(gap, 360.0) if part.kind == "angle" else gap
+        return abs(gap) <= 1e-9 * max(1.0, abs(other))
     gap = np.asarray(one, dtype=float) - np.asarray(other, dtype=float)
-    if part.kind == "angle":
-        gap = gap - 360.0 * np.rint(gap / 360.0)
     return bool(np.all(np.abs(gap) <= 1e-9 * np.maximum(1.0, np.abs(other))))
 
 
@@ -327,8 +330,8 @@ def check_rounding_students(
         n: np.array([v.given[n] for v in drawn]) for n in exercise.spec.given if n in exercise.quantity_names
     }
     effects, graph = exercise.spec.effects, exercise.solution.graph
-    wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
-    for kept in digits:
+    wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts if not p.is_exact))
+    for kept in digits if wanted else ():
         found = student_who_rounds(graph, wanted, given, effects, kept)
         widths = envelopes(exercise, wanted, given, effects, min(kept, exercise.course.rules.digits))
         for index, variant in enumerate(drawn):

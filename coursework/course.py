@@ -329,16 +329,7 @@ class CourseExercise:
         UnknownName, MissingQuantity, WrongUnit, WrongValue
             A request that makes no sense, each with what would do.
         """
-        names = self.quantity_names
-        values = {n: v for n, v in self._defaults.items() if n in names}
-        for name, value in given.items():
-            if name not in names:
-                if name in self.spec.given:
-                    continue
-                raise unknown("quantity", name, names | self.spec.given.keys(), self.name)
-            # The usual case at once: a plain number that nothing forbids.
-            plainly = type(value) is float and value - value == 0 and name not in self._looked_at
-            values[name] = value if plainly else self._accept(name, value)
+        values = self.accepted(given)
         arrays = any(isinstance(v, np.ndarray) for v in values.values())
         if only is None and not arrays:
             only = tuple(p.quantity for p in self._asked_of(values))
@@ -354,6 +345,23 @@ class CourseExercise:
                     told = ", ".join(f"{n} = {values[n]}" for n in given if n in values)
                     raise Undefined(f"{self.name}: {name} does not exist for {told}")
         return found
+
+    def accepted(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """What a request gives, as the solution takes it: in canonical units, with defaults.
+
+        Errors are those of :meth:`solve` for a request that makes no sense.
+        """
+        names = self.quantity_names
+        values = {n: v for n, v in self._defaults.items() if n in names}
+        for name, value in given.items():
+            if name not in names:
+                if name in self.spec.given:
+                    continue
+                raise unknown("quantity", name, names | self.spec.given.keys(), self.name)
+            # The usual case at once: a plain number that nothing forbids.
+            plainly = type(value) is float and value - value == 0 and name not in self._looked_at
+            values[name] = value if plainly else self._accept(name, value)
+        return values
 
     def _accept(self, name: str, value: Any) -> Any:
         """A given value as a float, an array or a case's name, in the canonical unit, within its domain."""
@@ -658,6 +666,19 @@ class Variant:
     def used(self) -> dict[str, Any]:
         """The given quantities that the solution knows."""
         return {n: v for n, v in self.given.items() if n in self.exercise.quantity_names}
+
+    @cached_property
+    def found(self) -> dict[str, Any]:
+        """Every quantity met on the way to the asked ones, of this variant alone, as the solution gives it;
+        hidden ones too.
+
+        Raises
+        ------
+        NoSolution
+            The course folder has no solutions.
+        """
+        graph = self.exercise.solution.graph
+        return graph.everything(self.asked_quantities, self.used, self.effects)
 
     @cached_property
     def walk(self) -> dict[str, Any]:

@@ -11,13 +11,11 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import lru_cache
 
-import numpy as np
-
 from coursework.comparing import distance
 from coursework.course import CourseExercise, Variant
 from coursework.errors import CourseworkError
 from coursework.expressions import parse_equation
-from coursework.key import Key, ill_limit, keys_of
+from coursework.key import Key, exists, ill_limit, keys_of
 from coursework.model import Part
 
 SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
@@ -31,7 +29,7 @@ def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
     values = key.wrong[mistake]
     for part in key.variant.parts:
         wrong = values.get(part.quantity)
-        if wrong is None or not (isinstance(wrong, str) or np.all(np.isfinite(wrong))):
+        if wrong is None or not exists(wrong):
             continue
         along, width = key.reference.get(part.along), key.envelope.get(part.quantity, 0.0)
         reference = key.reference[part.quantity]
