@@ -177,7 +177,7 @@ def check_texts(exercise: CourseExercise, report: Report) -> None:
             for case in part.choices:
                 text.label(part.id, case)
         for name, spec in exercise.spec.given.items():
-            for case in spec.choices:
+            for case in spec.choices if spec.shown else ():
                 text.label(name, case)
         if exercise.spec.figure and not text.section("figure").text:
             report.fail(f"{text.source}: the figure has no words")
@@ -358,7 +358,12 @@ def _at(column: Any, index: int, count: int) -> Any:
 
 
 def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
-    """Each named mistake that shows is marked as that mistake, and never as right."""
+    """Each named mistake that shows is marked as that mistake, and never as right.
+
+    Mistakes that show on different parts stand on one sheet, unless parts may be exchanged.
+    """
+    sheets: list[dict[str, tuple[str, Any]]] = []
+    apart = bool(variant.exercise.spec.either_order)
     for name in key.solution.mistakes:
         tally = report.mistakes.setdefault(name, Counter())
         shown = {}
@@ -366,10 +371,15 @@ def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
             tally[seen] += 1
             if seen == "shown":
                 wrong = key.wrong[name][part.quantity]
-                shown[part.id] = (
-                    "; ".join(map(repr, wrong.tolist())) if isinstance(wrong, np.ndarray) else wrong
-                )
-        _check_recognised(variant, name, shown, report)
+                is_vector = isinstance(wrong, np.ndarray)
+                shown[part.id] = (name, "; ".join(map(repr, wrong.tolist())) if is_vector else wrong)
+        sheet = next((s for s in sheets if not apart and s.keys().isdisjoint(shown)), None)
+        if sheet is None:
+            sheets.append(shown)
+        else:
+            sheet |= shown
+    for sheet in sheets:
+        _check_recognised(variant, sheet, report)
 
 
 def check_slips(variant: Variant, key: Key, report: Report) -> None:
@@ -422,9 +432,10 @@ def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
                 )
 
 
-def _check_recognised(variant: Variant, name: str, shown: Mapping[str, Any], report: Report) -> None:
-    marking = variant.grade(shown)
-    for part_id, answer in shown.items():
+def _check_recognised(variant: Variant, sheet: Mapping[str, tuple[str, Any]], report: Report) -> None:
+    """A sheet of mistakes by part: the name of each, and the answer that it gives."""
+    marking = variant.grade({part_id: answer for part_id, (_, answer) in sheet.items()})
+    for part_id, (name, answer) in sheet.items():
         mark = marking[part_id]
         report.counts["mistakes recognised"] += 1
         if name not in mark.mistakes:

@@ -543,6 +543,15 @@ class CourseExercise:
     def _constants(self) -> dict[tuple[str, str], statement.Constants]:
         return {}
 
+    def is_constant(self, quantity: str, case: str) -> bool:
+        """Whether a case is called the same in every variant, in all languages."""
+        return all((quantity, case) in self.constants("exercises", one).labels for one in self.languages)
+
+    @cached_property
+    def constant_labels(self) -> dict[tuple[str, str], dict[str, list[str]]]:
+        """Labels of parts that are the same for every variant, by part and first language, as they are met."""
+        return {}
+
     def title(self, lang: str) -> str:
         """The title, taken from the statement of the first variant."""
         return self.variant(0, lang).text.title
@@ -701,7 +710,14 @@ class Variant:
 
     def labels(self, part: Part) -> dict[str, list[str]]:
         """What each case of a choice is called, in every language; nothing for another kind."""
-        return {case: [self.label(part.id, case, lang) for lang in self._langs] for case in part.choices}
+        known = self.exercise.constant_labels
+        place = (part.id, self.lang)
+        if place not in known:
+            found = {case: [self.label(part.id, case, lang) for lang in self._langs] for case in part.choices}
+            if not all(self.exercise.is_constant(part.id, case) for case in part.choices):
+                return found
+            known[place] = found
+        return known[place]
 
     @property
     def _langs(self) -> tuple[str, ...]:
