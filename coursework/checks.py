@@ -20,9 +20,10 @@ from coursework.blocks import processors
 from coursework.comparing import distance
 from coursework.course import Course, CourseExercise, Variant, open_course
 from coursework.errors import CourseworkError, Starved
+from coursework.graph import plain_scalar
 from coursework.issuing import distinct_variants
 from coursework.judging import judged, judges_of
-from coursework.key import Key, envelopes, keys_of
+from coursework.key import Key, envelopes, exists
 from coursework.language import languages, plain, significant
 from coursework.model import Part
 from coursework.rounding import student_who_rounds
@@ -130,7 +131,6 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
     report.variants = len(drawn)
     if not drawn:
         return
-    keys_of(exercise, drawn)
     _describe(drawn, report)
     check_arrays(exercise, drawn, report)
     check_rounding_students(exercise, drawn, report)
@@ -178,7 +178,7 @@ def check_texts(exercise: CourseExercise, report: Report) -> None:
             for case in part.choices:
                 text.label(part.id, case)
         for name, spec in exercise.spec.given.items():
-            for case in spec.choices:
+            for case in spec.choices if spec.shown else ():
                 text.label(name, case)
         if exercise.spec.figure and not text.section("figure").text:
             report.fail(f"{text.source}: the figure has no words")
@@ -234,16 +234,17 @@ def agrees(found: Any, expected: Any, *, is_angle: bool = False) -> bool:
 def check_solves(variant: Variant, key: Key, report: Report) -> None:
     """Every asked quantity is finite, and the governing equations hold."""
     for name, value in key.reference.items():
-        if not isinstance(value, str) and not np.all(np.isfinite(value)):
+        if not exists(value):
             report.fail(f"seed {variant.seed}: {name} is {value}")
     for part in variant.parts:
         value = key.reference[part.quantity]
         if part.kind == "number" and part.has_margin and part.atol == 0 and value == 0:
             report.fail(f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance")
     graph = variant.exercise.solution.residual_graph
-    residual = graph.evaluate(("residual",), variant.used, variant.effects)["residual"]
+    values = graph.evaluate(("residual",), variant.used, variant.effects, variant.found)
+    residual = values["residual"]
     for number, value in enumerate(residual if isinstance(residual, tuple) else (residual,), start=1):
-        worst = float(np.max(np.abs(value)))
+        worst = abs(value) if isinstance(value, float) else float(np.max(np.abs(value)))
         report.counts["residuals"] += 1
         if not worst < RESIDUAL:
             report.fail(f"seed {variant.seed}: residual {number} is {worst:.3g}")
@@ -255,7 +256,7 @@ def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: Rep
     wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
     together = exercise.solve(**given, only=wanted, effects=exercise.spec.effects)
     for index, variant in enumerate(drawn):
-        alone = variant.solution()
+        alone = {name: plain_scalar(value) for name, value in variant.found.items()}
         for part in variant.parts:
             value = together[part.quantity]
             one = value[index] if isinstance(value, np.ndarray) and len(value) == len(drawn) else value
@@ -269,9 +270,11 @@ def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: Rep
 def _same(one: Any, other: Any, part: Part) -> bool:
     if isinstance(other, str):
         return str(one) == other
+    if isinstance(other, (int, float)):
+        gap = one - other
+        gap = math.remainder(gap, 360.0) if part.kind == "angle" else gap
+        return abs(gap) <= 1e-9 * max(1.0, abs(other))
     gap = np.asarray(one, dtype=float) - np.asarray(other, dtype=float)
-    if part.kind == "angle":
-        gap = gap - 360.0 * np.rint(gap / 360.0)
     return bool(np.all(np.abs(gap) <= 1e-9 * np.maximum(1.0, np.abs(other))))
 
 
@@ -330,8 +333,8 @@ def check_rounding_students(
         n: np.array([v.given[n] for v in drawn]) for n in exercise.spec.given if n in exercise.quantity_names
     }
     effects, graph = exercise.spec.effects, exercise.solution.graph
-    wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
-    for kept in digits:
+    wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts if not p.is_exact))
+    for kept in digits if wanted else ():
         found = student_who_rounds(graph, wanted, given, effects, kept)
         widths = envelopes(exercise, wanted, given, effects, min(kept, exercise.course.rules.digits))
         for index, variant in enumerate(drawn):
@@ -359,7 +362,8 @@ def _check_rounded_together(variant: Variant, own: Mapping[str, Any], report: Re
     """The same for parts that are judged together, whose margin does not follow the rounding."""
     parts = {part.id: part for part in variant.parts}
     for name, ids in judges_of(variant):
-        for i, verdict in judged(variant, name, {i: own[parts[i].quantity] for i in ids}).items():
+        answers = {i: own.get(parts[i].quantity, variant.key.reference[parts[i].quantity]) for i in ids}
+        for i, verdict in judged(variant, name, answers).items():
             report.counts["rounded, judged together"] += 1
             if verdict.share != 1:
                 report.fail(f"seed {variant.seed}: {name} refuses {i} of who rounds each step")
@@ -371,16 +375,28 @@ def _at(column: Any, index: int, count: int) -> Any:
 
 
 def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
-    """Each named mistake that shows is marked as that mistake, and never as right."""
+    """Each named mistake that shows is marked as that mistake, and never as right.
+
+    Mistakes that show on different parts stand on one sheet, unless parts may be exchanged.
+    """
+    sheets: list[dict[str, tuple[str, Any]]] = []
+    apart = bool(variant.exercise.spec.either_order)
     for name in key.solution.mistakes:
         tally = report.mistakes.setdefault(name, Counter())
         shown = {}
         for part, seen in visibility(key, name):
             tally[seen] += 1
             if seen == "shown":
-                shown[part.id] = _written(key.wrong[name][part.quantity])
-        together = {i: _written(v) for _, answers in judged_wrong(key, name) for i, v in answers.items()}
-        _check_recognised(variant, name, shown, together, report)
+                shown[part.id] = (name, _written(key.wrong[name][part.quantity]))
+        # What stands beside the shown answers where they are judged as a group.
+        beside = {i: ("", _written(v)) for _, answers in judged_wrong(key, name) for i, v in answers.items()}
+        sheet = next((s for s in sheets if not (apart or beside) and s.keys().isdisjoint(shown)), None)
+        if sheet is None:
+            sheets.append({**beside, **shown})
+        else:
+            sheet |= shown
+    for sheet in sheets:
+        _check_recognised(variant, sheet, report)
 
 
 def check_slips(variant: Variant, key: Key, report: Report) -> None:
@@ -458,12 +474,12 @@ def _written(value: Any) -> Any:
     return "; ".join(map(repr, value.tolist())) if isinstance(value, np.ndarray) else value
 
 
-def _check_recognised(
-    variant: Variant, name: str, shown: Mapping[str, Any], together: Mapping[str, Any], report: Report
-) -> None:
-    """``together``: what stands beside the shown answers where they are judged as a group."""
-    marking = variant.grade({**together, **shown})
-    for part_id, answer in shown.items():
+def _check_recognised(variant: Variant, sheet: Mapping[str, tuple[str, Any]], report: Report) -> None:
+    """A sheet of mistakes by part: the name of each, if any, and the answer that it gives."""
+    marking = variant.grade({part_id: answer for part_id, (_, answer) in sheet.items()})
+    for part_id, (name, answer) in sheet.items():
+        if not name:
+            continue
         mark = marking[part_id]
         report.counts["mistakes recognised"] += 1
         if name not in mark.mistakes:

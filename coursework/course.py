@@ -331,16 +331,7 @@ class CourseExercise:
         UnknownName, MissingQuantity, WrongUnit, WrongValue
             A request that makes no sense, each with what would do.
         """
-        names = self.quantity_names
-        values = {n: v for n, v in self._defaults.items() if n in names}
-        for name, value in given.items():
-            if name not in names:
-                if name in self.spec.given:
-                    continue
-                raise unknown("quantity", name, names | self.spec.given.keys(), self.name)
-            # The usual case at once: a plain number that nothing forbids.
-            plainly = type(value) is float and value - value == 0 and name not in self._looked_at
-            values[name] = value if plainly else self._accept(name, value)
+        values = self.accepted(given)
         arrays = any(isinstance(v, np.ndarray) for v in values.values())
         if only is None and not arrays:
             only = tuple(p.quantity for p in self._asked_of(values))
@@ -384,6 +375,23 @@ class CourseExercise:
         graph = Graph({**{f.__name__: f for f in self.spec.helpers}, "poses": driver.poses})
         values = _known_to(graph, {**given, "driven": angle})
         return dict(graph.evaluate(("poses",), values)["poses"])
+
+    def accepted(self, given: Mapping[str, Any]) -> dict[str, Any]:
+        """What a request gives, as the solution takes it: in canonical units, with defaults.
+
+        Errors are those of :meth:`solve` for a request that makes no sense.
+        """
+        names = self.quantity_names
+        values = {n: v for n, v in self._defaults.items() if n in names}
+        for name, value in given.items():
+            if name not in names:
+                if name in self.spec.given:
+                    continue
+                raise unknown("quantity", name, names | self.spec.given.keys(), self.name)
+            # The usual case at once: a plain number that nothing forbids.
+            plainly = type(value) is float and value - value == 0 and name not in self._looked_at
+            values[name] = value if plainly else self._accept(name, value)
+        return values
 
     def _accept(self, name: str, value: Any) -> Any:
         """A given value as a float, an array or a case's name, in the canonical unit, within its domain."""
@@ -565,6 +573,15 @@ class CourseExercise:
     def _constants(self) -> dict[tuple[str, str], statement.Constants]:
         return {}
 
+    def is_constant(self, quantity: str, case: str) -> bool:
+        """Whether a case is called the same in every variant, in all languages."""
+        return all((quantity, case) in self.constants("exercises", one).labels for one in self.languages)
+
+    @cached_property
+    def constant_labels(self) -> dict[tuple[str, str], dict[str, list[str]]]:
+        """Labels of parts that are the same for every variant, by part and first language, as they are met."""
+        return {}
+
     def title(self, lang: str) -> str:
         """The title, taken from the statement of the first variant."""
         return self.variant(0, lang).text.title
@@ -694,6 +711,19 @@ class Variant:
         return {n: v for n, v in self.given.items() if n in self.exercise.quantity_names}
 
     @cached_property
+    def found(self) -> dict[str, Any]:
+        """Every quantity met on the way to the asked ones, of this variant alone, as the solution gives it;
+        hidden ones too.
+
+        Raises
+        ------
+        NoSolution
+            The course folder has no solutions.
+        """
+        graph = self.exercise.solution.graph
+        return graph.everything(self.asked_quantities, self.used, self.effects)
+
+    @cached_property
     def walk(self) -> dict[str, Any]:
         """The given quantities, then every one met on the way to the asked ones, in order.
 
@@ -714,7 +744,14 @@ class Variant:
 
     def labels(self, part: Part) -> dict[str, list[str]]:
         """What each case of a choice is called, in every language; nothing for another kind."""
-        return {case: [self.label(part.id, case, lang) for lang in self._langs] for case in part.choices}
+        known = self.exercise.constant_labels
+        place = (part.id, self.lang)
+        if place not in known:
+            found = {case: [self.label(part.id, case, lang) for lang in self._langs] for case in part.choices}
+            if not all(self.exercise.is_constant(part.id, case) for case in part.choices):
+                return found
+            known[place] = found
+        return known[place]
 
     @property
     def _langs(self) -> tuple[str, ...]:

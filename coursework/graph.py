@@ -129,6 +129,7 @@ class Graph:
         self._effects = tuple(n for n in nodes if n in optional) if effects is None else effects
         self._nodes = dict(nodes)
         self._shadowed = shadowed
+        self._set_aside: frozenset[str] = frozenset()
         self._plans: dict[object, tuple[tuple[str, ...], list, dict]] = {}
         leaves = {a for node in nodes.values() for a in node.needs} - set(nodes)
         self._leaves = frozenset(leaves)
@@ -193,13 +194,25 @@ class Graph:
         """
         return self._plan(tuple(wanted), frozenset(given), frozenset(effects))[0]
 
-    def _plan(self, wanted: tuple[str, ...], given: frozenset[str], effects: frozenset[str]):
-        key = (wanted, given, effects)
+    def _plan(
+        self,
+        wanted: tuple[str, ...],
+        given: frozenset[str],
+        effects: frozenset[str],
+        found: frozenset[str] = frozenset(),
+    ):
+        key = (wanted, given, effects, found)
         if key not in self._plans:
-            self._plans[key] = self._resolve(wanted, given, effects)
+            self._plans[key] = self._resolve(wanted, given, effects, found)
         return self._plans[key]
 
-    def _resolve(self, wanted: tuple[str, ...], given: frozenset[str], effects: frozenset[str]):
+    def _resolve(
+        self,
+        wanted: tuple[str, ...],
+        given: frozenset[str],
+        effects: frozenset[str],
+        found: frozenset[str],
+    ):
         for effect in effects:
             if effect not in self._effects:
                 raise unknown("effect", effect, self._effects)
@@ -209,7 +222,7 @@ class Graph:
         path: list[str] = []
 
         def visit(name: str) -> None:
-            if name in given or name in order:
+            if name in given or name in order or name in found:
                 return
             if name not in self._nodes:
                 wanting = f"{path[-1]} needs {name}, which is" if path else f"{name} is"
@@ -241,13 +254,21 @@ class Graph:
         return tuple(order), steps, constants
 
     def evaluate(
-        self, wanted: Sequence[str], given: Mapping[str, Value], effects: Iterable[str] = ()
+        self,
+        wanted: Sequence[str],
+        given: Mapping[str, Value],
+        effects: Iterable[str] = (),
+        found: Mapping[str, Value] | None = None,
     ) -> dict[str, Value]:
         """The wanted quantities, from the given ones.
 
         A given quantity is used as it is, whether or not a function could compute it. Values are
         scalars or arrays that broadcast; nothing is copied or checked but names. A function must give at
         each place of an array what it would give for the values there alone.
+
+        ``found`` holds what :meth:`everything` gave for the same given values and effects, from this graph or
+        from the one that it was made of by :meth:`replacing` or :meth:`with_functions`: what still holds
+        of it is not computed again.
 
         Raises
         ------
@@ -256,8 +277,18 @@ class Graph:
         Undefined
             A function divides by zero or leaves its domain on scalars.
         """
-        values = self._values(tuple(wanted), given, effects)
+        values = self._values(tuple(wanted), given, effects, found or {})
         return {name: values[name] for name in wanted}
+
+    def everything(
+        self, wanted: Sequence[str], given: Mapping[str, Value], effects: Iterable[str] = ()
+    ) -> dict[str, Value]:
+        """As :meth:`evaluate`, with all that is met on the way, hidden ones too.
+
+        Of arrays so long that they are gone through piece by piece, only what is wanted.
+        """
+        values = self._values(tuple(wanted), given, effects, {})
+        return {name: value for name, value in values.items() if name in self._nodes}
 
     def evaluate_all(
         self, wanted: Sequence[str], given: Mapping[str, Value], effects: Iterable[str] = ()
@@ -272,17 +303,23 @@ class Graph:
         return {_right(k) if k in self._shadowed else k: v for k, v in given.items()}
 
     def _values(
-        self, wanted: tuple[str, ...], given: Mapping[str, Value], effects: Iterable[str]
+        self,
+        wanted: tuple[str, ...],
+        given: Mapping[str, Value],
+        effects: Iterable[str],
+        found: Mapping[str, Value],
     ) -> dict[str, Value]:
         given = self._renamed(given)
         names = frozenset(given)
         if not names <= self._known:
             odd = min(names - self._known)
             raise unknown("quantity", odd, self._known)
-        _, steps, constants = self._plan(wanted, names, frozenset(effects))
-        values = {**given, **constants}
+        long = pieces(given)
+        # What was found of long arrays is whole, and would not fit their pieces.
+        found = {} if long else {_right(n) if n in self._set_aside else n: v for n, v in found.items()}
+        _, steps, constants = self._plan(wanted, names, frozenset(effects), frozenset(found))
+        values = {**found, **given, **constants}
         with np.errstate(all="ignore"):
-            long = pieces(given)
             if long is None:
                 _run(steps, values)
                 return values
@@ -342,6 +379,7 @@ class Graph:
                 nodes[target] = Node(lambda values, i=index: values[i], (together,), {})
         graph = Graph.__new__(Graph)
         graph._build(nodes, frozenset(t for t in targets if t not in self._nodes), self._effects)
+        graph._set_aside = touched & self._nodes.keys()
         return graph
 
     def observed(self, observe: Callable[[str, Value], Value]) -> Graph:

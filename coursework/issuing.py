@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import json
+import math
 import re
 import unicodedata
 from collections import Counter
@@ -102,7 +103,9 @@ def distinct_variants(
     seed = first_seed
     limit = first_seed + 30 * count + 300
     while len(found) < count and seed < limit:
-        batch = range(seed, min(limit, seed + max(16, 2 * (count - len(found)))))
+        # As many as are missing, should as many of these be good as of those before.
+        good = (len(found) + 1) / (seed - first_seed + 1)
+        batch = range(seed, min(limit, seed + max(16, math.ceil((count - len(found)) / good))))
         drawn = exercise.variants(batch, lang)
         if exercise.course.has_solutions:
             drawn = worthy(exercise, drawn, refused)

@@ -213,11 +213,18 @@ class Batch:
 
     @cached_property
     def reference(self) -> dict[str, list]:
-        wanted, effects = (*self.quantities, *self.along), self.exercise.spec.effects
+        wanted = (*self.quantities, *self.along)
+        return _rows({name: self._found[name] for name in wanted if name in self._found}, self.count)
+
+    @cached_property
+    def _found(self) -> dict[str, Any]:
+        """Every quantity met on the way to the answers; nothing where they cannot be computed together."""
         if not self.count:
             return {}
+        wanted, effects = (*self.quantities, *self.along), self.exercise.spec.effects
         try:
-            return _rows(self.exercise.solve(**self.given, only=wanted, effects=effects), self.count)
+            given = self.exercise.accepted(self.given)
+            return self.exercise.solution.graph.everything(wanted, given, effects)
         except CourseworkError:
             return {}  # each variant by itself then
 
@@ -240,7 +247,7 @@ class Batch:
 
     def is_whole(self, index: int, quantities: Sequence[str]) -> bool:
         """Whether a variant has all these quantities."""
-        return all(q in self.reference and _exists(self.reference[q][index]) for q in quantities)
+        return all(q in self.reference and exists(self.reference[q][index]) for q in quantities)
 
     @cached_property
     def envelope(self) -> dict[str, list]:
@@ -260,7 +267,8 @@ class Batch:
         for some in (reached, *((q,) for q in reached)):
             # Where all together lead nowhere, each is tried alone.
             with suppress(CourseworkError):
-                found |= _rows(graph.evaluate(some, self.given, self.exercise.spec.effects), self.count)
+                values = graph.evaluate(some, self.given, self.exercise.spec.effects, self._found)
+                found |= _rows(values, self.count)
                 if len(some) == len(reached):
                     break
         return found
@@ -287,16 +295,16 @@ class _KeyOfBatch(Key):
         found = {}
         for name, columns in self._batch.wrong.items():
             own = {q: columns[q][self._index] for q in self.reference if q in columns}
-            found[name] = {q: value for q, value in own.items() if _exists(value)}
+            found[name] = {q: value for q, value in own.items() if exists(value)}
         return found
 
     def _other_values(self, quantity: str) -> list[Any]:
         columns = self._batch.other_cases.get(quantity, ())
-        return [column[self._index] for column in columns if _exists(column[self._index])]
+        return [column[self._index] for column in columns if exists(column[self._index])]
 
     def wrong_ways(self, quantity: str) -> Iterator[tuple[str, Any]]:
         for name, columns in self._batch.wrong.items():
-            if quantity in columns and _exists(columns[quantity][self._index]):
+            if quantity in columns and exists(columns[quantity][self._index]):
                 yield name, columns[quantity][self._index]
 
 
@@ -312,7 +320,8 @@ def _rows(columns: Mapping[str, Any], count: int) -> dict[str, list]:
     return found
 
 
-def _exists(value: Any) -> bool:
-    if isinstance(value, float):
+def exists(value: Any) -> bool:
+    """Whether a value is a case, or finite in all its coordinates."""
+    if isinstance(value, (float, int)):
         return math.isfinite(value)
     return isinstance(value, str) or bool(np.all(np.isfinite(value)))

@@ -45,6 +45,7 @@ class GivenSpec:
     default: float | str | None = None  #: value of a request that does not give it
     positive: bool = False
     nonzero: bool = False
+    shown: bool = True  #: whether the sheet lists it among the data
 
     @property
     def is_choice(self) -> bool:
@@ -68,20 +69,22 @@ def drawn(
     default: float | None = None,
     positive: bool | None = None,
     nonzero: bool = False,
+    shown: bool = True,
 ) -> GivenSpec:
     """A quantity drawn on the grid of multiples of ``step`` in [low, high].
 
     A bound may be a function of quantities declared before it; its parameters name them. ``positive``
     says whether a request may only give positive values; unless told, it follows from a positive
     ``low``. ``nonzero`` refuses 0, both in draws and in requests. ``default`` is what a request
-    that leaves the quantity out takes.
+    that leaves the quantity out takes. With ``shown=False`` the sheet does not list it among the data: what
+    it stands for is in the statement or in the figure. The record keeps it.
     """
     if positive is None:
         positive = not callable(low) and low > 0 and unit != "deg"
     exact = Fraction(str(step))
     if exact <= 0:
         raise WrongValue(f"a step must be positive; found {step}")
-    return GivenSpec(unit, _bound(low), _bound(high), exact, (), default, positive, nonzero)
+    return GivenSpec(unit, _bound(low), _bound(high), exact, (), default, positive, nonzero, shown)
 
 
 def fixed(value: float, *, unit: str = "1") -> GivenSpec:
@@ -89,9 +92,9 @@ def fixed(value: float, *, unit: str = "1") -> GivenSpec:
     return GivenSpec(unit, default=value)
 
 
-def chosen(*choices: str) -> GivenSpec:
-    """A quantity drawn among named cases, all equally likely."""
-    return GivenSpec("1", choices=tuple(choices))
+def chosen(*choices: str, shown: bool = True) -> GivenSpec:
+    """A quantity drawn among named cases, all equally likely; ``shown`` is that of :func:`drawn`."""
+    return GivenSpec("1", choices=tuple(choices), shown=shown)
 
 
 @dataclass(frozen=True)

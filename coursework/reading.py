@@ -539,6 +539,7 @@ def read_point(text: object, unit: str, count: int) -> Reading:
 _POSITION = re.compile(r"[(\[]?\s*([a-z]|[0-9]{1,2})\s*(?:[)\].:]\s*(?P<label>.*))?")
 
 
+@lru_cache(maxsize=4096)
 def _folded(text: str) -> str:
     """A label without case, accents, markup and punctuation."""
     text = re.sub(r"\\(?:mathrm|text|mathit|vec|overrightarrow)(?![A-Za-z])|\\[,;! ]", " ", text)

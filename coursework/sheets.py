@@ -43,7 +43,7 @@ def handout(variant: Variant, student: str = "") -> Handout:
         student=student,
         title=text.title,
         statement=text.opening,
-        given=tuple(_given(variant, name) for name in variant.given),
+        given=tuple(_given(variant, name) for name, spec in exercise.spec.given.items() if spec.shown),
         figure=variant.figure,
         figure_alt=" ".join(text.section("figure").text.split()) if exercise.spec.figure else "",
         questions=tuple(_question(variant, n, p) for n, p in enumerate(variant.parts, start=1)),

@@ -12,14 +12,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
-import numpy as np
-
 from coursework.comparing import distance
 from coursework.course import CourseExercise, Variant
 from coursework.errors import CourseworkError
 from coursework.expressions import parse_equation
 from coursework.judging import judged, judges_of
-from coursework.key import Key, ill_limit, keys_of
+from coursework.key import Key, exists, ill_limit, keys_of
 from coursework.model import Part
 from coursework.solution import Judged
 
@@ -39,7 +37,7 @@ def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
     together = dict(_judged_wrong(key, mistake))
     for part in key.variant.parts:
         wrong = values.get(part.quantity)
-        if wrong is None or not (isinstance(wrong, str) or np.all(np.isfinite(wrong))):
+        if wrong is None or not exists(wrong):
             continue
         if part.judge:
             if part.id in together:

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from coursework.model import GivenSpec, chosen, drawn
-from coursework.solids import aligned, in_parallel, in_series, joint_of
+from coursework.solids import FREEDOMS, aligned, in_parallel, in_series, joint_of
 
 COMBINE = {"parallel": in_parallel, "series": in_series}
 
@@ -51,6 +51,12 @@ def coordinate() -> GivenSpec:
     return drawn(-40, 40, step=20, unit="mm")
 
 
+def freedoms_of(joint):
+    """Freedoms in space of a joint, or of each of a column of names."""
+    names = np.array(sorted(FREEDOMS))
+    return np.array([FREEDOMS[name] for name in names])[np.searchsorted(names, joint)]
+
+
 @cache
 def equivalent_of(combination: str, *joints: tuple) -> tuple[int, str]:
     """Freedoms and name of the equivalent joint; each joint is (name, direction, x, y, z).
@@ -74,14 +80,27 @@ def _motions() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     )
 
 
+_IN_SPACE, _IN_PLANE = (
+    slice(0, 6),
+    slice(2, 5),
+)  #: components that count; in the plane rotation z, velocities x, y
+
+
 def mobility_of_loop(joints, directions, points):
-    """Mobility of one closed loop: columns of names, of directions, and of points as triples of columns in mm.
+    """Mobility of one closed loop: columns of names, of directions, and of points as triples of columns in mm."""
+    return mobility_of_loops([[1]] * len(joints), joints, directions, points)
+
+
+def mobility_of_loops(senses, joints, directions, points, *, in_plane=False):
+    """Mobility of a chain. ``senses`` has a row a joint: in each loop, whether it is met along (1), against (-1)
+    or not (0). The columns are those of :func:`mobility_of_loop`.
 
     The rank is that of a matrix of small whole numbers: its zeros are zeros but for rounding.
     """
     keys, freedoms, products = _motions()
+    kept = _IN_PLANE if in_plane else _IN_SPACE
     total, count = 0.0, 0
-    for joint, along, point in zip(joints, directions, points, strict=True):
+    for sense, joint, along, point in zip(np.array(senses), joints, directions, points, strict=True):
         joint, along = np.atleast_1d(joint), np.atleast_1d(along)
         row = np.searchsorted(keys, np.char.add(np.char.add(joint, " "), along))
         x, y, z = (np.broadcast_to(np.asarray(c, float) / 20, row.shape) for c in point)
@@ -91,6 +110,15 @@ def mobility_of_loop(joints, directions, points):
         carry[..., 0, 4], carry[..., 0, 5] = z, -y
         carry[..., 1, 3], carry[..., 1, 5] = -z, x
         carry[..., 2, 3], carry[..., 2, 4] = y, -x
-        total = total + np.swapaxes(carry, -1, -2) @ products[row] @ carry
-        count = count + freedoms[row]
+        carry = carry[..., kept]
+        moved = np.swapaxes(carry, -1, -2) @ products[row] @ carry
+        total = total + np.kron(np.outer(sense, sense), moved)
+        count = count + (_planar_freedoms() if in_plane else freedoms)[row]
     return count - (np.linalg.eigvalsh(total) > 1e-6).sum(axis=-1)
+
+
+@cache
+def _planar_freedoms() -> np.ndarray:
+    """What each joint of :func:`_motions` leaves free in the plane xy."""
+    products = _motions()[2][:, _IN_PLANE, _IN_PLANE]
+    return (np.linalg.eigvalsh(products) > 1e-6).sum(axis=-1)

@@ -18,14 +18,14 @@ def figure(mechanism):
 
 
 EXERCISE = Exercise(
-    given={"mechanism": drawn(1000, 999999)},
+    given={"mechanism": drawn(1000, 999999, shown=False)},
     parts=(
         Part("group_count", kind="integer", points=1),
         Part("group_size", kind="integer", points=1),
         Part("group_class", kind="choice", choices=CLASSES, points=1),
         Part("assour_class", kind="choice", choices=CLASSES, points=2),
     ),
-    symbols={"mechanism": r"\mathrm{no}", "group_count": r"n_{\mathrm{g}}", "group_size": "k"},
+    symbols={"group_count": r"n_{\mathrm{g}}", "group_size": "k"},
     tells=tells,
     figure=figure,
 )

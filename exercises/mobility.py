@@ -15,7 +15,7 @@ def figure(mechanism):
 
 
 EXERCISE = Exercise(
-    given={"mechanism": drawn(1000, 999999)},
+    given={"mechanism": drawn(1000, 999999, shown=False)},
     parts=(
         Part("n", kind="integer", points=1),
         Part("b", kind="integer", points=1),
@@ -25,7 +25,6 @@ EXERCISE = Exercise(
         Part("N", kind="integer", points=1),
         Part("gamma", kind="integer", points=1),
     ),
-    symbols={"mechanism": r"\mathrm{no}"},
     tells=tells,
     figure=figure,
 )

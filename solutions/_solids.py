@@ -5,10 +5,11 @@ from functools import lru_cache
 import numpy as np
 
 from coursework.errors import WrongValue
-from coursework.solids import Chain, in_parallel, in_series, joints_of
+from coursework.solids import Chain, PlanarChain, in_parallel, in_series, joints_of
 
 _in_parallel = lru_cache(maxsize=4096)(in_parallel)
 _chain = lru_cache(maxsize=4096)(Chain)
+_planar_chain = lru_cache(maxsize=4096)(PlanarChain)
 _in_series = lru_cache(maxsize=4096)(in_series)
 
 _NOWHERE = (np.nan, np.nan, np.nan)
@@ -53,3 +54,7 @@ def _point(whole):
 
 def _chain_of(joints):
     return _each(lambda one: _chain(joints_of(one)), joints)
+
+
+def _planar_chain_of(joints):
+    return _each(lambda one: _planar_chain(joints_of(one)), joints)

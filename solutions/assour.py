@@ -1,5 +1,7 @@
 """Assour groups: solution. Take the driver away, then the smallest sets that their pairs hold, one after another."""
 
+from functools import lru_cache
+
 from coursework.solution import mistake
 from coursework.structure import assour
 from coursework.structure.columns import each
@@ -10,6 +12,8 @@ from coursework.structure.numbered import last_body, to_decompose
 STRUCTURES = ("joints", "driver", "groups")
 SYMBOLS = {"body": "j"}
 _HIGHEST = 4  #: class among the choices
+
+_decompose = lru_cache(maxsize=8192)(assour.decompose)
 
 
 def joints(mechanism):
@@ -33,7 +37,7 @@ def body(_graph, driver):
 
 def groups(_graph, driver):
     """Records of the bodies and the class of each group, in the order of assembly."""
-    return each(lambda graph, pair: _records(assour.decompose(graph, pair).groups), _graph, driver)
+    return each(lambda graph, pair: _records(_decompose(graph, pair).groups), _graph, driver)
 
 
 def group_count(groups):
@@ -103,7 +107,7 @@ def other_driver(_graph, driver):
 
 def _drives(graph, body):
     try:
-        return assour.decompose(graph, (FRAME, body)).rank <= _HIGHEST
+        return _decompose(graph, (FRAME, body)).rank <= _HIGHEST
     except assour.Undefined:
         return False
 
@@ -114,7 +118,7 @@ def multiple_pivot_as_ternary(_graph, driver):
 
     def ranks(graph, pair):
         placed, found = set(pair), []
-        for group in assour.decompose(graph, pair).groups:
+        for group in _decompose(graph, pair).groups:
             known = placed | set(group.bodies)
             corners = [
                 sum(len(known & set(joint.bodies)) - 1 for joint in graph.joints_of(body))

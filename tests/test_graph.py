@@ -95,6 +95,33 @@ def test_a_mistake_flows_into_what_depends_on_it():
     assert GRAPH.evaluate(("mass",), BOX) == {"mass": 48.0}
 
 
+@pytest.mark.parametrize(
+    "replacement",
+    [
+        Replacement(("area",), lambda width, height: width + height),
+        Replacement(("area",), lambda area: -area),
+        Replacement(("volume", "area"), lambda area, volume: (area, volume)),
+        Replacement(("width",), lambda width: 10 * width),
+        Replacement(("mass",), lambda volume: volume),
+    ],
+)
+def test_what_was_found_without_the_mistake_is_taken_where_it_still_holds(replacement):
+    wrong = GRAPH.replacing(replacement)
+    wanted = ("area", "volume", "cost")
+    found = GRAPH.everything(wanted, BOX)
+    assert wrong.evaluate(wanted, BOX, (), found) == wrong.evaluate(wanted, BOX)
+
+
+def test_what_was_found_is_not_computed_again():
+    calls = []
+    graph = GRAPH.observed(lambda name, value: calls.append(name) or value)
+    found = graph.everything(("mass",), BOX)
+    calls.clear()
+    wrong = graph.replacing(Replacement(("volume",), lambda volume: 2 * volume))
+    assert wrong.evaluate(("mass", "area"), BOX, (), found) == {"mass": 96.0, "area": 6.0}
+    assert calls == ["mass"]
+
+
 def test_a_mistake_may_use_the_right_value_of_its_target():
     wrong = GRAPH.replacing(Replacement(("area",), lambda area: -area))
     assert wrong.evaluate(("volume",), BOX) == {"volume": -24.0}

@@ -7,13 +7,13 @@ zero; the rates that do are the motions of the mechanism at the given position.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
 from coursework.errors import WrongValue
-from coursework.solids.joints import Joint, Measure, joints_of
+from coursework.solids.joints import Joint, Measure, Vector, joints_of
 from coursework.solids.ranks import Rank, decompose, rank_of
 
 
@@ -196,20 +196,21 @@ _IN_PLANE = (2, 3, 4)  #: rotation about z, velocities along x and y
 _PLANAR = {(0, 0): "rigid", (1, 0): "revolute", (0, 1): "prismatic", (1, 1): "point_contact", (1, 2): "free"}
 
 
-def _projected(joint: Joint) -> np.ndarray:
-    """The freedoms of a joint in the plane xy, at its own point: shape (k, 3).
+@lru_cache(maxsize=1024)
+def _projected(name: str, frame: tuple[Vector, Vector, Vector], pitch: float) -> np.ndarray:
+    """The freedoms of a joint in the plane xy, at its own point: shape (k, 3), not to be changed.
 
     Raises
     ------
     WrongValue
         Its axis or its normal is along none of x, y, z.
     """
-    if any(sorted(map(abs, vector))[1] > 1e-9 for vector in joint.frame):
+    if any(sorted(map(abs, vector))[1] > 1e-9 for vector in frame):
         raise WrongValue(
-            f"in a plane problem axes and normals are along x, y or z; that of a {joint.name} is {joint.frame[0]}"
+            f"in a plane problem axes and normals are along x, y or z; that of a {name} is {frame[0]}"
         )
-    own_point = joint.point or (0.0, 0.0, 0.0)
-    rows = np.array(joint.twists(own_point, 1.0)).reshape(-1, 6)[:, _IN_PLANE]
+    here = (0.0, 0.0, 0.0)
+    rows = np.array(Joint(name, frame, here, pitch).twists(here, 1.0)).reshape(-1, 6)[:, _IN_PLANE]
     return np.round(decompose(rows, "the motions in the plane", 1.0)[1], 9) if len(rows) else rows
 
 
@@ -221,7 +222,7 @@ def planar_kind(joint: Joint) -> str:
     WrongValue
         Its axis or its normal is along none of x, y, z.
     """
-    rows = _projected(joint)
+    rows = _projected(joint.name, joint.frame, joint.pitch)
     turning = int(np.any(rows[:, 0] != 0))
     return _PLANAR[turning, len(rows) - turning]
 
@@ -239,7 +240,7 @@ class PlanarChain(_Loops):
         at = self.measure
         found = []
         for joint in self.joints:
-            rows = _projected(joint).copy()
+            rows = _projected(joint.name, joint.frame, joint.pitch).copy()
             x, y, _ = joint.arm(at.origin, at.length)
             # The velocity at the origin of a rotation about z at (x, y).
             rows[:, 1] += y * rows[:, 0]

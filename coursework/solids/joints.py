@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 from coursework.errors import WrongValue, unknown
@@ -64,6 +64,7 @@ def unit(a: Sequence[float]) -> Vector:
     return (a[0] / size, a[1] / size, a[2] / size)
 
 
+@lru_cache(maxsize=1024)
 def frame_about(u: Vector) -> tuple[Vector, Vector, Vector]:
     """Unit vectors u, v, w, right-handed; v leans on the coordinate axis that is least along u."""
     least = min(range(3), key=lambda i: abs(u[i]))

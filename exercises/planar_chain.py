@@ -1,0 +1,173 @@
+"""A closed chain taken as plane: what each joint is in the plane, and what the plane study does not see."""
+
+import numpy as np
+
+from coursework.figures import Figure, axes, line, note, point
+from coursework.model import Exercise, Part, chosen, drawn
+
+from ._solids import freedoms_of, mobility_of_loops
+
+PLANAR = ("revolute", "prismatic", "point_contact", "free")
+
+#: The joints that are drawn; those with one motion only are in the plane for some of their directions.
+JOINTS = (
+    "revolute",
+    "prismatic",
+    "cylindrical",
+    "spherical",
+    "planar",
+    "annular",
+    "line_contact",
+    "point_contact",
+)
+
+
+#: With the frame, joints of few freedoms: otherwise hardly a chain would be hyperstatic.
+WITH_FRAME = ("revolute", "prismatic", "cylindrical")
+
+
+def _has_plane_motion(joint, along):
+    """In the plane xy: turning about z, sliding along x or y; a line contact with its normal in the plane."""
+    turns_away = (joint == "revolute") & (along != "z")
+    slides_away = (joint == "prismatic") & (along == "z")
+    stands_up = (joint == "line_contact") & (along == "y")
+    return ~(turns_away | slides_away | stands_up)
+
+
+def all_joints_move_in_the_plane(
+    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4
+):
+    return (
+        _has_plane_motion(joint_1, direction_1)
+        & _has_plane_motion(joint_2, direction_2)
+        & _has_plane_motion(joint_3, direction_3)
+        & _has_plane_motion(joint_4, direction_4)
+    )
+
+
+def _is_free(joint, along):
+    return ((joint == "planar") | (joint == "point_contact")) & (along == "z")
+
+
+def one_joint_at_most_is_free(
+    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4
+):
+    """A joint that hinders nothing makes the rest of the loop idle."""
+    free = [
+        _is_free(joint, along)
+        for joint, along in (
+            (joint_1, direction_1),
+            (joint_2, direction_2),
+            (joint_3, direction_3),
+            (joint_4, direction_4),
+        )
+    ]
+    return np.sum(free, axis=0) <= 1
+
+
+def mobility(
+    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
+    x2, y2, x3, y3, x4, y4,
+):  # fmt: skip
+    """In the plane, at the given position."""
+    return mobility_of_loops(
+        [[1]] * 4,
+        (joint_1, joint_2, joint_3, joint_4),
+        (direction_1, direction_2, direction_3, direction_4),
+        ((0, 0, 0), (x2, y2, 0), (x3, y3, 0), (x4, y4, 0)),
+        in_plane=True,
+    )
+
+
+def moves(mobility):
+    return mobility >= 1
+
+
+def mobility_is_small(mobility):
+    return mobility <= 3
+
+
+def few_freedoms_in_space(joint_1, joint_2, joint_3, joint_4):
+    """With many, a chain is isostatic in space as well, and there is nothing to compare."""
+    return sum(freedoms_of(joint) for joint in (joint_1, joint_2, joint_3, joint_4)) <= 9
+
+
+def tells(
+    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
+    x2, y2, x3, y3, x4, y4,
+):  # fmt: skip
+    """The lines of the table."""
+    names = (joint_1, joint_2, joint_3, joint_4)
+    along = (direction_1, direction_2, direction_3, direction_4)
+    places = ((0, 0), (x2, y2), (x3, y3), (x4, y4))
+    return {
+        "joints": [
+            {"number": k, "bodies": (k - 1, k % 4), "joint": name, "along": letter, "x": int(x), "y": int(y)}
+            for k, (name, letter, (x, y)) in enumerate(zip(names, along, places, strict=True), start=1)
+        ]
+    }
+
+
+def figure(x2, y2, x3, y3, x4, y4):
+    """The bodies between their joints, whatever these are."""
+    points = (0j, complex(x2, y2), complex(x3, y3), complex(x4, y4))
+    middle = sum(points) / 4
+    elements = [axes(complex(-25, -25), 30)]
+    for k, (p, q) in enumerate(zip(points, (*points[1:], points[0]), strict=True), start=1):
+        away = (p + q) / 2 - middle
+        elements.append(line(p, q, dashed=k == 4, thin=False))
+        elements.append(note((p + q) / 2 + 9 * away / abs(away), f"S_{k % 4}"))
+    elements += [
+        point(p, f"A_{k}", toward=float(np.degrees(np.angle(p - middle))))
+        for k, p in enumerate(points, start=1)
+    ]
+    return Figure(*elements)
+
+
+EXERCISE = Exercise(
+    given={
+        **{
+            name: spec
+            for k in (1, 2, 3, 4)
+            for name, spec in (
+                (f"joint_{k}", chosen(*(JOINTS if k in (2, 3) else WITH_FRAME), shown=False)),
+                (f"direction_{k}", chosen("x", "y", "z", shown=False)),
+            )
+        },
+        "x2": drawn(-20, 20, step=20, unit="mm", shown=False),
+        "y2": drawn(40, 80, step=20, unit="mm", shown=False),
+        "x3": drawn(80, 120, step=20, unit="mm", shown=False),
+        "y3": drawn(40, 100, step=20, unit="mm", shown=False),
+        "x4": drawn(80, 140, step=20, unit="mm", shown=False),
+        "y4": drawn(-20, 0, step=20, unit="mm", shown=False),
+    },
+    helpers=(mobility,),
+    keep=(
+        all_joints_move_in_the_plane,
+        one_joint_at_most_is_free,
+        few_freedoms_in_space,
+        moves,
+        mobility_is_small,
+    ),
+    parts=(
+        *(Part(f"planar_{k}", kind="choice", choices=PLANAR, points=1) for k in (1, 2, 3, 4)),
+        Part("gamma", kind="integer", points=1),
+        Part("Nc", kind="integer", points=1),
+        Part("rc", kind="integer", points=2),
+        Part("m", kind="integer", points=1),
+        Part("Ns", kind="integer", points=1),
+        Part("rs", kind="integer", points=1),
+        Part("h", kind="integer", points=1),
+        Part("h_space", kind="integer", points=2),
+        Part("comparison", kind="choice", choices=("sound", "hidden", "plane"), points=1),
+    ),
+    tells=tells,
+    figure=figure,
+    symbols={
+        "Nc": "N_c",
+        "rc": "r_c",
+        "Ns": "N_s",
+        "rs": "r_s",
+        "h_space": r"h_{\mathrm{3D}}",
+    },
+)
