@@ -25,6 +25,7 @@ from coursework.key import Key, envelopes, keys_of
 from coursework.language import languages, plain, significant
 from coursework.model import Part
 from coursework.rounding import student_who_rounds
+from coursework.sheets import prompt
 from coursework.worth import SHOWN, conditioning, visibility, worthy
 
 RESIDUAL = 1e-9  #: largest relative residual of the governing equations
@@ -172,7 +173,7 @@ def check_texts(exercise: CourseExercise, report: Report) -> None:
         variant = exercise.variant(0, lang)
         text = variant.text
         for part in exercise.spec.parts:
-            if not text.section(part.id).text:
+            if not prompt(variant, part):
                 report.fail(f"{text.source}: section '## {part.id}' is empty")
             for case in part.choices:
                 text.label(part.id, case)

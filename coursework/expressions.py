@@ -13,7 +13,7 @@ import math
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -429,9 +429,10 @@ class _Parser:
         self.depth -= 1
         if len(terms) == 1:
             return terms[0]
-        if len({term.angle for term in terms}) > 1:
+        # A term with a variable may be an angle: theta2 + 90°.
+        if len({term.angle for term in terms if term.angle or term.constant}) > 1:
             raise self.fail("it adds degrees to a plain number", "mixed_units", self.text)
-        return _Node("sum", signs, tuple(terms), terms[0].angle)
+        return _Node("sum", signs, tuple(terms), any(term.angle for term in terms))
 
     def product(self) -> _Node:
         signs, factors = "", []
@@ -666,6 +667,33 @@ class Equation:
     def difference(self, values: Mapping[str, object]) -> Value:
         """Left side minus right side."""
         return self.left.evaluate(values) - self.right.evaluate(values)
+
+    def gap(self, values: Mapping[str, np.ndarray], count: int) -> np.ndarray:
+        """Left side minus right side at points, of shape ``(count,)``; NaN where there is no value."""
+        with np.errstate(all="ignore"):
+            return _sides(self, values, count)[0]
+
+    def in_degrees(self) -> Equation | None:
+        """The equation with numbers that stand beside angles taken as degrees: ``sin(theta2 + 90)``.
+
+        None where no such number is.
+        """
+        sides = [_in_degrees(side.root) for side in (self.left, self.right)]
+        if sides == [self.left.root, self.right.root]:
+            return None
+        return Equation(self.text, *(Expression(self.text, root) for root in sides))
+
+
+def _in_degrees(node: _Node) -> _Node:
+    """A tree in which plain numbers added to angles under a sine, a cosine or a tangent are degrees."""
+    args = tuple(map(_in_degrees, node.args))
+    if node.kind == "call" and node.name in ("sin", "cos", "tan") and args[0].kind == "sum":
+        terms = (
+            _Node("degree", args=(term,), angle=True) if term.constant and not term.angle else term
+            for term in args[0].args
+        )
+        args = (replace(args[0], args=tuple(terms)),)
+    return replace(node, args=args) if args != node.args else node
 
 
 def parse_equation(text: str, variables: Iterable[str]) -> Equation:

@@ -19,6 +19,7 @@ from coursework.comparing import distance
 from coursework.errors import WrongValue, unknown
 from coursework.key import Key
 from coursework.language import localise, unit_text, words
+from coursework.loop_marking import Judged, judged
 from coursework.model import Part
 from coursework.reading import (
     Reading,
@@ -166,6 +167,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     key, known = variant.key, known or {}
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
+    loops = judged(variant, readings)
     before = _Before({}, set())
     marks = {}
     for i, part in asked.items():
@@ -173,8 +175,11 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             before.own[part.quantity] = float(known[i])
             continue
         judged_by, reading = asked[target[i]], readings[i]
-        nearest = _nearest(part, reading, key, judged_by)
-        marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
+        own = loops.get(i)
+        nearest = (
+            _nearest(part, reading, key, judged_by) if own is None else (0, 0.0 if own.right else math.inf)
+        )
+        marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before, own)
         if reading.status == "read" and part.kind in ("number", "angle"):
             before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
@@ -260,6 +265,7 @@ def _mark_part(
     judged_by: Part,
     nearest: tuple[int, float],
     before: _Before,
+    closes: Judged | None,
 ) -> Mark:
     def made(
         verdict: str, share: float, read_as: str, tell: Callable[[], _Said], matches: tuple[str, ...] = ()
@@ -293,6 +299,8 @@ def _mark_part(
             return made("missing_unit", 0.0, read_as, lambda: say("missing_unit"))
         return made("correct", 1.0, read_as, lambda: say("correct"))
     matches = tuple(_explanations(key, part, reading, judged_by, before))
+    if closes is not None and closes.fault:
+        matches += (f"slip:{closes.fault}",)
     verdict = matches[0] if matches else "wrong"
     kind, _, name = verdict.partition(":")
     if kind == "mistake":
@@ -303,11 +311,22 @@ def _mark_part(
 
         return made(verdict, share, read_as, told, matches)
     if kind == "slip":
-        return made(verdict, key.rules.slip, read_as, lambda: say(f"slip_{name}"), matches)
+        about = _symbols(variant, closes)
+        return made(verdict, key.rules.slip, read_as, lambda: say(f"slip_{name}", about=about), matches)
     if kind == "follow_through":
         return made(verdict, key.rules.follow_through, read_as, lambda: say("follow_through"), matches)
     sentence = {"choice": "wrong_case", "equation": "wrong_equation"}.get(part.kind, "wrong")
     return made("wrong", 0.0, read_as, lambda: say(sentence))
+
+
+def _symbols(variant: Variant, closes: Judged | None) -> str:
+    """The links that a fault is about, as they are printed."""
+    if closes is None:
+        return ""
+    table = words(variant.lang)["marking"]
+    joint = table["and" if closes.fault == "frame_missing" else "or"]
+    symbols, exercise = variant.exercise.solution.symbols, variant.exercise
+    return f" {joint} ".join(f"${symbols.get(name) or exercise.symbol(name)}$" for name in closes.names)
 
 
 def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before) -> Iterator[str]:

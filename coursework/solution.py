@@ -10,6 +10,8 @@
   right to its last printed digit, a number to 1e-9 relative; a third item names the case's effects,
   where they are not those of the exercise's own parts;
 * ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
+* ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities: :mod:`coursework.loops`;
+  ``RATES`` gives the names of derivatives that do not follow from a quantity's own;
 * ``STRUCTURES`` names the quantities whose value is a list or a record, such as a list of joints: a request
   may give them, and they are passed to the functions as they come;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
@@ -20,7 +22,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import ModuleType
 from typing import Any
@@ -29,6 +31,7 @@ import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError, unknown
 from coursework.graph import Graph, Node, Replacement
+from coursework.loops import Loop, quantities, stated
 
 
 @dataclass(frozen=True)
@@ -136,6 +139,7 @@ class Solution:
     units: Mapping[str, str]
     symbols: Mapping[str, str]
     structures: frozenset[str] = frozenset()  #: quantities that are no numbers: passed on as they come
+    loops: Mapping[str, Loop] = field(default_factory=dict)
 
     @staticmethod
     def of(name: str, module: ModuleType) -> Solution:
@@ -160,6 +164,15 @@ class Solution:
         if not functions:
             raise BadCourse(f"solutions/{name}.py defines no quantity; a quantity is a function of its name")
         functions |= _hidden(functions, module)
+        needed = frozenset().union(*(Node.of(f).needs for f in functions.values()))
+        loops = stated(
+            f"solutions/{name}.py",
+            getattr(module, "LOOPS", {}),
+            getattr(module, "RATES", {}),
+            functions.keys(),
+            needed - functions.keys(),
+        )
+        functions |= quantities(loops)
         graph = Graph(functions)
         for wrong in mistakes.values():
             try:
@@ -177,6 +190,7 @@ class Solution:
             dict(getattr(module, "UNITS", {})),
             dict(getattr(module, "SYMBOLS", {})),
             frozenset(getattr(module, "STRUCTURES", ())),
+            loops,
         )
 
     def mistaken(self, name: str) -> Graph:

@@ -6,6 +6,7 @@ not pass through O: the crank turns more than half a turn during one stroke and 
 """
 
 import math
+from math import pi
 
 import numpy as np
 
@@ -23,12 +24,14 @@ from coursework.figures import (
     rotation_arrow,
 )
 from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import Moving, formula, mistake, stable
 
 from ._strokes import *
 
 UNITS = {
+    "theta3": "deg",
     "p": "mm",
     "q": "mm",
     "omega3": "rad/s",
@@ -39,6 +42,15 @@ UNITS = {
     "T": "s",
 }
 SYMBOLS = {"phi1": r"\varphi_1", "phi2": r"\varphi_2"}
+LOOPS = {
+    "loop_1": (
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
+        Vector("xC", 0.0, -1),
+        Vector("e", pi / 2, -1),
+    ),
+}
+RATES = {"xC": ("v_C", "")}
 
 
 def _turning(r2, r3, e):
@@ -67,6 +79,12 @@ def q(r3, p):
 @formula(r"<r2> \cos <theta2> + <q>")
 def xC(r2, theta2, q):
     return r2 * cos(theta2) + q
+
+
+@formula(r"\operatorname{atan2}\left(<p>;\ <q>\right)")
+def theta3(p, q):
+    """Direction of the rod, from A to C."""
+    return atan2(p, q)
 
 
 @formula(r"-\frac{<r2> \times <omega2> \times \cos <theta2>}{<q>}")
