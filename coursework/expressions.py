@@ -718,10 +718,13 @@ def parse_equation(text: str, variables: Iterable[str]) -> Equation:
     return Equation(text, left, right)
 
 
+@lru_cache(maxsize=1024)
 def _points(name: str, count: int) -> np.ndarray:
-    """Fixed scattered values in (0.3, 3), the same for ever for a name."""
+    """Fixed scattered values in (0.3, 3), the same for ever for a name. Not to be changed."""
     words = np.frombuffer(hashlib.shake_128(name.encode()).digest(8 * count), dtype="<u8")
-    return 0.3 + 2.7 * (words / 2.0**64)
+    values = 0.3 + 2.7 * (words / 2.0**64)
+    values.flags.writeable = False
+    return values
 
 
 def _sides(equation: Equation, values: Mapping[str, np.ndarray], count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -750,15 +753,17 @@ def same_equation(a: Equation, b: Equation, *, parameters: Iterable[str] = (), r
     names = sorted(a.variables | b.variables)
     held = [name for name in names if name in set(parameters)]
     draws = 4 if held else 1
-    points = []
-    for draw in range(draws):
+
+    def drawn(draw: int) -> dict[str, np.ndarray]:
         values = {name: _points(name, rng_points) for name in names}
-        points.append(values | {name: np.full(rng_points, _points(name, draws)[draw]) for name in held})
-    if all(_proportional(a, b, values, rng_points) for values in points):
+        return values | {name: np.full(rng_points, _points(name, draws)[draw]) for name in held}
+
+    if all(_proportional(a, b, drawn(draw), rng_points) for draw in range(draws)):
         return True
     divisors = [d for d in _divisors(a) + _divisors(b) if not d.variables <= set(held)]
     if not 0 < len(divisors) <= MAX_DIVISORS:
         return False
+    points = [drawn(draw) for draw in range(draws)]
     powers = _powers(a, b, divisors, points[0], rng_points)
     if powers is None:
         return False

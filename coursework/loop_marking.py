@@ -200,6 +200,12 @@ class LoopJudge:
         rank = _rank(rows)
         return Finding(rank, rows) if rank else Finding(0, fault="not_derived")
 
+    def are_alike(self, one: str, other: str) -> bool:
+        """Whether two equations are the same, sides exchanged at most, where fixed quantities have their values."""
+        a, b = (self._near.gap(parse_equation(text, self.symbols)) for text in (one, other))
+        size = np.max(np.abs(b))
+        return any(bool(np.all(np.abs(a - sign * b) <= _ZERO * size)) for sign in (1, -1))
+
     # ------------------------------------------------------------------ what is missed
 
     def _missed(self, equation: Equation) -> Finding:
