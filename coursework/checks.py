@@ -18,15 +18,18 @@ import numpy as np
 from coursework import draws
 from coursework.blocks import processors
 from coursework.comparing import distance
-from coursework.course import Course, CourseExercise, Variant, open_course
+from coursework.course import ALL, Course, CourseExercise, Variant, open_course
 from coursework.errors import CourseworkError, Starved
+from coursework.expressions import MAX_LENGTH, parse_equation
 from coursework.graph import plain_scalar
 from coursework.issuing import distinct_variants
 from coursework.judging import judged, judges_of
 from coursework.key import Key, envelopes, exists
 from coursework.language import languages, plain, significant
+from coursework.loop_marking import fault_answers, judge_of
 from coursework.model import Part
 from coursework.rounding import student_who_rounds
+from coursework.sheets import prompt
 from coursework.worth import SHOWN, conditioning, judged_wrong, visibility, worthy
 
 RESIDUAL = 1e-9  #: largest relative residual of the governing equations
@@ -124,10 +127,10 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
     report.acceptance = draws.acceptance(exercise.name, exercise.spec)[0]
     lang = exercise.languages[0]
     try:
-        drawn = distinct_variants(exercise, 0, count, lang, report.refused)
+        drawn = distinct_variants(exercise, 0, count, lang, report.refused, (ALL,))
     except Starved as fault:
         report.fail(str(fault))
-        drawn = worthy(exercise, exercise.variants(range(count), lang))
+        drawn = worthy(exercise, exercise.variants(range(count), lang, (ALL,)))
     report.variants = len(drawn)
     if not drawn:
         return
@@ -143,6 +146,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
         check_follow_through(variant, key, report)
     for variant in drawn[:NONSENSICAL]:
         check_nonsense(variant, report)
+    check_loops(drawn[0], report)
     for name in exercise.solution.mistakes:
         tally = report.mistakes.setdefault(name, Counter())
         if count >= 50 and not tally["shown"]:
@@ -173,7 +177,7 @@ def check_texts(exercise: CourseExercise, report: Report) -> None:
         variant = exercise.variant(0, lang)
         text = variant.text
         for part in exercise.spec.parts:
-            if not text.section(part.id).text:
+            if not prompt(variant, part):
                 report.fail(f"{text.source}: section '## {part.id}' is empty")
             for case in part.choices:
                 text.label(part.id, case)
@@ -499,6 +503,64 @@ def check_nonsense(variant: Variant, report: Report) -> None:
                 report.fail(f"seed {variant.seed}: {nonsense!r} marks correct on {part_id}")
 
 
+def check_loops(variant: Variant, report: Report) -> None:
+    """The equations of the loops hold for the answers, are right in other forms, and wrong links are told.
+
+    An equation does not depend on the variant: one is enough.
+    """
+    parts = [p for p in variant.exercise.spec.parts if p.loop]
+    for part in parts:
+        if not equation_holds(variant, part):
+            report.fail(f"{part.id} does not hold for the answers of seed {variant.seed}")
+    for sheet in _other_forms(variant, parts):
+        marking = variant.grade(sheet)
+        for part_id, answer in sheet.items():
+            report.counts["right answers"] += 1
+            if marking[part_id].verdict != "correct":
+                report.fail(f"{part_id} = {answer!r} is right but marks {marking[part_id].verdict}")
+    for part in parts:
+        judge, reference = judge_of(variant.exercise, part), variant.key.reference[part.quantity]
+        for fault, answer in fault_answers(variant.exercise, part):
+            if judge.are_alike(answer, str(reference)):
+                continue  # nothing is wrong in this form
+            report.counts["loops told"] += 1
+            mark = variant.grade({part.id: answer})[part.id]
+            if not mark.matches:
+                names = ", ".join(fault.names)
+                report.fail(f"{part.id} = {answer!r} ({fault.kind} of {names}) marks {mark.verdict}, untold")
+
+
+def equation_holds(variant: Variant, part: Part) -> bool:
+    """Whether a reference equation holds for the variant's own answers."""
+    exercise, equation = variant.exercise, variant.key.reference[part.quantity]
+    angles = {n for loop in exercise.solution.loops.values() for n in loop.angles}
+    found = exercise.solve(**variant.used, only=part.variables, effects=variant.effects)
+    values = {n: math.radians(v) if n in angles else v for n, v in found.items()}
+    size = max(abs(v) for n, v in values.items() if n not in angles) ** 2
+    return abs(parse_equation(str(equation), part.variables).difference(values)) <= RESIDUAL * size
+
+
+def _other_forms(variant: Variant, parts: Sequence[Part]) -> Iterator[dict[str, str]]:
+    """Right answers about loops in other forms: exchanged, projected on turned axes, conjugate."""
+    exchanged, turned, complex_ones = {}, {}, {}
+    for part in parts:
+        form, _ = part.loop_form
+        texts = {
+            f: str(variant.exercise.solution.graph.evaluate((n,), {})[n])
+            for f in ("x", "y", "complex")
+            for n in (part.quantity.replace(f"{part.loop}_{form}", f"{part.loop}_{f}"),)
+        }
+        sides = {f: "({1}) - ({0})".format(*text.split(" = ")) for f, text in texts.items()}
+        if form == "complex":
+            complex_ones[part.id] = f"{sides['x']} + i*({sides['y']}) = 0"
+        else:
+            exchanged[part.id] = texts["y" if form == "x" else "x"]
+            sign, other = ("+", "y") if form == "x" else ("-", "x")
+            turned[part.id] = f"cos(20°)*({sides[form]}) {sign} sin(20°)*({sides[other]}) = 0"
+    for sheet in (exchanged, turned, complex_ones):
+        yield {part_id: text for part_id, text in sheet.items() if len(text) <= MAX_LENGTH}
+
+
 # -------------------------------------------------------------------- rendering
 
 
@@ -506,7 +568,7 @@ def check_rendering(exercise: CourseExercise, count: int, report: Report) -> Non
     """Sheets, worked solutions and notebooks render in every language."""
     renderer = exercise.course.renderer
     for lang in exercise.languages:
-        for variant in exercise.variants(range(count), lang):
+        for variant in exercise.variants(range(count), lang, (ALL,)):
             handout, sheet = variant.handout(), variant.answer_sheet()
             for made in (
                 renderer.pdf(handout),
@@ -530,6 +592,7 @@ def table(reports: Sequence[Report]) -> list[Mapping[str, Any]]:
             "rounded": sum(r.counts[f"rounding to {d}"] for d in KEPT_DIGITS),
             "mistakes": r.counts["mistakes recognised"],
             "slips": r.counts["slips recognised"],
+            "loops": r.counts["loops told"],
             "followed": r.counts["follow-through"],
             "nonsense": r.counts["nonsense"],
             "failures": len(r.failures),

@@ -96,6 +96,12 @@ def _known_formats() -> tuple[str, ...]:
 
 _json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 _lang_option = click.option("--lang", default="fr", show_default=True, help="Language of the sheet.")
+_parts_option = click.option(
+    "--parts",
+    default="",
+    metavar="P,P",
+    help="The parts to ask: ids, 'usual' for those asked unless told, 'all' for every one.",
+)
 _seed_option = click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Which variant (the first one)."
 )
@@ -188,7 +194,8 @@ def list_exercises(context: click.Context, as_json: bool) -> None:
             "exercise": name,
             "title": {lang: course[name].title(lang) for lang in course[name].languages},
             "version": course[name].version,
-            "parts": len(course[name].spec.parts),
+            "parts": sum(not part.by_request for part in course[name].spec.parts),
+            "by_request": sum(part.by_request for part in course[name].spec.parts),
         }
         for name in course.names
     ]
@@ -204,11 +211,24 @@ def list_exercises(context: click.Context, as_json: bool) -> None:
 @click.argument("exercise")
 @_seed_option
 @_lang_option
+@_parts_option
 @click.pass_context
-def show(context: click.Context, exercise: str, seed: int, lang: str) -> None:
+def show(context: click.Context, exercise: str, seed: int, lang: str, parts: str) -> None:
     """Print a statement."""
     course = _course(context)
-    click.echo(course.renderer.terminal(course[exercise].variant(seed, lang).handout()))
+    (drawn,) = _drawn(course[exercise], [seed], lang, parts)
+    click.echo(course.renderer.terminal(drawn.handout()))
+
+
+def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[Any]:
+    """Variants that ask the parts named."""
+    found = exercise.variants(seeds, lang, _split(parts) or None)
+    for one in found:
+        if not one.parts:
+            raise WrongValue(
+                f"{exercise.name}, seed {one.seed}, asks none of the parts {parts}; try another seed"
+            )
+    return found
 
 
 @cli.command()
@@ -219,15 +239,23 @@ def show(context: click.Context, exercise: str, seed: int, lang: str) -> None:
 )
 @click.option("--solution", is_flag=True, help="With the reference answers.")
 @_lang_option
+@_parts_option
 @_json_option
 @click.pass_context
 def variant(
-    context: click.Context, exercise: str, seed: int, count: int, solution: bool, lang: str, as_json: bool
+    context: click.Context,
+    exercise: str,
+    seed: int,
+    count: int,
+    solution: bool,
+    lang: str,
+    parts: str,
+    as_json: bool,
 ) -> None:
     """Print the records of variants, one JSON object a line with --json."""
     from coursework.issuing import record_with_answers
 
-    for drawn in _course(context)[exercise].variants(range(seed, seed + count), lang):
+    for drawn in _drawn(_course(context)[exercise], range(seed, seed + count), lang, parts):
         record = record_with_answers(drawn) if solution else drawn.record
         if as_json:
             _print_json(record)
@@ -542,6 +570,7 @@ def accuracy(
 )
 @click.option("--formats", type=_Lists(_known_formats), default="pdf,ipynb,html", show_default=True)
 @click.option("--lang", "langs", type=_Lists(_known_languages), default="fr", show_default=True)
+@_parts_option
 @click.option("--practice", is_flag=True, help="Self-study notebooks, which check answers.")
 @click.option(
     "--paper",
@@ -564,6 +593,7 @@ def build(
     roster: Path | None,
     formats: Sequence[str],
     langs: Sequence[str],
+    parts: str,
     practice: bool,
     paper: str,
     booklet: bool,
@@ -584,6 +614,7 @@ def build(
         formats,
         langs,
         out,
+        parts=_split(parts) or None,
         practice=practice,
         paper=paper,
         booklet=booklet,
@@ -604,6 +635,7 @@ def build_files(
     langs: Sequence[str],
     out: Path,
     *,
+    parts: Sequence[str] | None = None,
     practice: bool = False,
     paper: str = "a4",
     booklet: bool = False,
@@ -613,7 +645,9 @@ def build_files(
     from coursework import building, issuing
 
     students = issuing.read_roster(roster) if roster else ()
-    issues = issuing.issue(course, names, first_seed=seed, count=count, langs=langs, roster=students)
+    issues = issuing.issue(
+        course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts
+    )
     issued = issuing.json_text(issuing.issued_content(course, issues))
     before = out / "issued.json"
     if before.exists() and before.read_bytes() != issued.encode("utf-8") and not overwrite:

@@ -46,12 +46,15 @@ if TYPE_CHECKING:
     from coursework.figures import Figure
     from coursework.handout import AnswerSheet, Handout
     from coursework.key import Key
+    from coursework.loop_marking import LoopJudge
     from coursework.marking import Marking
     from coursework.motion import Animation
     from coursework.rendering import Renderer
     from coursework.selfstudy.sheet import StudySheet
 
 _packages = itertools.count()
+
+USUAL, ALL = "usual", "all"  #: what stands for several parts where parts are named
 
 
 def builtin_root() -> Path:
@@ -274,7 +277,7 @@ class CourseExercise:
 
     def _wanted(self, only: Sequence[str] | str | None) -> tuple[str, ...]:
         if only is None:
-            return tuple(dict.fromkeys(p.quantity for p in self.spec.parts))
+            return tuple(dict.fromkeys(p.quantity for p in self.spec.parts if not p.by_request))
         return (only,) if isinstance(only, str) else tuple(only)
 
     @cached_property
@@ -463,27 +466,55 @@ class CourseExercise:
 
     # ----------------------------------------------------------------- variants
 
-    def variant(self, seed: int, lang: str = "fr") -> Variant:
+    def variant(self, seed: int, lang: str = "fr", parts: Sequence[str] | None = None) -> Variant:
         """The variant of a seed: the same for ever for this exercise and version.
+
+        ``parts`` are the ids of those that it asks; ``usual`` stands for those that are asked unless told, ``all``
+        for every one.
 
         Raises
         ------
         WrongValue
             A seed that is not a whole number from 0 on.
+        UnknownName
+            A part that the exercise does not have.
         Starved
             The conditions refuse every draw.
         """
-        return self.variants([seed], lang)[0]
+        return self.variants([seed], lang, parts)[0]
 
-    def variants(self, seeds: Iterable[int], lang: str = "fr") -> list[Variant]:
+    def variants(
+        self, seeds: Iterable[int], lang: str = "fr", parts: Sequence[str] | None = None
+    ) -> list[Variant]:
         """The variants of many seeds, drawn together."""
+        chosen = self.chosen_parts(parts)
         seeds = list(seeds)
         for seed in seeds:
             if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
                 raise WrongValue(f"a seed is a whole number from 0 on; found {seed!r}")
         seeds = [int(seed) for seed in seeds]
         drawn = draws.draw(self.name, self.spec, seeds)
-        return [Variant(self, seed, given, lang) for seed, given in zip(seeds, drawn, strict=True)]
+        return [Variant(self, seed, given, lang, chosen) for seed, given in zip(seeds, drawn, strict=True)]
+
+    def chosen_parts(self, parts: Sequence[str] | None) -> tuple[Part, ...] | None:
+        """Parts by id, in the order of the exercise; None for the usual ones.
+
+        Raises
+        ------
+        UnknownName
+            A part that the exercise does not have.
+        """
+        if parts is None:
+            return None
+        known = [*(part.id for part in self.spec.parts), USUAL, ALL]
+        for part_id in parts:
+            if part_id not in known:
+                raise unknown("part", part_id, known, self.name)
+        return tuple(
+            p
+            for p in self.spec.parts
+            if ALL in parts or p.id in parts or (USUAL in parts and not p.by_request)
+        )
 
     def from_record(self, record: Mapping[str, Any]) -> Variant:
         """The variant that a record issued, with the values that the record holds.
@@ -513,21 +544,37 @@ class CourseExercise:
             raise BadInput(f"{self.name}: a record lacks {fault}") from fault
         for name, value in given.items():
             self._check_recorded(name, value)
-        variant = Variant(self, seed, given, str(record.get("lang", "fr")))
+        parts = self._parts_of(tuple(asked.items()), version < self.version)
+        variant = Variant(self, seed, given, str(record.get("lang", "fr")), parts)
         if version < self.version:
-            variant.__dict__["parts"] = self._parts_of(asked)
             variant.__dict__["record"] = dict(record)
         return variant
 
-    def _parts_of(self, asked: Mapping[str, float]) -> tuple[Part, ...]:
-        """The parts of an older version, by id: what they asked then and were worth then."""
-        gone = [i for i in asked if self.spec.part(i) is None]
-        if gone:
-            raise BadInput(
-                f"{self.name}: a record of an older version asks {gone[0]!r}, which the course no longer has; "
-                "mark it with the course it was issued from"
-            )
-        return tuple(replace(p, points=asked[p.id]) for p in self.spec.parts if p.id in asked)
+    def _parts_of(self, asked: tuple[tuple[str, float], ...], older: bool) -> tuple[Part, ...]:
+        """The parts that a record asks, by id; those of an older version are worth what they were then."""
+        if (asked, older) not in self._recorded_parts:
+            points = dict(asked)
+            gone = [i for i in points if self.spec.part(i) is None]
+            if gone:
+                raise BadInput(
+                    f"{self.name}: a record of {'an older' if older else 'this'} version asks {gone[0]!r}, which the "
+                    f"course {'no longer has' if older else 'does not have'}; mark it with the course it was issued from"
+                )
+            found = tuple(p for p in self.spec.parts if p.id in points)
+            if older:
+                found = tuple(replace(p, points=points[p.id]) for p in found)
+            self._recorded_parts[asked, older] = found
+        return self._recorded_parts[asked, older]
+
+    @cached_property
+    def _recorded_parts(self) -> dict[tuple[tuple[tuple[str, float], ...], bool], tuple[Part, ...]]:
+        """Remembered, since records of one build ask the same."""
+        return {}
+
+    @cached_property
+    def loop_judges(self) -> dict[tuple[str, int, tuple[str, ...]], LoopJudge]:
+        """Judges of loop equations, made when the first answer about a loop is marked."""
+        return {}
 
     def _check_recorded(self, name: str, value: Any) -> None:
         spec = self.spec.given[name]
@@ -536,7 +583,7 @@ class CourseExercise:
             raise BadInput(f"{self.name}: a record gives {name} = {value!r}, which is no value of it")
 
     def _asked_of(self, given: Mapping[str, Any]) -> tuple[Part, ...]:
-        return tuple(p for p in self.spec.parts if p.when is None or _holds(p, given))
+        return _asked((p for p in self.spec.parts if not p.by_request), given)
 
     # -------------------------------------------------------------------- texts
 
@@ -618,6 +665,10 @@ def _parameters(function: Callable[..., Any]) -> tuple[str, ...]:
     return tuple(inspect.signature(function).parameters)
 
 
+def _asked(parts: Iterable[Part], given: Mapping[str, Any]) -> tuple[Part, ...]:
+    return tuple(p for p in parts if p.when is None or _holds(p, given))
+
+
 def _holds(part: Part, given: Mapping[str, Any]) -> bool:
     """Whether a part is asked with these values; so too when they do not tell."""
     names = _parameters(part.when)
@@ -633,12 +684,20 @@ def _known_to(graph: Graph, values: Mapping[str, Any]) -> dict[str, Any]:
 class Variant:
     """One student's version of an exercise."""
 
-    def __init__(self, exercise: CourseExercise, seed: int, given: Mapping[str, Any], lang: str):
+    def __init__(
+        self,
+        exercise: CourseExercise,
+        seed: int,
+        given: Mapping[str, Any],
+        lang: str,
+        parts: Sequence[Part] | None = None,
+    ):
         if lang not in languages():
             raise unknown("language", lang, languages())
         self.exercise = exercise
         self.seed = seed
         self.lang = lang
+        self.chosen = parts  #: the parts to ask, where they are not the usual ones
         self.given: Mapping[str, Any] = MappingProxyType(dict(given))  #: canonical units, as printed
 
     def __repr__(self) -> str:
@@ -647,7 +706,7 @@ class Variant:
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         """The parts that this variant asks."""
-        return self.exercise._asked_of(self.given)
+        return self.exercise._asked_of(self.given) if self.chosen is None else _asked(self.chosen, self.given)
 
     @property
     def part_ids(self) -> tuple[str, ...]:
@@ -671,7 +730,7 @@ class Variant:
 
     def in_language(self, lang: str) -> Variant:
         """The same variant on a sheet in another language."""
-        return Variant(self.exercise, self.seed, self.given, lang)
+        return Variant(self.exercise, self.seed, self.given, lang, self.chosen)
 
     def solution(self) -> dict[str, Any]:
         """The asked quantities in canonical units and full precision."""

@@ -13,7 +13,7 @@ import math
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -429,9 +429,10 @@ class _Parser:
         self.depth -= 1
         if len(terms) == 1:
             return terms[0]
-        if len({term.angle for term in terms}) > 1:
+        # A term with a variable may be an angle: theta2 + 90°.
+        if len({term.angle for term in terms if term.angle or term.constant}) > 1:
             raise self.fail("it adds degrees to a plain number", "mixed_units", self.text)
-        return _Node("sum", signs, tuple(terms), terms[0].angle)
+        return _Node("sum", signs, tuple(terms), any(term.angle for term in terms))
 
     def product(self) -> _Node:
         signs, factors = "", []
@@ -667,6 +668,33 @@ class Equation:
         """Left side minus right side."""
         return self.left.evaluate(values) - self.right.evaluate(values)
 
+    def gap(self, values: Mapping[str, np.ndarray], count: int) -> np.ndarray:
+        """Left side minus right side at points, of shape ``(count,)``; NaN where there is no value."""
+        with np.errstate(all="ignore"):
+            return _sides(self, values, count)[0]
+
+    def in_degrees(self) -> Equation | None:
+        """The equation with numbers that stand beside angles taken as degrees: ``sin(theta2 + 90)``.
+
+        None where no such number is.
+        """
+        sides = [_in_degrees(side.root) for side in (self.left, self.right)]
+        if sides == [self.left.root, self.right.root]:
+            return None
+        return Equation(self.text, *(Expression(self.text, root) for root in sides))
+
+
+def _in_degrees(node: _Node) -> _Node:
+    """A tree in which plain numbers added to angles under a sine, a cosine or a tangent are degrees."""
+    args = tuple(map(_in_degrees, node.args))
+    if node.kind == "call" and node.name in ("sin", "cos", "tan") and args[0].kind == "sum":
+        terms = (
+            _Node("degree", args=(term,), angle=True) if term.constant and not term.angle else term
+            for term in args[0].args
+        )
+        args = (replace(args[0], args=tuple(terms)),)
+    return replace(node, args=args) if args != node.args else node
+
 
 def parse_equation(text: str, variables: Iterable[str]) -> Equation:
     """Read an equation over the given variables; there must be exactly one equals sign.
@@ -690,10 +718,13 @@ def parse_equation(text: str, variables: Iterable[str]) -> Equation:
     return Equation(text, left, right)
 
 
+@lru_cache(maxsize=1024)
 def _points(name: str, count: int) -> np.ndarray:
-    """Fixed scattered values in (0.3, 3), the same for ever for a name."""
+    """Fixed scattered values in (0.3, 3), the same for ever for a name. Not to be changed."""
     words = np.frombuffer(hashlib.shake_128(name.encode()).digest(8 * count), dtype="<u8")
-    return 0.3 + 2.7 * (words / 2.0**64)
+    values = 0.3 + 2.7 * (words / 2.0**64)
+    values.flags.writeable = False
+    return values
 
 
 def _sides(equation: Equation, values: Mapping[str, np.ndarray], count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -722,15 +753,17 @@ def same_equation(a: Equation, b: Equation, *, parameters: Iterable[str] = (), r
     names = sorted(a.variables | b.variables)
     held = [name for name in names if name in set(parameters)]
     draws = 4 if held else 1
-    points = []
-    for draw in range(draws):
+
+    def drawn(draw: int) -> dict[str, np.ndarray]:
         values = {name: _points(name, rng_points) for name in names}
-        points.append(values | {name: np.full(rng_points, _points(name, draws)[draw]) for name in held})
-    if all(_proportional(a, b, values, rng_points) for values in points):
+        return values | {name: np.full(rng_points, _points(name, draws)[draw]) for name in held}
+
+    if all(_proportional(a, b, drawn(draw), rng_points) for draw in range(draws)):
         return True
     divisors = [d for d in _divisors(a) + _divisors(b) if not d.variables <= set(held)]
     if not 0 < len(divisors) <= MAX_DIVISORS:
         return False
+    points = [drawn(draw) for draw in range(draws)]
     powers = _powers(a, b, divisors, points[0], rng_points)
     if powers is None:
         return False

@@ -20,6 +20,7 @@ from coursework.errors import WrongValue, unknown
 from coursework.judging import Verdict, best_judged
 from coursework.key import Key
 from coursework.language import localise, significant, unit_text, with_unit, words
+from coursework.loop_marking import Judged, judged
 from coursework.model import Part
 from coursework.reading import (
     Reading,
@@ -168,6 +169,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
     together: dict[str, Verdict] = {}
+    loops = judged(variant, readings)
     before = _Before({}, set())
     marks = {}
     for i, part in asked.items():
@@ -181,8 +183,12 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             nearest = together[i].reading, math.inf
             marks[i] = _mark_judged(variant, key, part, reading, together[i])
         else:
-            nearest = _nearest(part, reading, key, judged_by)
-            marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
+            own = loops.get(i)
+            if own is None:
+                nearest = _nearest(part, reading, key, judged_by)
+            else:
+                nearest = 0, 0.0 if own.right else math.inf
+            marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before, own)
         if reading.status == "read" and part.kind in ("number", "angle"):
             before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
@@ -270,9 +276,9 @@ def _made(
     )
 
 
-def _mark_judged(variant: Variant, key: Key, part: Part, reading: Reading, judged: Verdict) -> Mark:
+def _mark_judged(variant: Variant, key: Key, part: Part, reading: Reading, found: Verdict) -> Mark:
     """The mark of a part that is judged together with others."""
-    read_as, verdict = reading.read_as[judged.reading], judged.said
+    read_as, verdict = reading.read_as[found.reading], found.said
     if verdict is None:
         alone = partial(_say, variant, part, "incomplete", read=echo(read_as, variant.lang))
         return _made(variant, part, reading, "wrong", 0.0, read_as, alone)
@@ -280,13 +286,13 @@ def _mark_judged(variant: Variant, key: Key, part: Part, reading: Reading, judge
 
     def say(sentence: str, **pieces: str) -> _Said:
         said = _say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
-        return said._replace(sentence=said.sentence + found, pieces={**said.pieces, **told})
+        return said._replace(sentence=said.sentence + follows, pieces={**said.pieces, **told})
 
     told = {f"found{n}": _quantity(variant, q, v) for n, (q, v) in enumerate(verdict.found.items())}
     listed = ", ".join("{" + name + "}" for name in told)
-    found = f" {words(variant.lang)['marking']['found'].format(listed)}" if listed else ""
+    follows = f" {words(variant.lang)['marking']['found'].format(listed)}" if listed else ""
     if share == 1.0:
-        kind, share = ("follow_through", key.rules.follow_through) if judged.followed else ("correct", 1.0)
+        kind, share = ("follow_through", key.rules.follow_through) if found.followed else ("correct", 1.0)
         return _made(variant, part, reading, kind, share, read_as, lambda: say(kind))
     name = verdict.mistake
     if not name:
@@ -317,6 +323,7 @@ def _mark_part(
     judged_by: Part,
     nearest: tuple[int, float],
     before: _Before,
+    closes: Judged | None,
 ) -> Mark:
     made = partial(_made, variant, part, reading)
     if reading.status != "read":
@@ -334,6 +341,8 @@ def _mark_part(
             return made("missing_unit", 0.0, read_as, lambda: say("missing_unit"))
         return made("correct", 1.0, read_as, lambda: say("correct"))
     matches = tuple(_explanations(key, part, reading, judged_by, before))
+    if closes is not None and closes.fault:
+        matches += (f"slip:{closes.fault}",)
     verdict = matches[0] if matches else "wrong"
     kind, _, name = verdict.partition(":")
     if kind == "mistake":
@@ -344,11 +353,22 @@ def _mark_part(
 
         return made(verdict, share, read_as, told, matches)
     if kind == "slip":
-        return made(verdict, key.rules.slip, read_as, lambda: say(f"slip_{name}"), matches)
+        about = _symbols(variant, closes)
+        return made(verdict, key.rules.slip, read_as, lambda: say(f"slip_{name}", about=about), matches)
     if kind == "follow_through":
         return made(verdict, key.rules.follow_through, read_as, lambda: say("follow_through"), matches)
     sentence = {"choice": "wrong_case", "equation": "wrong_equation"}.get(part.kind, "wrong")
     return made("wrong", 0.0, read_as, lambda: say(sentence))
+
+
+def _symbols(variant: Variant, closes: Judged | None) -> str:
+    """The links that a fault is about, as they are printed."""
+    if closes is None:
+        return ""
+    table = words(variant.lang)["marking"]
+    joint = table["and" if closes.fault == "frame_missing" else "or"]
+    symbols, exercise = variant.exercise.solution.symbols, variant.exercise
+    return f" {joint} ".join(f"${symbols.get(name) or exercise.symbol(name)}$" for name in closes.names)
 
 
 def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before) -> Iterator[str]:

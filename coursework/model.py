@@ -105,12 +105,14 @@ class Part:
     ``point`` (by its distance to the reference), ``point_on_line`` (a point of the line through the reference
     along the quantity ``along``),
     ``direction`` (any non-zero multiple of the reference vector) or ``equation`` (in the exercise's
-    symbols ``variables``, up to a factor, which may hold those of them that are ``parameters``: lengths).
+    symbols ``variables``, up to a factor, which may hold those of them that are ``parameters``: lengths). An
+    equation that closes a ``loop`` of the solution is right in any form: :func:`loop_equations`.
     A numeric answer is right within max(``atol``, ``rtol`` · |reference|), by default 1 %, or 1° for what
     is measured in degrees. ``when``, a function of given quantities, says whether a variant asks the part.
     With ``asks_unit`` the sheet prints no unit beside the box, and an answer without one lacks something.
     Parts that name the same ``judge``, a function of the solution, are judged together by it: where many
     answers are right, and the quantity is only one of them. Their ``atol`` and ``rtol`` are the judge's.
+    A part ``by_request`` is asked only where a build names it.
     """
 
     quantity: str
@@ -127,6 +129,8 @@ class Part:
     when: Callable[..., Any] | None = None
     asks_unit: bool = False
     judge: str = ""
+    loop: str = ""
+    by_request: bool = False
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
@@ -137,6 +141,11 @@ class Part:
             raise BadCourse(f"part {self.quantity!r}: 'along' goes with kind 'point_on_line', and it must")
         if (self.kind == "equation") != bool(self.variables):
             raise BadCourse(f"part {self.quantity!r}: 'variables' goes with kind 'equation', and it must")
+        if self.loop and (self.kind != "equation" or _loop_form(self) is None):
+            raise BadCourse(
+                f"part {self.quantity!r}: an equation of the loop {self.loop!r} is called {self.loop}_x, {self.loop}_y or "
+                f"{self.loop}_complex, and its derivatives {self.loop}_x_dot, {self.loop}_x_ddot"
+            )
         if self.asks_unit and (self.is_exact or self.unit == "1"):
             raise BadCourse(f"part {self.quantity!r}: it can ask for a unit only where its answer has one")
         if not self.points > 0:
@@ -161,9 +170,59 @@ class Part:
         """Right within a margin about its reference."""
         return not self.is_exact and not self.judge
 
+    @property
+    def loop_form(self) -> tuple[str, int]:
+        """For an equation of a loop: ``x``, ``y`` or ``complex``, and how often it is derived."""
+        found = _loop_form(self)
+        if found is None:
+            raise BadCourse(f"part {self.quantity!r} closes no loop")
+        return found
+
     def half_width(self, reference: float) -> float:
         """The largest accepted distance from a reference, in the part's unit."""
         return max(self.atol, self.rtol * abs(reference))
+
+
+def _loop_form(part: Part) -> tuple[str, int] | None:
+    match = re.fullmatch(rf"{re.escape(part.loop)}_(x|y|complex)(?:_(d?dot))?", part.quantity)
+    return (match[1], {None: 0, "dot": 1, "ddot": 2}[match[2]]) if part.loop and match else None
+
+
+def loop_equations(
+    loop: str,
+    symbols: Sequence[str],
+    *,
+    rates: Sequence[str] = (),
+    second_rates: Sequence[str] = (),
+    parameters: Sequence[str] = (),
+    usual: Sequence[str] = (),
+    points: float = 1,
+) -> tuple[Part, ...]:
+    """The equations that close a loop of the solution, as parts: projections on x and y, and the complex form.
+
+    ``symbols`` are what a student may write; with ``rates`` and ``second_rates`` the derivatives of the
+    closure are parts as well: ``loop_1_x_dot``, ``loop_1_x_ddot``. All are asked by request, but the forms that are
+    ``usual``: ``("x", "y")``. A named mistake of the solution is known up to a factor of ``parameters``.
+    """
+    parts = []
+    known = tuple(symbols)
+    for ending, more in (("", ()), ("_dot", rates), ("_ddot", second_rates)):
+        if ending and not more:
+            continue
+        known += tuple(more)
+        for form in ("x", "y", "complex"):
+            parts.append(
+                Part(
+                    f"{loop}_{form}{ending}",
+                    kind="equation",
+                    variables=known,
+                    parameters=tuple(parameters),
+                    loop=loop,
+                    points=2 * points if form == "complex" else points,
+                    by_request=f"{form}{ending}" not in usual,
+                )
+            )
+    return tuple(parts)
 
 
 @dataclass(frozen=True)

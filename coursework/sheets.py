@@ -46,7 +46,10 @@ def handout(variant: Variant, student: str = "") -> Handout:
         given=tuple(_given(variant, name) for name, spec in exercise.spec.given.items() if spec.shown),
         figure=variant.figure,
         figure_alt=" ".join(text.section("figure").text.split()) if exercise.spec.figure else "",
-        questions=tuple(_question(variant, n, p) for n, p in enumerate(variant.parts, start=1)),
+        questions=tuple(
+            _question(variant, n, p, how)
+            for n, (p, how) in enumerate(zip(variant.parts, _first_of_loops(variant), strict=True), start=1)
+        ),
         record=variant.record,
     )
 
@@ -59,14 +62,43 @@ def _given(variant: Variant, name: str) -> Given:
     return Given(name, symbol, plain(value), unit_text(spec.unit, variant.lang))
 
 
-def _question(variant: Variant, number: int, part: Part) -> Question:
-    section = variant.text.section(part.id)
+def _first_of_loops(variant: Variant) -> list[bool]:
+    """For each part, whether the sheet must still say in which symbols its equation is written."""
+    met: set[tuple[str, ...]] = set()
+    found = []
+    for part in variant.parts:
+        new = bool(part.loop) and part.id not in variant.text.sections and part.variables not in met
+        found.append(new)
+        if new:
+            met.add(part.variables)
+    return found
+
+
+def prompt(variant: Variant, part: Part, *, how: bool = False) -> str:
+    """What a part asks: its section of the statement; for an equation of a loop that has none, the engine's
+    words after the section of its loop. ``how`` adds in which symbols it is written.
+
+    Raises
+    ------
+    BadStatement
+        The statement has no such section.
+    """
+    if not part.loop or part.id in variant.text.sections:
+        return variant.text.section(part.id).text
+    table = words(variant.lang)["loop"]
+    loop = variant.text.section(part.loop).text
+    asked = table[part.quantity.removeprefix(f"{part.loop}_")]
+    symbols = ", ".join(f"`{name}`" for name in part.variables)
+    return " ".join([loop, asked, *([table["how"].format(symbols=symbols)] if how else [])])
+
+
+def _question(variant: Variant, number: int, part: Part, how: bool) -> Question:
     choices = tuple((case, variant.text.label(part.id, case)) for case in part.choices)
     return Question(
         number=number,
         id=part.id,
         symbol="" if part.kind in _WITHOUT_SYMBOL else variant.exercise.symbol(part.quantity),
-        prompt=section.text,
+        prompt=prompt(variant, part, how=how),
         unit="" if part.asks_unit else unit_text(part.unit, variant.lang),
         kind=part.kind,
         choices=choices,

@@ -12,6 +12,8 @@
   where they are not those of the exercise's own parts;
 * ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
 * ``polygons`` gives the velocity and acceleration polygons, each a :class:`~coursework.polygons.Polygon`;
+* ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities: :mod:`coursework.loops`;
+  ``RATES`` gives the names of derivatives that do not follow from a quantity's own;
 * ``STRUCTURES`` names the quantities whose value is a list or a record, such as a list of joints: a request
   may give them, and they are passed to the functions as they come;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
@@ -31,6 +33,7 @@ import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError, unknown
 from coursework.graph import Graph, Node, Replacement
+from coursework.loops import Loop, quantities, stated
 
 if TYPE_CHECKING:
     from coursework.polygons import Polygon
@@ -174,6 +177,7 @@ class Solution:
     structures: frozenset[str] = frozenset()  #: quantities that are no numbers: passed on as they come
     judges: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
     polygons: Callable[..., Sequence[Polygon]] | None = None
+    loops: Mapping[str, Loop] = field(default_factory=dict)
 
     @staticmethod
     def of(name: str, module: ModuleType) -> Solution:
@@ -199,6 +203,15 @@ class Solution:
         if not functions:
             raise BadCourse(f"solutions/{name}.py defines no quantity; a quantity is a function of its name")
         functions |= _hidden(functions, module)
+        needed = frozenset().union(*(Node.of(f).needs for f in functions.values()))
+        loops = stated(
+            f"solutions/{name}.py",
+            getattr(module, "LOOPS", {}),
+            getattr(module, "RATES", {}),
+            functions.keys(),
+            needed - functions.keys(),
+        )
+        functions |= quantities(loops)
         graph = Graph(functions)
         for wrong in mistakes.values():
             try:
@@ -218,6 +231,7 @@ class Solution:
             frozenset(getattr(module, "STRUCTURES", ())),
             judges,
             own.get("polygons"),
+            loops,
         )
 
     def judge(self, name: str) -> Callable[..., Any]:

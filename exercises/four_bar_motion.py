@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
 from coursework.kinematics.dyads import rrr, side_of
-from coursework.model import Driver, Exercise, Part, chosen, drawn
+from coursework.model import Driver, Exercise, Part, chosen, drawn, loop_equations
 
 
 def bars(r1, r2, r3, r4, theta2, mode):
@@ -173,6 +173,12 @@ EXERCISE = Exercise(
         Part("v_BA", unit="mm/s", points=1),
         Part("a_BA_n", unit="mm/s^2", points=1),
         Part("a_BA_t", unit="mm/s^2", points=1),
+        *loop_equations(
+            "loop_1",
+            ("r1", "r2", "theta2", "r3", "theta3", "r4", "theta4"),
+            rates=("omega2", "omega3", "omega4"),
+            second_rates=("alpha2", "alpha3", "alpha4"),
+        ),
     ),
     figure=figure,
     symbols={

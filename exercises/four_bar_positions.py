@@ -3,7 +3,7 @@
 from coursework.degrees import cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
 from coursework.kinematics.dyads import rrr
-from coursework.model import Driver, Exercise, Part, drawn
+from coursework.model import Driver, Exercise, Part, drawn, loop_equations
 
 
 def diagonal(r1, r2, theta2):
@@ -94,6 +94,7 @@ EXERCISE = Exercise(
         Part("theta3_crossed", unit="deg", kind="angle", points=1),
         Part("theta4_crossed", unit="deg", kind="angle", points=1),
         Part("mu", unit="deg", points=1),
+        *loop_equations("loop_1", ("r1", "r2", "theta2", "r3", "theta3", "r4", "theta4")),
     ),
     either_order=(("theta3_open", "theta4_open"), ("theta3_crossed", "theta4_crossed")),
     symbols={

@@ -17,7 +17,7 @@ from coursework.figures import (
     vector,
 )
 from coursework.kinematics.vectors import dot
-from coursework.model import Driver, Exercise, Part, drawn
+from coursework.model import Driver, Exercise, Part, drawn, loop_equations
 
 REASONS = ("fixed_pivot", "slot", "translation", "composition", "no_slip")
 
@@ -191,6 +191,7 @@ EXERCISE = Exercise(
         Part("v_B2_y", unit="mm/s", points=1),
         Part("omega3", unit="rad/s", points=2),
         Part("v_I", unit="mm/s", points=1),
+        *loop_equations("loop_1", ("d", "r2", "r3", "theta1", "rA", "theta4")),
     ),
     figure=figure,
     symbols={

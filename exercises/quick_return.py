@@ -19,7 +19,7 @@ from coursework.figures import (
     slider,
 )
 from coursework.kinematics.dyads import rrp, rrr, side_of
-from coursework.model import Driver, Exercise, Part, chosen, drawn
+from coursework.model import Driver, Exercise, Part, chosen, drawn, loop_equations
 
 
 def B(r1, theta1, r2, r3, r4, angle_OAB, B_side):
@@ -223,6 +223,11 @@ def figure(A, B, C, r1, theta1, r2, omega2):
     )
 
 
+SYMBOLS_OF_THE_LOOPS = (
+    "r1", "theta1", "r2", "theta2", "r3", "theta3", "r4", "theta4", "r5", "theta5", "xC", "h",
+)  # fmt: skip
+RATES_OF_THE_LOOPS = ("omega2", "omega3", "omega4", "omega5", "v_C")
+
 EXERCISE = Exercise(
     given={
         "r1": drawn(180, 320, step=5, unit="mm"),
@@ -299,6 +304,8 @@ EXERCISE = Exercise(
         Part("t_advance", unit="s", points=1),
         Part("t_return", unit="s", points=1),
         Part("mechanical_advantage", points=1),
+        *loop_equations("loop_1", SYMBOLS_OF_THE_LOOPS, rates=RATES_OF_THE_LOOPS),
+        *loop_equations("loop_2", SYMBOLS_OF_THE_LOOPS, rates=RATES_OF_THE_LOOPS),
     ),
     symbols={
         "A_side": "A",

@@ -15,7 +15,7 @@ from coursework.figures import (
     slider,
 )
 from coursework.kinematics.dyads import rrp
-from coursework.model import Driver, Exercise, Part, drawn
+from coursework.model import Driver, Exercise, Part, drawn, loop_equations
 
 
 def rod(r2, r3, e, theta2):
@@ -149,6 +149,9 @@ EXERCISE = Exercise(
         Part("Q", points=1),
         Part("t_advance", unit="s", points=1),
         Part("t_return", unit="s", points=1),
+        *loop_equations(
+            "loop_1", ("r2", "theta2", "r3", "theta3", "xC", "e"), rates=("omega2", "omega3", "v_C")
+        ),
     ),
     symbols={"xC": "x_C", "stroke": "s", "t_advance": "t_a", "t_return": "t_r"},
     figure=figure,

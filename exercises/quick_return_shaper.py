@@ -19,7 +19,7 @@ from coursework.figures import (
     slot_link,
 )
 from coursework.kinematics.dyads import rrp
-from coursework.model import Driver, Exercise, Part, drawn
+from coursework.model import Driver, Exercise, Part, drawn, loop_equations
 
 
 def arm(r1, r2, theta2):
@@ -166,6 +166,10 @@ EXERCISE = Exercise(
         Part("Q", points=1),
         Part("t_advance", unit="s", points=1),
         Part("t_return", unit="s", points=1),
+        *loop_equations("loop_1", ("r1", "r2", "theta2", "rA", "theta4")),
+        *loop_equations(
+            "loop_2", ("r4", "theta4", "r5", "theta5", "xC", "h"), rates=("omega4", "omega5", "v_C")
+        ),
     ),
     symbols={"xC": "x_C", "stroke": "s", "t_advance": "t_a", "t_return": "t_r"},
     figure=figure,

@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import cos, polar, sin
 from coursework.figures import Figure, angle_mark, dimension, ground_pivot, line, link, pin, rail, slider
 from coursework.kinematics.dyads import rrp
-from coursework.model import Driver, Exercise, Part, drawn, fixed
+from coursework.model import Driver, Exercise, Part, drawn, fixed, loop_equations
 
 
 def rod(r2, r3, e, theta2):
@@ -165,6 +165,12 @@ EXERCISE = Exercise(
         _drawn_length("ab_n"),
         _drawn_length("bb_t"),
         _drawn_length("pa_b"),
+        *loop_equations(
+            "loop_1",
+            ("r2", "theta2", "r3", "theta3", "r1", "e"),
+            rates=("omega2", "omega3", "r1_dot"),
+            second_rates=("alpha2", "alpha3", "r1_ddot"),
+        ),
     ),
     figure=figure,
     symbols={

@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider
 from coursework.kinematics.dyads import rrp, rrr, side_of
-from coursework.model import Driver, Exercise, Part, chosen, drawn
+from coursework.model import Driver, Exercise, Part, chosen, drawn, loop_equations
 
 SYMBOLS_OF_THE_LOOPS = (
     "r1", "r2", "r3", "r4", "r5", "r6", "theta2", "theta3", "theta4", "theta5",
@@ -139,8 +139,15 @@ def figure(pin_A, pin_B, pin_P, r1, theta2):
 LENGTHS = ("r1", "r2", "r3", "r4", "r5")
 
 
-def _equation(quantity):
-    return Part(quantity, kind="equation", variables=SYMBOLS_OF_THE_LOOPS, parameters=LENGTHS)
+def _equations(loop):
+    return loop_equations(
+        loop,
+        SYMBOLS_OF_THE_LOOPS,
+        rates=("omega2", "omega3", "omega4", "omega5", "r6_dot"),
+        second_rates=("alpha3", "alpha4", "alpha5", "r6_ddot"),
+        parameters=LENGTHS,
+        usual=("x", "y"),
+    )
 
 
 EXERCISE = Exercise(
@@ -169,10 +176,8 @@ EXERCISE = Exercise(
     parts=(
         Part("mobility", kind="integer", points=1),
         Part("cycles", kind="integer", points=1),
-        _equation("loop_1_x"),
-        _equation("loop_1_y"),
-        _equation("loop_2_x"),
-        _equation("loop_2_y"),
+        *_equations("loop_1"),
+        *_equations("loop_2"),
         Part("a", unit="mm^2", points=1),
         Part("b", unit="mm^2", points=1),
         Part("c", unit="mm^2", points=1),

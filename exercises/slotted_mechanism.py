@@ -2,7 +2,7 @@
 
 from coursework.degrees import angle, cos, polar, sin
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, note, slider, slot_link
-from coursework.model import Driver, Exercise, Part, drawn, fixed
+from coursework.model import Driver, Exercise, Part, drawn, fixed, loop_equations
 
 
 def arm(r1, theta1, r2, theta2):
@@ -87,6 +87,12 @@ EXERCISE = Exercise(
         Part("a_coriolis", unit="mm/s^2", points=1),
         Part("rA_ddot", unit="mm/s^2", points=1),
         Part("alpha4", unit="rad/s^2", points=1),
+        *loop_equations(
+            "loop_1",
+            ("r1", "theta1", "r2", "theta2", "rA", "theta4"),
+            rates=("omega2", "rA_dot", "omega4"),
+            second_rates=("alpha2", "rA_ddot", "alpha4"),
+        ),
     ),
     figure=figure,
     symbols={

@@ -6,7 +6,7 @@ from coursework.degrees import angle, cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider
 from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.kinematics.vectors import cross, dot
-from coursework.model import Driver, Exercise, Part, chosen, drawn
+from coursework.model import Driver, Exercise, Part, chosen, drawn, loop_equations
 
 SYMBOLS_OF_THE_LOOPS = (
     "xC", "yC", "xD", "yD", "r2", "r3", "r4", "r5", "r6", "beta", "r7", "d3",
@@ -207,8 +207,15 @@ def _about(share, spread=0.15):
     return (lambda xC: (1 - spread) * share * xC), (lambda xC: (1 + spread) * share * xC)
 
 
-def _equation(quantity):
-    return Part(quantity, kind="equation", variables=SYMBOLS_OF_THE_LOOPS, parameters=LENGTHS)
+def _equations(loop):
+    return loop_equations(
+        loop,
+        SYMBOLS_OF_THE_LOOPS,
+        rates=("omega2", "omega3", "omega4", "omega5", "d5_dot", "omega7", "x8_dot"),
+        second_rates=("alpha3", "alpha4", "alpha5", "d5_ddot", "alpha7", "x8_ddot"),
+        parameters=LENGTHS,
+        usual=("x", "y"),
+    )
 
 
 EXERCISE = Exercise(
@@ -249,12 +256,9 @@ EXERCISE = Exercise(
         rod_tells_in_the_speed_of_the_ram,
     ),
     parts=(
-        _equation("loop_1_x"),
-        _equation("loop_1_y"),
-        _equation("loop_2_x"),
-        _equation("loop_2_y"),
-        _equation("loop_3_x"),
-        _equation("loop_3_y"),
+        *_equations("loop_1"),
+        *_equations("loop_2"),
+        *_equations("loop_3"),
         Part("theta3", unit="deg", kind="angle", points=2),
         Part("theta4", unit="deg", kind="angle", points=1),
         Part("theta5", unit="deg", kind="angle", points=1),

@@ -6,7 +6,7 @@ from coursework.degrees import angle, cos, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
 from coursework.kinematics.dyads import rrr, side_of
 from coursework.kinematics.vectors import cross, dot
-from coursework.model import Driver, Exercise, Part, chosen, drawn
+from coursework.model import Driver, Exercise, Part, chosen, drawn, loop_equations
 
 SYMBOLS_OF_THE_LOOPS = (
     "xC", "yC", "xF", "yF", "r2", "r3", "r4", "r5", "beta", "r6", "r7",
@@ -189,8 +189,15 @@ def figure(frame, crank, motion, theta2, r5, beta, r4):
     )
 
 
-def _equation(quantity):
-    return Part(quantity, kind="equation", variables=SYMBOLS_OF_THE_LOOPS, parameters=LENGTHS)
+def _equations(loop):
+    return loop_equations(
+        loop,
+        SYMBOLS_OF_THE_LOOPS,
+        rates=("omega2", "omega3", "omega4", "omega6", "omega7"),
+        second_rates=("alpha3", "alpha4", "alpha6", "alpha7"),
+        parameters=LENGTHS,
+        usual=("x", "y"),
+    )
 
 
 EXERCISE = Exercise(
@@ -228,10 +235,8 @@ EXERCISE = Exercise(
     parts=(
         Part("mobility", kind="integer", points=1),
         Part("cycles", kind="integer", points=1),
-        _equation("loop_1_x"),
-        _equation("loop_1_y"),
-        _equation("loop_2_x"),
-        _equation("loop_2_y"),
+        *_equations("loop_1"),
+        *_equations("loop_2"),
         Part("theta3", unit="deg", kind="angle", points=2),
         Part("theta4", unit="deg", kind="angle", points=1),
         Part("theta6", unit="deg", kind="angle", points=2),

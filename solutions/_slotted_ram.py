@@ -3,14 +3,25 @@
 The crank pin A slides in the guide O4; P on the guide drives the ram C by a rod.
 """
 
+from math import pi
+
 from coursework.degrees import atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.polygons import turning
 from coursework.solution import Moving, formula, stable
 
 from ._polygons import _crank_v, _guide_v, _slider_v, _velocities
+
+LOOPS = {
+    "loop_1": (Vector("r1", pi / 2), Vector("r2", "theta2"), Vector("rA", "theta4", -1)),
+    "loop_2": (
+        Vector("r4", "theta4"), Vector("r5", "theta5"), Vector("xC", 0.0, -1), Vector("h", pi / 2, -1),
+    ),
+}  # fmt: skip
+RATES = {"xC": ("v_C", "")}
 
 
 def _arm(r1, r2, theta2):
@@ -61,6 +72,12 @@ def q(r5, p):
 
 def xC(xP, q):
     return xP + q
+
+
+@formula(r"\operatorname{atan2}\left(<p>;\ <q>\right)")
+def theta5(p, q):
+    """Direction of the rod, from P to C."""
+    return atan2(p, q)
 
 
 @formula(r"-\frac{<omega4> \times <xP>}{<q>}")

@@ -18,6 +18,11 @@ from ._polygons import _accelerations, _crank_a, _crank_v, _two_bars_a, _two_bar
 
 UNITS = {"AC": "mm", "phi": "deg", "psi": "deg", "side": "1"}
 SYMBOLS = {"AC": "AC", "phi": r"\varphi", "psi": r"\psi", "side": r"\varepsilon"}
+LOOPS = {
+    "loop_1": (
+        Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("r4", "theta4", -1),
+    ),
+}  # fmt: skip
 
 
 @formula(
@@ -241,6 +246,6 @@ ACCURACY = Study(
         "r1": 100, "r2": 50, "r3": 70, "r4": 80,
         "theta2": [180 + side * 10.0**-k for k in range(10) for side in (-1, 1)],
     },
-    loops=[[Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r4", "theta4", -1), Vector("r1", 0.0, -1)]],
+    loops=tuple(LOOPS.values()),
     unknowns=("theta3", "theta4"),
 )  # fmt: skip

@@ -10,12 +10,18 @@ import numpy as np
 from coursework.degrees import acos, atan, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin
 from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
 from coursework.kinematics.four_bar import FourBar
 from coursework.solution import Moving, formula, mistake, stable
 from coursework.structure import grashof
 
-UNITS = {"phi": "deg", "psi": "deg", "AC": "mm"}
+UNITS = {"theta3": "deg", "theta4": "deg", "phi": "deg", "psi": "deg", "AC": "mm"}
 SYMBOLS = {"phi": r"\varphi", "psi": r"\psi", "AC": "AC"}
+LOOPS = {
+    "loop_1": (
+        Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("r4", "theta4", -1),
+    ),
+}  # fmt: skip
 
 
 def _open(r1, r2, r3, r4, theta2):
@@ -111,6 +117,17 @@ def AC(r1, r2, theta2):
 def mu(AC, r3, r4):
     """Angle CBA at B, by the law of cosines."""
     return acos((r3**2 + r4**2 - AC**2) / (2 * r3 * r4))
+
+
+# The symbols of the closure, which holds in both assemblies alike: here in the one that the figure shows.
+
+
+def theta3(theta3_open):
+    return theta3_open
+
+
+def theta4(theta4_open):
+    return theta4_open
 
 
 @mistake("c")

@@ -10,6 +10,7 @@ import numpy as np
 from coursework.degrees import atan, atan2, cos, from_radians, polar, sin, sqrt, tan
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
 from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
 from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.polygons import Side, turning
 from coursework.solution import Moving, formula, mistake, stable
@@ -17,6 +18,11 @@ from coursework.solution import Moving, formula, mistake, stable
 from ._polygons import _crank_v, _guide_v, _velocities
 
 UNITS = {"e": "mm"}
+LOOPS = {
+    "loop_1": (
+        Vector("d", 0.0), Vector("r2", "theta1"), Vector("r3", "theta1"), Vector("rA", "theta4", -1),
+    ),
+}  # fmt: skip
 
 
 def _arm(d, e, theta1):

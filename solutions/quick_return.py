@@ -6,11 +6,13 @@ vanishes: where crank and coupler are in line, and wherever the rod would line u
 """
 
 import math
+from math import pi
 
 import numpy as np
 
 from coursework.degrees import atan2, cos, polar, sin, sqrt, wrap
 from coursework.errors import CannotAssemble, Undefined
+from coursework.kinematics.chains import Vector
 from coursework.kinematics.cycle import turning_points
 from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.kinematics.margins import grashof_margins
@@ -49,6 +51,16 @@ SYMBOLS = {
     "xC_max": r"x_{C,\mathrm{max}}",
     "xC_min": r"x_{C,\mathrm{min}}",
 }
+LOOPS = {
+    "loop_1": (
+        Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", "theta1", -1), Vector("r4", "theta4", -1),
+    ),
+    "loop_2": (
+        Vector("r1", "theta1"), Vector("r4", "theta4"), Vector("r5", "theta5"),
+        Vector("xC", 0.0, -1), Vector("h", pi / 2, -1),
+    ),
+}  # fmt: skip
+RATES = {"xC": ("v_C", "a_C")}
 
 
 def _refuse_negative(message, *margins):

@@ -6,12 +6,14 @@ not pass through O: the crank turns more than half a turn during one stroke and 
 """
 
 import math
+from math import pi
 
 import numpy as np
 
 from coursework.degrees import asin, atan2, cos, from_radians, polar, sin, sqrt
 from coursework.errors import CannotAssemble
 from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import Moving, formula, mistake, stable
 
@@ -20,6 +22,7 @@ from ._polygons import _crank_v, _slider_v, _velocities
 from ._strokes import *
 
 UNITS = {
+    "theta3": "deg",
     "p": "mm",
     "q": "mm",
     "omega3": "rad/s",
@@ -30,6 +33,15 @@ UNITS = {
     "T": "s",
 }
 SYMBOLS = {"phi1": r"\varphi_1", "phi2": r"\varphi_2"}
+LOOPS = {
+    "loop_1": (
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
+        Vector("xC", 0.0, -1),
+        Vector("e", pi / 2, -1),
+    ),
+}
+RATES = {"xC": ("v_C", "")}
 
 
 def _turning(r2, r3, e):
@@ -58,6 +70,12 @@ def q(r3, p):
 @formula(r"<r2> \cos <theta2> + <q>")
 def xC(r2, theta2, q):
     return r2 * cos(theta2) + q
+
+
+@formula(r"\operatorname{atan2}\left(<p>;\ <q>\right)")
+def theta3(p, q):
+    """Direction of the rod, from A to C."""
+    return atan2(p, q)
 
 
 @formula(r"-\frac{<r2> \times <omega2> \times \cos <theta2>}{<q>}")

@@ -29,6 +29,7 @@ from ._slotted_ram import *
 from ._strokes import *
 
 UNITS = {
+    "theta5": "deg",
     "rA": "mm",
     "theta4": "deg",
     "omega4": "rad/s",

@@ -18,6 +18,14 @@ from coursework.solution import Moving, formula, mistake, stable
 from ._polygons import _accelerations, _crank_a, _crank_v, _slider_a, _slider_v, _velocities
 
 UNITS = {"p": "mm", "q": "mm"}
+LOOPS = {
+    "loop_1": (
+        Vector("r2", "theta2"),
+        Vector("r3", "theta3"),
+        Vector("r1", 0.0, -1),
+        Vector("e", pi / 2, -1),
+    ),
+}
 
 
 @formula(r"<e> - <r2> \sin <theta2>")
@@ -239,6 +247,6 @@ ACCURACY = Study(
         "r2": 100, "r3": 100, "e": 0,
         "theta2": [90 + side * 10.0**-k for k in range(10) for side in (-1, 1)],
     },
-    loops=[[Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("e", 0.5 * pi, -1)]],
+    loops=tuple(LOOPS.values()),
     unknowns=("theta3", "r1"),
 )  # fmt: skip

@@ -6,12 +6,14 @@ points down: what its formulas give near a dead point is taken from the numeric 
 """
 
 import math
+from math import pi
 
 import numpy as np
 
 from coursework.degrees import acos, angle, atan, atan2, cos, from_radians, polar, sin, sqrt, tan, wrap
 from coursework.errors import CannotAssemble
 from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
 from coursework.solution import Moving, formula, mistake, stable
@@ -29,6 +31,12 @@ from ._polygons import (
 
 UNITS = {"A": "1", "side": "1"}
 SYMBOLS = {"side": r"\varepsilon"}
+LOOPS = {
+    "loop_1": (
+        Vector("r1", pi / 2), Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r4", "theta4", -1),
+    ),
+    "loop_2": (Vector("r4", "theta4"), Vector("r6", 0.0, -1), Vector("r5", "theta5", -1)),
+}  # fmt: skip
 
 
 def mobility():
@@ -37,22 +45,6 @@ def mobility():
 
 def cycles():
     return 7 - 6 + 1
-
-
-def loop_1_x():
-    return "r2*cos(theta2) + r3*cos(theta3) = r4*cos(theta4)"
-
-
-def loop_1_y():
-    return "r1 + r2*sin(theta2) + r3*sin(theta3) = r4*sin(theta4)"
-
-
-def loop_2_x():
-    return "r4*cos(theta4) = r6 + r5*cos(theta5)"
-
-
-def loop_2_y():
-    return "r4*sin(theta4) = r5*sin(theta5)"
 
 
 def a(r2, r3, theta2):

@@ -19,6 +19,7 @@ from ._polygons import _accelerations, _crank_a, _crank_v, _guide_a, _guide_v, _
 
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
 SYMBOLS = {"delta": r"\delta"}
+LOOPS = {"loop_1": (Vector("r1", "theta1"), Vector("r2", "theta2"), Vector("rA", "theta4", -1))}
 
 
 def _arm(r1, r2, theta1, theta2):
@@ -225,6 +226,6 @@ ACCURACY = Study(
         "r1": 200, "r2": 200 * (1 - 1e-7),
         "theta2": [-90 + side * 10.0**-k for k in range(10) for side in (-1, 1)],
     },
-    loops=[[Vector("r1", "theta1"), Vector("r2", "theta2"), Vector("rA", "theta4", -1)]],
+    loops=tuple(LOOPS.values()),
     unknowns=("rA", "theta4"),
 )  # fmt: skip

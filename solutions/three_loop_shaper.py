@@ -6,12 +6,14 @@ is a slider-crank of crank DF.
 """
 
 import math
+from math import pi
 
 import numpy as np
 
 from coursework.degrees import acos, angle, atan, atan2, cos, from_radians, polar, sin, sqrt, tan, wrap
 from coursework.figures import Figure, ground_pivot, link, pin, rail, slider, vector
 from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import rrp, side_of
 from coursework.kinematics.four_bar import FourBar
 from coursework.polygons import normal, tangential, turning
@@ -51,30 +53,20 @@ SYMBOLS = {
     "p7": "p_7",
     "q7": "q_7",
 }
-
-
-def loop_1_x():
-    return "r2*cos(theta2) + r3*cos(theta3) = xC + r4*cos(theta4)"
-
-
-def loop_1_y():
-    return "r2*sin(theta2) + r3*sin(theta3) = yC + r4*sin(theta4)"
-
-
-def loop_2_x():
-    return "r2*cos(theta2) + r6*cos(theta3 + beta) = xD + d5*cos(theta5)"
-
-
-def loop_2_y():
-    return "r2*sin(theta2) + r6*sin(theta3 + beta) = yD + d5*sin(theta5)"
-
-
-def loop_3_x():
-    return "xD + r5*cos(theta5) + r7*cos(theta7) = x8"
-
-
-def loop_3_y():
-    return "yD + r5*sin(theta5) + r7*sin(theta7) = d3"
+LOOPS = {
+    "loop_1": (
+        Vector("r2", "theta2"), Vector("r3", "theta3"),
+        Vector("xC", 0.0, -1), Vector("yC", pi / 2, -1), Vector("r4", "theta4", -1),
+    ),
+    "loop_2": (
+        Vector("r2", "theta2"), Vector("r6", "theta3", turn="beta"),
+        Vector("xD", 0.0, -1), Vector("yD", pi / 2, -1), Vector("d5", "theta5", -1),
+    ),
+    "loop_3": (
+        Vector("xD", 0.0), Vector("yD", pi / 2), Vector("r5", "theta5"), Vector("r7", "theta7"),
+        Vector("x8", 0.0, -1), Vector("d3", pi / 2, -1),
+    ),
+}  # fmt: skip
 
 
 def _frame(xC, yC):

@@ -6,12 +6,14 @@ the numeric core, which keeps their digits near dead points.
 """
 
 import math
+from math import pi
 
 import numpy as np
 
 from coursework.degrees import acos, angle, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.figures import Figure, ground_pivot, link, pin, vector
 from coursework.kinematics.angles import Degrees
+from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
 from coursework.polygons import normal, tangential, turning
@@ -42,6 +44,16 @@ SYMBOLS = {
     "psi_2": r"\psi_2",
     "side_2": r"\varepsilon_2",
 }
+LOOPS = {
+    "loop_1": (
+        Vector("r2", "theta2"), Vector("r3", "theta3"),
+        Vector("xC", 0.0, -1), Vector("yC", pi / 2, -1), Vector("r4", "theta4", -1),
+    ),
+    "loop_2": (
+        Vector("xC", 0.0), Vector("yC", pi / 2), Vector("r5", "theta4", turn="beta"), Vector("r6", "theta6"),
+        Vector("xF", 0.0, -1), Vector("yF", pi / 2, -1), Vector("r7", "theta7", -1),
+    ),
+}  # fmt: skip
 
 
 def mobility():
@@ -50,22 +62,6 @@ def mobility():
 
 def cycles():
     return 7 - 6 + 1
-
-
-def loop_1_x():
-    return "r2*cos(theta2) + r3*cos(theta3) = xC + r4*cos(theta4)"
-
-
-def loop_1_y():
-    return "r2*sin(theta2) + r3*sin(theta3) = yC + r4*sin(theta4)"
-
-
-def loop_2_x():
-    return "xC + r5*cos(theta4 + beta) + r6*cos(theta6) = xF + r7*cos(theta7)"
-
-
-def loop_2_y():
-    return "yC + r5*sin(theta4 + beta) + r6*sin(theta6) = yF + r7*sin(theta7)"
 
 
 def _frame_1(xC, yC):

@@ -20,7 +20,7 @@ class Closure:
 
     def __init__(self, loops: Sequence[Sequence[Vector]], unknowns: Sequence[str]) -> None:
         self.loops, self.unknowns = loops, tuple(unknowns)
-        self.angles = {v.angle for loop in loops for v in loop if isinstance(v.angle, str)}
+        self.angles = {a for loop in loops for v in loop for a in (v.angle, v.turn) if isinstance(a, str)}
 
     def gaps(self, values: Mapping[str, Any], cos: Function = np.cos, sin: Function = np.sin) -> list[Any]:
         """What each loop lacks to close, along x and y in turn."""
@@ -65,7 +65,8 @@ class Closure:
     def _polar(v: Vector, values: Mapping[str, Any]) -> tuple[Any, Any]:
         length = values[v.length] if isinstance(v.length, str) else v.length
         angle = values[v.angle] if isinstance(v.angle, str) else v.angle
-        return v.sign * length, angle + v.turn
+        turn = values[v.turn] if isinstance(v.turn, str) else v.turn
+        return v.sign * length, angle + turn
 
 
 def _solved(matrix: list[list[Any]], right: list[Any]) -> list[Any]:

@@ -26,12 +26,12 @@ _EPS = np.finfo(float).eps
 
 
 class Vector(NamedTuple):
-    """One vector of a loop. ``turn`` is a constant angle added to a named one: that of a ternary link."""
+    """One vector of a loop. ``turn`` is a constant angle added to the other one: that of a ternary link."""
 
     length: str | float
     angle: str | float
     sign: int = 1
-    turn: float = 0.0
+    turn: str | float = 0.0
 
 
 class Pose(NamedTuple):
@@ -63,7 +63,8 @@ class Chain:
         self.unknowns = tuple(unknowns)
         vectors = [vector for loop in self.loops for vector in loop]
         self._lengths = {v.length for v in vectors if isinstance(v.length, str)}
-        self._angles = {v.angle for v in vectors if isinstance(v.angle, str)}
+        turns = {v.turn for v in vectors if isinstance(v.turn, str)}
+        self._angles = {v.angle for v in vectors if isinstance(v.angle, str)} | turns
         if len(self.unknowns) != 2 * len(self.loops):
             raise WrongValue(
                 f"{len(self.loops)} loops fix {2 * len(self.loops)} unknowns; {len(self.unknowns)} are asked"
@@ -71,6 +72,8 @@ class Chain:
         for name in self.unknowns:
             if (name in self._lengths) == (name in self._angles):
                 raise WrongValue(f"the unknown {name!r} must be a length or an angle of some vector")
+            if name in turns:
+                raise WrongValue(f"{name!r} is a constant angle added to another; it cannot be unknown")
         self.known = tuple(sorted((self._lengths | self._angles) - set(self.unknowns)))
         self._measures = [v.length for v in vectors if not isinstance(v.length, str)]
 
@@ -253,11 +256,10 @@ class Chain:
     def _vector(self, v: Vector, values: Mapping[str, Any], exponents: Any) -> tuple[Any, Any]:
         """The vector and its unit vector, signed."""
         length = values[v.length] if isinstance(v.length, str) else scaled(v.length, -exponents)
-        if isinstance(v.angle, str):
-            unit = v.sign * values[v.angle]
-            unit = unit * complex(math.cos(v.turn), math.sin(v.turn)) if v.turn else unit
-        else:
-            unit = v.sign * complex(math.cos(v.angle + v.turn), math.sin(v.angle + v.turn))
+        fixed = sum(a for a in (v.angle, v.turn) if not isinstance(a, str))
+        unit = v.sign * complex(math.cos(fixed), math.sin(fixed)) if fixed else v.sign
+        for name in (v.angle, v.turn):
+            unit = unit * values[name] if isinstance(name, str) else unit
         return length * unit, unit
 
     def _vector_rate(self, v: Vector, values: Mapping, rates: Mapping, exponents: Any, n: int) -> Any:

@@ -1,0 +1,307 @@
+"""The closed loops of a mechanism: their equations as texts, in any of the forms asked for, and the ways to err.
+
+A solution states its loops once, as ``LOOPS = {"loop_1": (Vector("r2", "theta2"), …)}``: vectors
+``sign * length * e^{i (angle + turn)}`` that add up to nothing. The quantities ``loop_1_x``, ``loop_1_y`` (projections) and
+``loop_1_complex`` follow, and with ``_dot`` and ``_ddot`` their derivatives in time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from coursework.errors import BadCourse, nearest
+from coursework.kinematics.chains import Vector
+
+#: Endings of the quantities' names, by order of derivation.
+ORDERS = ("", "_dot", "_ddot")
+
+#: What is missed by who errs, in the order in which explanations are tried.
+FAULTS = (
+    "link_sign", "link_missing", "link_term", "link_turn", "link_axis", "link_angle", "frame_missing",
+)  # fmt: skip
+
+_Pieces = list[tuple[int, str]]  #: signed factors, to be multiplied by a sine, a cosine or e^(i…)
+
+
+@dataclass(frozen=True)
+class Link:
+    """A vector of a loop as somebody writes it, rightly unless told.
+
+    ``swapped``: sine and cosine are exchanged. ``turned``: the sign before the added angle, 0 where it is left out.
+    ``slips``: signs before the terms of its derivative, 0 where one is left out.
+    """
+
+    vector: Vector
+    swapped: bool = False
+    turned: int = 1
+    slips: tuple[int, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """What the link is called by: its length, or its direction where the length is a number."""
+        length, angle = self.vector.length, self.vector.angle
+        return length if isinstance(length, str) else str(angle)
+
+    def projection(self, axis: str, pieces: tuple[_Pieces, _Pieces]) -> _Pieces:
+        """Signed terms of a projection; ``pieces`` are the radial and the transverse ones."""
+        radial, transverse = pieces
+        on_x = (axis == "x") != self.swapped
+        return [
+            *_times(radial, *self._function("cos" if on_x else "sin"), 1),
+            *_times(transverse, *self._function("sin" if on_x else "cos"), -1 if on_x else 1),
+        ]
+
+    def complex_terms(self, pieces: tuple[_Pieces, _Pieces]) -> _Pieces:
+        """Signed terms of the complex form."""
+        radial, transverse = pieces
+        sign, unit = 1, ""
+        if isinstance(self._angle, str):
+            unit = f"e^(i*{_bracketed(self._angle)})"
+        elif (quarter := _quarters(self._angle)) is not None:
+            sign, unit = ((1, ""), (1, "i"), (-1, ""), (-1, "i"))[quarter]
+        else:
+            unit = f"e^(i*{math.degrees(self._angle):.12g}°)"
+        terms = _times(radial, sign, unit, 1)
+        if unit == "i":  # i times i
+            return [*terms, *_times(transverse, -sign, "", 1)]
+        return [*terms, *_times(transverse, sign, f"i*{unit}" if unit else "i", 1)]
+
+    @property
+    def _angle(self) -> str | float:
+        angle, turn = self.vector.angle, self.vector.turn
+        if isinstance(turn, str) or isinstance(angle, str):
+            if not self.turned or turn == 0:
+                return angle
+            sign = "+" if self.turned > 0 else "-"
+            shown = turn if isinstance(turn, str) else f"{math.degrees(turn):.12g}°"
+            first = angle if isinstance(angle, str) else f"{math.degrees(angle):.12g}°"
+            return f"{first} {sign} {shown}"
+        return angle + turn
+
+    def _function(self, function: str) -> tuple[int, str]:
+        """Sign and text of the sine or cosine of the link's angle; sign 0 where it vanishes."""
+        angle = self._angle
+        if isinstance(angle, str):
+            return 1, f"{function}({angle})"
+        quarter = _quarters(angle)
+        if quarter is None:
+            return 1, f"{function}({math.degrees(angle):.12g}°)"
+        return (((1, 0, -1, 0) if function == "cos" else (0, 1, 0, -1))[quarter], "")
+
+
+def _quarters(angle: float) -> int | None:
+    """How many quarter turns an angle is, or None."""
+    quarters = angle / (math.pi / 2)
+    return round(quarters) % 4 if abs(quarters - round(quarters)) < 1e-12 else None
+
+
+def _bracketed(angle: str) -> str:
+    return f"({angle})" if " " in angle else angle
+
+
+def _times(pieces: _Pieces, sign: int, factor: str, more: int) -> _Pieces:
+    return [(s * sign * more, "*".join(filter(None, (text, factor)))) for s, text in pieces if s * sign]
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A wrong way to write a loop: what is missed, about which names, and the loop that comes of it."""
+
+    kind: str
+    names: tuple[str, ...]
+    loop: Loop
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A closed loop.
+
+    ``rates`` gives the first and the second derivative of what varies, by name; none is ''. ``known`` is how often
+    the loop can be derived in names that the solution has.
+    """
+
+    links: tuple[Link, ...]
+    rates: Mapping[str, tuple[str, str]]
+    known: int = 0
+
+    @staticmethod
+    def of(vectors: Sequence[Vector], rates: Mapping[str, tuple[str, str]]) -> Loop:
+        return Loop(tuple(Link(v) for v in vectors), rates)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Lengths, angles and added angles, in the order they are met."""
+        found = (n for link in self.links for n in (*link.vector[:2], link.vector.turn))
+        return tuple(dict.fromkeys(n for n in found if isinstance(n, str)))
+
+    @property
+    def lengths(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(k.vector.length for k in self.links if isinstance(k.vector.length, str)))
+
+    @property
+    def angles(self) -> frozenset[str]:
+        """The names that are angles."""
+        return frozenset(self.names) - set(self.lengths)
+
+    def highest(self, order: int) -> tuple[str, ...]:
+        """The names in which the equation of an order is linear: lengths, or rates of that order."""
+        if not order:
+            return self.lengths
+        return tuple(r[order - 1] for n, r in self.rates.items() if n in self.names and r[order - 1])
+
+    def equation(self, form: str, order: int = 0) -> str:
+        """The closure as text: ``x`` and ``y`` projections or ``complex``; derived ``order`` times."""
+        terms: _Pieces = []
+        for link in self.links:
+            pieces = self._pieces(link, order)
+            sign = link.vector.sign
+            own = link.complex_terms(pieces) if form == "complex" else link.projection(form, pieces)
+            terms += [(sign * s, text) for s, text in own]
+        left = [text for sign, text in terms if sign > 0]
+        right = [text for sign, text in terms if sign < 0]
+        return f"{' + '.join(left) or '0'} = {' + '.join(right) or '0'}"
+
+    def _pieces(self, link: Link, order: int) -> tuple[_Pieces, _Pieces]:
+        """Radial and transverse factors of the derivative of a link."""
+        v = link.vector
+        length = v.length if isinstance(v.length, str) else f"{v.length:.12g}"
+        slide = self.rates.get(v.length, ("", ""))
+        turn = self.rates.get(v.angle, ("", ""))
+        if order == 0:
+            radial, transverse = [(1, length)], []
+        elif order == 1:
+            radial, transverse = [(1, slide[0])], [(1, turn[0] and f"{length}*{turn[0]}")]
+        else:
+            both = slide[0] and turn[0]
+            radial = [(1, slide[1]), (-1, turn[0] and f"{length}*{turn[0]}^2")]
+            transverse = [(1, both and f"2*{slide[0]}*{turn[0]}"), (1, turn[1] and f"{length}*{turn[1]}")]
+        radial, transverse = ([p for p in pieces if p[1]] for pieces in (radial, transverse))
+        slips = iter(link.slips)
+        radial, transverse = (
+            [(s * next(slips, 1), text) for s, text in pieces] for pieces in (radial, transverse)
+        )
+        return [p for p in radial if p[0]], [p for p in transverse if p[0]]
+
+    def moves(self, order: int) -> bool:
+        """Whether the derivative of this order is known and says anything."""
+        return order == 0 or (order <= self.known and bool(self.highest(order)))
+
+    def faults(self, order: int = 0) -> Iterator[Fault]:
+        """The known ways to err, those of one kind together."""
+        for kind in FAULTS:
+            for names, links in getattr(self, f"_{kind}")(order):
+                yield Fault(kind, names, replace(self, links=tuple(links)))
+
+    def _changed(
+        self, change: Callable[[Link], Collection[Link]]
+    ) -> Iterator[tuple[tuple[str, ...], list[Link]]]:
+        """The loop with one link in another way, for every link and every way."""
+        for k, link in enumerate(self.links):
+            for other in change(link):
+                yield (link.name,), [*self.links[:k], other, *self.links[k + 1 :]]
+
+    def _link_sign(self, order: int) -> Iterator:
+        return self._changed(lambda k: [replace(k, vector=k.vector._replace(sign=-k.vector.sign))])
+
+    def _link_missing(self, order: int) -> Iterator:
+        for k, link in enumerate(self.links):
+            yield (link.name,), [*self.links[:k], *self.links[k + 1 :]]
+
+    def _link_term(self, order: int) -> Iterator:
+        def wrong(link: Link) -> Iterator[Link]:
+            count = sum(map(len, self._pieces(link, order))) if order else 0
+            for term in range(count):
+                for slip in (-1, 0):
+                    yield replace(link, slips=tuple(slip if j == term else 1 for j in range(count)))
+
+        return self._changed(wrong)
+
+    def _link_turn(self, order: int) -> Iterator:
+        def wrong(link: Link) -> list[Link]:
+            return [replace(link, turned=t) for t in (0, -1)] if link.vector.turn else []
+
+        return self._changed(wrong)
+
+    def _link_axis(self, order: int) -> Iterator:
+        return self._changed(lambda link: [replace(link, swapped=True)])
+
+    def _link_angle(self, order: int) -> Iterator:
+        named = [k.vector.angle for k in self.links if isinstance(k.vector.angle, str)]
+
+        def wrong(link: Link) -> list[Link]:
+            own = link.vector.angle
+            others = dict.fromkeys(a for a in named if a != own)
+            return [replace(link, vector=link.vector._replace(angle=a)) for a in others]
+
+        return self._changed(wrong)
+
+    def _frame_missing(self, order: int) -> Iterator:
+        fixed = [k for k in self.links if not isinstance(k.vector.angle, str)]
+        if len(fixed) > 1 and len(self.links) - len(fixed) > 1 and not order:
+            yield tuple(k.name for k in fixed), [k for k in self.links if k not in fixed]
+
+
+def stated(
+    source: str,
+    loops: object,
+    rates: Mapping[str, tuple[str, str]],
+    computed: Collection[str],
+    given: Collection[str],
+) -> dict[str, Loop]:
+    """The loops that a solution states, with the derivatives of what varies.
+
+    The angle ``theta3`` has ``omega3`` and ``alpha3``, another quantity ``r6`` has ``r6_dot`` and ``r6_ddot``, as far as
+    the solution knows them; ``rates`` names those that are called otherwise. A given quantity without a
+    derivative is constant; where one is ``computed``, the loop is derived no further.
+
+    Raises
+    ------
+    BadCourse
+        No mapping of names to vectors, or a vector of names that the solution does not know.
+    """
+    if not isinstance(loops, Mapping):
+        raise BadCourse(f'{source}: LOOPS maps names to vectors: {{"loop_1": (Vector("r2", "theta2"), …)}}')
+    names = {*computed, *given}
+    found = {}
+    for name, vectors in loops.items():
+        if not vectors or not all(isinstance(v, Vector) for v in vectors):
+            raise BadCourse(f"{source}: the loop {name!r} is a sequence of Vector(length, angle, sign, turn)")
+        loop = Loop.of(vectors, {})
+        for one in loop.names:
+            if one not in names:
+                raise BadCourse(
+                    f"{source}: the loop {name!r} names no quantity by {one!r}{nearest(one, names)}"
+                )
+        own = {n: rates.get(n) or _usual_rates(n, names) for n in loop.names}
+        first = all(r[0] or n not in computed for n, r in own.items())
+        second = first and all(r[1] or r[0] not in computed for r in own.values())
+        found[name] = replace(loop, rates={n: r for n, r in own.items() if r[0]}, known=first + second)
+    return found
+
+
+def _usual_rates(name: str, names: Collection[str]) -> tuple[str, str]:
+    stem = name.removeprefix("theta")
+    first, second = (f"omega{stem}", f"alpha{stem}") if stem != name else (f"{name}_dot", f"{name}_ddot")
+    return first if first in names else "", second if second in names else ""
+
+
+def quantities(loops: Mapping[str, Loop]) -> dict[str, Callable[[], str]]:
+    """Functions of no argument that give the equations, by the names of their quantities."""
+    return {
+        f"{name}_{form}{ending}": _constant(f"{name}_{form}{ending}", loop.equation(form, order))
+        for name, loop in loops.items()
+        for order, ending in enumerate(ORDERS)
+        if loop.moves(order)
+        for form in ("x", "y", "complex")
+    }
+
+
+def _constant(name: str, text: str) -> Callable[[], str]:
+    def equation() -> str:
+        return text
+
+    equation.__name__ = name
+    equation.__formula__ = ""  # type: ignore[attr-defined]
+    return equation
