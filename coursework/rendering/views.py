@@ -163,12 +163,24 @@ def chain_on_lines(step: Step) -> str:
     return r"\begin{aligned} " + step.symbol + " " + r" \\ ".join(lines) + r" \end{aligned}"
 
 
-_SURELY_FITS = 60  #: characters of a formula written out that the narrowest line holds, however wide they are
+_SURELY_FITS = 85  #: characters of a formula written out that a printed line holds, however wide they are
 
 
 def is_short(step: Step, lang: str) -> bool:
     """Whether the step's chain is on one line without any doubt."""
     return len(to_line(chain_on_one_line(step), lang)) <= _SURELY_FITS
+
+
+_SURELY_TOO_LONG = 130  #: characters that no printed line holds, or only just
+
+
+def is_long(step: Step, lang: str) -> bool:
+    """Whether the step's chain needs a line an equality without any doubt, and each is on one."""
+    if _is_equation(step) or len(to_line(chain_on_one_line(step), lang)) < _SURELY_TOO_LONG:
+        return False
+    own = len(to_line(step.symbol, lang)) + 3
+    lines = (line for member in chain(step) for line in _broken(member))
+    return all(own + len(to_line(line.replace("&", ""), lang)) <= _SURELY_FITS for line in lines)
 
 
 _LINE = 85  #: characters of a formula written out that a printed line holds
