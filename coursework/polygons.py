@@ -194,7 +194,8 @@ class Polygon:
             else:
                 first = lines.pop(target)
                 found[target] = there
-                self._check(first, found)
+                for crossing in (first, side):
+                    self._check(crossing, found)
                 stages.append(Stage("crossing", (first, side), (target,), anchor))
         if lines:
             name, side = next(iter(lines.items()))
