@@ -156,7 +156,7 @@ class Polygon:
         """The construction, step by step: each uses only points that are found before it."""
         return self._drawn[1]
 
-    @property
+    @cached_property
     def hangs(self) -> Mapping[str, tuple[Side, ...]]:
         """The sides that find each point: one that is known, or the two lines that cross there."""
         found = (stage for stage in self.stages if stage.points)
