@@ -15,6 +15,7 @@ from coursework.graph import Graph
 from coursework.handout import Answer, AnswerSheet, Given, Handout, Question, Step
 from coursework.language import localise, plain, significant, unit_text, words
 from coursework.model import Part
+from coursework.polygons import Polygon
 from coursework.worked import formula_latex, number_latex
 
 if TYPE_CHECKING:
@@ -142,11 +143,25 @@ def _quantities(variant: Variant, function: Any) -> dict[str, Any]:
 
 
 def polygons(variant: Variant) -> tuple[Construction, ...]:
-    """The polygons that the solution states, less those in which nothing moves."""
+    """The polygons that the solution states, less those in which nothing moves.
+
+    Raises
+    ------
+    BadCourse
+        It states something else, or a polygon that cannot be drawn.
+    """
     solution = variant.exercise.solution
     if solution.polygons is None:
         return ()
-    stated = _call(solution.polygons, _quantities(variant, solution.polygons))
+    values = _quantities(variant, solution.polygons)
+    try:
+        stated = _call(solution.polygons, values)
+    except BadCourse as fault:
+        raise BadCourse(f"solutions/{solution.name}.py: {fault}") from fault
+    if not isinstance(stated, (tuple, list)) or not all(isinstance(p, Polygon) for p in stated):
+        raise BadCourse(
+            f"solutions/{solution.name}.py: polygons(…) returns a tuple of Polygon; found {str(stated)[:60]}"
+        )
     return tuple(Construction(p, variant.lang) for p in stated if p.size > 0)
 
 

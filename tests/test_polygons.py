@@ -322,6 +322,27 @@ def test_a_course_without_solutions_has_no_polygons(small_course):
         coursework.open_course(small_course)["crank_pin"].variant(1).polygons()
 
 
+@pytest.mark.parametrize(
+    ("returned", "said"),
+    [
+        (
+            '(Polygon("velocity", (Side("p", "a", "V", v, "x", "r"), Side("p", "a", "W", 2 * v))),)',
+            "not close",
+        ),
+        ('Polygon("velocity", (Side("p", "a", "V", v, "x", "r"),))', "a tuple of Polygon"),
+        ("(v,)", "a tuple of Polygon"),
+    ],
+)
+def test_polygons_that_are_none_are_told_with_their_file(small_course, returned, said):
+    solution = small_course / "solutions" / "crank_pin.py"
+    stated = (
+        f"\n\nfrom coursework.polygons import Polygon, Side\n\n\ndef polygons(v):\n    return {returned}\n"
+    )
+    solution.write_text(solution.read_text("utf-8") + stated, "utf-8")
+    with pytest.raises(BadCourse, match=rf"solutions/crank_pin\.py: .*{said}"):
+        coursework.open_course(small_course)["crank_pin"].variant(1).answer_sheet()
+
+
 def test_the_slider_crank_is_drawn_at_the_scales_of_its_statement_and_read_as_it_is_marked():
     for variant in variants("slider_crank"):
         answers = variant.solution()
