@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coursework.constructions import Construction
-from coursework.errors import BadCourse, BadStatement
+from coursework.errors import BadCourse, BadStatement, BrokenFunction
 from coursework.expressions import latex_of_equation
 from coursework.graph import Graph
 from coursework.handout import Answer, AnswerSheet, Given, Handout, Question, Step
@@ -97,8 +97,9 @@ def tolerance_words(part: Part, lang: str) -> str:
 
 def _call(function: Any, values: Mapping[str, Any], helpers: tuple = ()) -> Any:
     """Call a function that draws, or states what is drawn, with the quantities its parameters name."""
-    graph = Graph({**{f.__name__: f for f in helpers}, "figure": function})
-    return graph.evaluate(("figure",), {n: v for n, v in values.items() if n in graph.leaves})["figure"]
+    name = function.__name__
+    graph = Graph({**{f.__name__: f for f in helpers}, name: function})
+    return graph.evaluate((name,), {n: v for n, v in values.items() if n in graph.leaves})[name]
 
 
 def figure(variant: Variant) -> Figure | None:
@@ -156,6 +157,8 @@ def polygons(variant: Variant) -> tuple[Construction, ...]:
     values = _quantities(variant, solution.polygons)
     try:
         stated = _call(solution.polygons, values)
+    except BrokenFunction:  # it names its file itself
+        raise
     except BadCourse as fault:
         raise BadCourse(f"solutions/{solution.name}.py: {fault}") from fault
     if not isinstance(stated, (tuple, list)) or not all(isinstance(p, Polygon) for p in stated):
