@@ -16,6 +16,7 @@ import pytest
 from test_figures import crossed, overlapping
 
 import coursework
+from coursework.cli import DONE, run
 from coursework.constructions import BOX_MM, Construction
 from coursework.errors import BadCourse, NoSolution, UnknownName
 from coursework.language import languages
@@ -307,6 +308,15 @@ def test_the_pages_of_the_drawings_are_of_their_own_size():
     for (width, height), size in zip(boxes, sizes, strict=True):
         assert float(width) == pytest.approx(size[0] * points_a_mm, abs=0.05)
         assert float(height) == pytest.approx(size[1] * points_a_mm, abs=0.05)
+
+
+def test_a_build_puts_the_drawings_beside_the_staffs_source_alone(tmp_path, capsys):
+    out = tmp_path / "out"
+    assert run(["build", "slotted_mechanism", "--formats", "tex", "--lang", "en", "--out", str(out)]) == DONE
+    made = [path for path in out.rglob("*") if path.is_file()]
+    assert f"{len(made)} files" in capsys.readouterr().out
+    assert [path.parts[-3] for path in made if "polygons" in path.name] == ["instructor"]
+    assert not [path for path in (out / "handouts").rglob("*.tex") if "[page=" in path.read_text("utf-8")]
 
 
 def test_a_solution_without_polygons_has_none():
