@@ -95,18 +95,26 @@ def _sheets(
     if course.has_solutions and "html" in formats:
         yield File(_with(for_staff, ".solution.html"), _text(lambda: renderer.html(solution())))
     if course.has_solutions and "tex" in formats:
-        yield from _tex(renderer, for_staff, ".solution.tex", "solution-figure", solution)
+        drawn = variant.exercise.solution.polygons is not None
+        yield from _tex(renderer, for_staff, ".solution.tex", "solution-figure", solution, polygons=drawn)
 
 
 def _tex(
-    renderer: Renderer, path: Path, ending: str, what: str, sheet: Callable[[], Handout | AnswerSheet]
+    renderer: Renderer,
+    path: Path,
+    ending: str,
+    what: str,
+    sheet: Callable[[], Handout | AnswerSheet],
+    *,
+    polygons: bool = False,
 ) -> Iterator[File]:
     """A source and its drawings beside it; one dot in their names, as every LaTeX reads it."""
     stem = path.name.replace(".", "-")
-    figure, polygons = f"{stem}-{what}.pdf", f"{stem}-polygons.pdf"
-    yield File(_with(path, ending), _text(lambda: renderer.tex(sheet(), figure, polygons)))
+    figure, pages = f"{stem}-{what}.pdf", f"{stem}-polygons.pdf"
+    yield File(_with(path, ending), _text(lambda: renderer.tex(sheet(), figure, pages)))
     yield File(path.with_name(figure), lambda: renderer.figure_pdf(sheet()))
-    yield File(path.with_name(polygons), lambda: renderer.polygons_pdf(sheet()))
+    if polygons:
+        yield File(path.with_name(pages), lambda: renderer.polygons_pdf(sheet()))
 
 
 def _with(path: Path, ending: str) -> Path:

@@ -156,7 +156,7 @@ class Polygon:
         """The construction, step by step: each uses only points that are found before it."""
         return self._drawn[1]
 
-    @property
+    @cached_property
     def hangs(self) -> Mapping[str, tuple[Side, ...]]:
         """The sides that find each point: one that is known, or the two lines that cross there."""
         found = (stage for stage in self.stages if stage.points)
@@ -194,7 +194,8 @@ class Polygon:
             else:
                 first = lines.pop(target)
                 found[target] = there
-                self._check(first, found)
+                for crossing in (first, side):
+                    self._check(crossing, found)
                 stages.append(Stage("crossing", (first, side), (target,), anchor))
         if lines:
             name, side = next(iter(lines.items()))

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coursework.constructions import Construction
-from coursework.errors import BadCourse, BadStatement
+from coursework.errors import BadCourse, BadStatement, BrokenFunction
 from coursework.expressions import latex_of_equation
 from coursework.graph import Graph
 from coursework.handout import Answer, AnswerSheet, Given, Handout, Question, Step
 from coursework.language import localise, plain, significant, unit_text, words
 from coursework.model import Part
+from coursework.polygons import Polygon
 from coursework.worked import formula_latex, number_latex
 
 if TYPE_CHECKING:
@@ -129,8 +130,9 @@ def tolerance_words(part: Part, lang: str) -> str:
 
 def _call(function: Any, values: Mapping[str, Any], helpers: tuple = ()) -> Any:
     """Call a function that draws, or states what is drawn, with the quantities its parameters name."""
-    graph = Graph({**{f.__name__: f for f in helpers}, "figure": function})
-    return graph.evaluate(("figure",), {n: v for n, v in values.items() if n in graph.leaves})["figure"]
+    name = function.__name__
+    graph = Graph({**{f.__name__: f for f in helpers}, name: function})
+    return graph.evaluate((name,), {n: v for n, v in values.items() if n in graph.leaves})[name]
 
 
 def figure(variant: Variant) -> Figure | None:
@@ -175,11 +177,27 @@ def _quantities(variant: Variant, function: Any) -> dict[str, Any]:
 
 
 def polygons(variant: Variant) -> tuple[Construction, ...]:
-    """The polygons that the solution states, less those in which nothing moves."""
+    """The polygons that the solution states, less those in which nothing moves.
+
+    Raises
+    ------
+    BadCourse
+        It states something else, or a polygon that cannot be drawn.
+    """
     solution = variant.exercise.solution
     if solution.polygons is None:
         return ()
-    stated = _call(solution.polygons, _quantities(variant, solution.polygons))
+    values = _quantities(variant, solution.polygons)
+    try:
+        stated = _call(solution.polygons, values)
+    except BrokenFunction:  # it names its file itself
+        raise
+    except BadCourse as fault:
+        raise BadCourse(f"solutions/{solution.name}.py: {fault}") from fault
+    if not isinstance(stated, (tuple, list)) or not all(isinstance(p, Polygon) for p in stated):
+        raise BadCourse(
+            f"solutions/{solution.name}.py: polygons(…) returns a tuple of Polygon; found {str(stated)[:60]}"
+        )
     return tuple(Construction(p, variant.lang) for p in stated if p.size > 0)
 
 

@@ -33,6 +33,7 @@ from coursework.figures import (
     point,
     rail,
     rotation_arrow,
+    scale_bar,
     section,
     slider,
     slot_link,
@@ -594,3 +595,35 @@ def four_bar_in(width, height):
 def test_an_unknown_label_command_offers_the_nearest():
     with pytest.raises(UnknownName, match="theta"):
         pin(0, r"\thetta_2")
+
+
+def test_a_figure_with_a_scale_of_its_own_keeps_it_whatever_its_size():
+    figure = Figure(vector(0, 30 + 40j, "v"), scale=1)
+    assert figure.scale == 1
+    (arrow, _) = strokes(figure)
+    assert abs(arrow[-1] - arrow[0]) == pytest.approx(50, abs=3)
+    assert Figure(vector(0, 300j), scale=2).size_mm[1] > 600
+    with pytest.raises(WrongValue, match="positive"):
+        Figure(vector(0, 1), scale=0)
+
+
+def test_the_beginning_of_a_figure_is_its_first_elements_where_they_are_in_the_whole():
+    elements = (point(0, "p"), vector(0, 30, "v"), point(30, "a"), vector(30, 20j, "w"))
+    whole = Figure(*elements, scale=1)
+    start = whole.beginning(3)
+    assert start.size_mm == whole.size_mm
+    assert whole.beginning(4).svg() == whole.svg()
+    assert whole.beginning(4).outlined_svg() == whole.outlined_svg()
+    kept, lines = start.svg().splitlines(), whole.svg().splitlines()
+    assert [line for line in lines if line in kept] == kept
+    assert ">w<" not in start.svg()
+    assert ">v<" in start.svg()
+    assert ">v<" not in whole.beginning(1).svg()
+
+
+def test_a_bar_of_scale_is_as_long_as_it_says_with_its_words_under_it():
+    figure = Figure(scale_bar(0, 20, "100 mm/s"), point(10j), scale=1)
+    bar = max(strokes(figure), key=lambda points: abs(points[-1] - points[0]) if len(points) == 2 else 0)
+    assert abs(bar[1] - bar[0]) == pytest.approx(20)
+    (label,) = figure.labels()
+    assert label.y > bar[0].imag

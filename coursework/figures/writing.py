@@ -102,9 +102,14 @@ def _accent(text: Text, accent: Accent, left: complex) -> str:
         shifts = (0.0,) if accent.kind == "dot" else (-0.11 * SIZE, 0.11 * SIZE)
         radius = number(0.065 * SIZE)
         return "".join(f'<circle cx="{number(middle + s)}" cy="{number(top)}" r="{radius}"/>' for s in shifts)
-    a, b = number(start + lean), number(start + width + lean)
+    # An exponent after the letters takes the room above their end.
+    raised = any(run.rise > 0 for run in text.runs[accent.last : accent.last + 1])
+    start, end = (
+        (start - 0.04 * SIZE, start + width - 0.04 * SIZE) if raised else (start + lean, start + width + lean)
+    )
+    a, b = number(start), number(end)
     way = f"M{a} {number(top)}H{b}"
     if accent.kind == "arrow":
-        back = number(start + width + lean - 0.75)
+        back = number(end - 0.75)
         way += f"M{back} {number(top - 0.45)}L{b} {number(top)}L{back} {number(top + 0.45)}"
     return f'<path d="{way}" fill="none" stroke="{BLACK}" stroke-width="0.2"/>'
