@@ -34,8 +34,10 @@ if TYPE_CHECKING:
 _VARIANTS = 12
 _STEP = 1e-5
 _ZERO = 1e-8  #: of an equation's usual size
+_ROUNDING = 1e-12  #: of the size of an equation's sides
 _NONE = 1e-5  #: of a gradient, and of what leaves a combination
 _OFF = 2  #: points off the surface for each pose
+_NEWTON = 12  #: steps
 _FAULTY = 4  #: poses of a fault
 
 
@@ -69,7 +71,7 @@ class _Points:
     count: int
 
     def gap(self, equation: Equation) -> np.ndarray:
-        return equation.gap(self.values, self.count)
+        return equation.gap(self.values, self.count)[0]
 
     def scaled(self, names: frozenset[str], factor: float) -> _Points:
         """With some values multiplied: angles as numbers of degrees."""
@@ -175,10 +177,10 @@ class LoopJudge:
         return self._missed(equation)
 
     def _as_it_stands(self, equation: Equation, near: _Points, steps: _Points) -> Finding:
-        values = near.gap(equation).reshape(1 + _OFF, self._poses.count)
-        off = np.abs(values[1:])
-        values, size = values[0], np.max(np.where(np.isfinite(off), off, 0.0), axis=0)
-        if not np.any(size):
+        values, sides = (v.reshape(1 + _OFF, -1) for v in equation.gap(near.values, near.count))
+        off = np.where(np.isfinite(values[1:]), np.abs(values[1:]), 0.0)
+        values, size = values[0], np.max(off, axis=0)
+        if np.all(off <= _ROUNDING * np.where(np.isfinite(sides[1:]), sides[1:], 0.0)):
             return Finding(0, fault="says_nothing")
         kept = np.isfinite(values) & (size > 0)
         if kept.sum() < 0.75 * self._poses.count or np.any(np.abs(values[kept]) > _ZERO * size[kept]):
@@ -237,13 +239,14 @@ class LoopJudge:
     def _faulty(self) -> tuple[list[Fault], _Points, list[tuple[Fault, Equation]]]:
         """The faults; places at which the equations of each hold; those that have none, with their equations.
 
-        Where both equations together leave nothing but a point (two vectors that add up to nothing), each has
-        places of its own.
+        Where both equations together have no places, each has some of its own.
         """
         faults, blocks, compared = [], [], []
         for fault in self.loop.faults(self.order):
             x, y, both = self._equations(fault.loop)
             places = self._solved((x, y), fault.loop)
+            if places is None and not self.order:
+                places = self._approached((x, y), fault.loop)
             if places is not None:
                 faults.append(fault)
                 blocks.append(places)
@@ -274,7 +277,7 @@ class LoopJudge:
 
         def gaps(**changed: np.ndarray) -> np.ndarray:
             """Shape (places, equations)."""
-            return np.array([e.gap({**values, **changed}, _FAULTY) for e in equations]).T
+            return np.array([e.gap({**values, **changed}, _FAULTY)[0] for e in equations]).T
 
         zero = np.zeros(_FAULTY)
         columns = {n: gaps(**{n: zero + self._sizes[n]}) - gaps(**{n: zero}) for n in names}
@@ -293,6 +296,32 @@ class LoopJudge:
         if np.any(np.abs(shares) < 1e-9):
             return None
         return {**values, **{n: shares[:, k] * self._sizes[n] for k, n in enumerate(chosen)}}
+
+    def _approached(self, equations: Sequence[Equation], loop: Loop) -> dict[str, np.ndarray] | None:
+        """Places at which equations hold, by Newton's method from the poses on all symbols of the loop.
+
+        For two vectors that add up to nothing: they are opposite, and no length has to vanish.
+        """
+        names = [n for n in loop.names if n in self._free]
+        values, count = dict(self._poses.values), self._poses.count
+        sizes = np.array([self._sizes[n] for n in names])
+
+        def gaps(at: Mapping[str, np.ndarray]) -> np.ndarray:
+            return np.array([e.gap(at, count)[0] for e in equations]).T
+
+        for _ in range(_NEWTON):
+            slopes = [
+                (gaps({**values, n: values[n] + h}) - gaps({**values, n: values[n] - h})) / (2 * _STEP)
+                for n, h in zip(names, _STEP * sizes, strict=True)
+            ]
+            step = np.linalg.pinv(np.stack(slopes, axis=2)) @ gaps(values)[..., None]
+            values |= {n: values[n] - step[:, k, 0] * sizes[k] for k, n in enumerate(names)}
+        shares = [np.abs(values[n]) / self._sizes[n] for n in names if n not in self.angles]
+        left = np.max(np.abs(gaps(values)), axis=1)
+        good = np.flatnonzero((left <= _ZERO * np.max(sizes)) & (np.min(shares, axis=0) > 0.05))
+        if good.size < _FAULTY:
+            return None
+        return {n: v[good[:_FAULTY]] for n, v in values.items()}
 
 
 def _rank(rows: np.ndarray) -> int:
