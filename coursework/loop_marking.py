@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from coursework.errors import CourseworkError
 from coursework.expressions import Equation, parse_equation, same_equation
 from coursework.loops import Fault, Loop
 from coursework.reading import Reading
@@ -37,6 +38,7 @@ _ZERO = 1e-8  #: of an equation's usual size
 _ROUNDING = 1e-12  #: of the size of an equation's sides
 _NONE = 1e-5  #: of a gradient, and of what leaves a combination
 _OFF = 2  #: points off the surface for each pose
+_NUMBERS = 1e-6  #: of an equation's usual size, with numbers as the data print them
 _NEWTON = 12  #: steps
 _FAULTY = 4  #: poses of a fault
 
@@ -202,6 +204,19 @@ class LoopJudge:
         rank = _rank(rows)
         return Finding(rank, rows) if rank else Finding(0, fault="not_derived")
 
+    def holds_with_numbers(self, equation: Equation, variant: Variant) -> bool:
+        """Whether an equation holds for one variant alone: its numbers stand in place of their symbols."""
+        exercise = variant.exercise
+        try:
+            found = exercise.solve(**variant.used, only=self.symbols, effects=variant.effects)
+        except CourseworkError:
+            return False
+        pose = {n: math.radians(v) if n in self.angles else v for n, v in found.items()}
+        beside = 1 + np.array([0.0, 0.1, -0.1, 0.2])
+        values = {n: v * beside + (self._sizes[n] * (beside - 1)) for n, v in pose.items()}
+        gap = np.abs(equation.gap(values, beside.size)[0])
+        return bool(np.all(np.isfinite(gap)) and gap[0] <= _NUMBERS * np.max(gap[1:]))
+
     def are_alike(self, one: str, other: str) -> bool:
         """Whether two equations are the same, sides exchanged at most, where fixed quantities have their values."""
         a, b = (self._near.gap(parse_equation(text, self.symbols)) for text in (one, other))
@@ -349,7 +364,10 @@ def judged(variant: Variant, readings: Mapping[str, Reading]) -> dict[str, Judge
         reading = readings.get(part.id)
         if part.loop and reading is not None and reading.status == "read":
             form, order = part.loop_form
-            finding = judge_of(variant.exercise, part).finding(reading.values[0])
+            judge, equation = judge_of(variant.exercise, part), reading.values[0]
+            finding = judge.finding(equation)
+            if finding.rank == 0 and not finding.fault and judge.holds_with_numbers(equation, variant):
+                finding = Finding(0, fault="numbers")
             others = before.setdefault((part.loop, order), []) if form != "complex" else []
             found[part.id] = _beside(finding, others, 2 if form == "complex" else 1)
             if found[part.id].right and finding.rows is not None:

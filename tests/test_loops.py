@@ -157,6 +157,16 @@ def test_what_is_missed_is_told(name, part, text, told):
     assert verdict(name, part, text) == told
 
 
+def test_numbers_in_place_of_symbols_are_told():
+    variant = asking_all("four_bar_positions")
+    r1, r2 = (f"{variant.given[n]:g}" for n in ("r1", "r2"))
+    text = f"{r2}*cos(theta2) + r3*cos(theta3) = {r1} + r4*cos(theta4)"
+    assert verdict("four_bar_positions", "loop_1_x", text) == "slip:numbers"
+    assert (
+        verdict("four_bar_positions", "loop_1_x", text.replace(r1, f"{variant.given['r1'] + 1:g}")) == "wrong"
+    )
+
+
 @every_loop
 @pytest.mark.parametrize("lang", ["fr", "en"])
 def test_a_wrong_sign_and_a_forgotten_link_are_told_by_the_symbol_of_every_link(name, loop, lang):
