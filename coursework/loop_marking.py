@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from coursework.errors import CourseworkError
+from coursework.errors import BadCourse, CourseworkError
 from coursework.expressions import Equation, parse_equation, same_equation
 from coursework.loops import Fault, Loop
 from coursework.reading import Reading
@@ -38,7 +38,6 @@ _ZERO = 1e-8  #: of an equation's usual size
 _ROUNDING = 1e-12  #: of the size of an equation's sides
 _NONE = 1e-5  #: of a gradient, and of what leaves a combination
 _OFF = 2  #: points off the surface for each pose
-_NUMBERS = 1e-6  #: of an equation's usual size, with numbers as the data print them
 _NEWTON = 12  #: steps
 _FAULTY = 4  #: poses of a fault
 
@@ -106,6 +105,8 @@ class LoopJudge:
         found = exercise.solve(**given, only=self.symbols, effects=exercise.spec.effects)
         columns = {n: np.broadcast_to(np.asarray(v, dtype=float), (_VARIANTS,)) for n, v in found.items()}
         whole = np.all([np.isfinite(v) for v in columns.values()], axis=0)
+        if not whole.any():
+            raise BadCourse(f"{exercise.name}: no loop closes in its first {_VARIANTS} variants")
         return _Points(
             {n: np.radians(v[whole]) if n in self.angles else v[whole] for n, v in columns.items()},
             int(whole.sum()),
@@ -167,6 +168,10 @@ class LoopJudge:
         return basis, np.linalg.pinv(basis)
 
     def _finding(self, equation: Equation) -> Finding:
+        with np.errstate(all="ignore"):  # what overflows is no answer
+            return self._found(equation)
+
+    def _found(self, equation: Equation) -> Finding:
         usual, as_told = (self._near, self._steps), self._in_degrees
         found = self._as_it_stands(equation, *usual)
         if found.rank or found.fault:
@@ -180,17 +185,20 @@ class LoopJudge:
 
     def _as_it_stands(self, equation: Equation, near: _Points, steps: _Points) -> Finding:
         values, sides = (v.reshape(1 + _OFF, -1) for v in equation.gap(near.values, near.count))
-        off = np.where(np.isfinite(values[1:]), np.abs(values[1:]), 0.0)
-        values, size = values[0], np.max(off, axis=0)
-        if np.all(off <= _ROUNDING * np.where(np.isfinite(sides[1:]), sides[1:], 0.0)):
+        finite = np.isfinite(values)
+        off = np.where(finite[1:], np.abs(values[1:]), 0.0)
+        if finite.all() and np.all(off <= _ROUNDING * sides[1:]):
             return Finding(0, fault="says_nothing")
+        values, size = values[0], np.max(off, axis=0)
         kept = np.isfinite(values) & (size > 0)
         if kept.sum() < 0.75 * self._poses.count or np.any(np.abs(values[kept]) > _ZERO * size[kept]):
             return Finding(0)
-        gradient = self._gradient(equation, steps)
+        gradient = self._gradient(equation, steps) / np.where(size > 0, size, 1.0)[:, None]
         kept &= np.all(np.isfinite(gradient), axis=1)
+        if kept.sum() < 0.75 * self._poses.count:
+            return Finding(0)
         length = np.linalg.norm(gradient, axis=1)
-        says = kept & (length > _NONE * size)
+        says = kept & (length > _NONE)
         if says.sum() < 0.5 * self._poses.count:
             return Finding(0, fault="squared")
         basis, inverse = self._basis
@@ -215,7 +223,8 @@ class LoopJudge:
         beside = 1 + np.array([0.0, 0.1, -0.1, 0.2])
         values = {n: v * beside + (self._sizes[n] * (beside - 1)) for n, v in pose.items()}
         gap = np.abs(equation.gap(values, beside.size)[0])
-        return bool(np.all(np.isfinite(gap)) and gap[0] <= _NUMBERS * np.max(gap[1:]))
+        usual = float(np.max(gap[1:]))
+        return bool(np.all(np.isfinite(gap)) and usual > 0 and gap[0] <= _ZERO * usual)
 
     def are_alike(self, one: str, other: str) -> bool:
         """Whether two equations are the same, sides exchanged at most, where fixed quantities have their values."""
@@ -228,7 +237,7 @@ class LoopJudge:
     def _missed(self, equation: Equation) -> Finding:
         """The first kind of fault that explains an equation, with every name that it may be about."""
         usual = float(np.median(np.abs(self._near.gap(equation)[self._poses.count :])))
-        if not usual > 0:
+        if not 0 < usual < math.inf:
             return Finding(0)
         if self._holds(self._converted.gap(equation), usual):
             return Finding(0, fault="angle_unit")

@@ -157,6 +157,23 @@ def test_what_is_missed_is_told(name, part, text, told):
     assert verdict(name, part, text) == told
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "exp(exp(r1)) = exp(exp(r2))", "exp(r1^3)*(r2 sin θ2 + r3 sin θ3 - r4 sin θ4) = 0", "1e300*r1^60 = 1",
+        "ln(-r1) = 0", "(r2 sin θ2 + r3 sin θ3)/0 = r4", "r2 sin θ2 + r3 sin θ3 = 1.000001 r4 sin θ4",
+    ],
+)  # fmt: skip
+def test_what_overflows_or_has_no_value_is_wrong_and_stops_nothing(text):
+    assert verdict("four_bar_positions", "loop_1_y", text) == "wrong"
+
+
+@pytest.mark.parametrize("factor", ["1e-200", "1e200", "(2 + sin(theta3))", "r1*r2^3", "(1 + 2i)"])
+def test_a_factor_that_does_not_vanish_changes_nothing(factor):
+    text = f"{factor}*(r2 sin θ2 + r3 sin θ3 - r4 sin θ4) = 0"
+    assert verdict("four_bar_positions", "loop_1_y", text) == "correct"
+
+
 def test_numbers_in_place_of_symbols_are_told():
     variant = asking_all("four_bar_positions")
     r1, r2 = (f"{variant.given[n]:g}" for n in ("r1", "r2"))
