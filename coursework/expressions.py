@@ -668,10 +668,13 @@ class Equation:
         """Left side minus right side."""
         return self.left.evaluate(values) - self.right.evaluate(values)
 
-    def gap(self, values: Mapping[str, np.ndarray], count: int) -> np.ndarray:
-        """Left side minus right side at points, of shape ``(count,)``; NaN where there is no value."""
+    def gap(self, values: Mapping[str, np.ndarray], count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Left side minus right side at points, of shape ``(count,)``, and the sum of their sizes.
+
+        NaN where there is no value.
+        """
         with np.errstate(all="ignore"):
-            return _sides(self, values, count)[0]
+            return _sides(self, values, count)
 
     def in_degrees(self) -> Equation | None:
         """The equation with numbers that stand beside angles taken as degrees: ``sin(theta2 + 90)``.

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from coursework.errors import BadCourse, CourseworkError
 from coursework.expressions import Equation, parse_equation, same_equation
 from coursework.loops import Fault, Loop
 from coursework.reading import Reading
@@ -34,8 +35,10 @@ if TYPE_CHECKING:
 _VARIANTS = 12
 _STEP = 1e-5
 _ZERO = 1e-8  #: of an equation's usual size
+_ROUNDING = 1e-12  #: of the size of an equation's sides
 _NONE = 1e-5  #: of a gradient, and of what leaves a combination
 _OFF = 2  #: points off the surface for each pose
+_NEWTON = 12  #: steps
 _FAULTY = 4  #: poses of a fault
 
 
@@ -69,7 +72,7 @@ class _Points:
     count: int
 
     def gap(self, equation: Equation) -> np.ndarray:
-        return equation.gap(self.values, self.count)
+        return equation.gap(self.values, self.count)[0]
 
     def scaled(self, names: frozenset[str], factor: float) -> _Points:
         """With some values multiplied: angles as numbers of degrees."""
@@ -102,6 +105,8 @@ class LoopJudge:
         found = exercise.solve(**given, only=self.symbols, effects=exercise.spec.effects)
         columns = {n: np.broadcast_to(np.asarray(v, dtype=float), (_VARIANTS,)) for n, v in found.items()}
         whole = np.all([np.isfinite(v) for v in columns.values()], axis=0)
+        if not whole.any():
+            raise BadCourse(f"{exercise.name}: no loop closes in its first {_VARIANTS} variants")
         return _Points(
             {n: np.radians(v[whole]) if n in self.angles else v[whole] for n, v in columns.items()},
             int(whole.sum()),
@@ -163,6 +168,10 @@ class LoopJudge:
         return basis, np.linalg.pinv(basis)
 
     def _finding(self, equation: Equation) -> Finding:
+        with np.errstate(all="ignore"):  # what overflows is no answer
+            return self._found(equation)
+
+    def _found(self, equation: Equation) -> Finding:
         usual, as_told = (self._near, self._steps), self._in_degrees
         found = self._as_it_stands(equation, *usual)
         if found.rank or found.fault:
@@ -175,18 +184,21 @@ class LoopJudge:
         return self._missed(equation)
 
     def _as_it_stands(self, equation: Equation, near: _Points, steps: _Points) -> Finding:
-        values = near.gap(equation).reshape(1 + _OFF, self._poses.count)
-        off = np.abs(values[1:])
-        values, size = values[0], np.max(np.where(np.isfinite(off), off, 0.0), axis=0)
-        if not np.any(size):
+        values, sides = (v.reshape(1 + _OFF, -1) for v in equation.gap(near.values, near.count))
+        finite = np.isfinite(values)
+        off = np.where(finite[1:], np.abs(values[1:]), 0.0)
+        if finite.all() and np.all(off <= _ROUNDING * sides[1:]):
             return Finding(0, fault="says_nothing")
+        values, size = values[0], np.max(off, axis=0)
         kept = np.isfinite(values) & (size > 0)
         if kept.sum() < 0.75 * self._poses.count or np.any(np.abs(values[kept]) > _ZERO * size[kept]):
             return Finding(0)
-        gradient = self._gradient(equation, steps)
+        gradient = self._gradient(equation, steps) / np.where(size > 0, size, 1.0)[:, None]
         kept &= np.all(np.isfinite(gradient), axis=1)
+        if kept.sum() < 0.75 * self._poses.count:
+            return Finding(0)
         length = np.linalg.norm(gradient, axis=1)
-        says = kept & (length > _NONE * size)
+        says = kept & (length > _NONE)
         if says.sum() < 0.5 * self._poses.count:
             return Finding(0, fault="squared")
         basis, inverse = self._basis
@@ -200,6 +212,20 @@ class LoopJudge:
         rank = _rank(rows)
         return Finding(rank, rows) if rank else Finding(0, fault="not_derived")
 
+    def holds_with_numbers(self, equation: Equation, variant: Variant) -> bool:
+        """Whether an equation holds for one variant alone: its numbers stand in place of their symbols."""
+        exercise = variant.exercise
+        try:
+            found = exercise.solve(**variant.used, only=self.symbols, effects=variant.effects)
+        except CourseworkError:
+            return False
+        pose = {n: math.radians(v) if n in self.angles else v for n, v in found.items()}
+        beside = 1 + np.array([0.0, 0.1, -0.1, 0.2])
+        values = {n: v * beside + (self._sizes[n] * (beside - 1)) for n, v in pose.items()}
+        gap = np.abs(equation.gap(values, beside.size)[0])
+        usual = float(np.max(gap[1:]))
+        return bool(np.all(np.isfinite(gap)) and usual > 0 and gap[0] <= _ZERO * usual)
+
     def are_alike(self, one: str, other: str) -> bool:
         """Whether two equations are the same, sides exchanged at most, where fixed quantities have their values."""
         a, b = (self._near.gap(parse_equation(text, self.symbols)) for text in (one, other))
@@ -211,7 +237,7 @@ class LoopJudge:
     def _missed(self, equation: Equation) -> Finding:
         """The first kind of fault that explains an equation, with every name that it may be about."""
         usual = float(np.median(np.abs(self._near.gap(equation)[self._poses.count :])))
-        if not usual > 0:
+        if not 0 < usual < math.inf:
             return Finding(0)
         if self._holds(self._converted.gap(equation), usual):
             return Finding(0, fault="angle_unit")
@@ -237,13 +263,14 @@ class LoopJudge:
     def _faulty(self) -> tuple[list[Fault], _Points, list[tuple[Fault, Equation]]]:
         """The faults; places at which the equations of each hold; those that have none, with their equations.
 
-        Where both equations together leave nothing but a point (two vectors that add up to nothing), each has
-        places of its own.
+        Where both equations together have no places, each has some of its own.
         """
         faults, blocks, compared = [], [], []
         for fault in self.loop.faults(self.order):
             x, y, both = self._equations(fault.loop)
             places = self._solved((x, y), fault.loop)
+            if places is None and not self.order:
+                places = self._approached((x, y), fault.loop)
             if places is not None:
                 faults.append(fault)
                 blocks.append(places)
@@ -274,7 +301,7 @@ class LoopJudge:
 
         def gaps(**changed: np.ndarray) -> np.ndarray:
             """Shape (places, equations)."""
-            return np.array([e.gap({**values, **changed}, _FAULTY) for e in equations]).T
+            return np.array([e.gap({**values, **changed}, _FAULTY)[0] for e in equations]).T
 
         zero = np.zeros(_FAULTY)
         columns = {n: gaps(**{n: zero + self._sizes[n]}) - gaps(**{n: zero}) for n in names}
@@ -293,6 +320,32 @@ class LoopJudge:
         if np.any(np.abs(shares) < 1e-9):
             return None
         return {**values, **{n: shares[:, k] * self._sizes[n] for k, n in enumerate(chosen)}}
+
+    def _approached(self, equations: Sequence[Equation], loop: Loop) -> dict[str, np.ndarray] | None:
+        """Places at which equations hold, by Newton's method from the poses on all symbols of the loop.
+
+        For two vectors that add up to nothing: they are opposite, and no length has to vanish.
+        """
+        names = [n for n in loop.names if n in self._free]
+        values, count = dict(self._poses.values), self._poses.count
+        sizes = np.array([self._sizes[n] for n in names])
+
+        def gaps(at: Mapping[str, np.ndarray]) -> np.ndarray:
+            return np.array([e.gap(at, count)[0] for e in equations]).T
+
+        for _ in range(_NEWTON):
+            slopes = [
+                (gaps({**values, n: values[n] + h}) - gaps({**values, n: values[n] - h})) / (2 * _STEP)
+                for n, h in zip(names, _STEP * sizes, strict=True)
+            ]
+            step = np.linalg.pinv(np.stack(slopes, axis=2)) @ gaps(values)[..., None]
+            values |= {n: values[n] - step[:, k, 0] * sizes[k] for k, n in enumerate(names)}
+        shares = [np.abs(values[n]) / self._sizes[n] for n in names if n not in self.angles]
+        left = np.max(np.abs(gaps(values)), axis=1)
+        good = np.flatnonzero((left <= _ZERO * np.max(sizes)) & (np.min(shares, axis=0) > 0.05))
+        if good.size < _FAULTY:
+            return None
+        return {n: v[good[:_FAULTY]] for n, v in values.items()}
 
 
 def _rank(rows: np.ndarray) -> int:
@@ -320,7 +373,10 @@ def judged(variant: Variant, readings: Mapping[str, Reading]) -> dict[str, Judge
         reading = readings.get(part.id)
         if part.loop and reading is not None and reading.status == "read":
             form, order = part.loop_form
-            finding = judge_of(variant.exercise, part).finding(reading.values[0])
+            judge, equation = judge_of(variant.exercise, part), reading.values[0]
+            finding = judge.finding(equation)
+            if finding.rank == 0 and not finding.fault and judge.holds_with_numbers(equation, variant):
+                finding = Finding(0, fault="numbers")
             others = before.setdefault((part.loop, order), []) if form != "complex" else []
             found[part.id] = _beside(finding, others, 2 if form == "complex" else 1)
             if found[part.id].right and finding.rows is not None:

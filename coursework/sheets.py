@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -48,8 +48,8 @@ def handout(variant: Variant, student: str = "") -> Handout:
         figure=variant.figure,
         figure_alt=" ".join(text.section("figure").text.split()) if exercise.spec.figure else "",
         questions=tuple(
-            _question(variant, n, p, how)
-            for n, (p, how) in enumerate(zip(variant.parts, _first_of_loops(variant), strict=True), start=1)
+            _question(variant, n, p, ways)
+            for n, (p, ways) in enumerate(zip(variant.parts, _ways_to_write(variant), strict=True), start=1)
         ),
         record=variant.record,
     )
@@ -63,21 +63,22 @@ def _given(variant: Variant, name: str) -> Given:
     return Given(name, symbol, plain(value), unit_text(spec.unit, variant.lang))
 
 
-def _first_of_loops(variant: Variant) -> list[bool]:
-    """For each part, whether the sheet must still say in which symbols its equation is written."""
-    met: set[tuple[str, ...]] = set()
+def _ways_to_write(variant: Variant) -> list[tuple[str, ...]]:
+    """For each part, what its sheet has not said yet of how equations of loops are written."""
+    met: list[tuple[str, ...]] = []
     found = []
     for part in variant.parts:
-        new = bool(part.loop) and part.id not in variant.text.sections and part.variables not in met
+        new: tuple[str, ...] = ()
+        if part.loop and part.id not in variant.text.sections and part.variables not in met:
+            new = ("symbols",) if met else ("symbols", "how")
+            met.append(part.variables)
         found.append(new)
-        if new:
-            met.add(part.variables)
     return found
 
 
-def prompt(variant: Variant, part: Part, *, how: bool = False) -> str:
+def prompt(variant: Variant, part: Part, ways: Iterable[str] = ()) -> str:
     """What a part asks: its section of the statement; for an equation of a loop that has none, the engine's
-    words after the section of its loop. ``how`` adds in which symbols it is written.
+    words after the section of its loop, and the ``ways`` to write it: ``symbols``, ``how``.
 
     Raises
     ------
@@ -88,18 +89,18 @@ def prompt(variant: Variant, part: Part, *, how: bool = False) -> str:
         return variant.text.section(part.id).text
     table = words(variant.lang)["loop"]
     loop = variant.text.section(part.loop).text
-    asked = table[part.quantity.removeprefix(f"{part.loop}_")]
+    asked = part.quantity.removeprefix(f"{part.loop}_")
     symbols = ", ".join(f"`{name}`" for name in part.variables)
-    return " ".join([loop, asked, *([table["how"].format(symbols=symbols)] if how else [])])
+    return " ".join([loop, *(table[key].format(symbols=symbols) for key in (asked, *ways))])
 
 
-def _question(variant: Variant, number: int, part: Part, how: bool) -> Question:
+def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) -> Question:
     choices = tuple((case, variant.text.label(part.id, case)) for case in part.choices)
     return Question(
         number=number,
         id=part.id,
         symbol="" if part.kind in _WITHOUT_SYMBOL else variant.exercise.symbol(part.quantity),
-        prompt=prompt(variant, part, how=how),
+        prompt=prompt(variant, part, ways),
         unit="" if part.asks_unit else unit_text(part.unit, variant.lang),
         kind=part.kind,
         choices=choices,
