@@ -256,7 +256,8 @@ class Animation:
                 arrows.append(Arrow(self.points[name].position, shown, effect, name))
         if "position" in effects:
             spots = [Spot(point.position, name, self.turns) for name, point in self.points.items()]
-        return drawing(self.frames, arrows=arrows, spots=spots, keys=self._keys({a.effect for a in arrows}))
+        keys = self._keys({a.effect for a in arrows})
+        return drawing(self.frames, arrows=arrows, spots=spots, keys=keys, closed=self.turns)
 
     def _keys(self, effects: set[str]) -> list[Key]:
         """The legend: for each effect an arrow of a round value."""
