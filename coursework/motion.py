@@ -279,6 +279,14 @@ class Animation:
     def title(self) -> str:
         return self.variant.text.title
 
+    @cached_property
+    def words(self) -> str:
+        """What the figure shows, for those who cannot see it: the statement's own words."""
+        from coursework.rendering.typography import typeset
+
+        said = " ".join(self.variant.text.section("figure").text.split())
+        return typeset(said, self.variant.lang) or self.title
+
     def svg(self) -> str:
         """The moving figure as SVG with no script; it stands still for who wants no motion."""
         shown = self.drawing(self.effects)
@@ -295,8 +303,9 @@ class Animation:
             )
         return "\n".join([
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
-            f'viewBox="0 0 {width} {height}" role="img">',
+            f'viewBox="0 0 {width} {height}" role="img" lang="{self.variant.lang}">',
             f"<title>{escape(self.title)}</title>",
+            f"<desc>{escape(self.words)}</desc>",
             "<style>.coursework-still{display:none}@media (prefers-reduced-motion:reduce)"
             "{.coursework-still{display:inline}.coursework-moving{display:none}}</style>",
             f'<rect width="{width}" height="{height}" fill="#fff"/>',
@@ -326,7 +335,7 @@ class Animation:
 
     def _repr_html_(self) -> str:
         data = base64.b64encode(self.svg().encode()).decode()
-        return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(self.title)}">'
+        return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(self.words)}">'
 
     # -------------------------------------------------------------------- numbers
 
