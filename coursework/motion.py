@@ -256,7 +256,8 @@ class Animation:
                 arrows.append(Arrow(self.points[name].position, shown, effect, name))
         if "position" in effects:
             spots = [Spot(point.position, name, self.turns) for name, point in self.points.items()]
-        return drawing(self.frames, arrows=arrows, spots=spots, keys=self._keys({a.effect for a in arrows}))
+        keys = self._keys({a.effect for a in arrows})
+        return drawing(self.frames, arrows=arrows, spots=spots, keys=keys, closed=self.turns)
 
     def _keys(self, effects: set[str]) -> list[Key]:
         """The legend: for each effect an arrow of a round value."""
@@ -278,6 +279,14 @@ class Animation:
     def title(self) -> str:
         return self.variant.text.title
 
+    @cached_property
+    def words(self) -> str:
+        """What the figure shows, for those who cannot see it: the statement's own words."""
+        from coursework.rendering.typography import typeset
+
+        said = " ".join(self.variant.text.section("figure").text.split())
+        return typeset(said, self.variant.lang) or self.title
+
     def svg(self) -> str:
         """The moving figure as SVG with no script; it stands still for who wants no motion."""
         shown = self.drawing(self.effects)
@@ -294,8 +303,9 @@ class Animation:
             )
         return "\n".join([
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
-            f'viewBox="0 0 {width} {height}" role="img">',
+            f'viewBox="0 0 {width} {height}" role="img" lang="{self.variant.lang}">',
             f"<title>{escape(self.title)}</title>",
+            f"<desc>{escape(self.words)}</desc>",
             "<style>.coursework-still{display:none}@media (prefers-reduced-motion:reduce)"
             "{.coursework-still{display:inline}.coursework-moving{display:none}}</style>",
             f'<rect width="{width}" height="{height}" fill="#fff"/>',
@@ -325,7 +335,7 @@ class Animation:
 
     def _repr_html_(self) -> str:
         data = base64.b64encode(self.svg().encode()).decode()
-        return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(self.title)}">'
+        return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(self.words)}">'
 
     # -------------------------------------------------------------------- numbers
 

@@ -75,10 +75,9 @@ def faults(figure):
 @pytest.mark.parametrize("name", WITH_FIGURE)
 def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(name):
     found = {}
-    for seed in range(VARIANTS):
-        variant = COURSE[name].variant(seed)
+    for variant in COURSE[name].variants(range(VARIANTS)):
         figures = (variant.figure, solution_figure(variant))
-        found[seed] = [fault for figure in figures if figure is not None for fault in faults(figure)]
+        found[variant.seed] = [fault for figure in figures if figure is not None for fault in faults(figure)]
     assert not {seed: bad for seed, bad in found.items() if bad}
 
 

@@ -17,6 +17,8 @@ from coursework.course import CourseExercise
 from coursework.errors import BadCourse, UnknownName, WrongValue
 from coursework.figures import link, pin, rail, rotation_arrow
 from coursework.figures.moving import drawing
+from coursework.figures.riding import ride
+from coursework.figures.text import read
 from coursework.motion import EFFECTS, Animation
 from coursework.scenes import Scene
 
@@ -353,6 +355,37 @@ def test_the_same_variant_gives_the_same_bytes(name):
     one, other = (COURSE[name].variant(4).animation() for _ in range(2))
     assert one.svg() == other.svg()
     assert one.html() == other.html()
+
+
+# --------------------------------------------------------------------- labels
+
+
+@pytest.mark.parametrize("name", DRIVEN)
+def test_labels_on_the_move_lie_on_no_label_and_hardly_ever_on_a_line(name, monkeypatch):
+    """Counted at every instant; a label that a line must pass under has a white rim."""
+    seen = {}
+
+    def spy(rows, segments, closed):
+        seen["rows"], seen["segments"] = rows, segments
+        seen["centres"] = ride(rows, segments, closed)
+        return seen["centres"]
+
+    monkeypatch.setattr("coursework.figures.moving.ride", spy)
+    COURSE[name].variant(1).animation().drawing(("position",))
+    centres = np.array(seen["centres"])
+    half = np.array([read(row[0].label).box for row in seen["rows"]]) / 2
+    reach = half[:, None, :] + half[None, :, :]
+    between = centres[:, None] - centres[None, :]
+    meets = (abs(between.real) < reach[..., :1]) & (abs(between.imag) < reach[..., 1:])
+    meets[range(len(half)), range(len(half))] = False
+    assert meets.mean() < 0.001
+    a, b = seen["segments"]
+    steps = np.linspace(0.0, 1.0, 41)
+    on_line = []
+    for place, (wide, tall) in zip(centres, half, strict=True):
+        off = (a[..., None] + (b - a)[..., None] * steps) - place[:, None, None]
+        on_line.append(((abs(off.real) < wide) & (abs(off.imag) < tall)).any(axis=(1, 2)))
+    assert np.mean(on_line) < 0.05
 
 
 # ------------------------------------------------------------------- what moves

@@ -34,7 +34,8 @@ from coursework.figures.ink import (
     turn,
 )
 from coursework.figures.paper import Paper
-from coursework.figures.placing import NAMES, Label, Wish, _support
+from coursework.figures.placing import NAMES, Label, Wish
+from coursework.figures.riding import ride
 from coursework.figures.text import SIZE, read
 from coursework.figures.writing import _label, _outlines
 
@@ -171,9 +172,12 @@ def drawing(
     arrows: Sequence[Arrow] = (),
     spots: Sequence[Spot] = (),
     keys: Sequence[Key] = (),
+    closed: bool = True,
     paper_mm: tuple[float, float] = (130, 95),
 ) -> Drawing:
     """The elements at every instant, with vectors and paths of points, to one scale.
+
+    ``closed``: the last instant is followed by the first.
 
     Raises
     ------
@@ -190,7 +194,7 @@ def drawing(
     stages = _stages(frames, scale, (low + high) / 2)
     tracks = [*_drawn(stages), *_moving_marks(arrows, spots, scale)]
     named = {wish.label for wish in stages[0].wishes}
-    tracks += _labels(stages, [s for s in spots if s.point not in named], scale)
+    tracks += _labels(stages, [s for s in spots if s.point not in named], scale, closed)
     return _framed(tracks, keys, scale)
 
 
@@ -365,32 +369,23 @@ def _arrow_tracks(arrow: Arrow, scale: float) -> list[Track]:
 # ---------------------------------------------------------------------- labels
 
 
-def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float) -> list[Track]:
-    """Labels that go with what they name, each on the side where it meets fewest lines over the cycle."""
-    looked_at = slice(0, None, max(1, len(stages) // 24))
-    segments = _segments([stage.ink for stage in stages[looked_at]])
+def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float, closed: bool) -> list[Track]:
+    """Labels that ride with what they name."""
+    segments = _segments([stage.ink for stage in stages])
     count = min(len(stage.wishes) for stage in stages)
-    wishes = [[stage.wishes[i] for stage in stages] for i in range(count)]
-    wishes += [[Wish(s.point, z * scale, 1j, 1.2, NAMES) for z in s.p] for s in spots]
+    rows = [[stage.wishes[i] for stage in stages] for i in range(count)]
+    rows += [[Wish(s.point, z * scale, 1j, 1.2, NAMES) for z in s.p] for s in spots]
     points = [""] * count + [s.point for s in spots]
-    placed: list[tuple[np.ndarray, complex]] = []
-    tracks = []
-    for own, point in zip(wishes, points, strict=True):
-        text = read(own[0].label)
-        half = complex(*text.box) / 2
-
-        def meetings(centres: np.ndarray, half: complex = half) -> float:
-            lines = _meets(segments, centres[looked_at], half)
-            return lines + 2 * sum(_overlaps(centres, half, *other) for other in placed)
-
-        ways = [(cost, np.array(centres)) for cost, centres in _candidates(own, half)]
-        costs = [cost + 12 * meetings(centres) for cost, centres in ways]
-        centres = ways[int(np.argmin(np.round(costs, 6)))][1]
-        placed.append((centres, half))
-        mark = _letters(own[0].label, BLACK)
-        effect = "position" if point else ""
-        tracks.append(Track(_flat(centres[:, None]), mark=mark, layer=MARKS, effect=effect, point=point))
-    return tracks
+    return [
+        Track(
+            _flat(centres[:, None]),
+            mark=_letters(row[0].label, BLACK),
+            layer=MARKS,
+            effect="position" if point else "",
+            point=point,
+        )
+        for row, centres, point in zip(rows, ride(rows, segments, closed), points, strict=True)
+    ]
 
 
 def _letters(label: str, colour: str) -> str:
@@ -402,34 +397,9 @@ def _letters(label: str, colour: str) -> str:
     return f'{rim}<g fill="{colour}" stroke="none">{_label(box, 0j, outlined=True)}</g>'
 
 
-def _candidates(wishes: Sequence[Wish], half: complex) -> list[tuple[float, list[complex]]]:
-    """Ways to carry a label about: a cost, and its centre at every instant."""
-    first = wishes[0]
-    if first.along:
-        return [
-            (cost, [_beside(wish, side, share, half) for wish in wishes])
-            for cost, share in ((0.0, 0.5), (0.3, 0.38), (0.3, 0.62), (0.6, 0.28), (0.6, 0.72))
-            for side in (1, -1)
-        ]
-    if first.rank != NAMES:
-        return [(0.0, [_away(wish, wish.toward, 0.0, half) for wish in wishes])]
-    ways = [turn(45 + 22.5 * k) for k in range(16)]
-    return [(step, [_away(w, way, step, half) for w in wishes]) for step in (0.0, 0.8, 2.0) for way in ways]
-
-
-def _beside(wish: Wish, side: int, share: float, half: complex) -> complex:
-    p, q = wish.along or (wish.anchor, wish.anchor)
-    normal = side * 1j * (q - p) / (abs(q - p) or 1.0)
-    return p + share * (q - p) + normal * (wish.start + _support(half, normal))
-
-
-def _away(wish: Wish, way: complex, step: float, half: complex) -> complex:
-    return wish.anchor + way * (wish.start + step + _support(half, way))
-
-
 def _segments(inks: Sequence[Sequence[Ink]]) -> tuple[np.ndarray, np.ndarray]:
     """Ends of every drawn segment that a label should keep off, a row an instant."""
-    rows = [[side for thing in ink if thing.layer != FILLS for side in _sides(thing)] for ink in inks]
+    rows = [[side for thing in ink for side in _sides(thing)] for ink in inks]
     most = max(map(len, rows))
     ends = np.array([[*row, *[row[-1]] * (most - len(row))] for row in rows])
     return ends[..., 0], ends[..., 1]
@@ -438,24 +408,6 @@ def _segments(inks: Sequence[Sequence[Ink]]) -> tuple[np.ndarray, np.ndarray]:
 def _sides(thing: Ink) -> list[tuple[complex, complex]]:
     points = _points_of(thing)
     return list(pairwise([*points, points[0]] if isinstance(thing, Path) and thing.closed else points))
-
-
-def _meets(segments: tuple[np.ndarray, np.ndarray], centres: np.ndarray, half: complex) -> float:
-    """Share of the instants at which a segment comes into the ellipse round a box."""
-    wide, tall = half.real + 0.4, half.imag + 0.4
-    a, b = (z - centres[:, None] for z in segments)
-    a, b = a.real / wide + 1j * (a.imag / tall), b.real / wide + 1j * (b.imag / tall)
-    along = b - a
-    square = along.real**2 + along.imag**2
-    share = np.clip(-(a * along.conj()).real / np.where(square > 0, square, 1.0), 0.0, 1.0)
-    return float((np.abs(a + share * along) < 1.15).any(axis=1).mean())
-
-
-def _overlaps(centres: np.ndarray, half: complex, others: np.ndarray, other: complex) -> float:
-    """Share of the instants at which two labels meet."""
-    gap = centres - others
-    wide, tall = half.real + other.real + 0.3, half.imag + other.imag + 0.3
-    return float(np.mean((np.abs(gap.real) < wide) & (np.abs(gap.imag) < tall)))
 
 
 # ----------------------------------------------------------------------- frame

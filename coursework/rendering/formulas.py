@@ -181,7 +181,9 @@ def to_mathml(tex: str, lang: str, display: bool = False) -> str:
     layout = "block" if display else "inline"
     label = escape(spoken(tex, lang))
     body = _mathml(parse(tex), lang)
-    return f'<math display="{layout}" alttext="{label}">{body}</math>'
+    # A displayed formula may be wider than a telephone: it scrolls, so a keyboard must reach it.
+    reached = ' tabindex="0"' if display else ""
+    return f'<math display="{layout}" alttext="{label}"{reached}>{body}</math>'
 
 
 def _tag(name: str, *parts: str, **attributes: str) -> str:
@@ -195,13 +197,18 @@ def _operator(text: str, form: str = "", stretchy: str = "false") -> str:
 
 
 _MATHML_FORMS = {"opening": "prefix", "closing": "postfix"}
+#: The page's style sheet says what the classes look like.
 _MATHML_STYLES = {
-    "bold": "font-weight:bold;font-style:normal",
-    "slanted bold": "font-weight:bold",
-    "calligraphic": "font-style:italic",
-    "blackboard": "font-style:normal",
+    "bold": "bold upright",
+    "slanted bold": "bold",
+    "calligraphic": "slanted",
+    "blackboard": "upright",
 }
-_DOUBLE_STRUCK = str.maketrans("CHNPQRZ", "ℂℍℕℙℚℝℤ")
+#: Letters that Unicode has in these hands: a browser needs no style to draw them.
+_MATHML_HANDS = {
+    "blackboard": str.maketrans("CHNPQRZ", "ℂℍℕℙℚℝℤ"),
+    "calligraphic": str.maketrans("ABCDEFGHIJKLMNOPQRSTUVWXYZ", "𝒜ℬ𝒞𝒟ℰℱ𝒢ℋℐ𝒥𝒦ℒℳ𝒩𝒪𝒫𝒬ℛ𝒮𝒯𝒰𝒱𝒲𝒳𝒴𝒵"),
+}
 
 
 def _mathml_symbol(text: str, kind: str) -> str:
@@ -316,10 +323,10 @@ def _mathml(node: Node, lang: str) -> str:
             return _mathml_row(items, lang)
         case Styled("display", body):
             return _tag("mstyle", of(body), displaystyle="true")
-        case Styled("blackboard", Symbol(text, "letter")):
-            return _tag("mi", text.translate(_DOUBLE_STRUCK), **{"class": "name"})
+        case Styled("blackboard" | "calligraphic" as hand, Symbol(text, "letter")):
+            return _tag("mi", text.translate(_MATHML_HANDS[hand]), **{"class": "name"})
         case Styled(style, body):
-            return _tag("mstyle", of(body), style=_MATHML_STYLES[style])
+            return _tag("mstyle", of(body), **{"class": _MATHML_STYLES[style]})
         case Fraction(above, below, display):
             drawn = _tag("mfrac", of(above), of(below))
             return drawn if display is None else _tag("mstyle", drawn, displaystyle=str(display).lower())
@@ -345,7 +352,7 @@ def _mathml(node: Node, lang: str) -> str:
 
 
 _MATHML_ACCENTS = {
-    "dot": ("˙", "false"), "ddot": ("¨", "false"), "dddot": ("⃛", "false"), "overline": ("‾", "true"),
+    "dot": ("˙", "false"), "ddot": ("¨", "false"), "dddot": ("˙˙˙", "false"), "overline": ("‾", "true"),
     "bar": ("‾", "false"), "hat": ("^", "false"), "tilde": ("~", "false"),
 }  # fmt: skip
 

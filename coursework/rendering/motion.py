@@ -86,7 +86,7 @@ def _svg(tracks: Sequence[Track], size: tuple[float, float], first: int, animati
         lines.append(track.svg(first, more))
     return "\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" '
-        f'aria-label="{escape(animation.title)}">',
+        f'aria-label="{escape(animation.words)}">',
         f'<rect width="{width}" height="{height}" fill="#fff"/>',
         '<g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">', *lines, "</g>",
         "</svg>",

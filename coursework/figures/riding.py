@@ -1,0 +1,133 @@
+"""Labels of a figure that moves: each rides with what it names, and moves aside before a line or another label.
+
+For every label there is a fixed list of places about what it names. At each instant a place costs what it lies on;
+going from one place to another costs too. The cheapest way through the whole cycle is found at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from coursework.figures.ink import turn
+from coursework.figures.placing import ANGLES, NAMES, Wish
+from coursework.figures.text import read
+
+_ON_LINE, _ON_LABEL = (
+    6.0,
+    12.0,
+)  #: what it costs to lie on a line or on another label, in mm away from the best place
+_TURN = 0.25  #: what it costs to lie a sixteenth of a turn from the preferred direction, mm
+_START, _FARTHER = 0.5, 0.25  #: what it costs to leave a place, and each mm of the way to another
+_STEPS = (0.0, 1.0, 2.2, 4.0, 6.0)
+_SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
+_WHITE = 0.2  #: white asked for round a label, mm
+_LOOKED_AT = 72  #: instants of a cycle at which places are compared; between them labels go steadily
+
+Segments = tuple[np.ndarray, np.ndarray]
+
+
+def ride(rows: Sequence[Sequence[Wish]], segments: Segments, closed: bool) -> list[np.ndarray]:
+    """Centres of labels at every instant, mm on paper.
+
+    ``rows`` has for each label its wish at every instant; ``segments`` the ends of everything drawn, a row an
+    instant. ``closed``: the last instant is followed by the first.
+    """
+    count = len(segments[0])
+    looked_at = np.unique(np.linspace(0, count, min(count, _LOOKED_AT), endpoint=False).astype(int))
+    near = tuple(z[looked_at] for z in segments)
+    found: dict[int, tuple[np.ndarray, np.ndarray]] = {}
+    for index in sorted(range(len(rows)), key=lambda i: rows[i][0].rank):
+        box = read(rows[index][0].label).box
+        half = np.array(box) / 2
+        costs, centres = zip(*_places(rows[index], half), strict=True)
+        places = np.array(centres)
+        seen = places[:, looked_at]
+        price = np.array(costs)[:, None] + _ON_LINE * _on_line(near, seen, half + _WHITE)
+        for other, size in found.values():
+            gap = seen - other[looked_at]
+            wide, tall = half + size + 2 * _WHITE
+            price = price + _ON_LABEL * ((abs(gap.real) < wide) & (abs(gap.imag) < tall))
+        chosen = _cheapest(price, seen, closed)
+        found[index] = _along(places, chosen, looked_at, closed), half
+    return [found[index][0] for index in range(len(rows))]
+
+
+def _places(wishes: Sequence[Wish], half: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
+    """Ways to carry a label about: a cost, and its centre at every instant."""
+    anchor = np.array([wish.anchor for wish in wishes])
+    start = np.array([wish.start for wish in wishes])
+
+    def beyond(way: np.ndarray, step: float) -> np.ndarray:
+        return way * (start + step + half[0] * abs(way.real) + half[1] * abs(way.imag))
+
+    first = wishes[0]
+    if first.along:
+        p, q = np.array([wish.along for wish in wishes]).T
+        length = abs(q - p)
+        normal = 1j * (q - p) / np.where(length > 0, length, 1.0)
+        for side in (1, -1):
+            for share in _SHARES:
+                for step in _STEPS:
+                    cost = step + 4 * abs(share - 0.5)
+                    yield cost, p + share * (q - p) + beyond(side * normal, step)
+        return
+    # An angle's label keeps to its bisector; the others keep their direction on the paper.
+    aim = np.array([w.toward for w in wishes]) if first.rank == ANGLES else np.full(len(wishes), first.toward)
+    late = _TURN if first.rank == NAMES else 2 * _TURN
+    for sixteenth in range(16):
+        for step in _STEPS:
+            cost = step + late * min(sixteenth, 16 - sixteenth)
+            yield cost, anchor + beyond(aim * turn(22.5 * sixteenth), step)
+
+
+def _on_line(segments: Segments, centres: np.ndarray, half: np.ndarray) -> np.ndarray:
+    """Whether a box of these half-sides meets a segment: a row a place, a column an instant."""
+    a, b = segments
+    middle, d = (a + b) / 2, (b - a) / 2
+    across, up = half[0] + abs(d.real), half[1] + abs(d.imag)
+    beside = half[0] * abs(d.imag) + half[1] * abs(d.real)
+    met = np.zeros(centres.shape, dtype=bool)
+    for place, row in enumerate(centres):
+        gap = middle - row[:, None]
+        hit = (abs(gap.real) < across) & (abs(gap.imag) < up)
+        hit &= abs(gap.real * d.imag - gap.imag * d.real) < beside
+        met[place] = hit.any(axis=1)
+    return met
+
+
+def _cheapest(price: np.ndarray, centres: np.ndarray, closed: bool) -> np.ndarray:
+    """The place at each instant on the cheapest way through all of them; a closed way ends where it began."""
+    count = price.shape[1]
+    # A cycle is gone through three times; in the middle one nothing is left of where it began and ends.
+    order = np.tile(np.arange(count), 3 if closed else 1)
+    # Rounded, so that no machine's last digit decides between two places as good as each other.
+    seen = centres.T
+    moves = np.round(_START + _FARTHER * abs(seen[:, :, None] - seen[:, None, :]), 6)
+    moves[:, range(len(price)), range(len(price))] = 0.0
+    price = np.round(price, 6)
+    total, origins = price[:, 0], []
+    for instant in order[1:]:
+        paths = total[None, :] + moves[instant]
+        origin = paths.argmin(axis=1)
+        origins.append(origin)
+        total = np.round(paths[range(len(price)), origin] + price[:, instant], 6)
+    way = [int(total.argmin())]
+    for origin in reversed(origins):
+        way.append(int(origin[way[-1]]))
+    found = np.array(way[::-1])
+    return found[count : 2 * count] if closed else found
+
+
+def _along(places: np.ndarray, chosen: np.ndarray, looked_at: np.ndarray, closed: bool) -> np.ndarray:
+    """Centres at all instants: on the chosen places where they were compared, steadily from one to the next between."""
+    count = places.shape[1]
+    centres = np.empty(count, dtype=complex)
+    stops = [*looked_at, count]
+    after = [*chosen[1:], chosen[0] if closed else chosen[-1]]
+    for start, end, one, other in zip(stops, stops[1:], chosen, after, strict=False):
+        instants = np.arange(start, end)
+        share = (instants - start) / (end - start)
+        centres[instants] = (1 - share) * places[one, instants] + share * places[other, instants]
+    return centres
