@@ -503,6 +503,8 @@ def notes(reports: Sequence[Report]) -> list[str]:
         median, largest = r.conditioning
         line = f"{r.name}: rounding takes {100 * median:.0f} % of what a variant may have, {100 * largest:.0f} % at most"
         for name, cases in r.cases.items():
+            if len(cases) == 1 and cases.total() < r.variants:
+                continue  # a question of a bank: its answer is the same wherever it is asked
             told = ", ".join(f"{case} {100 * n / r.variants:.0f} %" for case, n in cases.most_common())
             line += f"; {name}: {told}"
         flaws = ", ".join(f"{flaw} ({n})" for flaw, n in r.refused.most_common(3))
