@@ -19,7 +19,10 @@ class Layout(NamedTuple):
             else:
                 closing.append((number, one, other))
         loops = [
-            {k: (k == number) + paths[one].get(k, 0) - paths[other].get(k, 0) for k in range(len(self.between))}
+            {
+                k: (k == number) + paths[one].get(k, 0) - paths[other].get(k, 0)
+                for k in range(len(self.between))
+            }
             for number, one, other in closing
         ]
         return [[loop[k] for loop in loops] for k in range(len(self.between))]

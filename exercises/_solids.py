@@ -80,7 +80,10 @@ def _motions() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     )
 
 
-_IN_SPACE, _IN_PLANE = slice(0, 6), slice(2, 5)  #: components that count; in the plane rotation z, velocities x, y
+_IN_SPACE, _IN_PLANE = (
+    slice(0, 6),
+    slice(2, 5),
+)  #: components that count; in the plane rotation z, velocities x, y
 
 
 def mobility_of_loop(joints, directions, points):

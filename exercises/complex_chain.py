@@ -57,7 +57,14 @@ def tells(
     lines = zip(kind.between, names, POINTS, DIRECTIONS, points, strict=False)
     return {
         "joints": [
-            {"bodies": sorted(between), "joint": name, "at": at, "along": along, "x": int(p[0]), "y": int(p[1])}
+            {
+                "bodies": sorted(between),
+                "joint": name,
+                "at": at,
+                "along": along,
+                "x": int(p[0]),
+                "y": int(p[1]),
+            }
             for between, name, at, along, p in lines
         ],
         "output": kind.output,
@@ -86,7 +93,12 @@ def figure(layout, xA, yA, xB, yB, xC, xD, yD, xE, yE):
     end = F if layout == "two_guides" else E
     elements += [rail(E - 12, end + 12), slider(E), pin(E, "E", toward=90)]
     if layout == "two_guides":
-        elements += [line(E, F, thin=False), slider(F), point(F, "F", toward=90), note((E + F) / 2 + 12j, "S_5")]
+        elements += [
+            line(E, F, thin=False),
+            slider(F),
+            point(F, "F", toward=90),
+            note((E + F) / 2 + 12j, "S_5"),
+        ]
     else:
         elements.append(note(E + 22 + 8j, "S_5"))
     return Figure(*elements)

@@ -118,7 +118,8 @@ def figure(x2, y2, x3, y3, x4, y4):
         elements.append(line(p, q, dashed=k == 4, thin=False))
         elements.append(note((p + q) / 2 + 9 * away / abs(away), f"S_{k % 4}"))
     elements += [
-        point(p, f"A_{k}", toward=float(np.degrees(np.angle(p - middle)))) for k, p in enumerate(points, start=1)
+        point(p, f"A_{k}", toward=float(np.degrees(np.angle(p - middle))))
+        for k, p in enumerate(points, start=1)
     ]
     return Figure(*elements)
 
@@ -141,7 +142,13 @@ EXERCISE = Exercise(
         "y4": drawn(-20, 0, step=20, unit="mm", shown=False),
     },
     helpers=(mobility,),
-    keep=(all_joints_move_in_the_plane, one_joint_at_most_is_free, few_freedoms_in_space, moves, mobility_is_small),
+    keep=(
+        all_joints_move_in_the_plane,
+        one_joint_at_most_is_free,
+        few_freedoms_in_space,
+        moves,
+        mobility_is_small,
+    ),
     parts=(
         *(Part(f"planar_{k}", kind="choice", choices=PLANAR, points=1) for k in (1, 2, 3, 4)),
         Part("gamma", kind="integer", points=1),

@@ -8,6 +8,7 @@ import tomllib
 from functools import lru_cache
 from pathlib import Path
 
+from coursework.errors import BadCourse
 from coursework.figures import Figure, ground_pivot, line, link, note, pin, slider, slot_link
 from coursework.model import Exercise, Part, drawn
 from coursework.statement import constants
@@ -30,7 +31,9 @@ def asked(deck):
     """The questions of a variant."""
     choices = Choices(int(deck), "vocabulary")
     return frozenset(
-        question for theme in THEMES.values() for question in choices.shuffled(theme["questions"])[: theme["ask"]]
+        question
+        for theme in THEMES.values()
+        for question in choices.shuffled(theme["questions"])[: theme["ask"]]
     )
 
 
@@ -62,13 +65,18 @@ def figure():
 
 
 CASES = _cases()
+BANK = [question for theme in THEMES.values() for question in theme["questions"]]
+for _question in BANK:
+    if _question not in CASES:
+        raise BadCourse(
+            f"vocabulary.toml names {_question!r}, which has no section with cases in the statement"
+        )
 
 EXERCISE = Exercise(
     given={"deck": drawn(1000, 999999, shown=False)},
     parts=tuple(
-        Part(question, kind="choice", choices=tuple(CASES.get(question, ())), when=_when(question))
-        for theme in THEMES.values()
-        for question in theme["questions"]
+        Part(question, kind="choice", choices=tuple(CASES[question]), when=_when(question))
+        for question in BANK
     ),
     figure=figure,
 )

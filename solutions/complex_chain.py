@@ -46,7 +46,9 @@ def output_body(n, layout=""):
 
 def role(m_useful):
     """What the mechanism is for, by its useful mobility."""
-    return np.where(np.asarray(m_useful) == 0, "clamp", np.where(np.asarray(m_useful) == 1, "transforms", "adjusted"))
+    return np.where(
+        np.asarray(m_useful) == 0, "clamp", np.where(np.asarray(m_useful) == 1, "transforms", "adjusted")
+    )
 
 
 @mistake("gamma")
@@ -152,6 +154,16 @@ KNOWN = (
             "input_body": 1,
             "output_body": 4,
         },
-        {"n": 4, "gamma": 2, "Nc": 6, "rc": 4, "m": 2, "h": 8, "m_internal": 0, "m_useful": 2, "role": "adjusted"},
+        {
+            "n": 4,
+            "gamma": 2,
+            "Nc": 6,
+            "rc": 4,
+            "m": 2,
+            "h": 8,
+            "m_internal": 0,
+            "m_useful": 2,
+            "role": "adjusted",
+        },
     ),
 )

@@ -298,7 +298,15 @@ KNOWN = (
     # A cam: pivot, contact at a point, slide.
     (
         {"joints": _loop(("revolute", _Z), ("point_contact", _Y), ("prismatic", _Y))},
-        {"planar_2": "point_contact", "planar_3": "prismatic", "Nc": 4, "rc": 3, "m": 1, "h": 0, "h_space": 0},
+        {
+            "planar_2": "point_contact",
+            "planar_3": "prismatic",
+            "Nc": 4,
+            "rc": 3,
+            "m": 1,
+            "h": 0,
+            "h_space": 0,
+        },
     ),
     # The table of the course: each column one joint.
     (

@@ -7,13 +7,19 @@ chose that case.
 import tomllib
 from pathlib import Path
 
+from coursework.errors import BadCourse
 from coursework.solution import mistake
 from coursework.statement import constants
 
-from ..exercises.vocabulary import CASES
+from ..exercises.vocabulary import BANK, CASES
 
 _ANSWERS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 _REMARKS = constants(min(Path(__file__).parent.glob("vocabulary.*.md.j2"))).texts
+
+for _question in sorted({*BANK} ^ {*_ANSWERS}):
+    raise BadCourse(
+        f"{_question!r} stands in one vocabulary.toml only: a question needs an answer, and no more"
+    )
 
 
 def _giving(name, case):
@@ -35,8 +41,8 @@ for _question, _right in _ANSWERS.items():
 
 
 def residual():
-    """Every question of the bank has an answer among its cases, and no answer is without a question."""
-    return float(_ANSWERS.keys() != CASES.keys() or any(_ANSWERS[q] not in CASES[q] for q in CASES))
+    """Every answer is among the cases of its question."""
+    return float(any(_ANSWERS[question] not in CASES[question] for question in BANK))
 
 
 KNOWN = (
