@@ -301,7 +301,7 @@ def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
         value = key.reference[part.quantity]
         if part.kind == "choice":
             full[part.id] = str(value)
-            printed[part.id] = variant.text.label(part.id, str(value))
+            printed[part.id] = variant.label(part.id, str(value))
         elif part.kind == "equation":
             full[part.id] = str(value)
             left, _, right = str(value).partition("=")
@@ -319,7 +319,8 @@ def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
                 edge[part.id] = plain(value + part.half_width(value))
             elif part.kind == "angle":
                 edge[part.id] = plain(value + 360.0 - part.half_width(value))
-    yield from (full, printed, comma, edge)
+    comma = {i: text for i, text in comma.items() if text != printed[i]}
+    yield from filter(None, (full, printed, comma, edge))
 
 
 def check_rounding_students(

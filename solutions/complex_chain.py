@@ -7,6 +7,7 @@ from coursework.solution import mistake
 
 from ..exercises._complex import DIRECTIONS, LAYOUTS, points_of
 from ._chains import *
+from ._solids import _each
 
 STRUCTURES = ("joints",)
 
@@ -39,9 +40,10 @@ def input_body():
     return 1
 
 
-def output_body(n, layout=""):
+def output_body(_solids, layout=""):
     """The body that the statement names; the last one of a list of joints."""
-    return np.where(np.asarray(layout) == "strut", LAYOUTS["strut"].output, n)[()]
+    last = _each(lambda one: one.n, _solids)
+    return np.where(np.asarray(layout) == "strut", LAYOUTS["strut"].output, last)[()]
 
 
 def role(m_useful):
