@@ -306,7 +306,7 @@ def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
         value = key.reference[part.quantity]
         if part.kind == "choice":
             full[part.id] = str(value)
-            printed[part.id] = variant.text.label(part.id, str(value))
+            printed[part.id] = variant.label(part.id, str(value))
         elif part.kind == "equation":
             full[part.id] = str(value)
             left, _, right = str(value).partition("=")
@@ -326,7 +326,8 @@ def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
                 edge[part.id] = plain(value + part.half_width(value))
             elif part.kind == "angle":
                 edge[part.id] = plain(value + 360.0 - part.half_width(value))
-    yield from (full, printed, comma, edge)
+    comma = {i: text for i, text in comma.items() if text != printed[i]}
+    yield from filter(None, (full, printed, comma, edge))
 
 
 def check_rounding_students(
@@ -610,6 +611,8 @@ def notes(reports: Sequence[Report]) -> list[str]:
         median, largest = r.conditioning
         line = f"{r.name}: rounding takes {100 * median:.0f} % of what a variant may have, {100 * largest:.0f} % at most"
         for name, cases in r.cases.items():
+            if len(cases) == 1 and cases.total() < r.variants:
+                continue  # a question of a bank: its answer is the same wherever it is asked
             told = ", ".join(f"{case} {100 * n / r.variants:.0f} %" for case, n in cases.most_common())
             line += f"; {name}: {told}"
         flaws = ", ".join(f"{flaw} ({n})" for flaw, n in r.refused.most_common(3))

@@ -13,7 +13,8 @@ from coursework.errors import BadCourse, BadStatement, BrokenFunction
 from coursework.expressions import latex_of_equation
 from coursework.graph import Graph
 from coursework.handout import Answer, AnswerSheet, Given, Handout, Question, Step
-from coursework.language import localise, plain, significant, unit_text, words
+from coursework.language import localise, plain, significant, unit_text
+from coursework.language import words as engine_words
 from coursework.model import Part
 from coursework.polygons import Polygon
 from coursework.worked import formula_latex, number_latex
@@ -115,7 +116,7 @@ def tolerance_words(part: Part, lang: str) -> str:
     """The accepted margin as a student reads it; empty for what is judged exactly."""
     if part.is_exact or not (part.atol or part.rtol):
         return ""
-    table = words(lang)["accepted"]
+    table = engine_words(lang)["accepted"]
     percent = localise(plain(round(100 * part.rtol, 6)), lang)
     absolute = localise(plain(part.atol), lang)
     if part.atol and part.unit == "deg":
@@ -221,7 +222,10 @@ def _step(variant: Variant, name: str, values: Mapping[str, Any], text: Any) -> 
     words = section.text if section else ""
     part = next((p for p in variant.parts if p.quantity == name and p.kind == "choice"), None)
     if part is not None:
-        words = f"{words} **{variant.text.label(part.id, str(values[name]))}**".strip()
+        # A case has no symbol that would say which question it answers.
+        number = 1 + [p.id for p in variant.parts].index(part.id)
+        asks = f"{engine_words(variant.lang)['sheet']['question']['one']} {number}."
+        words = f"*{asks[:1].upper()}{asks[1:]}* {words} **{variant.text.label(part.id, str(values[name]))}**"
     try:
         formula = formula_latex(function, symbols)
         substitution = formula_latex(function, numbers) if formula and value else ""

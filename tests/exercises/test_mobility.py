@@ -64,6 +64,16 @@ def test_the_statement_lists_the_joints_that_are_solved():
         assert len(rows) == len(graph.joints)
 
 
+def test_the_number_of_the_mechanism_is_in_the_record_and_not_on_the_sheet():
+    variant = EXERCISE.variant(5, "en")
+    assert variant.handout().given == ()
+    assert variant.record["given"]["mechanism"]["value"] == variant.given["mechanism"]
+    assert (
+        f"{variant.given['mechanism']:g}"
+        not in variant.exercise.course.renderer.html(variant.handout()).split("</main>")[0]
+    )
+
+
 def test_what_a_request_gets_is_its_own():
     mine = EXERCISE.solve(mechanism=4321, only="joints")["joints"]
     mine[0]["between"].clear()

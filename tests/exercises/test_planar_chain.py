@@ -1,0 +1,103 @@
+"""Plane chains: the answers against exact motions of the bodies in the plane and in space, and the course's table."""
+
+import pytest
+from exact import freedoms, hindered
+
+import coursework
+from coursework.errors import CannotTell, WrongValue
+
+EXERCISE = coursework.open_course()["planar_chain"]
+BETWEEN = [(0, 1), (1, 2), (2, 3), (3, 0)]
+Z = (0, 0, 1)
+
+#: The reminder of the course: what a joint is in the plane xy, by its direction.
+IN_PLANE = {
+    **{(name, "z"): "revolute" for name in ("revolute", "cylindrical", "annular")},
+    **{("spherical", along): "revolute" for along in "xyz"},
+    **{(name, along): "prismatic" for name in ("prismatic", "cylindrical", "planar") for along in "xy"},
+    ("line_contact", "x"): "prismatic",
+    ("line_contact", "z"): "point_contact",
+    **{(name, along): "point_contact" for name in ("annular", "point_contact") for along in "xy"},
+    # What the course does not say: nothing is hindered.
+    ("planar", "z"): "free",
+    ("point_contact", "z"): "free",
+}
+HINDERED_IN_PLANE = {"revolute": 2, "prismatic": 2, "point_contact": 1, "free": 0}
+
+
+def joints_of(given):
+    points = [(0, 0, 0)] + [(int(given[f"x{k}"]), int(given[f"y{k}"]), 0) for k in (2, 3, 4)]
+    return [(given[f"joint_{k}"], given[f"direction_{k}"], point) for k, point in enumerate(points, start=1)]
+
+
+def in_plane(rows):
+    """Of what a joint forbids, what bears on rotation z and velocities x and y alone."""
+    return [[row[2], row[3], row[4]] for row in rows if any((row[2], row[3], row[4]))]
+
+
+@pytest.mark.parametrize("block", range(3))
+def test_answers_are_those_of_exact_motions_of_the_bodies(block):
+    for variant in EXERCISE.variants(range(60 * block, 60 * block + 60)):
+        a, joints = variant.solution(), joints_of(variant.given)
+        kinds = [IN_PLANE[name, along] for name, along, _ in joints]
+        assert [a[f"planar_{k}"] for k in (1, 2, 3, 4)] == kinds
+        forbidden = [(between, hindered(*joint)) for between, joint in zip(BETWEEN, joints, strict=True)]
+        m, Ns = freedoms(3, [(between, in_plane(rows)) for between, rows in forbidden])
+        assert Ns == sum(HINDERED_IN_PLANE[kind] for kind in kinds)
+        assert (a["gamma"], a["m"], a["Ns"], a["Nc"]) == (1, m, Ns, 12 - Ns)
+        assert (a["rc"], a["rs"]) == (12 - Ns - m, 9 - m)
+        assert a["h"] == Ns - (9 - m)
+        assert a["m"] - a["h"] == 3 * 3 - a["Ns"] == a["Nc"] - 3 * a["gamma"]
+        spatial, unknowns = freedoms(3, forbidden)
+        assert a["h_space"] == unknowns - (18 - spatial)
+        expected = "plane" if a["h"] else "hidden" if a["h_space"] else "sound"
+        assert a["comparison"] == expected
+
+
+def test_every_comparison_is_met():
+    found = [v.solution()["comparison"] for v in EXERCISE.variants(range(100))]
+    assert min(found.count(case) for case in ("sound", "hidden", "plane")) >= 8
+
+
+def hinges(points):
+    size = len(points)
+    return [
+        {"between": [k, (k + 1) % size], "joint": "revolute", "axis": Z, "point": (*points[k], 0)}
+        for k in range(size)
+    ]
+
+
+def test_a_flat_four_bar_gains_a_motion_and_nearly_flat_it_cannot_be_told():
+    wanted = ("Nc", "rc", "m", "h", "h_space")
+    open_ = EXERCISE.solve(joints=hinges([(0, 0), (40, 30), (140, 0), (90, 0)]), only=wanted)
+    assert open_ == {"Nc": 4, "rc": 3, "m": 1, "h": 0, "h_space": 3}
+    flat = EXERCISE.solve(joints=hinges([(0, 0), (40, 0), (140, 0), (90, 0)]), only=wanted)
+    assert flat == {"Nc": 4, "rc": 2, "m": 2, "h": 1, "h_space": 4}
+    with pytest.raises(CannotTell):
+        EXERCISE.solve(joints=hinges([(0, 0), (40, 1e-7), (140, 0), (90, 0)]), only="rc")
+
+
+def test_loops_in_the_plane_count_three_each():
+    """A four-bar that drives a slide by a rod."""
+    joints = hinges([(0, 0), (0, 40), (100, 80), (120, 0)])
+    joints += [
+        {"between": [3, 4], "joint": "spherical", "point": (150, 60, 0)},
+        {"between": [4, 5], "joint": "annular", "axis": Z, "point": (300, 0, 0)},
+        {"between": [5, 0], "joint": "planar", "normal": (0, 1, 0)},
+    ]
+    a = EXERCISE.solve(joints=joints, only=("gamma", "Nc", "rc", "m", "Ns", "h", "comparison", "h_space"))
+    assert {k: a[k] for k in ("gamma", "Nc", "rc", "m", "Ns", "h")} == {
+        "gamma": 2, "Nc": 7, "rc": 6, "m": 1, "Ns": 14, "h": 0,
+    }  # fmt: skip
+    assert a["comparison"] == "hidden"
+
+
+def test_what_is_no_plane_problem_is_said():
+    tilted = [
+        *hinges([(0, 0), (40, 30), (140, 0)]),
+        {"between": [2, 0], "joint": "prismatic", "axis": (1, 0, 1)},
+    ]
+    with pytest.raises(WrongValue, match="along x, y or z"):
+        EXERCISE.solve(joints=tilted, only="Nc")
+    with pytest.raises(WrongValue, match="holds 3 joints"):
+        EXERCISE.solve(joints=hinges([(0, 0), (40, 30), (140, 0)]), only="planar_4")

@@ -1,0 +1,118 @@
+"""The bank of questions: complete in every language, drawn by theme, and open to a teacher who writes texts only."""
+
+import shutil
+import tomllib
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+import coursework
+from coursework import checks
+from coursework.errors import BadCourse
+from coursework.language import languages
+from coursework.statement import constants
+
+COURSE = coursework.open_course()
+EXERCISE = COURSE["vocabulary"]
+ROOT = COURSE.root
+THEMES = tomllib.loads((ROOT / "exercises" / "vocabulary.toml").read_text("utf-8"))
+ANSWERS = tomllib.loads((ROOT / "solutions" / "vocabulary.toml").read_text("utf-8"))
+
+
+def labels(lang):
+    return list(constants(ROOT / "exercises" / f"vocabulary.{lang}.md.j2").labels)
+
+
+@pytest.mark.parametrize("lang", languages())
+def test_each_question_has_the_same_cases_in_the_same_order_in_every_language(lang):
+    assert labels(lang) == labels("en")
+    asked = {question for theme in THEMES.values() for question in theme["questions"]}
+    assert {question for question, _ in labels(lang)} == asked == ANSWERS.keys()
+    assert all(2 <= n <= 5 for n in Counter(question for question, _ in labels(lang)).values())
+
+
+@pytest.mark.parametrize("lang", languages())
+def test_remarks_are_to_wrong_cases_and_the_same_in_every_language(lang):
+    def remarks(one):
+        texts = constants(ROOT / "solutions" / f"vocabulary.{one}.md.j2").texts
+        return {name.removeprefix("mistake ") for name in texts if name.startswith("mistake ")}
+
+    wrong = {f"{question}_{case}" for question, case in labels(lang) if ANSWERS[question] != case}
+    assert remarks(lang) == remarks("en") <= wrong
+    assert set(EXERCISE.solution.mistakes) == remarks(lang)
+
+
+def test_a_variant_asks_of_every_theme():
+    for variant in EXERCISE.variants(range(50)):
+        for theme in THEMES.values():
+            assert len(set(variant.part_ids) & set(theme["questions"])) == theme["ask"]
+    met = Counter(i for v in EXERCISE.variants(range(400)) for i in v.part_ids)
+    assert set(met) == ANSWERS.keys()
+
+
+def test_the_right_case_stands_at_no_favourite_place():
+    order: dict[str, list[str]] = {}
+    for question, case in labels("en"):
+        order.setdefault(question, []).append(case)
+    places = Counter(order[question].index(right) for question, right in ANSWERS.items())
+    assert max(places.values()) <= 0.5 * len(ANSWERS)
+
+
+def test_who_is_wrong_is_told_what_was_confused():
+    variant = next(v for v in EXERCISE.variants(range(100), "en") if "coriolis_size" in v.part_ids)
+    mark = variant.grade({"coriolis_size": "once"})["coriolis_size"]
+    assert mark.verdict == "mistake:coriolis_size_once"
+    assert "twice" in mark.feedback
+    assert variant.grade({"coriolis_size": "b"})["coriolis_size"].verdict == "correct"
+
+
+@pytest.fixture
+def own_course(tmp_path):
+    for folder in ("exercises", "solutions"):
+        (tmp_path / folder).mkdir()
+        for path in (ROOT / folder).glob("vocabulary.*"):
+            shutil.copy(path, tmp_path / folder)
+    return tmp_path
+
+
+def add(path: Path, text: str) -> None:
+    path.write_text(path.read_text("utf-8") + text, "utf-8")
+
+
+def test_a_teacher_adds_a_question_by_texts_alone(own_course):
+    add(own_course / "exercises" / "vocabulary.toml", '\n[belts]\nask = 1\nquestions = ["belt_sense"]\n')
+    add(own_course / "solutions" / "vocabulary.toml", 'belt_sense = "same"\n')
+    for lang, asks in (
+        ("fr", "Une courroie ouverte fait tourner les poulies :"),
+        ("en", "An open belt turns pulleys:"),
+    ):
+        statement = f"\n## belt_sense\n{asks}\n- same: + +\n- opposite: + -\n"
+        add(own_course / "exercises" / f"vocabulary.{lang}.md.j2", statement)
+        add(own_course / "solutions" / f"vocabulary.{lang}.md.j2", "\n## mistake belt_sense_opposite\n×\n")
+    exercise = coursework.open_course(own_course)["vocabulary"]
+    report = checks.check(exercise, 20, rendered=1)
+    assert report.failures == []
+    variant = exercise.variant(3)
+    assert "belt_sense" in variant.part_ids
+    assert variant.grade({"belt_sense": "opposite"})["belt_sense"].mistakes == ("belt_sense_opposite",)
+
+
+def test_a_question_without_answer_or_without_words_is_said(own_course):
+    add(own_course / "exercises" / "vocabulary.toml", '\n[belts]\nask = 1\nquestions = ["belt_sense"]\n')
+    with pytest.raises(BadCourse, match="'belt_sense', which has no section"):
+        coursework.open_course(own_course)["vocabulary"]
+    add(
+        own_course / "exercises" / "vocabulary.en.md.j2",
+        "\n## belt_sense\nWhich?\n- same: + +\n- opposite: + -\n",
+    )
+    exercise = coursework.course.Course(own_course)["vocabulary"]
+    with pytest.raises(BadCourse, match="needs an answer"):
+        assert exercise.solution
+
+
+def test_an_answer_that_is_no_case_is_found_by_the_check(own_course):
+    path = own_course / "solutions" / "vocabulary.toml"
+    path.write_text(path.read_text("utf-8").replace('spin = "normal"', 'spin = "normale"'), "utf-8")
+    report = checks.check(coursework.open_course(own_course)["vocabulary"], 5, rendered=0)
+    assert any("residual" in failure for failure in report.failures)
