@@ -11,15 +11,15 @@ from coursework.errors import BadCourse, BadInput, NoSolution, unknown
 from coursework.figures.plot import Axis, Plot, Spot
 from coursework.language import unit_text, words
 from coursework.marking import Mark, read
+from coursework.rendering.shown import Picture, Shown
 from coursework.rendering.views import points_number
 from coursework.selfstudy import hints, predictions
 from coursework.selfstudy.kept import Kept, is_blank
 from coursework.selfstudy.predictions import Prediction
-from coursework.selfstudy.shown import Picture, Shown
+from coursework.selfstudy.sheet import fresh_variants
 
 if TYPE_CHECKING:
     from coursework.figures import Figure
-    from coursework.motion import Animation
 
 PANELS = 6  #: curves of a plot, unless some are named
 
@@ -134,7 +134,7 @@ class StudySession:
         """The figure to scale."""
         return self.variant.figure
 
-    def motion(self, *effects: str) -> Animation | Shown:
+    def motion(self, *effects: str) -> Shown:
         """The mechanism over its cycle; ``effects`` as in :class:`~coursework.motion.Animation`.
 
         Unless told, paths and velocities, where the solution states them.
@@ -148,8 +148,10 @@ class StudySession:
             moving = self.variant.animation(effects)
         except BadCourse:
             return self._shown(self._said["no_motion"])
-        usual = [e for e in ("position", "velocity") if e in moving.available]
-        return moving if effects else self.variant.animation(usual)
+        if not effects:
+            usual = [e for e in ("position", "velocity") if e in moving.available]
+            moving = self.variant.animation(usual)
+        return self._shown(Picture(moving.svg(), moving.title))
 
     # -------------------------------------------------------------- predictions
 
@@ -384,21 +386,26 @@ class StudySession:
     def fresh(self, number: int | None = None) -> StudySession:
         """Another variant: the first, second… after the notebook's own; without a number, the next one not begun.
 
+        Only variants that are worth issuing count, as for a class.
+
         What was written for this one stays kept.
 
         Raises
         ------
         BadInput
             A number below 1.
+        Starved
+            The exercise has no more variants.
         """
-        if number is None:
-            begun = {seed for seed in self._kept.seeds if self._kept.of(seed, "answers")}
-            number = 1
-            while self._base + number in begun or self._base + number == self.variant.seed:
-                number += 1
-        if isinstance(number, bool) or not isinstance(number, int) or number < 1:
+        if number is not None and (isinstance(number, bool) or not isinstance(number, int) or number < 1):
             raise BadInput(f"fresh variants are counted from 1 on; found {number!r}")
-        variant = self.variant.exercise.variant(self._base + number, self.variant.lang)
+        begun = {seed for seed in self._kept.seeds if self._kept.of(seed, "answers")}
+        # One of so many is not begun.
+        variants = fresh_variants(
+            self.variant.exercise, self._base, number or len(begun) + 2, self.variant.lang
+        )
+        left = [v for v in variants if v.seed not in begun and v.seed != self.variant.seed]
+        variant = left[0] if number is None else variants[-1]
         return StudySession(variant, self._kept, self._base)
 
     def progress(self) -> Shown:
