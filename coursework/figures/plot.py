@@ -214,7 +214,7 @@ def _ticks(low: float, high: float, count: int) -> list[float]:
     rough = (high - low) / count
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(m * power for m in (1, 2, 5, 10) if m * power >= rough * (1 - 1e-9))
-    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    first, last = math.ceil(low / step - 1e-6), math.floor(high / step + 1e-6)
     return [k * step for k in range(first, last + 1)]
 
 
@@ -223,7 +223,7 @@ def _axis_ticks(axis: Axis, low: float, high: float, count: int) -> list[float]:
     if axis.unit != "°" or high - low < 180:
         return _ticks(low, high, count)
     step = 60.0 if count > 4 else 90.0 if high - low < 200 else 180.0
-    return [step * k for k in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
+    return [step * k for k in range(math.ceil(low / step - 1e-6), math.floor(high / step + 1e-6) + 1)]
 
 
 def _runs(x: np.ndarray, y: np.ndarray, turns: bool) -> list[list[tuple[float, float]]]:
