@@ -74,6 +74,8 @@ def _found(course: str | Path | None) -> Course:
     """A course by its folder, or by its name, beside or above the place where we are."""
     if course is None:
         return open_course()
+    if (Path(course) / "exercises").is_dir():
+        return open_course(course)
     here = Path.cwd()
     for place in (here, *here.parents):
         for folder in (place / course, place):
@@ -186,7 +188,7 @@ class StudySession:
         return self._shown(*lines, self._trouble)
 
     def _left(self, names: Iterable[str]) -> str:
-        return self._said["left"].format(names=", ".join(f"`{n}`" for n in names))
+        return self._said["left"].format(names=_names(names))
 
     def _compared(self, names: Iterable[str]) -> str:
         """Predictions beside what came out, as a list."""
@@ -244,7 +246,9 @@ class StudySession:
             points=points_number(marking.points, self.variant.lang),
             out_of=points_number(marking.out_of, self.variant.lang),
         )
+        before = [n for n in now if answers is not None and is_blank(given.get(n))]
         after = [self._left(unanswered)] if unanswered else []
+        after += [self._said["from_before"].format(names=_names(before))] if before else []
         first = next((n for n, m in marking.items() if m.verdict not in ("correct", "missing")), "")
         after += [self._said["try_hint"].format(call=self._call("hint", first))] if first else []
         asked_before = [p.id for p in predictions.before_answers(self.variant) if p.id in right]
@@ -287,7 +291,7 @@ class StudySession:
         if missing := self._missing():
             return self._shown(missing)
         if not question:
-            names = ", ".join(f"`{n}`" for n in self.variant.part_ids)
+            names = _names(self.variant.part_ids)
             call = self._call("hint", self.variant.part_ids[0])
             return self._shown(self._said["hint"]["which"].format(names=names, call=call))
         texts = hints.steps(self.variant, question, self._right, lambda n: self._call("hint", n))
@@ -358,9 +362,7 @@ class StudySession:
         said = self._said["plot"].format(list=symbols, driver=f"${self.variant.exercise.symbol(driver)}$")
         others = [n for n in parts if parts[n] not in chosen]
         more = (
-            self._said["more_plots"].format(
-                names=", ".join(f"`{n}`" for n in others), call=self._call("plot", others[0])
-            )
+            self._said["more_plots"].format(names=_names(others), call=self._call("plot", others[0]))
             if others
             else ""
         )
@@ -444,6 +446,10 @@ class StudySession:
 
     def _shown(self, *pieces: str | Picture) -> Shown:
         return Shown(self.variant.lang, *pieces)
+
+
+def _names(names: Iterable[str]) -> str:
+    return ", ".join(f"`{n}`" for n in names)
 
 
 def _sign(mark: Mark) -> str:
