@@ -274,6 +274,16 @@ def test_every_number_asked_has_a_hint_and_a_revealed_value(name):
             assert hints.steps(variant, part.id)
 
 
+def test_numbers_side_by_side_would_be_the_answer_and_are_no_hint():
+    variant = COURSE["ball_reducer"].variant(3, "en")
+    assert [
+        r"\num{" in text.replace(r"\num{0}", "") for text in hints.steps(variant, "axis_31_point")[1:]
+    ] == [
+        False,
+        False,
+    ]
+
+
 def test_hints_come_one_by_one_and_stay(here):
     session = coursework.study("slotted_mechanism", seed=42, lang="en")
     first, second = str(session.hint("omega4")), str(session.hint("omega4"))
@@ -329,6 +339,13 @@ def test_predictions_are_compared_with_what_comes_out(here):
         assert predictions.compared(variant, one, wrong).right is False, key
         assert predictions.compared(variant, one, " ") is None
         assert predictions.compared(variant, one, "eh?").right is None, key
+
+
+def test_a_curve_that_vanishes_at_the_ends_of_the_turn_vanishes_there_once():
+    turn = np.radians(np.linspace(0, 360, 721))
+    counts = [predictions.zeros(f(k * turn)) for f in (np.sin, np.cos) for k in (1, 2)]
+    assert counts == [2, 4, 2, 4]
+    assert predictions.zeros(np.ones(9)) == 0
 
 
 def test_a_prediction_is_compared_only_when_its_answer_is_right(here):
