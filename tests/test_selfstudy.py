@@ -348,6 +348,22 @@ def test_a_curve_that_vanishes_at_the_ends_of_the_turn_vanishes_there_once():
     assert predictions.zeros(np.ones(9)) == 0
 
 
+@every_exercise
+def test_a_rate_whose_sign_is_asked_over_the_cycle_passes_through_zero_there(name):
+    """Lengths of vectors touch zero without a change of sign: they are not asked."""
+    for seed in (1, 2):
+        variant = COURSE[name].variant(seed, "en")
+        for one in predictions.over_the_cycle(variant):
+            if one.kind == "zeros":
+                values = predictions.curve(variant, one.quantity)[1]
+                touches = (np.abs(values) <= np.roll(np.abs(values), 1)) & (
+                    np.abs(values) < np.roll(np.abs(values), -1)
+                )
+                near = np.abs(values) < 2e-3 * np.nanmax(np.abs(values))
+                if not np.isnan(values).any():
+                    assert (touches & near)[:-1].sum() <= predictions.zeros(values)
+
+
 def test_a_prediction_is_compared_only_when_its_answer_is_right(here):
     session = coursework.study("slotted_mechanism", seed=42, lang="en")
     session.predict({"theta4": "1"})
