@@ -488,11 +488,13 @@ def notebook(
     One for each exercise named, else for every exercise of the course.
     """
     from coursework.building import write_whole
+    from coursework.issuing import distinct_variants
 
     course = _course(context)
     for name in _exercise_names(course, exercises):
         for lang in langs:
-            sheet = course[name].variant(seed, lang).study_sheet()
+            (variant,) = distinct_variants(course[name], seed, 1, lang)
+            sheet = variant.study_sheet()
             path = out / f"{name}.{lang}.ipynb"
             write_whole(path, course.renderer.study(sheet).encode("utf-8"))
             click.echo(str(path))

@@ -10,7 +10,6 @@ they carry, a solution states in a function ``motion`` of its quantities, called
 
 from __future__ import annotations
 
-import base64
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -334,8 +333,9 @@ class Animation:
         return self.variant.exercise.course.renderer.motion_html(self)
 
     def _repr_html_(self) -> str:
-        data = base64.b64encode(self.svg().encode()).decode()
-        return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(self.words)}">'
+        from coursework.rendering.shown import Picture
+
+        return Picture(self.svg(), self.words).html
 
     # -------------------------------------------------------------------- numbers
 

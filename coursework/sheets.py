@@ -88,7 +88,7 @@ def prompt(variant: Variant, part: Part, ways: Iterable[str] = ()) -> str:
     """
     if not part.loop or part.id in variant.text.sections:
         return variant.text.section(part.id).text
-    table = words(variant.lang)["loop"]
+    table = engine_words(variant.lang)["loop"]
     loop = variant.text.section(part.loop).text
     asked = part.quantity.removeprefix(f"{part.loop}_")
     symbols = ", ".join(f"`{name}`" for name in part.variables)

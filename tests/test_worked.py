@@ -98,3 +98,12 @@ def test_every_step_of_a_sheet_is_told_by_formula_or_words_and_each_answer_once(
             assert step.formula or step.words or step.value, f"{name}: step {step.name} says nothing"
         asked = {s.name for s in sheet.steps if s.asked}
         assert asked == {p.quantity for p in course[name].variant(4).parts}
+
+
+def difference(whole, sum_of_two):
+    return whole - sum_of_two
+
+
+def test_a_symbol_that_is_a_sum_stands_in_brackets():
+    shown = {"whole": ("L", False), "sum_of_two": ("s + l", False)}
+    assert formula_latex(difference, shown) == r"L - \left(s + l\right)"

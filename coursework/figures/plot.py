@@ -40,7 +40,8 @@ class Axis:
 
     @property
     def title(self) -> Text:
-        unit = rf"\ \ [\mathrm{{{self.unit}}}]" if self.unit else ""
+        raised = self.unit.replace("²", r"}^{2}\mathrm{").replace("³", r"}^{3}\mathrm{")
+        unit = rf"\ \ [\mathrm{{{raised}}}]" if self.unit else ""
         try:
             # Words stay upright; a symbol that the label's reader does not know is written as it comes.
             symbol = self.label if not _is_words(self.label) else rf"\mathrm{{{_spaced(self.label)}}}"
@@ -122,7 +123,7 @@ class Plot:
         body = [line for k in range(len(self.panels)) for line in self._panel(k)]
         low, high = self._reach
         base = self.size[1] - _BOTTOM
-        ticks = _turn_ticks(low, high) if self.horizontal.unit == "°" else _ticks(low, high, 6)
+        ticks = _axis_ticks(self.horizontal, low, high, 6)
         body += [self._number(value, complex(self._x(value), base + 4.2), "middle") for value in ticks]
         middle = complex(_LEFT + _WIDTH / 2, base + 9.4)
         body.append(_letters(self.horizontal.title, middle, "middle"))
@@ -131,9 +132,6 @@ class Plot:
             f'viewBox="0 0 {width} {height}" role="img">',
             f'<rect width="{width}" height="{height}" fill="#fff"/>', *body, "</svg>\n",
         ])  # fmt: skip
-
-    def _repr_svg_(self) -> str:
-        return self.svg()
 
     def _panel(self, place: int) -> list[str]:
         panel, spots = self.panels[place], self.spots[place]
@@ -146,9 +144,9 @@ class Plot:
             return top + _HEIGHT * (high - inside) / (high - low)
 
         out = [_letters(panel.title, complex(_LEFT, top - 2.0), "start")]
-        across = _turn_ticks(*self._reach) if self.horizontal.unit == "°" else _ticks(*self._reach, 6)
+        across = _axis_ticks(self.horizontal, *self._reach, 6)
         grid = [f"M{number(self._x(t))} {number(top)}v{number(_HEIGHT)}" for t in across]
-        ticks = _ticks(low, high, 4)
+        ticks = _axis_ticks(panel, low, high, 4)
         grid += [f"M{number(_LEFT)} {number(y(t))}h{number(_WIDTH)}" for t in ticks]
         out.append(f'<path d="{"".join(grid)}" fill="none" stroke="{GRID}" stroke-width="0.2"/>')
         if low < 0 < high:
@@ -216,15 +214,16 @@ def _ticks(low: float, high: float, count: int) -> list[float]:
     rough = (high - low) / count
     power = 10.0 ** math.floor(math.log10(rough))
     step = next(m * power for m in (1, 2, 5, 10) if m * power >= rough * (1 - 1e-9))
-    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    first, last = math.ceil(low / step - 1e-6), math.floor(high / step + 1e-6)
     return [k * step for k in range(first, last + 1)]
 
 
-def _turn_ticks(low: float, high: float) -> list[float]:
-    """Multiples of 60 degrees over a turn, round values over less."""
-    if high - low < 180:
-        return _ticks(low, high, 6)
-    return [60.0 * k for k in range(math.ceil(low / 60 - 1e-9), math.floor(high / 60 + 1e-9) + 1)]
+def _axis_ticks(axis: Axis, low: float, high: float, count: int) -> list[float]:
+    """Round values; multiples of 60 or 180 degrees where a direction goes far round."""
+    if axis.unit != "°" or high - low < 180:
+        return _ticks(low, high, count)
+    step = 60.0 if count > 4 else 90.0 if high - low < 200 else 180.0
+    return [step * k for k in range(math.ceil(low / step - 1e-6), math.floor(high / step + 1e-6) + 1)]
 
 
 def _runs(x: np.ndarray, y: np.ndarray, turns: bool) -> list[list[tuple[float, float]]]:

@@ -9,8 +9,8 @@ import numpy as np
 
 from coursework.figures.plot import Axis, Plot
 from coursework.language import localise, significant, words
+from coursework.rendering.shown import Picture, Shown
 from coursework.selfstudy.kept import is_blank
-from coursework.selfstudy.shown import Shown
 
 
 def compare(predicted: Mapping[str, Any], found: Mapping[str, Any], lang: str = "fr") -> Shown:
@@ -36,7 +36,10 @@ def compare(predicted: Mapping[str, Any], found: Mapping[str, Any], lang: str = 
 def _agree(guess: Any, value: Any) -> bool:
     if isinstance(value, (bool, np.bool_, str)) or isinstance(guess, (bool, str)):
         return str(guess).strip().casefold() == str(value).strip().casefold()
-    return abs(float(guess) - float(value)) <= 0.1 * abs(float(value))
+    try:
+        return abs(float(guess) - float(value)) <= 0.1 * abs(float(value))
+    except (TypeError, ValueError):
+        return False
 
 
 def _told(value: Any, lang: str) -> str:
@@ -54,7 +57,7 @@ def plot(
     *,
     lang: str = "fr",
     at: float | None = None,
-) -> Plot:
+) -> Shown:
     r"""Curves over one variable, a panel each, as a notebook's cell shows them.
 
     Parameters
@@ -75,4 +78,5 @@ def plot(
     """
     symbol, unit, values = over
     panels = [Axis(label, of, np.asarray(y, dtype=float)) for label, (of, y) in curves.items()]
-    return Plot(Axis(symbol, unit, np.asarray(values, dtype=float)), panels, lang, at)
+    drawn = Plot(Axis(symbol, unit, np.asarray(values, dtype=float)), panels, lang, at)
+    return Shown(lang, Picture(drawn.svg(), f"{', '.join(curves)} / {symbol}"))

@@ -28,6 +28,7 @@ OVER_THE_CYCLE = 3  #: predictions before the plots
 _SAMPLE = range(24)
 _FEW = 3  #: variants of the sample that must differ, for a question to be one
 _RATES = ("rad/s", "mm/s")
+_PEAKS = ("mm", "deg", "N", "N*m", "1")  #: units of what has a largest value worth knowing
 NEAR = 15.0  #: degrees of the driver, for where a curve is highest
 INSTANTS = 721
 
@@ -37,7 +38,7 @@ class Prediction:
     """Something to say beforehand about a quantity.
 
     ``kind`` is ``sign``, ``quadrant``, ``compare`` (with the given quantity ``other``), ``guess`` (a whole
-    number or a case), or over the cycle ``zeros`` (how often it vanishes) or ``highest`` (at which angle of the driver).
+    number or a case), or over the cycle ``zeros`` (how often it changes its sign) or ``highest`` (at which angle of the driver).
     """
 
     id: str
@@ -125,12 +126,16 @@ def moving(variant: Variant) -> tuple[Part, ...]:
 
 
 def over_the_cycle(variant: Variant) -> tuple[Prediction, ...]:
-    """What to predict before the plots: where a rate vanishes, where a length or an effort is largest."""
+    """What to predict before the plots: how often a rate changes its sign, where a length or an effort is largest."""
     rates, others = [], []
     for part in moving(variant):
         if part.kind == "number" and part.unit in _RATES:
+            # The length of a vector never changes its sign: there is nothing to say of it.
+            values = _sample(variant.exercise)[part.quantity]
+            if not _differ(values > 0, values):
+                continue
             rates.append(Prediction(f"zeros_{part.id}", part.quantity, "zeros"))
-        elif part.kind == "number" and "/" not in part.unit:
+        elif part.kind == "number" and part.unit in _PEAKS:
             others.append(Prediction(f"highest_{part.id}", part.quantity, "highest"))
     chosen = [*others[:1], *rates]
     return tuple(chosen[:OVER_THE_CYCLE])

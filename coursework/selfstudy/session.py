@@ -11,15 +11,15 @@ from coursework.errors import BadCourse, BadInput, NoSolution, unknown
 from coursework.figures.plot import Axis, Plot, Spot
 from coursework.language import unit_text, words
 from coursework.marking import Mark, read
+from coursework.rendering.shown import Picture, Shown
 from coursework.rendering.views import points_number
 from coursework.selfstudy import hints, predictions
 from coursework.selfstudy.kept import Kept, is_blank
 from coursework.selfstudy.predictions import Prediction
-from coursework.selfstudy.shown import Picture, Shown
+from coursework.selfstudy.sheet import fresh_variants
 
 if TYPE_CHECKING:
     from coursework.figures import Figure
-    from coursework.motion import Animation
 
 PANELS = 6  #: curves of a plot, unless some are named
 
@@ -74,6 +74,8 @@ def _found(course: str | Path | None) -> Course:
     """A course by its folder, or by its name, beside or above the place where we are."""
     if course is None:
         return open_course()
+    if (Path(course) / "exercises").is_dir():
+        return open_course(course)
     here = Path.cwd()
     for place in (here, *here.parents):
         for folder in (place / course, place):
@@ -134,7 +136,7 @@ class StudySession:
         """The figure to scale."""
         return self.variant.figure
 
-    def motion(self, *effects: str) -> Animation | Shown:
+    def motion(self, *effects: str) -> Shown:
         """The mechanism over its cycle; ``effects`` as in :class:`~coursework.motion.Animation`.
 
         Unless told, paths and velocities, where the solution states them.
@@ -148,8 +150,10 @@ class StudySession:
             moving = self.variant.animation(effects)
         except BadCourse:
             return self._shown(self._said["no_motion"])
-        usual = [e for e in ("position", "velocity") if e in moving.available]
-        return moving if effects else self.variant.animation(usual)
+        if not effects:
+            usual = [e for e in ("position", "velocity") if e in moving.available]
+            moving = self.variant.animation(usual)
+        return self._shown(Picture(moving.svg(), moving.title))
 
     # -------------------------------------------------------------- predictions
 
@@ -184,7 +188,7 @@ class StudySession:
         return self._shown(*lines, self._trouble)
 
     def _left(self, names: Iterable[str]) -> str:
-        return self._said["left"].format(names=", ".join(f"`{n}`" for n in names))
+        return self._said["left"].format(names=_names(names))
 
     def _compared(self, names: Iterable[str]) -> str:
         """Predictions beside what came out, as a list."""
@@ -242,7 +246,9 @@ class StudySession:
             points=points_number(marking.points, self.variant.lang),
             out_of=points_number(marking.out_of, self.variant.lang),
         )
+        before = [n for n in now if answers is not None and is_blank(given.get(n))]
         after = [self._left(unanswered)] if unanswered else []
+        after += [self._said["from_before"].format(names=_names(before))] if before else []
         first = next((n for n, m in marking.items() if m.verdict not in ("correct", "missing")), "")
         after += [self._said["try_hint"].format(call=self._call("hint", first))] if first else []
         asked_before = [p.id for p in predictions.before_answers(self.variant) if p.id in right]
@@ -285,7 +291,7 @@ class StudySession:
         if missing := self._missing():
             return self._shown(missing)
         if not question:
-            names = ", ".join(f"`{n}`" for n in self.variant.part_ids)
+            names = _names(self.variant.part_ids)
             call = self._call("hint", self.variant.part_ids[0])
             return self._shown(self._said["hint"]["which"].format(names=names, call=call))
         texts = hints.steps(self.variant, question, self._right, lambda n: self._call("hint", n))
@@ -356,9 +362,7 @@ class StudySession:
         said = self._said["plot"].format(list=symbols, driver=f"${self.variant.exercise.symbol(driver)}$")
         others = [n for n in parts if parts[n] not in chosen]
         more = (
-            self._said["more_plots"].format(
-                names=", ".join(f"`{n}`" for n in others), call=self._call("plot", others[0])
-            )
+            self._said["more_plots"].format(names=_names(others), call=self._call("plot", others[0]))
             if others
             else ""
         )
@@ -384,21 +388,26 @@ class StudySession:
     def fresh(self, number: int | None = None) -> StudySession:
         """Another variant: the first, second… after the notebook's own; without a number, the next one not begun.
 
+        Only variants that are worth issuing count, as for a class.
+
         What was written for this one stays kept.
 
         Raises
         ------
         BadInput
             A number below 1.
+        Starved
+            The exercise has no more variants.
         """
-        if number is None:
-            begun = {seed for seed in self._kept.seeds if self._kept.of(seed, "answers")}
-            number = 1
-            while self._base + number in begun or self._base + number == self.variant.seed:
-                number += 1
-        if isinstance(number, bool) or not isinstance(number, int) or number < 1:
+        if number is not None and (isinstance(number, bool) or not isinstance(number, int) or number < 1):
             raise BadInput(f"fresh variants are counted from 1 on; found {number!r}")
-        variant = self.variant.exercise.variant(self._base + number, self.variant.lang)
+        begun = {seed for seed in self._kept.seeds if self._kept.of(seed, "answers")}
+        # One of so many is not begun.
+        variants = fresh_variants(
+            self.variant.exercise, self._base, number or len(begun) + 2, self.variant.lang
+        )
+        left = [v for v in variants if v.seed not in begun and v.seed != self.variant.seed]
+        variant = left[0] if number is None else variants[-1]
         return StudySession(variant, self._kept, self._base)
 
     def progress(self) -> Shown:
@@ -437,6 +446,10 @@ class StudySession:
 
     def _shown(self, *pieces: str | Picture) -> Shown:
         return Shown(self.variant.lang, *pieces)
+
+
+def _names(names: Iterable[str]) -> str:
+    return ", ".join(f"`{n}`" for n in names)
 
 
 def _sign(mark: Mark) -> str:

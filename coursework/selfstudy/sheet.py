@@ -6,12 +6,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from coursework.course import builtin_root
+from coursework.errors import Starved
 from coursework.handout import Handout, Question
+from coursework.issuing import distinct_variants
 from coursework.selfstudy import predictions
 from coursework.selfstudy.predictions import Prediction
 
 if TYPE_CHECKING:
-    from coursework.course import Variant
+    from coursework.course import CourseExercise, Variant
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,7 @@ class StudySheet:
     cycle: tuple[Ask, ...]  #: predictions before the curves
     moves: bool  #: whether there are curves over a cycle
     animates: bool  #: whether the figure moves
-    questions: tuple[Question, ...]  #: of the first fresh variant
+    questions: tuple[Question, ...]  #: of the first fresh variant; none where there is no other variant
 
 
 def study_sheet(variant: Variant, student: str = "") -> StudySheet:
@@ -49,8 +51,28 @@ def study_sheet(variant: Variant, student: str = "") -> StudySheet:
         cycle=tuple(_ask(variant, p) for p in predictions.over_the_cycle(variant)),
         moves=bool(predictions.moving(variant)),
         animates=exercise.spec.driver is not None and exercise.spec.figure is not None,
-        questions=exercise.variant(variant.seed + 1, variant.lang).handout().questions,
+        questions=_fresh_questions(variant),
     )
+
+
+def fresh_variants(exercise: CourseExercise, seed: int, count: int, lang: str) -> list[Variant]:
+    """The first variants after that of a seed that are worth issuing, all different from it and each other.
+
+    Raises
+    ------
+    Starved
+        So many do not exist.
+    """
+    found = distinct_variants(exercise, seed + 1, count + 1, lang)
+    base = exercise.variant(seed, lang)
+    return [v for v in found if v.given != base.given][:count]
+
+
+def _fresh_questions(variant: Variant) -> tuple[Question, ...]:
+    try:
+        return fresh_variants(variant.exercise, variant.seed, 1, variant.lang)[0].handout().questions
+    except Starved:
+        return ()
 
 
 def _ask(variant: Variant, prediction: Prediction) -> Ask:
