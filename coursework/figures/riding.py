@@ -14,10 +14,8 @@ from coursework.figures.ink import turn
 from coursework.figures.placing import ANGLES, NAMES, Wish
 from coursework.figures.text import read
 
-_ON_LINE, _ON_LABEL = (
-    6.0,
-    12.0,
-)  #: what it costs to lie on a line or on another label, in mm away from the best place
+_ON_LINE = 6.0  #: what it costs to lie on a line, in mm away from the best place
+_ON_LABEL = 12.0  #: the same on another label
 _TURN = 0.25  #: what it costs to lie a sixteenth of a turn from the preferred direction, mm
 _START, _FARTHER = 0.5, 0.25  #: what it costs to leave a place, and each mm of the way to another
 _STEPS = (0.0, 1.0, 2.2, 4.0, 6.0)
