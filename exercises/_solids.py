@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from coursework.model import GivenSpec, chosen, drawn
-from coursework.solids import FREEDOMS, aligned, in_parallel, in_series, joint_of
+from coursework.solids import FREEDOMS, Parallel, Series, aligned, in_parallel, in_series, joint_of
 
 COMBINE = {"parallel": in_parallel, "series": in_series}
 
@@ -58,14 +58,13 @@ def freedoms_of(joint):
 
 
 @cache
-def equivalent_of(combination: str, *joints: tuple) -> tuple[int, str]:
-    """Freedoms and name of the equivalent joint; each joint is (name, direction, x, y, z).
+def combined(combination: str, *joints: tuple) -> Parallel | Series:
+    """The joints together, with their rank and the equivalent joint; each joint is (name, direction, x, y, z).
 
     Every axis lies along x, y or z: stretching space along these changes neither a rank nor a name, so that it
     is enough to know which coordinates are zero.
     """
-    made = COMBINE[combination]([aligned(name, along, point) for name, along, *point in joints])
-    return made.rank.value, made.equivalent.name
+    return COMBINE[combination]([aligned(name, along, point) for name, along, *point in joints])
 
 
 @cache

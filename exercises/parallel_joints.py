@@ -5,19 +5,19 @@ import numpy as np
 from coursework.model import Exercise, Part
 from coursework.solids import EQUIVALENTS, each_distinct
 
-from ._solids import WITH_DIRECTION, WITH_LINE, coordinate, direction, equivalent_of, joint_kind
+from ._solids import WITH_DIRECTION, WITH_LINE, combined, coordinate, direction, joint_kind
 
 
 def _of_signs(joint_1, direction_1, joint_2, direction_2, x, y, z):
-    return equivalent_of("parallel", (joint_1, direction_1, 0, 0, 0), (joint_2, direction_2, x, y, z))
+    return combined("parallel", (joint_1, direction_1, 0, 0, 0), (joint_2, direction_2, x, y, z))
 
 
 def _rank(*row):
-    return _of_signs(*row)[0]
+    return _of_signs(*row).rank.value
 
 
 def _name(*row):
-    return _of_signs(*row)[1]
+    return _of_signs(*row).equivalent.name
 
 
 def moves(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):

@@ -3,12 +3,12 @@
 from coursework.model import Exercise, Part
 from coursework.solids import EQUIVALENTS
 
-from ._solids import WITH_DIRECTION, WITH_LINE, coordinate, direction, equivalent_of, joint_kind
+from ._solids import WITH_DIRECTION, WITH_LINE, combined, coordinate, direction, joint_kind
 
 
 def _name(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
     second = (joint_2, direction_2, x2 != 0, y2 != 0, z2 != 0)
-    return equivalent_of("series", (joint_1, direction_1, 0, 0, 0), second)[1]
+    return combined("series", (joint_1, direction_1, 0, 0, 0), second).equivalent.name
 
 
 def has_direction(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
