@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -35,6 +36,31 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = 
     return render(environment_of(tuple(folders), names["lang"]), "_page.typ.j2", page)
 
 
+_DEFINITIONS_END = "\n//=\n"
+_PIECE = re.compile(r"(?<=\n)//\(\n(.*?)\n//\)(?=\n)", re.DOTALL)
+
+
+def files(typst_source: str) -> dict[str, bytes]:
+    """A source cut into files: ``main.typ``, the definitions, and the pieces that main includes.
+
+    What the typesetter remembers of a layout holds for one place in one file: of one file, nothing would be
+    remembered below the first place where two sheets differ.
+    """
+    definitions, cut, rest = typst_source.partition(_DEFINITIONS_END)
+    if not cut:
+        return {"main.typ": typst_source.encode()}
+    opening = '#import "definitions.typ": *\n'
+    found = {"definitions.typ": definitions.encode()}
+
+    def include(piece: re.Match[str]) -> str:
+        name = f"{len(found)}.typ"
+        found[name] = (opening + piece[1]).encode()
+        return f'#include "{name}"'
+
+    found["main.typ"] = (opening + _PIECE.sub(include, rest)).encode()
+    return found
+
+
 def compile_pdf(typst_source: str) -> bytes:
     """The tagged PDF (PDF/UA-1 and PDF/A-2a) of a Typst source; the same bytes for the same source.
 
@@ -47,7 +73,7 @@ def compile_pdf(typst_source: str) -> bytes:
     if compiler is None:
         compiler = _LOCAL.compiler = typst.Compiler(ignore_system_fonts=True)
     with _complaints():
-        return compiler.compile(input=typst_source.encode(), **_OUTPUT)
+        return compiler.compile(input=files(typst_source), **_OUTPUT)
 
 
 def compile_booklet(typst_source: str) -> tuple[bytes, tuple[tuple[int, int], ...]]:
@@ -57,7 +83,7 @@ def compile_booklet(typst_source: str) -> tuple[bytes, tuple[tuple[int, int], ..
     """
     import typst
 
-    written = typst_source.encode()
+    written = files(typst_source)
     with _complaints():
         # Asked of the compiler that then writes the file, the pages are laid out once.
         compiler = typst.Compiler(input=written, ignore_system_fonts=True)
