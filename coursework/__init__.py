@@ -12,11 +12,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from coursework.course import Course, Variant, open_course
+    from coursework.course import Course, open_course
     from coursework.errors import CannotAssemble, CourseworkError, NoSolution, Undefined, UnknownName
     from coursework.motion import show_motion
     from coursework.selfstudy.lessons import compare, plot
     from coursework.selfstudy.session import study
+    from coursework.variant import Variant
 
 __version__ = "0.1.0"
 __all__ = [
@@ -37,7 +38,7 @@ __all__ = [
 
 _HOMES = {
     "Course": "course",
-    "Variant": "course",
+    "Variant": "variant",
     "compare": "selfstudy.lessons",
     "open_course": "course",
     "plot": "selfstudy.lessons",

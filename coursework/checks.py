@@ -18,8 +18,9 @@ import numpy as np
 from coursework import draws
 from coursework.blocks import processors
 from coursework.comparing import distance
-from coursework.course import ALL, Course, CourseExercise, Variant, open_course
+from coursework.course import Course, open_course
 from coursework.errors import CourseworkError, Starved
+from coursework.exercise import ALL, CourseExercise
 from coursework.expressions import MAX_LENGTH, parse_equation
 from coursework.graph import plain_scalar
 from coursework.issuing import distinct_variants
@@ -30,6 +31,7 @@ from coursework.loop_marking import fault_answers, judge_of
 from coursework.model import Part
 from coursework.rounding import student_who_rounds
 from coursework.sheets import prompt
+from coursework.variant import Variant
 from coursework.worth import SHOWN, conditioning, judged_wrong, visibility, worthy
 
 RESIDUAL = 1e-9  #: largest relative residual of the governing equations

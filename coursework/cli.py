@@ -286,7 +286,7 @@ def solve(
     given = _settings(settings)
     found = one.solve(**given, only=_split(only) or None, effects=_split(effects))
     used = {n: one.spec.given[n].default for n in one.spec.given if one.spec.given[n].default is not None}
-    used |= {n: one._accept(n, v) for n, v in given.items()}
+    used |= {n: one.intake.value(n, v) for n, v in given.items()}
     units = one.units
     content = {
         "exercise": exercise,
@@ -410,7 +410,7 @@ def _drive(exercise: Any, text: str) -> float:
     if not equals or name.strip() != effort:
         wanted = f"{effort}=VALUE" if effort else "nothing: the exercise names no effort of its driver"
         raise WrongValue(f"--drive takes {wanted}; found {text!r}")
-    return exercise._accept(effort, value.strip())
+    return exercise.intake.value(effort, value.strip())
 
 
 # ---------------------------------------------------------------------- animate

@@ -179,7 +179,7 @@ class Construction:
 
     def html(self) -> str:
         """Equations, table, steps and whole drawing, as a piece of a web page."""
-        from coursework.course import builtin_root
+        from coursework.builtin import builtin_root
         from coursework.rendering import Renderer
 
         return Renderer([builtin_root() / "templates"]).construction_html(self)

@@ -15,12 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from coursework.course import Variant, open_course
+from coursework.course import open_course
 from coursework.issued import Issued
 from coursework.key import Key
 from coursework.language import languages, significant
 from coursework.model import Part
 from coursework.rendering.markup import to_text
+from coursework.variant import Variant
 
 CLASS = Path(__file__).parent / "class_of_twelve"
 ROSTER = CLASS / "roster.csv"

@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from coursework.blocks import processors
-from coursework.course import Course, Variant, open_course
+from coursework.course import Course, open_course
 from coursework.errors import CourseworkError, nearest
 from coursework.issued import Issued
 from coursework.key import keys_of
@@ -23,6 +23,7 @@ from coursework.marking import Mark, mark, right_feedback
 from coursework.model import Part
 from coursework.plainly import plainly_right
 from coursework.submissions import Rejected, Row
+from coursework.variant import Variant
 
 CHUNK = 500  #: sheets marked together
 WORTH_PROCESSES = 20_000  #: answers; fewer are marked before a process has started

@@ -17,11 +17,13 @@ from typing import Any
 import numpy as np
 
 from coursework import draws
-from coursework.course import ALL, USUAL, Course, CourseExercise, Variant
+from coursework.course import Course
 from coursework.errors import BadInput, Starved, unknown
+from coursework.exercise import ALL, USUAL, CourseExercise
 from coursework.issued import ISSUED_FORMAT
 from coursework.language import languages
 from coursework.submissions import delimiter_of
+from coursework.variant import Variant
 from coursework.worth import worthy
 
 _STUDENT_COLUMNS = ("student", "name", "étudiant", "etudiant", "élève", "eleve", "nom")

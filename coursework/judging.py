@@ -15,7 +15,7 @@ from coursework.reading import Reading
 from coursework.solution import Judged
 
 if TYPE_CHECKING:
-    from coursework.course import Variant
+    from coursework.variant import Variant
 
 SHEETS = 64  #: ways at most to read one student's answers to the parts of one judge
 

@@ -22,7 +22,8 @@ from coursework.rounding import envelope
 from coursework.rules import ILL_DEGREES, ILL_SHARE, Rules
 
 if TYPE_CHECKING:
-    from coursework.course import CourseExercise, Variant
+    from coursework.exercise import CourseExercise
+    from coursework.variant import Variant
 
 #: Factors by which a unit is mistaken for another.
 _UNIT_FACTORS = (1e3, 1e-3, 10.0, 0.1)
@@ -223,7 +224,7 @@ class Batch:
             return {}
         wanted, effects = (*self.quantities, *self.along), self.exercise.spec.effects
         try:
-            given = self.exercise.accepted(self.given)
+            given = self.exercise.intake.values(self.given)
             return self.exercise.solution.graph.everything(wanted, given, effects)
         except CourseworkError:
             return {}  # each variant by itself then

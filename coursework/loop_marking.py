@@ -29,8 +29,9 @@ from coursework.loops import Fault, Loop
 from coursework.reading import Reading
 
 if TYPE_CHECKING:
-    from coursework.course import CourseExercise, Variant
+    from coursework.exercise import CourseExercise
     from coursework.model import Part
+    from coursework.variant import Variant
 
 _VARIANTS = 12
 _STEP = 1e-5

@@ -32,7 +32,8 @@ from coursework.reading import (
 )
 
 if TYPE_CHECKING:
-    from coursework.course import CourseExercise, Variant
+    from coursework.exercise import CourseExercise
+    from coursework.variant import Variant
 
 ECHO = 60  #: characters of an answer quoted back in feedback
 

@@ -21,7 +21,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from functools import lru_cache
+from functools import cache, lru_cache
 from typing import Any
 
 from coursework.errors import BadCourse, WrongValue, nearest
@@ -182,6 +182,18 @@ class Part:
         """The largest accepted distance from a reference, in the part's unit."""
         return max(self.atol, self.rtol * abs(reference))
 
+    def is_asked(self, given: Mapping[str, Any]) -> bool:
+        """Whether a variant with these given values asks the part; so too when they do not tell."""
+        if self.when is None:
+            return True
+        names = _parameters(self.when)
+        return any(n not in given for n in names) or bool(self.when(*[given[n] for n in names]))
+
+
+@cache
+def _parameters(function: Callable[..., Any]) -> tuple[str, ...]:
+    return tuple(inspect.signature(function).parameters)
+
 
 def _loop_form(part: Part) -> tuple[str, int] | None:
     match = re.fullmatch(rf"{re.escape(part.loop)}_(x|y|complex)(?:_(d?dot))?", part.quantity)
@@ -303,7 +315,7 @@ class Exercise:
         earlier: list[str] = []
         for name, spec in self.given.items():
             for bound in (spec.low, spec.high):
-                needs = tuple(inspect.signature(bound).parameters) if callable(bound) else ()
+                needs = _parameters(bound) if callable(bound) else ()
                 for need in needs:
                     if need not in earlier:
                         raise BadCourse(
@@ -315,6 +327,10 @@ class Exercise:
             for i in group:
                 if i not in ids:
                     raise BadCourse(f"either_order names no part {i!r}{nearest(i, ids)}")
+
+    def told(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """What the statement's text may use besides the given values."""
+        return {} if self.tells is None else self.tells(*[given[n] for n in _parameters(self.tells)])
 
     def part(self, part_id: str) -> Part | None:
         """The part of this id, or None."""

@@ -19,7 +19,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coursework.course import Variant
 from coursework.degrees import wrap
 from coursework.errors import BadCourse, CannotAssemble, CourseworkError, Undefined, WrongValue, unknown
 from coursework.figures.moving import Arrow, Drawing, Key, Spot, drawing, extent
@@ -27,6 +26,7 @@ from coursework.graph import Graph
 from coursework.language import localise, significant, unit_text, words
 from coursework.scenes import LEVELS, Scene
 from coursework.solution import Moving
+from coursework.variant import Variant
 
 if TYPE_CHECKING:
     from coursework.figures.elements import Element

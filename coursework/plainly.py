@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from coursework.comparing import SLACK
-from coursework.course import CourseExercise
+from coursework.exercise import CourseExercise
 from coursework.key import Batch
 from coursework.model import Part
 from coursework.reading import read_numbers

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from coursework.course import CourseExercise
 from coursework.errors import BadCourse, Undefined, WrongValue, unknown
+from coursework.exercise import CourseExercise
 from coursework.model import Driver
 
 #: Kinematic effects, and the units of what each shows.
@@ -107,7 +107,7 @@ class Scene:
     @cached_property
     def _accepted(self) -> dict[str, Any]:
         """The given values in canonical units."""
-        return {n: self.exercise._accept(n, v) for n, v in self.given.items()}
+        return {n: self.exercise.intake.value(n, v) for n, v in self.given.items()}
 
     def _driven(self, angle: Any) -> dict[str, Any]:
         """The given values with the driver at an angle."""
@@ -186,7 +186,7 @@ class Scene:
 
     def _evaluated(self) -> tuple[str, ...]:
         graph = self.exercise.solution.graph
-        names = {**self.exercise._defaults, **self._driven(0.0)}
+        names = {**self.exercise.intake.defaults, **self._driven(0.0)}
         plan = graph.plan(self.quantities, frozenset(names) & self.exercise.quantity_names, self._own)
         return tuple(name for name in plan if not name.startswith("_"))  # a hidden one is the solution's own
 
@@ -212,8 +212,8 @@ class _Motion:
             )
         self.driver = driver
         self.graph = scene.exercise.solution.graph
-        accepted = {n: scene.exercise._accept(n, v) for n, v in scene.given.items()}
-        values = {**scene.exercise._defaults, **accepted}
+        accepted = {n: scene.exercise.intake.value(n, v) for n, v in scene.given.items()}
+        values = {**scene.exercise.intake.defaults, **accepted}
         self.fixed = {n: v for n, v in values.items() if n in scene.exercise.quantity_names}
         try:
             self.start_angle, self.start_speed = float(values[driver.angle]), float(values[driver.speed])

@@ -20,8 +20,8 @@ from coursework.polygons import Polygon
 from coursework.worked import formula_latex, number_latex
 
 if TYPE_CHECKING:
-    from coursework.course import Variant
     from coursework.figures import Figure
+    from coursework.variant import Variant
 
 PRINTED_DIGITS = 5  #: significant digits of a value in a worked solution
 _WITHOUT_SYMBOL = ("choice", "equation")

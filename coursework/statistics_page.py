@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from coursework.charts import bars, formula_label, histogram, plain_label
-from coursework.course import Course, CourseExercise
+from coursework.course import Course
 from coursework.errors import CourseworkError
+from coursework.exercise import CourseExercise
 from coursework.language import localise, plain, words
 from coursework.rendering.markup import drawable, to_text
 from coursework.rendering.typography import typeset

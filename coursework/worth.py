@@ -13,13 +13,14 @@ from functools import lru_cache
 from typing import Any
 
 from coursework.comparing import distance
-from coursework.course import CourseExercise, Variant
 from coursework.errors import CourseworkError
+from coursework.exercise import CourseExercise
 from coursework.expressions import parse_equation
 from coursework.judging import judged, judges_of
 from coursework.key import Key, exists, ill_limit, keys_of
 from coursework.model import Part
 from coursework.solution import Judged
+from coursework.variant import Variant
 
 SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
 HIDDEN = 0.25  #: half-widths within which nothing can tell it

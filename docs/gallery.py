@@ -15,12 +15,14 @@ from html import escape
 from pathlib import Path
 
 import coursework
-from coursework.course import Course, CourseExercise, Variant
+from coursework.course import Course
+from coursework.exercise import CourseExercise
 from coursework.handout import Question
 from coursework.language import plain, with_unit
 from coursework.model import GivenSpec
 from coursework.rendering.formulas import to_mathml
 from coursework.rendering.markup import html_inline, to_html
+from coursework.variant import Variant
 
 SEED = 0  #: the variant shown
 PPI = 75  #: of the picture of a sheet

@@ -12,8 +12,8 @@ import typst
 from rendering_samples import answer_sheet, feedback_sheet, handout, many_given
 
 from coursework import booklets, building, issuing
+from coursework.builtin import builtin_root
 from coursework.cli import DONE, run
-from coursework.course import builtin_root
 from coursework.errors import BadStatement, UnknownName
 from coursework.rendering import PAPERS, Renderer
 from coursework.rendering.pdf import source

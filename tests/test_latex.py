@@ -12,8 +12,8 @@ from rendering_samples import ANSWER_DIGITS, answer_sheet, handout, many_given
 from test_rendering import FORMULAS, call
 
 from coursework import building, issuing
+from coursework.builtin import builtin_root
 from coursework.cli import DONE, run
-from coursework.course import builtin_root
 from coursework.rendering import PAPERS, Renderer
 from coursework.rendering.formula_tree import GRIDS, MACROS
 from coursework.rendering.formulas import spoken

@@ -17,7 +17,7 @@ GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "theta2": 135.0, "omega2": 5.
 @pytest.fixture(scope="module")
 def slotted(course):
     """The course's own numbers: rA = 319.80 mm, theta4 = 104.64 deg."""
-    from coursework.course import Variant
+    from coursework.variant import Variant
 
     return Variant(course["slotted_mechanism"], 0, GIVEN, "fr")
 
@@ -142,7 +142,7 @@ def test_a_hostile_answer_cannot_write_markup_into_feedback(slotted):
 
 
 def test_both_readings_of_an_ambiguous_group_are_tried(course):
-    from coursework.course import Variant
+    from coursework.variant import Variant
 
     variant = Variant(
         course["slotted_mechanism"], 0, {**GIVEN, "r1": 1000.0, "r2": 234.0, "theta2": 90.0}, "fr"

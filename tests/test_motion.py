@@ -13,8 +13,8 @@ import pytest
 
 import coursework
 from coursework.cli import run
-from coursework.course import CourseExercise
 from coursework.errors import BadCourse, UnknownName, WrongValue
+from coursework.exercise import CourseExercise
 from coursework.figures import link, pin, rail, rotation_arrow
 from coursework.figures.moving import drawing
 from coursework.figures.riding import ride

@@ -16,7 +16,7 @@ import pytest
 import typst
 from rendering_samples import ANSWER_DIGITS, answer_sheet, feedback_sheet, handout, many_given
 
-from coursework.course import builtin_root
+from coursework.builtin import builtin_root
 from coursework.errors import BadCourse, BadStatement
 from coursework.handout import Given
 from coursework.rendering import Renderer

@@ -12,8 +12,8 @@ import numpy as np
 
 from coursework.accuracy.study import Study
 from coursework.accuracy.ways import MOTION, Values, exactly, ways
-from coursework.course import CourseExercise
 from coursework.errors import BadCourse, BadInput
+from coursework.exercise import CourseExercise
 from coursework.scenes import INERTIA, Scene
 
 GENERIC, HARD = "generic", "hard"
@@ -94,7 +94,7 @@ class _Trial:
         else:
             self.timed = np.random.default_rng(1).uniform(-180.0, 180.0, count)
             self.compared = self.timed[: 60 if quick else 400]
-        given = {**exercise._defaults, **given}
+        given = {**exercise.intake.defaults, **given}
         self.given = {
             n: v if isinstance(v, str) else float(v)
             for n, v in given.items()
@@ -227,8 +227,8 @@ class _EnergyIntegral:
         self.graph = scene.exercise.solution.graph.textbook
         mpf = self.context.mpf
         given = {
-            **scene.exercise._defaults,
-            **{n: scene.exercise._accept(n, v) for n, v in scene.given.items()},
+            **scene.exercise.intake.defaults,
+            **{n: scene.exercise.intake.value(n, v) for n, v in scene.given.items()},
         }
         given = {n: v for n, v in given.items() if n in scene.exercise.quantity_names}
         self.start_angle = given.pop(self.driver.angle)

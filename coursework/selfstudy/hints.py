@@ -19,8 +19,8 @@ from coursework.rendering.views import chain_on_lines, given_formula, given_word
 from coursework.worked import formula_latex, number_latex
 
 if TYPE_CHECKING:
-    from coursework.course import Variant
     from coursework.handout import Step
+    from coursework.variant import Variant
 
 _DIGITS = 6
 _UNFINISHED = re.compile(r"(?:(?<=[.!?])|\A)[^.!?]*[^.!?\s]\s*\Z")
@@ -129,7 +129,7 @@ def _words(variant: Variant, quantity: str) -> str:
 
 
 def _is_free(variant: Variant, section: str) -> bool:
-    path = variant.exercise._text_file("solutions", variant.lang)
+    path = variant.exercise.text_file("solutions", variant.lang)
     used = variables(path, path.stat().st_mtime_ns).get(section)
     return used is not None and used <= variant.printed.keys()
 

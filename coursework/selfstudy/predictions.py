@@ -21,7 +21,8 @@ from coursework.model import Part
 from coursework.selfstudy.kept import is_blank
 
 if TYPE_CHECKING:
-    from coursework.course import CourseExercise, Variant
+    from coursework.exercise import CourseExercise
+    from coursework.variant import Variant
 
 MOST = 6  #: predictions before the answers
 OVER_THE_CYCLE = 3  #: predictions before the plots

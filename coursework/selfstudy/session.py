@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from coursework.course import Course, Variant, open_course
+from coursework.course import Course, open_course
 from coursework.errors import BadCourse, BadInput, NoSolution, unknown
 from coursework.figures.plot import Axis, Plot, Spot
 from coursework.language import unit_text, words
@@ -17,6 +17,7 @@ from coursework.selfstudy import hints, predictions
 from coursework.selfstudy.kept import Kept, is_blank
 from coursework.selfstudy.predictions import Prediction
 from coursework.selfstudy.sheet import fresh_variants
+from coursework.variant import Variant
 
 if TYPE_CHECKING:
     from coursework.figures import Figure

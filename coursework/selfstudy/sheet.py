@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from coursework.course import builtin_root
+from coursework.builtin import builtin_root
 from coursework.errors import Starved
 from coursework.handout import Handout, Question
 from coursework.issuing import distinct_variants
@@ -13,7 +13,8 @@ from coursework.selfstudy import predictions
 from coursework.selfstudy.predictions import Prediction
 
 if TYPE_CHECKING:
-    from coursework.course import CourseExercise, Variant
+    from coursework.exercise import CourseExercise
+    from coursework.variant import Variant
 
 
 @dataclass(frozen=True)
