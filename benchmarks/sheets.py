@@ -1,6 +1,6 @@
 """A class's sheets: a thousand students, each with a sheet and its worked solution as PDF.
 
-python benchmarks/sheets.py [EXERCISE] [STUDENTS]
+python benchmarks/sheets.py [EXERCISE] [STUDENTS] [--no-polygons]
 """
 
 from __future__ import annotations
@@ -26,18 +26,20 @@ def peak_megabytes() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1 if sys.platform == "darwin" else 1024)
 
 
-def build(name: str, first: int, students: int, formats: tuple[str, ...], out: Path) -> tuple[float, float]:
+def build(
+    name: str, first: int, students: int, formats: tuple[str, ...], out: Path, polygons: bool = True
+) -> tuple[float, float]:
     """Seconds of a build of sheets and solutions, on the wall and of all processors."""
     course = coursework.open_course()
     wall, processors = time.perf_counter(), time.process_time()
     issues = issuing.issue(course, [name], first_seed=first, count=students, langs=["fr"])
-    building.write(out, list(building.files(course, issues, formats)))
+    building.write(out, list(building.files(course, issues, formats, polygons=polygons)))
     return time.perf_counter() - wall, time.process_time() - processors
 
 
-def by_latex(name: str, folder: Path) -> float:
+def by_latex(name: str, folder: Path, polygons: bool) -> float:
     """Seconds that pdflatex takes for a file of the same content, one after another."""
-    build(name, 0, BY_LATEX // 2, ("tex",), folder)
+    build(name, 0, BY_LATEX // 2, ("tex",), folder, polygons)
     sources = sorted(folder.rglob("*.tex"))
     start = time.perf_counter()
     for source in sources:
@@ -47,15 +49,18 @@ def by_latex(name: str, folder: Path) -> float:
 
 
 def main() -> None:
-    name = sys.argv[1] if len(sys.argv) > 1 else "slotted_mechanism"
-    students = int(sys.argv[2]) if len(sys.argv) > 2 else 1000
-    print(f"{machine()}; {name}, a sheet and a worked solution for each student\n")
+    told = [argument for argument in sys.argv[1:] if argument != "--no-polygons"]
+    polygons = "--no-polygons" not in sys.argv
+    name = told[0] if told else "slotted_mechanism"
+    students = int(told[1]) if len(told) > 1 else 1000
+    drawn = "with its polygons" if polygons else "without polygons"
+    print(f"{machine()}; {name}, a sheet and a worked solution {drawn} for each student\n")
     rows = []
     done = 0
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder)
         for count in (students // 10, students * 4 // 10, students // 2):
-            wall, processors = build(name, done, count, ("pdf",), out / f"{done}")
+            wall, processors = build(name, done, count, ("pdf",), out / f"{done}", polygons)
             done += count
             rows.append(
                 (
@@ -68,7 +73,7 @@ def main() -> None:
             )
         print_table(("students", "s", "ms a PDF", "processor ms a PDF", "peak MB"), rows)
         if shutil.which("pdflatex"):
-            each = by_latex(name, out / "latex")
+            each = by_latex(name, out / "latex", polygons)
             total = sum(float(row[1]) for row in rows) / (2 * done)
             rows = [("pdflatex, one after another", f"{each * 1e3:.0f}", f"{each / total:.0f}")]
             print_table(("the same content by", "ms a PDF", "× as long"), rows)

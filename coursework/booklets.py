@@ -37,12 +37,16 @@ class _Booklet:
     lang: str
     issues: tuple[Issue, ...]
     name: str
+    polygons: bool
 
     def handouts(self) -> list:
         return [i.variant.in_language(self.lang).handout(i.student) for i in self.issues]
 
     def answer_sheets(self) -> list:
-        return [i.variant.in_language(self.lang).answer_sheet(i.student) for i in self.issues]
+        return [
+            i.variant.in_language(self.lang).answer_sheet(i.student, polygons=self.polygons)
+            for i in self.issues
+        ]
 
     def rows(self, pages: Pages) -> list[dict[str, object]]:
         return [
@@ -59,12 +63,14 @@ class _Booklet:
         ]
 
 
-def files(course: Course, renderer: Renderer, issues: Sequence[Issue]) -> Iterator[File]:
+def files(
+    course: Course, renderer: Renderer, issues: Sequence[Issue], *, polygons: bool = True
+) -> Iterator[File]:
     """The booklets of a build, and after them the table of the students' pages.
 
     The files are to be made in this order, by one thread or several.
     """
-    wanted = list(_booklets(issues))
+    wanted = list(_booklets(issues, polygons))
     pages: list[Future[Pages]] = [Future() for _ in wanted]
     for booklet, found in zip(wanted, pages, strict=True):
         make = partial(_handouts, renderer, booklet, found)
@@ -75,7 +81,7 @@ def files(course: Course, renderer: Renderer, issues: Sequence[Issue]) -> Iterat
     yield File(Path("handouts") / "pages.csv", lambda: _table(wanted, pages))
 
 
-def _booklets(issues: Sequence[Issue]) -> Iterator[_Booklet]:
+def _booklets(issues: Sequence[Issue], polygons: bool) -> Iterator[_Booklet]:
     groups: dict[tuple[str, str], list[Issue]] = {}
     for issue in issues:
         for lang in issue.langs:
@@ -85,7 +91,7 @@ def _booklets(issues: Sequence[Issue]) -> Iterator[_Booklet]:
         for start in range(0, len(group), SHEETS):
             part = tuple(group[start : start + SHEETS])
             which = f".{start + 1:0{digits}}-{start + len(part):0{digits}}" if len(group) > SHEETS else ""
-            yield _Booklet(lang, part, f"{exercise}.{lang}{which}")
+            yield _Booklet(lang, part, f"{exercise}.{lang}{which}", polygons)
 
 
 def _handouts(renderer: Renderer, booklet: _Booklet, found: Future[Pages]) -> bytes:

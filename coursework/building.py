@@ -40,19 +40,21 @@ def files(
     practice: bool = False,
     paper: str = "a4",
     booklet: bool = False,
+    polygons: bool = True,
 ) -> Iterator[File]:
     """Every file of a build, in order.
 
     ``practice`` makes the notebooks self-study notebooks, which check answers with the installed package. ``paper`` is
     ``a4`` or ``letter``. ``booklet`` adds the sheets of all students in one PDF for each exercise and
-    language. A students' copy of the course gives the handouts alone.
+    language. Without ``polygons`` the worked solutions leave out the drawn velocity and acceleration polygons. A
+    students' copy of the course gives the handouts alone.
     """
     renderer = course.renderer.on(paper)
     for issue in issues:
         for lang in issue.langs:
-            yield from _sheets(course, renderer, issue, lang, formats, practice)
+            yield from _sheets(course, renderer, issue, lang, formats, practice, polygons)
     if booklet:
-        yield from booklets.files(course, renderer, issues)
+        yield from booklets.files(course, renderer, issues, polygons=polygons)
     content = issued_content(course, issues)
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
     yield File(Path("answers.csv"), _text(lambda: csv_text(form_rows(issues), COLUMNS)))
@@ -64,7 +66,13 @@ def files(
 
 
 def _sheets(
-    course: Course, renderer: Renderer, issue: Issue, lang: str, formats: Sequence[str], practice: bool
+    course: Course,
+    renderer: Renderer,
+    issue: Issue,
+    lang: str,
+    formats: Sequence[str],
+    practice: bool,
+    polygons: bool,
 ) -> Iterator[File]:
     variant = issue.variant.in_language(lang)
     name = variant.exercise.name
@@ -75,7 +83,7 @@ def _sheets(
         return variant.handout(issue.student)
 
     def solution():
-        return variant.answer_sheet(issue.student)
+        return variant.answer_sheet(issue.student, polygons=polygons)
 
     def study():
         return renderer.study(variant.study_sheet(issue.student))
@@ -95,7 +103,7 @@ def _sheets(
     if course.has_solutions and "html" in formats:
         yield File(_with(for_staff, ".solution.html"), _text(lambda: renderer.html(solution())))
     if course.has_solutions and "tex" in formats:
-        drawn = variant.exercise.solution.polygons is not None
+        drawn = polygons and variant.exercise.solution.polygons is not None
         yield from _tex(renderer, for_staff, ".solution.tex", "solution-figure", solution, polygons=drawn)
 
 

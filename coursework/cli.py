@@ -583,6 +583,11 @@ def accuracy(
 )
 @click.option("--booklet", is_flag=True, help="Also all students' sheets in one PDF, to print at once.")
 @click.option(
+    "--polygons/--no-polygons",
+    default=True,
+    help="Velocity and acceleration polygons in the worked solutions; without them a build takes two thirds of the time.",
+)
+@click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."
 )
 @click.option("--overwrite", is_flag=True, help="Replace what was issued there before.")
@@ -599,6 +604,7 @@ def build(
     practice: bool,
     paper: str,
     booklet: bool,
+    polygons: bool,
     out: Path,
     overwrite: bool,
 ) -> None:
@@ -620,6 +626,7 @@ def build(
         practice=practice,
         paper=paper,
         booklet=booklet,
+        polygons=polygons,
         overwrite=overwrite,
     )
     click.echo(f"{written} files in {out}: handouts/ to give away, issued.json and answers.csv to keep")
@@ -641,6 +648,7 @@ def build_files(
     practice: bool = False,
     paper: str = "a4",
     booklet: bool = False,
+    polygons: bool = True,
     overwrite: bool = False,
 ) -> int:
     """Issue and write a build; gives how many files were written."""
@@ -656,7 +664,11 @@ def build_files(
         raise BadInput(
             f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them"
         )
-    wanted = list(building.files(course, issues, formats, practice=practice, paper=paper, booklet=booklet))
+    wanted = list(
+        building.files(
+            course, issues, formats, practice=practice, paper=paper, booklet=booklet, polygons=polygons
+        )
+    )
     with _progress("building", len(wanted)) as advance:
         building.write_tree(out, wanted, advance)
     return len(wanted)

@@ -143,7 +143,7 @@ def figure(variant: Variant) -> Figure | None:
     return None if spec.figure is None else _call(spec.figure, variant.given, tuple(spec.helpers))
 
 
-def answer_sheet(variant: Variant, student: str = "") -> AnswerSheet:
+def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) -> AnswerSheet:
     """The handout with its answers and worked solution.
 
     Raises
@@ -161,7 +161,8 @@ def answer_sheet(variant: Variant, student: str = "") -> AnswerSheet:
     figure = solution_figure(variant)
     says = text.sections.get("figure") if figure is not None else None
     alt = " ".join(says.text.split()) if says else ""
-    return AnswerSheet(sheet, answers, steps, text.opening, figure, alt, variant.polygons())
+    drawn = variant.polygons() if polygons else ()
+    return AnswerSheet(sheet, answers, steps, text.opening, figure, alt, drawn)
 
 
 def solution_figure(variant: Variant) -> Figure | None:

@@ -235,11 +235,11 @@ class Variant:
 
         return study_sheet(self, student)
 
-    def answer_sheet(self, student: str = "") -> AnswerSheet:
+    def answer_sheet(self, student: str = "", *, polygons: bool = True) -> AnswerSheet:
         """The handout with its answers and worked solution."""
         from coursework.sheets import answer_sheet
 
-        return answer_sheet(self, student)
+        return answer_sheet(self, student, polygons=polygons)
 
 
 def _rounded(value: Any, lang: str) -> Any:
