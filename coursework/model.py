@@ -213,6 +213,8 @@ class Exercise:
         What drives it when it is simulated; none for an exercise that does not move.
     effects
         The optional effects that the exercise's own parts call for; a request has only those it names.
+    drawing_mm
+        Width and height of the box of millimetre paper that a printed sheet offers to draw in; none unless told.
     """
 
     given: Mapping[str, GivenSpec]
@@ -226,9 +228,14 @@ class Exercise:
     either_order: tuple[tuple[str, ...], ...] = ()
     driver: Driver | None = None
     effects: tuple[str, ...] = ()
+    drawing_mm: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parts", tuple(self.parts))
+        if self.drawing_mm is not None and not all(10 <= side <= 170 for side in self.drawing_mm):
+            raise BadCourse(
+                f"a box to draw in is 10 to 170 mm wide and high, to fit a page; found {self.drawing_mm}"
+            )
         if not self.given or not self.parts:
             raise BadCourse("an exercise needs given quantities and parts; one of them is empty")
         for name in self.given:
