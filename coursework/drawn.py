@@ -43,6 +43,7 @@ class Fault:
     kind: str
     side: Side | None = None  #: the vector at fault; None where the point is missing, or off both its lines
     on: str = ""  #: of ``hung``: the point on which the vector hangs instead
+    plainer: Fault | None = None  #: what else explains the point, and says less of it
 
     def __str__(self) -> str:
         told = f" on {self.on}" if self.on else ""
@@ -196,7 +197,7 @@ def _known(
         return ideal, None
     for other in here:
         if other != anchor and abs(drawn[point] - here[other] - right) <= width:
-            return ideal, Fault(HUNG, side, other)
+            return ideal, Fault(HUNG, side, other, Fault(kind, side))
     return ideal, Fault(kind, side)
 
 
@@ -226,14 +227,14 @@ def _crossing(
     ]
     if not any(good):
         if all(elsewhere):
-            return ideal, Fault(HUNG, sides[0], elsewhere[0])
+            return ideal, Fault(HUNG, sides[0], elsewhere[0], Fault(VECTOR))
         return ideal, Fault(VECTOR)
     bad = good.index(False)
     right_one, anchor = sides[1 - bad], here[anchors[1 - bad]]
     if abs(there - (2 * anchor - ideal)) <= 2 * width:
-        return ideal, Fault(SENSE, right_one)
+        return ideal, Fault(SENSE, right_one, plainer=Fault(DIRECTION, sides[bad]))
     if elsewhere[bad] and elsewhere[bad] != anchors[1 - bad]:
-        return ideal, Fault(HUNG, sides[bad], elsewhere[bad])
+        return ideal, Fault(HUNG, sides[bad], elsewhere[bad], Fault(DIRECTION, sides[bad]))
     return ideal, Fault(DIRECTION, sides[bad])
 
 

@@ -214,7 +214,8 @@ class Exercise:
     effects
         The optional effects that the exercise's own parts call for; a request has only those it names.
     drawing_mm
-        Width and height of the box of millimetre paper that a printed sheet offers to draw in; none unless told.
+        Width and height of the box of millimetre paper that a printed sheet offers to draw in, whole
+        centimetres; none unless told.
     """
 
     given: Mapping[str, GivenSpec]
@@ -228,13 +229,13 @@ class Exercise:
     either_order: tuple[tuple[str, ...], ...] = ()
     driver: Driver | None = None
     effects: tuple[str, ...] = ()
-    drawing_mm: tuple[float, float] | None = None
+    drawing_mm: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parts", tuple(self.parts))
-        if self.drawing_mm is not None and not all(10 <= side <= 170 for side in self.drawing_mm):
+        if self.drawing_mm is not None and not _fits_a_page(self.drawing_mm):
             raise BadCourse(
-                f"a box to draw in is 10 to 170 mm wide and high, to fit a page; found {self.drawing_mm}"
+                f"a box to draw in is 10 to 160 mm wide and 10 to 200 mm high, by tens; found {self.drawing_mm}"
             )
         if not self.given or not self.parts:
             raise BadCourse("an exercise needs given quantities and parts; one of them is empty")
@@ -268,6 +269,10 @@ class Exercise:
     def symbol(self, name: str) -> str:
         """LaTeX of a quantity."""
         return self.symbols.get(name) or symbol_of(name)
+
+
+def _fits_a_page(box: tuple[int, int]) -> bool:
+    return all(side in range(10, most, 10) for side, most in zip(box, (170, 210), strict=True))
 
 
 _GREEK = (

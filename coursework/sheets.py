@@ -48,6 +48,7 @@ def handout(variant: Variant, student: str = "") -> Handout:
         figure_alt=" ".join(text.section("figure").text.split()) if exercise.spec.figure else "",
         questions=tuple(_question(variant, n, p) for n, p in enumerate(variant.parts, start=1)),
         record=variant.record,
+        drawing_mm=exercise.spec.drawing_mm,
     )
 
 

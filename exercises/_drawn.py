@@ -18,7 +18,7 @@ def known(quantity):
 
 
 def of_drawing(quantity, unit="mm", kind="number", points=1):
-    return Part(quantity, unit=unit, kind=kind, points=points, judge="drawing", rtol=0.04 * (kind == "number"))
+    return Part(quantity, unit=unit, kind=kind, points=points, judge="drawing")
 
 
 def told_angle(vector):

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coursework.drawn import DIRECTION, HUNG, SENSE, VECTOR, ancestors, judge_drawing
+from coursework.drawn import HUNG, SENSE, ancestors, judge_drawing
 from coursework.solution import Judged
 
 _BOX_MM = (130.0, 90.0)  #: in which the reference drawing fits
@@ -105,15 +105,22 @@ def _of_point(point, drawing, asked):
 
 
 def _of_fault(point, drawing, asked):
-    names = {image: i for i, image in asked.points.items()}
     fault = drawing.faults[point]
+    names = [_named(point, f, asked) for f in (fault, fault.plainer) if f]
+    known = [name for name in names if name]
+    return Judged(0.5 if fault.kind == SENSE else 0.0, known[0], also=tuple(known[1:]))
+
+
+def _named(point, fault, asked):
+    """The mistake that a fault is; none where a vector hangs on a point of which no mistake tells."""
+    parts = {image: i for i, image in asked.points.items()}
     if fault.side is None:
-        return Judged(0.0, f"{names[point]}_{VECTOR}")
+        return f"{parts[point]}_{fault.kind}"
     side = asked.sides[fault.side.start, fault.side.end]
     if fault.kind != HUNG:
-        return Judged(0.5 if fault.kind == SENSE else 0.0, f"{side}_{fault.kind}")
-    name = f"{side}_on_{names[fault.on]}"
-    return Judged(0.0, name if name in asked.hung else f"{side}_{VECTOR if fault.side.is_known else DIRECTION}")
+        return f"{side}_{fault.kind}"
+    name = f"{side}_on_{parts[fault.on]}"
+    return name if name in asked.hung else ""
 
 
 def _lengths(answers, drawing, asked):
@@ -198,3 +205,11 @@ def _met(through, along, other, other_along):
     slope = (np.conj(along) * other_along).imag
     found = z + along * (np.conj(w - z) * other_along).imag / slope
     return np.stack([found.real, found.imag], axis=-1)
+
+
+def _off_both(b, lines, end):
+    """A point off both the lines that cross at b by as much, nearly half as far as b is from ``end``."""
+    first, second = (line / abs(line) for line in lines)
+    between = np.where(abs(first + second) < abs(first - second), first + second, first - second)
+    step = 0.4 * np.hypot(*np.moveaxis(b - end, -1, 0)) * between / abs(between)
+    return b + np.stack([step.real, step.imag], axis=-1)

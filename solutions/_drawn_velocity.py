@@ -8,7 +8,7 @@ import numpy as np
 
 from coursework.solution import mistake
 
-from ._drawn import _met, _turned
+from ._drawn import _met, _off_both, _turned
 
 
 @mistake("a")
@@ -63,11 +63,7 @@ def ba_on_p(p, a, b):
 
 @mistake("b")
 def b_vector(a, b, _lines):
-    """Off both lines by as much."""
-    across, way = (line / abs(line) for line in _lines)
-    between = np.where(abs(across + way) < abs(across - way), across + way, across - way)
-    step = 0.4 * np.hypot(*np.moveaxis(b - a, -1, 0)) * between / abs(between)
-    return b + np.stack([step.real, step.imag], axis=-1)
+    return _off_both(b, _lines, a)
 
 
 @mistake("kv", "p", "a", "b")
