@@ -45,6 +45,14 @@ class Fault:
     on: str = ""  #: of ``hung``: the point on which the vector hangs instead
     plainer: Fault | None = None  #: what else explains the point, and says less of it
 
+    @property
+    def explanations(self) -> Iterator[Fault]:
+        """Itself, then what else explains the point."""
+        fault: Fault | None = self
+        while fault:
+            yield fault
+            fault = fault.plainer
+
     def __str__(self) -> str:
         told = f" on {self.on}" if self.on else ""
         return f"{self.side}: {self.kind}{told}" if self.side else self.kind
@@ -213,29 +221,35 @@ def _crossing(
     if point not in drawn:
         return ideal, Fault(MISSING)
     there = drawn[point]
-
-    def on_line(side: Side, through: complex) -> bool:
-        return abs(_split(there - through, side.along)[1]) <= width
-
-    good = [on_line(side, here[a]) for side, a in zip(sides, anchors, strict=True)]
+    good = [_off(side, there, here[a]) <= width for side, a in zip(sides, anchors, strict=True)]
     if all(good):
         return ideal, None
     others = [[q for q in here if q != a] for a in anchors]
-    elsewhere = [
-        next((q for q in some if on_line(side, here[q]) and abs(there - here[q]) > width), "")
-        for side, some in zip(sides, others, strict=True)
-    ]
+    elsewhere = [_through(side, there, some, here, width) for side, some in zip(sides, others, strict=True)]
     if not any(good):
-        if all(elsewhere):
+        if all(elsewhere) and elsewhere[0] != elsewhere[1]:
             return ideal, Fault(HUNG, sides[0], elsewhere[0], Fault(VECTOR))
         return ideal, Fault(VECTOR)
     bad = good.index(False)
     right_one, anchor = sides[1 - bad], here[anchors[1 - bad]]
-    if abs(there - (2 * anchor - ideal)) <= 2 * width:
-        return ideal, Fault(SENSE, right_one, plainer=Fault(DIRECTION, sides[bad]))
+    fault = Fault(DIRECTION, sides[bad])
+    # Through the other line's own point both lines would meet there, and nothing would be drawn.
     if elsewhere[bad] and elsewhere[bad] != anchors[1 - bad]:
-        return ideal, Fault(HUNG, sides[bad], elsewhere[bad], Fault(DIRECTION, sides[bad]))
-    return ideal, Fault(DIRECTION, sides[bad])
+        fault = Fault(HUNG, sides[bad], elsewhere[bad], fault)
+    if abs(there - (2 * anchor - ideal)) <= 2 * width:
+        fault = Fault(SENSE, right_one, plainer=fault)
+    return ideal, fault
+
+
+def _off(side: Side, there: complex, through: complex) -> float:
+    """How far a point is from a side's line through another."""
+    return abs(_split(there - through, side.along)[1])
+
+
+def _through(side: Side, there: complex, names: list[str], here: Mapping[str, complex], width: float) -> str:
+    """Through which of these points a side's line goes that a drawn point is on; none when through none."""
+    nearest = min(names, key=lambda q: _off(side, there, here[q]), default="")
+    return nearest if nearest and _off(side, there, here[nearest]) <= width else ""
 
 
 def _meeting(sides: tuple[Side, ...], through: list[complex]) -> complex | None:

@@ -127,3 +127,30 @@ def all_long(share, *vectors):
     """Whether the shortest has this share of the longest at least."""
     lengths = [abs(v) for v in vectors]
     return np.minimum.reduce(lengths) > share * np.maximum.reduce(lengths)
+
+
+# -------------------------------------------------------------------- accelerations
+
+
+def of_four_bar(bars, rates):
+    """The sides of the acceleration polygon over omega2 squared, at a constant rate of the crank: of A, of B about A
+    and of B, each of the two normal then tangential."""
+    crank, coupler, rocker = bars
+    omega3, omega4 = rates
+    along = crank + omega3**2 * coupler - omega4**2 * rocker
+    area = cross(coupler, rocker)
+    alpha3, alpha4 = dot(along, rocker) / area, dot(along, coupler) / area
+    return -crank, -(omega3**2) * coupler, 1j * alpha3 * coupler, -(omega4**2) * rocker, 1j * alpha4 * rocker
+
+
+def dot(u, v):
+    return u.real * v.real + u.imag * v.imag
+
+
+def of_slider_crank(rod, r2, theta2):
+    """The same: of A, of B about A normal then tangential, of B."""
+    crank = polar(r2, theta2)
+    omega3 = -crank.real / rod.real
+    alpha3 = (crank.imag + omega3**2 * rod.imag) / rod.real
+    tangential = 1j * alpha3 * rod
+    return -crank, -(omega3**2) * rod, tangential, -crank - omega3**2 * rod + tangential

@@ -69,7 +69,7 @@ def _verdicts(answers, polygon, asked):
     upside_down = False
     if scale is not None:
         other = judge_drawing(polygon, points, 1 / scale)
-        upside_down = not drawing.is_right(_first(polygon)) and other.is_right(_first(polygon))
+        upside_down = _fits(other) and not _fits(drawing)
         drawing = other if upside_down else drawing
     if not drawing.is_legible:
         drawn = (*asked.points, *asked.lengths, asked.scale)
@@ -81,9 +81,9 @@ def _verdicts(answers, polygon, asked):
     return said | _lengths(answers, drawing, asked) | _reads(answers, drawing, asked)
 
 
-def _first(polygon):
-    """The first point that is found from the pole."""
-    return next(iter(polygon.hangs))
+def _fits(drawing):
+    """Whether the drawing is at the stated scale, and the first vector from the pole right at it."""
+    return drawing.fits_stated_scale and drawing.is_right(next(iter(drawing.polygon.hangs)))
 
 
 def _of_scale(stated, upside_down, drawing):
@@ -106,7 +106,7 @@ def _of_point(point, drawing, asked):
 
 def _of_fault(point, drawing, asked):
     fault = drawing.faults[point]
-    names = [_named(point, f, asked) for f in (fault, fault.plainer) if f]
+    names = [_named(point, f, asked) for f in fault.explanations]
     known = [name for name in names if name]
     return Judged(0.5 if fault.kind == SENSE else 0.0, known[0], also=tuple(known[1:]))
 
