@@ -25,6 +25,8 @@ from coursework.polygons import Polygon, Side
 TOLERANCE_MM = 1.0  #: by which each drawn point may be off
 LEAST_MM = 30.0  #: of the longest vector, for tolerances of a millimetre; below, directions tell nothing
 
+_SAME_SCALE = 0.05  #: by which two scales may differ and be one, drawn inexactly
+
 LENGTH, DIRECTION, SENSE, VECTOR, HUNG, MISSING = KINDS = (
     "length", "direction", "sense", "vector", "hung", "missing",
 )  # fmt: skip
@@ -69,7 +71,9 @@ class Drawing:
     is_legible: bool  #: large enough to tell directions
     fits_stated_scale: bool  #: False where it is consistent at another scale than the stated one
     tolerance: float = TOLERANCE_MM
-    ideal: Mapping[str, complex] = field(default_factory=dict)  #: mm on paper: each point from those before it
+    ideal: Mapping[str, complex] = field(
+        default_factory=dict
+    )  #: mm on paper: each point from those before it
 
     def is_right(self, point: str) -> bool:
         """Whether the point is drawn and its vectors are right."""
@@ -192,7 +196,12 @@ def _split(vector: complex, along: complex) -> tuple[float, float]:
 
 
 def _known(
-    point: str, side: Side, here: Mapping[str, complex], drawn: Mapping[str, complex], scale: float, width: float
+    point: str,
+    side: Side,
+    here: Mapping[str, complex],
+    drawn: Mapping[str, complex],
+    scale: float,
+    width: float,
 ) -> tuple[complex, Fault | None]:
     """Where a vector of known length leads from the student's own point, and what is wrong with the one drawn."""
     anchor = _anchor(side, point)
@@ -223,7 +232,11 @@ def _crossing(
     there = drawn[point]
     good = [_off(side, there, here[a]) <= width for side, a in zip(sides, anchors, strict=True)]
     if all(good):
-        return ideal, None
+        # Lines that are drawn from one point meet there, whatever their directions.
+        collapsed = all(
+            abs(there - here[a]) <= width < abs(s.value) / scale for s, a in zip(sides, anchors, strict=True)
+        )
+        return ideal, Fault(VECTOR) if collapsed else None
     others = [[q for q in here if q != a] for a in anchors]
     elsewhere = [_through(side, there, some, here, width) for side, some in zip(sides, others, strict=True)]
     if not any(good):
@@ -276,15 +289,14 @@ def _scale(
     best, count = _most_covered(ranges)
     if stated is not None:
         agrees = any(0 < low <= 1 / stated <= high for low, high in ranges)
-        return (stated, True) if agrees or count < 2 else (1 / best, False)
+        is_other = count > 1 and abs(best * stated - 1) > _SAME_SCALE
+        return (1 / best, False) if is_other and not agrees else (stated, True)
     if count:
         return 1 / best, True
     return _by_length(polygon, points), True
 
 
-def _ranges(
-    polygon: Polygon, points: Mapping[str, complex], width: float
-) -> Iterator[tuple[float, float]]:
+def _ranges(polygon: Polygon, points: Mapping[str, complex], width: float) -> Iterator[tuple[float, float]]:
     """For each known vector that is drawn, the mm of paper for a unit between which it is right."""
     for side in polygon.sides:
         if not (side.is_known and side.start in points and side.end in points and side.value):

@@ -1,10 +1,9 @@
 """Havens planetary gear, constructed: five velocities drawn from that of A1, each with its reason."""
 
 from coursework.degrees import polar
-from coursework.model import Exercise, Part
+from coursework.model import Exercise, Part, drawn
 
 from ._drawn import PAPER_MM, all_long, told_angle, told_number
-from .havens_planetary import EXERCISE as PLANETARY
 from .havens_planetary import arm, figure, speeds, velocity_of_B2
 
 REASONS = ("fixed_pivot", "slot", "translation", "composition", "no_slip", "equiprojectivity")
@@ -28,16 +27,16 @@ def crank_turns_visibly(omega1):
 
 
 def vectors_are_long_enough_to_draw(speeds, arm, r2, r3, velocity_of_B2, velocity_of_I):
-    """The shortest is a fifth of the longest at least."""
+    """The shortest is a sixth of the longest at least."""
     of_guide = speeds[0] * abs(arm)
-    return all_long(0.2, r2 + r3 + 0 * of_guide, of_guide, speeds[1], velocity_of_B2, velocity_of_I)
+    return all_long(1 / 6, r2 + r3 + 0 * of_guide, of_guide, speeds[1], velocity_of_B2, velocity_of_I)
 
 
 def equiprojectivity_tells(arm, r2, r3, b, theta1):
     """The line B2 I is far enough from the crank to find the length of what is square to it."""
     crank = polar(1.0, theta1)
     line = (r2 * crank + b * arm / abs(arm)) / crank
-    return abs(line.imag) > 0.4 * abs(line)
+    return abs(line.imag) > 0.35 * abs(line)
 
 
 def tells(d, r2, r3, b, theta1):
@@ -62,7 +61,14 @@ def _read(quantity, unit):
 
 
 EXERCISE = Exercise(
-    given=PLANETARY.given,
+    given={
+        "d": drawn(20, 70, unit="mm"),
+        "r2": drawn(20, 40, step=2, unit="mm"),
+        "r3": drawn(20, 40, step=2, unit="mm"),
+        "b": drawn(30, 70, step=2, unit="mm"),
+        "theta1": drawn(-175, 180, step=5, unit="deg"),
+        "omega1": drawn(-20, 20, unit="rad/s"),
+    },
     helpers=(arm, speeds, velocity_of_B2, velocity_of_I),
     keep=(
         guide_turns_fully,

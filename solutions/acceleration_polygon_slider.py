@@ -197,9 +197,7 @@ def residual(r2, r3, theta2, omega2, ka, a, n, b, bb_t, pa_b, r1_ddot, alpha3):
     z_a, z_n, z_b = ((q[..., 0] + 1j * q[..., 1]) * ka for q in (a, n, b))
     size = r2 * omega2**2
     reach = rod.real
-    second = -(omega2**2) * (
-        A.real + (A.real**2 - A.imag**2) / reach + A.imag**2 * A.real**2 / reach**3
-    )
+    second = -(omega2**2) * (A.real + (A.real**2 - A.imag**2) / reach + A.imag**2 * A.real**2 / reach**3)
     return (
         abs(z_a + omega2**2 * A) / size,
         abs(z_n - z_a + omega3**2 * rod) / size,

@@ -132,16 +132,23 @@ def drawing(answers, d, r2, r3, b, theta1, omega1):
         scale = stated
     said = {"kv": Judged(1.0 if stated > 0 else 0.0)} if stated is not None else {}
     if max(map(abs, right.values())) / scale < LEAST_MM:
-        return dict.fromkeys(("kv", *drawn) if stated is not None else drawn, Judged(0.0, "too_small")) | _values(
-            answers, pose, right, {}, said, scale, r3
-        )
+        return dict.fromkeys(
+            ("kv", *drawn) if stated is not None else drawn, Judged(0.0, "too_small")
+        ) | _values(answers, pose, right, {}, said, scale, r3)
     for name, vector_ in drawn.items():
         said[name] = _judged(name, vector_, drawn, right[name] / scale, pose, said)
     return said | _values(answers, pose, right, drawn, said, scale, r3)
 
 
 #: The vectors from which each is constructed.
-_FROM = {"v10": (), "v40": ("v10",), "v14": ("v10", "v40"), "v24": ("v14",), "v20": ("v40", "v24"), "v30": ("v20",)}
+_FROM = {
+    "v10": (),
+    "v40": ("v10",),
+    "v14": ("v10", "v40"),
+    "v24": ("v14",),
+    "v20": ("v40", "v24"),
+    "v30": ("v20",),
+}
 
 
 def _constructed(name, drawn, pose):
@@ -165,7 +172,9 @@ def _judged(name, found, drawn, right, pose, said):
     if faults[0] and _FROM[name] and all(n in drawn for n in _FROM[name]):
         # What is off along B2 I is off more across it.
         width = _WIDTH / (abs((1j * pose[0] / pose[4]).real) if name == "v30" else 1.0)
-        faults.insert(0, vector_fault(found, _constructed(name, drawn, pose), width))
+        own = _constructed(name, drawn, pose)
+        if abs(own) > _WIDTH:  # nothing follows from arrows that are not drawn
+            faults.insert(0, vector_fault(found, own, width))
     if not all(faults):
         wrong_before = any(said[n].share != 1 or said[n].follows for n in _FROM[name] if n in said)
         return Judged(follows=bool(faults[-1]) and wrong_before)
@@ -178,7 +187,11 @@ def _special(name, found, drawn, pose):
     """Mistakes of which more can be told."""
     if name == "v20" and "v40" in drawn and abs(found - _of_B2(pose, drawn["v40"], 0)) <= _WIDTH:
         yield "slide_forgotten"
-    if name == "v20" and {"v24", "v40"} <= drawn.keys() and abs(found - drawn["v24"] - drawn["v40"]) <= _WIDTH:
+    if (
+        name == "v20"
+        and {"v24", "v40"} <= drawn.keys()
+        and abs(found - drawn["v24"] - drawn["v40"]) <= _WIDTH
+    ):
         yield "distance_forgotten"
 
 
