@@ -1,5 +1,7 @@
 """What the drawn polygons have in common: points on paper, and the judge's words for what is wrong with them."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -39,7 +41,9 @@ class _Read(NamedTuple):
     end: str
     value: object  #: function of the vector, in the polygon's unit
     gain: float  #: what a unit of its length is worth
-    wrong: dict = {}  #: by mistake: the ends of the vector that is taken instead, and its gain
+    wrong: Mapping = MappingProxyType(
+        {}
+    )  #: by mistake: the ends of the vector that is taken instead, and its gain
 
 
 class _Asked(NamedTuple):
