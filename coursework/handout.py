@@ -60,6 +60,7 @@ class Handout:
     figure_alt: str
     questions: tuple[Question, ...]
     record: Mapping[str, object]  #: the variant's JSON record
+    drawing_mm: tuple[int, int] | None = None  #: width and height of the box to draw in, where there is one
 
     @property
     def points(self) -> float:

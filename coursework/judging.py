@@ -53,8 +53,9 @@ def judged(
     if complete and (unsaid := sorted(answers.keys() - found.keys())):
         raise BadCourse(f"{source} says nothing of {unsaid[0]!r}")
     for verdict in found.values():
-        if verdict.mistake and verdict.mistake not in solution.mistakes:
-            raise BadCourse(f"{source} names a mistake {verdict.mistake!r}, which is not among its mistakes")
+        for mistake in (verdict.mistake, *verdict.also):
+            if mistake and mistake not in solution.mistakes:
+                raise BadCourse(f"{source} names a mistake {mistake!r}, which is not among its mistakes")
     return {part: found[part] for part in answers if part in found}
 
 

@@ -293,7 +293,8 @@ def _mark_judged(variant: Variant, key: Key, part: Part, reading: Reading, found
     listed = ", ".join("{" + name + "}" for name in told)
     follows = f" {words(variant.lang)['marking']['found'].format(listed)}" if listed else ""
     if share == 1.0:
-        kind, share = ("follow_through", key.rules.follow_through) if found.followed else ("correct", 1.0)
+        is_followed = found.followed or verdict.follows
+        kind, share = ("follow_through", key.rules.follow_through) if is_followed else ("correct", 1.0)
         return _made(variant, part, reading, kind, share, read_as, lambda: say(kind))
     name = verdict.mistake
     if not name:
@@ -305,7 +306,8 @@ def _mark_judged(variant: Variant, key: Key, part: Part, reading: Reading, found
         def tell() -> _Said:
             return say("mistake", says=variant.told(name))
 
-        return _made(variant, part, reading, kind, share, read_as, tell, (kind,))
+        also = tuple(f"mistake:{other}" for other in verdict.also)
+        return _made(variant, part, reading, kind, share, read_as, tell, (kind, *also))
     return _made(variant, part, reading, "wrong", share, read_as, lambda: say("wrong"))
 
 

@@ -287,6 +287,9 @@ class Exercise:
         What drives it when it is simulated; none for an exercise that does not move.
     effects
         The optional effects that the exercise's own parts call for; a request has only those it names.
+    drawing_mm
+        Width and height of the box of millimetre paper that a printed sheet offers to draw in, whole
+        centimetres; none unless told.
     """
 
     given: Mapping[str, GivenSpec]
@@ -300,9 +303,14 @@ class Exercise:
     either_order: tuple[tuple[str, ...], ...] = ()
     driver: Driver | None = None
     effects: tuple[str, ...] = ()
+    drawing_mm: tuple[int, int] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "parts", tuple(self.parts))
+        if self.drawing_mm is not None and not _fits_a_page(self.drawing_mm):
+            raise BadCourse(
+                f"a box to draw in is 10 to 160 mm wide and 10 to 200 mm high, by tens; found {self.drawing_mm}"
+            )
         if not self.given or not self.parts:
             raise BadCourse("an exercise needs given quantities and parts; one of them is empty")
         for name in self.given:
@@ -339,6 +347,10 @@ class Exercise:
     def symbol(self, name: str) -> str:
         """LaTeX of a quantity."""
         return self.symbols.get(name) or symbol_of(name)
+
+
+def _fits_a_page(box: tuple[int, int]) -> bool:
+    return all(side in range(10, most, 10) for side, most in zip(box, (170, 210), strict=True))
 
 
 _GREEK = (

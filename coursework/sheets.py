@@ -53,6 +53,7 @@ def handout(variant: Variant, student: str = "") -> Handout:
             for n, (p, ways) in enumerate(zip(variant.parts, _ways_to_write(variant), strict=True), start=1)
         ),
         record=variant.record,
+        drawing_mm=exercise.spec.drawing_mm,
     )
 
 

@@ -117,11 +117,15 @@ class Judged:
 
     ``share``, 0 to 1, is the part of the points that it earns; ``mistake`` the named mistake that it shows, if
     any; ``found`` what follows from the student's own answers, by quantity, in canonical units: it is told.
+    ``also``: other named mistakes that explain the same answer.
+    ``follows``: the answer is not the expected one, but right from an earlier answer of the student that is wrong.
     """
 
     share: float = 1.0
     mistake: str = ""
     found: Mapping[str, float] = field(default_factory=dict)
+    follows: bool = False
+    also: tuple[str, ...] = ()
 
 
 def judge(function: Callable[..., Any]) -> Callable[..., Any]:

@@ -152,6 +152,24 @@ def test_the_promises_hold_for_it(course):
     assert report.counts["rounded, judged together"] > 0
 
 
+def test_a_judge_may_say_that_an_answer_follows_and_what_else_explains_one(course):
+    path = course / "solutions" / "sums.py"
+    source = path.read_text("utf-8")
+    source = source.replace(
+        "return dict.fromkeys(answers, Judged())", "return dict.fromkeys(answers, Judged(follows=True))"
+    )
+    source = source.replace('{"sum": total}))', '{"sum": total}, also=("thrice",)))')
+    more = '\n\n@mistake("x", "y")\ndef thrice(x, y):\n    return 2 * x, 2 * y\n'
+    path.write_text(source + more, "utf-8")
+    variant = coursework.open_course(course)["sums"].variant(3, "en")
+    words = course / "solutions" / "sums.en.md.j2"
+    words.write_text(words.read_text("utf-8") + "\n## mistake thrice\nThree times.\n", "utf-8")
+    total = variant.given["sum"]
+    mark = variant.grade({"x": 0, "y": total})["x"]
+    assert (mark.verdict, mark.points) == ("follow_through", 2.0)
+    assert variant.grade({"x": total, "y": total})["x"].mistakes == ("twice", "thrice")
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

@@ -1,0 +1,156 @@
+"""What the drawn polygons share: parts, and the four-bar linkages and slider-cranks that make good drawings."""
+
+import numpy as np
+
+from coursework.degrees import angle, polar
+from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider
+from coursework.kinematics.dyads import rrp, rrr, side_of
+from coursework.language import significant
+from coursework.model import Part, chosen, drawn
+
+PAPER_MM = (160, 110)  #: the box of millimetre paper to draw in
+KNOWN = ("both", "direction", "length", "neither")
+
+
+def known(quantity):
+    """What is known of a vector before it is drawn: a row of the table."""
+    return Part(quantity, kind="choice", choices=KNOWN)
+
+
+def of_drawing(quantity, unit="mm", kind="number", points=1):
+    return Part(quantity, unit=unit, kind=kind, points=points, judge="drawing")
+
+
+def told_angle(vector):
+    """The direction of a bar as the statement tells it: LaTeX, to the tenth of a degree."""
+    return rf"\num{{{float(angle(vector)):.1f}}}^{{\circ}}"
+
+
+def told_number(value):
+    """A number as the statement tells it: LaTeX, four digits."""
+    return rf"\num{{{significant(float(value))}}}"
+
+
+# ------------------------------------------------------------------------- four-bar
+
+FOUR_BAR = {
+    "r1": drawn(120, 260, step=5, unit="mm"),
+    "r2": drawn(40, 100, step=5, unit="mm"),
+    "r3": drawn(100, 260, step=5, unit="mm"),
+    "r4": drawn(80, 200, step=5, unit="mm"),
+    "theta2": drawn(-175, 180, step=5, unit="deg"),
+    "omega2": drawn(-20, 20, unit="rad/s"),
+    "mode": chosen("open", "crossed"),
+}
+
+
+def bars(r1, r2, r3, r4, theta2, mode):
+    """Vectors OA, AB and CB."""
+    A, C = polar(r2, theta2), r1 + 0j
+    B = rrr(A, C, r3, r4, side_of(mode))
+    return A, B - A, B - C
+
+
+def rates(bars):
+    """omega3 and omega4, over omega2."""
+    crank, coupler, rocker = bars
+    area = cross(rocker, coupler)
+    return cross(crank, rocker) / area, cross(crank, coupler) / area
+
+
+def cross(u, v):
+    return u.real * v.imag - u.imag * v.real
+
+
+def linkage_assembles(bars):
+    return np.isfinite(bars[1].real)
+
+
+def crank_turns_visibly(omega2):
+    return abs(omega2) >= 4
+
+
+def lines_cross_clearly(bars):
+    """Coupler and rocker 35 degrees apart at least, and so the lines that find b."""
+    return abs(cross(bars[1], bars[2])) > 0.57 * abs(bars[1]) * abs(bars[2])
+
+
+def four_bar_figure(bars, r1, r2, theta2):
+    O, A, C = 0j, bars[0], complex(r1)
+    B = A + bars[1]
+    return Figure(
+        line(O, C, dashed=True, label="r_1"),
+        link(O, A, label="r_2"),
+        link(A, B, label="r_3"),
+        link(C, B, label="r_4"),
+        ground_pivot(O, "O"),
+        ground_pivot(C, "C"),
+        pin(A, "A"),
+        pin(B, "B"),
+        angle_mark(O, 0, theta2, r"\theta_2"),
+    )
+
+
+# --------------------------------------------------------------------- slider-crank
+
+SLIDER_CRANK = {
+    "r2": drawn(30, 100, step=5, unit="mm"),
+    "r3": drawn(lambda r2: 1.5 * r2, lambda r2: 3 * r2, step=5, unit="mm", positive=True),
+    "theta2": drawn(-175, 180, step=5, unit="deg"),
+    "omega2": drawn(-40, 40, unit="rad/s"),
+}
+
+
+def rod(r2, r3, theta2):
+    """Vector AB."""
+    crank = polar(r2, theta2)
+    return rrp(crank, r3, 0.0 * r2) - crank
+
+
+def slider_crank_figure(rod, r2, theta2):
+    O, A = 0j, polar(r2, theta2)
+    B, half_rail = A + rod, 0.5 * r2
+    return Figure(
+        rail(B - half_rail, B + half_rail),
+        line(O, B.real + 1.6 * half_rail, dashed=True),
+        link(O, A, label="r_2"),
+        link(A, B, label="r_3"),
+        slider(B),
+        ground_pivot(O, "O"),
+        pin(A, "A"),
+        pin(B, "B"),
+        angle_mark(O, 0, theta2, r"\theta_2"),
+    )
+
+
+def all_long(share, *vectors):
+    """Whether the shortest has this share of the longest at least."""
+    lengths = [abs(v) for v in vectors]
+    return np.minimum.reduce(lengths) > share * np.maximum.reduce(lengths)
+
+
+# -------------------------------------------------------------------- accelerations
+
+
+def of_four_bar(bars, rates):
+    """The sides of the acceleration polygon over omega2 squared, at a constant rate of the crank: of A, of B about A
+    and of B, each of the two normal then tangential."""
+    crank, coupler, rocker = bars
+    omega3, omega4 = rates
+    along = crank + omega3**2 * coupler - omega4**2 * rocker
+    area = cross(coupler, rocker)
+    alpha3, alpha4 = dot(along, rocker) / area, dot(along, coupler) / area
+    return -crank, -(omega3**2) * coupler, 1j * alpha3 * coupler, -(omega4**2) * rocker, 1j * alpha4 * rocker
+
+
+def dot(u, v):
+    return u.real * v.real + u.imag * v.imag
+
+
+def of_slider_crank(rod, r2, theta2):
+    """The same: of A, of B about A normal then tangential, of B."""
+    crank = polar(r2, theta2)
+    omega3 = -crank.real / rod.real
+    alpha3 = (crank.imag + omega3**2 * rod.imag) / rod.real
+    tangential = 1j * alpha3 * rod
+    return -crank, -(omega3**2) * rod, tangential, -crank - omega3**2 * rod + tangential

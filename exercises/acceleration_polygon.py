@@ -1,0 +1,68 @@
+"""Acceleration polygon of a four-bar linkage whose velocities are known (equations 14 and 15, Figure 23)."""
+
+from coursework.model import Exercise
+
+from ._drawn import (
+    FOUR_BAR,
+    PAPER_MM,
+    all_long,
+    bars,
+    crank_turns_visibly,
+    four_bar_figure,
+    known,
+    lines_cross_clearly,
+    of_drawing,
+    of_four_bar,
+    rates,
+    told_angle,
+    told_number,
+)
+
+
+def vectors_are_long_enough_to_draw(of_four_bar):
+    """The normal ones an eighth of the longest at least, the tangential ones and that of B a quarter."""
+    of_A, normal_BA, tangential_BA, normal_B, tangential_B = of_four_bar
+    of_B = normal_B + tangential_B
+    normal = all_long(1 / 8, of_A, normal_BA, normal_B, tangential_BA, tangential_B, of_B)
+    longest = (2 * normal_BA, 2 * normal_B)  # a quarter of the others is asked, an eighth of these
+    return normal & all_long(1 / 4, of_A, *longest, tangential_BA, tangential_B, of_B)
+
+
+def tells(r1, r2, r3, r4, theta2, omega2, mode):
+    linkage = bars(r1, r2, r3, r4, theta2, mode)
+    _, coupler, rocker = linkage
+    omega3, omega4 = rates(linkage)
+    return {
+        "theta3": told_angle(coupler),
+        "theta4": told_angle(rocker),
+        "V_BA": told_number(abs(omega3 * omega2 * coupler)),
+        "V_B": told_number(abs(omega4 * omega2 * rocker)),
+    }
+
+
+EXERCISE = Exercise(
+    given=FOUR_BAR,
+    helpers=(bars, rates, of_four_bar),
+    keep=(crank_turns_visibly, lines_cross_clearly, vectors_are_long_enough_to_draw),
+    parts=(
+        known("known_BA_n"),
+        known("known_BA_t"),
+        known("known_B_n"),
+        known("known_B_t"),
+        of_drawing("ka", "mm/s^2/mm"),
+        of_drawing("p", kind="point"),
+        of_drawing("a", kind="point", points=2),
+        of_drawing("n", kind="point", points=2),
+        of_drawing("m", kind="point", points=2),
+        of_drawing("b", kind="point", points=3),
+        of_drawing("bb_t"),
+        of_drawing("pa_b"),
+        of_drawing("a_B", "mm/s^2"),
+        of_drawing("alpha3", "rad/s^2"),
+        of_drawing("alpha4", "rad/s^2"),
+    ),
+    figure=four_bar_figure,
+    tells=tells,
+    drawing_mm=PAPER_MM,
+    symbols={"ka": "k_a", "p": "p_a", "n": "b'", "m": "b''", "bb_t": "b' b", "pa_b": "p_a b", "a_B": "a_B"},
+)

@@ -1,0 +1,58 @@
+"""Acceleration polygon of a slider-crank whose velocities are known (equations 14 and 15, Figure 22)."""
+
+from coursework.model import Exercise
+
+from ._drawn import (
+    PAPER_MM,
+    SLIDER_CRANK,
+    all_long,
+    crank_turns_visibly,
+    known,
+    of_drawing,
+    of_slider_crank,
+    rod,
+    slider_crank_figure,
+    told_angle,
+    told_number,
+)
+
+
+def vectors_are_long_enough_to_draw(of_slider_crank):
+    """The normal one an eighth of the longest at least, the others a quarter."""
+    of_A, normal, tangential, of_B = of_slider_crank
+    return all_long(1 / 8, of_A, normal, tangential, of_B) & all_long(1 / 4, of_A, tangential, of_B)
+
+
+def tells(r2, r3, theta2, omega2):
+    vector = rod(r2, r3, theta2)
+    normal = of_slider_crank(vector, r2, theta2)[1]
+    return {
+        "theta3": told_angle(vector),
+        "V_BA": told_number((abs(normal) * r3) ** 0.5 * abs(omega2)),
+    }
+
+
+EXERCISE = Exercise(
+    given=SLIDER_CRANK,
+    helpers=(rod, of_slider_crank),
+    keep=(crank_turns_visibly, vectors_are_long_enough_to_draw),
+    parts=(
+        known("known_A"),
+        known("known_BA_n"),
+        known("known_BA_t"),
+        known("known_B"),
+        of_drawing("ka", "mm/s^2/mm"),
+        of_drawing("p", kind="point"),
+        of_drawing("a", kind="point", points=2),
+        of_drawing("n", kind="point", points=2),
+        of_drawing("b", kind="point", points=3),
+        of_drawing("bb_t"),
+        of_drawing("pa_b"),
+        of_drawing("r1_ddot", "mm/s^2"),
+        of_drawing("alpha3", "rad/s^2"),
+    ),
+    figure=slider_crank_figure,
+    tells=tells,
+    drawing_mm=PAPER_MM,
+    symbols={"ka": "k_a", "p": "p_a", "n": "b'", "bb_t": "b' b", "pa_b": "p_a b", "r1_ddot": "a_B"},
+)

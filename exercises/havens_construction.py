@@ -1,0 +1,108 @@
+"""Havens planetary gear, constructed: five velocities drawn from that of A1, each with its reason."""
+
+from coursework.degrees import polar
+from coursework.model import Exercise, Part, drawn
+
+from ._drawn import PAPER_MM, all_long, told_angle, told_number
+from .havens_planetary import arm, figure, speeds, velocity_of_B2
+
+REASONS = ("fixed_pivot", "slot", "translation", "composition", "no_slip", "equiprojectivity")
+
+
+def velocity_of_I(speeds, r2, r3):
+    """Over omega1, 90 degrees ahead of the crank: a point of the wheel, which turns as the guide does."""
+    return r2 + r3 - r2 * speeds[0]
+
+
+def guide_turns_fully(d, r2, r3):
+    return (0.2 * (r2 + r3) < d) & (d < 0.8 * (r2 + r3))
+
+
+def crank_off_the_axes(theta1):
+    return theta1 % 90 != 0
+
+
+def crank_turns_visibly(omega1):
+    return abs(omega1) >= 2
+
+
+def vectors_are_long_enough_to_draw(speeds, arm, r2, r3, velocity_of_B2, velocity_of_I):
+    """The shortest is a sixth of the longest at least."""
+    of_guide = speeds[0] * abs(arm)
+    return all_long(1 / 6, r2 + r3 + 0 * of_guide, of_guide, speeds[1], velocity_of_B2, velocity_of_I)
+
+
+def equiprojectivity_tells(arm, r2, r3, b, theta1):
+    """The line B2 I is far enough from the crank to find the length of what is square to it."""
+    crank = polar(1.0, theta1)
+    line = (r2 * crank + b * arm / abs(arm)) / crank
+    return abs(line.imag) > 0.35 * abs(line)
+
+
+def tells(d, r2, r3, b, theta1):
+    guide, crank = arm(d, r2, r3, theta1), polar(1.0, theta1)
+    return {
+        "theta4": told_angle(guide),
+        "rA": told_number(abs(guide)),
+        "line": told_angle(-r2 * crank - b * guide / abs(guide)),
+    }
+
+
+def _reason(quantity):
+    return Part(quantity, kind="choice", choices=REASONS)
+
+
+def _vector(quantity, points=1):
+    return Part(quantity, unit="mm", kind="point", points=points, judge="drawing")
+
+
+def _read(quantity, unit):
+    return Part(quantity, unit=unit, judge="drawing")
+
+
+EXERCISE = Exercise(
+    given={
+        "d": drawn(20, 70, unit="mm"),
+        "r2": drawn(20, 40, step=2, unit="mm"),
+        "r3": drawn(20, 40, step=2, unit="mm"),
+        "b": drawn(30, 70, step=2, unit="mm"),
+        "theta1": drawn(-175, 180, step=5, unit="deg"),
+        "omega1": drawn(-20, 20, unit="rad/s"),
+    },
+    helpers=(arm, speeds, velocity_of_B2, velocity_of_I),
+    keep=(
+        guide_turns_fully,
+        crank_off_the_axes,
+        crank_turns_visibly,
+        vectors_are_long_enough_to_draw,
+        equiprojectivity_tells,
+    ),
+    parts=(
+        _read("kv", "mm/s/mm"),
+        _vector("v10"),
+        _vector("v40", 2),
+        _reason("why_v40"),
+        _vector("v14", 2),
+        _reason("why_v14"),
+        _vector("v24", 1),
+        _reason("why_v24"),
+        _vector("v20", 2),
+        _reason("why_v20"),
+        _vector("v30", 2),
+        _reason("why_v30"),
+        _read("omega4", "rad/s"),
+        _read("omega3", "rad/s"),
+    ),
+    figure=figure,
+    tells=tells,
+    drawing_mm=PAPER_MM,
+    symbols={
+        "kv": "k_v",
+        "v10": r"\vec V_{1/0}(A_1)",
+        "v40": r"\vec V_{4/0}(A_1)",
+        "v14": r"\vec V_{1/4}(A_1)",
+        "v24": r"\vec V_{2/4}(B_2)",
+        "v20": r"\vec V_{2/0}(B_2)",
+        "v30": r"\vec V_{3/0}(I)",
+    },
+)

@@ -1,0 +1,88 @@
+"""Mistakes on a drawn acceleration polygon: the pole p, the end a of a known acceleration, the end n (b') of the normal
+part of B about A, b where two lines cross.
+
+A solution that takes these has the hidden ``_lines``: of each of the two lines that find b, the point through which it goes
+and its direction, complex.
+"""
+
+import numpy as np
+
+from coursework.solution import mistake
+
+from ._drawn import _met, _off_both, _turned
+
+
+@mistake("a")
+def a_length(p, a):
+    return p + 1.35 * (a - p)
+
+
+@mistake("a")
+def a_direction(p, a):
+    """Square to the crank."""
+    return _turned(p, a, 90)
+
+
+@mistake("a", share=0.5)
+def a_sense(p, a):
+    return 2 * p - a
+
+
+@mistake("a")
+def a_vector(p, a):
+    return p + 0.6 * (_turned(p, a, 75) - p)
+
+
+@mistake("n")
+def n_length(a, n):
+    return a + 1.7 * (n - a)
+
+
+@mistake("n")
+def n_direction(a, n):
+    """Square to the bar."""
+    return _turned(a, n, 90)
+
+
+@mistake("n", share=0.5)
+def n_sense(a, n):
+    """From A to B."""
+    return 2 * a - n
+
+
+@mistake("n")
+def n_vector(a, n):
+    return a + 1.6 * (_turned(a, n, 75) - a)
+
+
+@mistake("n")
+def n_on_p(p, a, n):
+    return p + n - a
+
+
+@mistake("b")
+def bt_direction(n, _start, _lines):
+    along, other = _lines
+    return _met(n, along * np.exp(-0.35j), _start, other)
+
+
+@mistake("b", share=0.5)
+def bt_sense(n, b):
+    return 2 * n - b
+
+
+@mistake("b")
+def bt_on_a(a, _start, _lines):
+    """The normal part left out."""
+    along, other = _lines
+    return _met(a, along, _start, other)
+
+
+@mistake("b")
+def b_vector(n, b, _lines):
+    return _off_both(b, _lines, n)
+
+
+@mistake("bb_t", "pa_b")
+def lengths_exchanged(bb_t, pa_b):
+    return pa_b, bb_t

@@ -1,0 +1,226 @@
+"""Acceleration polygon of a slider-crank: solution. The normal part is known from the velocities; the line of the tangential
+part and that of the acceleration of B meet in b."""
+
+import numpy as np
+
+from coursework.degrees import polar
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.slider_crank import SliderCrank
+from coursework.solution import formula, judge, mistake
+
+from ._drawn import _Asked, _met, _paper, _Read, _scale_for, _verdicts
+from ._drawn_acceleration import *
+from ._polygons import _accelerations, _crank_a, _slider_a
+
+
+def _bars(r2, r3, theta2):
+    """Vectors OA and AB; rate of AB over that of OA; its acceleration over the square."""
+    pin = polar(r2, theta2)
+    reach = SliderCrank(r2, r3, 0.0 * r2).run(Degrees(theta2))
+    ratio = -pin.real / reach
+    return pin, reach - 1j * pin.imag, ratio, (1 - ratio**2) * pin.imag / reach
+
+
+def _images(_bars, omega2):
+    """Of A, of b' and of B, complex; that of B has no part across the guide."""
+    crank, rod, ratio, gain = _bars
+    square = omega2**2
+    of_A = -square * crank
+    of_n = of_A - ratio**2 * square * rod
+    return of_A, of_n, (of_n + 1j * gain * square * rod).real + 0j
+
+
+def _lines(_bars):
+    _, rod, *_ = _bars
+    return 1j * rod, 1 + 0j
+
+
+def known_A():
+    return "both"
+
+
+def known_BA_n():
+    return "both"
+
+
+def known_BA_t():
+    return "direction"
+
+
+def known_B():
+    return "direction"
+
+
+def ka(_images):
+    """A round scale at which the drawing fills its box."""
+    return _scale_for(*_images)
+
+
+def p(_images):
+    """Anywhere: here it is the origin."""
+    return _paper(0 * _images[0], 1.0)
+
+
+def a(_images, ka):
+    return _paper(_images[0], ka)
+
+
+def n(_images, ka):
+    return _paper(_images[1], ka)
+
+
+def _start(p):
+    """Where the line of the acceleration of B starts."""
+    return p
+
+
+def b(n, _start, _lines):
+    along, other = _lines
+    return _met(n, along, _start, other)
+
+
+def bb_t(_images, ka):
+    """Measured on the drawing."""
+    _, of_n, of_B = _images
+    return abs(of_B - of_n) / ka
+
+
+def pa_b(_images, ka):
+    """Measured on the drawing."""
+    return abs(_images[-1]) / ka
+
+
+@formula(r"\pm <ka> \times <pa_b>")
+def r1_ddot(ka, pa_b, _images):
+    return np.sign(_images[-1].real) * ka * pa_b
+
+
+@formula(r"\pm \frac{<ka> \times <bb_t>}{<r3>}")
+def alpha3(ka, bb_t, r3, _bars):
+    *_, gain = _bars
+    return np.sign(gain) * ka * bb_t / r3
+
+
+@mistake("known_BA_n")
+def normal_part_unknown():
+    return "direction"
+
+
+@mistake("known_BA_t", "known_B")
+def tangential_part_unknown():
+    return "neither", "neither"
+
+
+@mistake("b")
+def pb_direction(n, _start, _lines):
+    along, other = _lines
+    return _met(n, along, _start, other * np.exp(-0.35j))
+
+
+@mistake("b", share=0.5)
+def pb_sense(_start, b):
+    return 2 * _start - b
+
+
+@mistake("ka", "p", "a", "n", "b")
+def too_small(ka, p, a, n, b):
+    return 10 * ka, p / 10, a / 10, n / 10, b / 10
+
+
+@mistake("ka", "p", "a", "n", "b", "bb_t", "pa_b", "r1_ddot", "alpha3", share=0.5)
+def scale_upside_down(ka, p, a, n, b, bb_t, pa_b, r1_ddot, alpha3):
+    """The drawing is right."""
+    return 1 / ka, p, a, n, b, bb_t, pa_b, r1_ddot, alpha3
+
+
+@mistake("ka", "p", "a", "n", "b", "bb_t", "pa_b", "r1_ddot", "alpha3")
+def scale_not_drawn(ka, p, a, n, b, bb_t, pa_b, r1_ddot, alpha3):
+    """Stated at one value, drawn at another."""
+    return 2 * ka, p, a, n, b, bb_t, pa_b, r1_ddot, alpha3
+
+
+@mistake("r1_ddot")
+def scale_forgotten(pa_b, r1_ddot):
+    return np.sign(r1_ddot) * pa_b
+
+
+@mistake("r1_ddot", "alpha3", share=0.5)
+def value_sense(r1_ddot, alpha3):
+    return -r1_ddot, -alpha3
+
+
+@mistake("alpha3")
+def crank_for_rod(alpha3, r2, r3):
+    return alpha3 * r3 / r2
+
+
+@judge
+def drawing(answers, r2, r3, theta2, omega2):
+    """Any pole and any scale; see :mod:`coursework.drawn`."""
+    bars = _bars(r2, r3, theta2)
+    _, rod, *_ = bars
+    of_rod = {"crank_for_rod": ("b'", "b", 1 / r2)}
+    asked = _Asked(
+        scale="ka",
+        points={"p": "p_a", "a": "a", "n": "b'", "b": "b"},
+        lengths={"bb_t": ("b'", "b"), "pa_b": ("p_a", "b")},
+        reads={
+            "r1_ddot": _Read("p_a", "b", lambda v: v.real, 1.0),
+            "alpha3": _Read("b'", "b", lambda v: (v / (1j * rod)).real, 1 / r3, of_rod),
+        },
+        sides={("p_a", "a"): "a", ("a", "b'"): "n", ("b'", "b"): "bt", ("p_a", "b"): "pb"},
+        hung=frozenset({"n_on_p", "bt_on_a"}),
+    )
+    return _verdicts(answers, _polygon(bars, omega2), asked)
+
+
+def _polygon(bars, omega2, scale=None):
+    crank, rod, ratio, gain = bars
+    of_B = _images(bars, omega2)[-1].real
+    return _accelerations(
+        _crank_a("A", "OA", crank, omega2),
+        _slider_a("B", "A", rod, ratio * omega2, gain * omega2**2, "r_3", of_B),
+        scale=scale,
+    )
+
+
+def polygons(r2, r3, theta2, omega2, ka):
+    """At the scale of the answers."""
+    return (_polygon(_bars(r2, r3, theta2), omega2, ka),)
+
+
+def residual(r2, r3, theta2, omega2, ka, a, n, b, bb_t, pa_b, r1_ddot, alpha3):
+    """The piston's abscissa differentiated twice, and B from A."""
+    A = r2 * np.exp(1j * np.radians(theta2))
+    rod = np.sqrt(r3**2 - A.imag**2) - 1j * A.imag
+    omega3 = -omega2 * A.real / rod.real
+    z_a, z_n, z_b = ((q[..., 0] + 1j * q[..., 1]) * ka for q in (a, n, b))
+    size = r2 * omega2**2
+    reach = rod.real
+    second = -(omega2**2) * (A.real + (A.real**2 - A.imag**2) / reach + A.imag**2 * A.real**2 / reach**3)
+    return (
+        abs(z_a + omega2**2 * A) / size,
+        abs(z_n - z_a + omega3**2 * rod) / size,
+        abs(z_b - z_n - 1j * alpha3 * rod) / size,
+        abs(z_b - r1_ddot) / size,
+        abs(r1_ddot - second) / size,
+        abs(abs(z_b - z_n) - bb_t * ka) / size,
+        abs(abs(z_b) - pa_b * ka) / size,
+    )
+
+
+KNOWN = (
+    # Crank upright: a 3-4-5 triangle, the rod in translation at this instant.
+    (
+        {"r2": 30, "r3": 50, "theta2": 90, "omega2": 8},
+        {
+            "ka": 50, "a": (0, -38.4), "n": (0, -38.4), "b": (28.8, 0), "bb_t": 48, "pa_b": 28.8,
+            "r1_ddot": 1440, "alpha3": 48,
+        },
+    ),
+    # Outer dead centre: the rod turns at 2 rad/s, the other way, and does not accelerate.
+    (
+        {"r2": 40, "r3": 120, "theta2": 0, "omega2": -6},
+        {"ka": 20, "a": (-72, 0), "n": (-96, 0), "bb_t": 0, "r1_ddot": -1920, "alpha3": 0},
+    ),
+)  # fmt: skip

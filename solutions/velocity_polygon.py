@@ -1,0 +1,193 @@
+"""Velocity polygon of a four-bar linkage: solution. A, whose velocity is known, and B, which is on two bars."""
+
+import numpy as np
+
+from coursework.degrees import polar
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.four_bar import FourBar
+from coursework.solution import formula, judge, mistake
+
+from ._drawn import _Asked, _met, _paper, _Read, _scale_for, _verdicts
+from ._drawn_velocity import *
+from ._polygons import _crank_v, _two_bars_v, _velocities
+
+
+def _bars(r1, r2, r3, r4, theta2, mode):
+    """Vectors OA, AB and CB, and the rates of AB and CB over that of OA, by the numeric core."""
+    pose = FourBar(r1, r2, r3, r4, mode).at(Degrees(theta2))
+    coupler, rocker = (np.exp(1j * angle) for angle in (pose.coupler_angle, pose.rocker_angle))
+    return polar(r2, theta2), r3 * coupler, r4 * rocker, pose.coupler_ratio, pose.rocker_ratio
+
+
+def _images(_bars, omega2):
+    """Velocities of A and B, complex."""
+    crank, _, rocker, _, ratio = _bars
+    return 1j * omega2 * crank, 1j * omega2 * ratio * rocker
+
+
+def _lines(_bars):
+    _, coupler, rocker, *_ = _bars
+    return 1j * coupler, 1j * rocker
+
+
+def known_A():
+    return "both"
+
+
+def known_BA():
+    return "direction"
+
+
+def known_B():
+    return "direction"
+
+
+def kv(_images):
+    """A round scale at which the drawing fills its box."""
+    return _scale_for(*_images)
+
+
+def p(_images):
+    """Anywhere: here it is the origin."""
+    return _paper(0 * _images[0], 1.0)
+
+
+def a(_images, kv):
+    return _paper(_images[0], kv)
+
+
+def b(p, a, _lines):
+    across, way = _lines
+    return _met(a, across, p, way)
+
+
+def ab(_images, kv):
+    """Measured on the drawing."""
+    v_A, v_B = _images
+    return abs(v_B - v_A) / kv
+
+
+def pv_b(_images, kv):
+    """Measured on the drawing."""
+    _, v_B = _images
+    return abs(v_B) / kv
+
+
+def v_B(kv, pv_b):
+    return kv * pv_b
+
+
+@formula(r"\pm \frac{<kv> \times <ab>}{<r3>}")
+def omega3(kv, ab, r3, _bars, omega2):
+    *_, ratio, _ = _bars
+    return np.sign(ratio * omega2) * kv * ab / r3
+
+
+@formula(r"\pm \frac{<kv> \times <pv_b>}{<r4>}")
+def omega4(kv, pv_b, r4, _bars, omega2):
+    *_, ratio = _bars
+    return np.sign(ratio * omega2) * kv * pv_b / r4
+
+
+@mistake("known_BA")
+def nothing_known_of_BA():
+    return "neither"
+
+
+@mistake("known_B")
+def nothing_known_of_B():
+    return "neither"
+
+
+@mistake("v_B")
+def scale_forgotten(pv_b):
+    return pv_b
+
+
+@mistake("omega3", "omega4", share=0.5)
+def value_sense(omega3, omega4):
+    return -omega3, -omega4
+
+
+@mistake("omega3", "omega4")
+def radii_exchanged(omega3, omega4, r3, r4):
+    return omega3 * r3 / r4, omega4 * r4 / r3
+
+
+@mistake("omega3")
+def omega3_of_V_B(kv, pv_b, r3, omega3):
+    """The absolute velocity of B, where that about A is meant."""
+    return np.sign(omega3) * kv * pv_b / r3
+
+
+@judge
+def drawing(answers, r1, r2, r3, r4, theta2, omega2, mode):
+    """Any pole and any scale; see :mod:`coursework.drawn`."""
+    bars = _bars(r1, r2, r3, r4, theta2, mode)
+    _, coupler, rocker, *_ = bars
+    of_coupler = {"radii_exchanged": ("a", "b", 1 / r4), "omega3_of_V_B": ("p_v", "b", 1 / r3)}
+    of_rocker = {"radii_exchanged": ("p_v", "b", 1 / r3)}
+    asked = _Asked(
+        scale="kv",
+        points={"p": "p_v", "a": "a", "b": "b"},
+        lengths={"ab": ("a", "b"), "pv_b": ("p_v", "b")},
+        reads={
+            "v_B": _Read("p_v", "b", abs, 1.0),
+            "omega3": _Read("a", "b", lambda v: (v / (1j * coupler)).real, 1 / r3, of_coupler),
+            "omega4": _Read("p_v", "b", lambda v: (v / (1j * rocker)).real, 1 / r4, of_rocker),
+        },
+        sides={("p_v", "a"): "a", ("a", "b"): "ba", ("p_v", "b"): "vb"},
+        hung=frozenset({"ba_on_p"}),
+    )
+    return _verdicts(answers, _polygon(bars, omega2), asked)
+
+
+def _polygon(bars, omega2, scale=None):
+    crank, coupler, rocker, *ratios = bars
+    omega3, omega4 = (ratio * omega2 for ratio in ratios)
+    return _velocities(
+        _crank_v("A", "OA", crank, omega2),
+        _two_bars_v("B", "A", "C", coupler, omega3, rocker, omega4),
+        scale=scale,
+    )
+
+
+def polygons(r1, r2, r3, r4, theta2, omega2, mode, kv):
+    """At the scale of the answers."""
+    return (_polygon(_bars(r1, r2, r3, r4, theta2, mode), omega2, kv),)
+
+
+def residual(r1, r2, r3, r4, theta2, omega2, mode, kv, a, b, ab, pv_b, v_B, omega3, omega4):
+    """The loop, closed by the law of cosines; b from a and from the pole by the rates; lengths by Pythagoras."""
+    A = r2 * np.exp(1j * np.radians(theta2))
+    AC = r1 - A
+    corner = np.arccos((abs(AC) ** 2 + r3**2 - r4**2) / (2 * abs(AC) * r3))
+    side = np.where(mode == "open", 1, -1)
+    AB = r3 * AC / abs(AC) * np.exp(1j * side * corner)
+    CB = A + AB - r1
+    z_a, z_b = (q[..., 0] + 1j * q[..., 1] for q in (a, b))
+    size = r2 * abs(omega2)
+    return (
+        abs(z_a * kv - 1j * omega2 * A) / size,
+        abs(z_b * kv - 1j * (omega2 * A + omega3 * AB)) / size,
+        abs(z_b * kv - 1j * omega4 * CB) / size,
+        abs(abs(z_b - z_a) - ab) * kv / size,
+        abs(abs(z_b) - pv_b) * kv / size,
+        abs(v_B - kv * abs(z_b)) / size,
+    )
+
+
+KNOWN = (
+    # Crank along the frame, ABC a 3-4-5 triangle, right-angled at B: coupler and rocker turn at -3 rad/s.
+    (
+        {"r1": 80, "r2": 30, "r3": 40, "r4": 30, "theta2": 0, "omega2": 5, "mode": "open"},
+        {
+            "kv": 2, "a": (0, 75), "b": (36, 27), "ab": 60, "pv_b": 45, "v_B": 90, "omega3": -3, "omega4": -3,
+        },
+    ),
+    # A parallelogram: the coupler only translates, a and b are one.
+    (
+        {"r1": 100, "r2": 50, "r3": 100, "r4": 50, "theta2": 90, "omega2": 2, "mode": "open"},
+        {"kv": 1, "a": (-100, 0), "b": (-100, 0), "ab": 0, "v_B": 100, "omega4": 2},
+    ),
+)  # fmt: skip

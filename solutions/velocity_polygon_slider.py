@@ -1,0 +1,179 @@
+"""Velocity polygon of a slider-crank: solution. A, whose velocity is known, and B, which the guide keeps on its line."""
+
+import numpy as np
+
+from coursework.degrees import polar
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.slider_crank import SliderCrank
+from coursework.solution import formula, judge, mistake
+
+from ._drawn import _Asked, _met, _paper, _Read, _scale_for, _verdicts
+from ._drawn_velocity import *
+from ._polygons import _crank_v, _slider_v, _velocities
+
+
+def _bars(r2, r3, theta2):
+    """Vectors OA and AB; the rate of AB over that of OA."""
+    pin = polar(r2, theta2)
+    reach = SliderCrank(r2, r3, 0.0 * r2).run(Degrees(theta2))
+    return pin, reach - 1j * pin.imag, -pin.real / reach
+
+
+def _images(_bars, omega2):
+    """Velocities of A and B, complex; that of B has no part across the guide."""
+    crank, rod, ratio = _bars
+    v_A = 1j * omega2 * crank
+    return v_A, (v_A + 1j * ratio * omega2 * rod).real + 0j
+
+
+def _lines(_bars):
+    _, rod, _ = _bars
+    return 1j * rod, 1 + 0j
+
+
+def known_A():
+    return "both"
+
+
+def known_BA():
+    return "direction"
+
+
+def known_B():
+    return "direction"
+
+
+def kv(_images):
+    """A round scale at which the drawing fills its box."""
+    return _scale_for(*_images)
+
+
+def p(_images):
+    """Anywhere: here it is the origin."""
+    return _paper(0 * _images[0], 1.0)
+
+
+def a(_images, kv):
+    return _paper(_images[0], kv)
+
+
+def b(p, a, _lines):
+    across, way = _lines
+    return _met(a, across, p, way)
+
+
+def ab(_images, kv):
+    """Measured on the drawing."""
+    v_A, v_B = _images
+    return abs(v_B - v_A) / kv
+
+
+def pv_b(_images, kv):
+    """Measured on the drawing."""
+    _, v_B = _images
+    return abs(v_B) / kv
+
+
+@formula(r"\pm <kv> \times <pv_b>")
+def r1_dot(kv, pv_b, _images):
+    _, v_B = _images
+    return np.sign(v_B.real) * kv * pv_b
+
+
+@formula(r"\pm \frac{<kv> \times <ab>}{<r3>}")
+def omega3(kv, ab, r3, _bars, omega2):
+    *_, ratio = _bars
+    return np.sign(ratio * omega2) * kv * ab / r3
+
+
+@mistake("known_BA")
+def nothing_known_of_BA():
+    return "neither"
+
+
+@mistake("known_B")
+def nothing_known_of_B():
+    return "neither"
+
+
+@mistake("r1_dot")
+def scale_forgotten(pv_b, r1_dot):
+    return np.sign(r1_dot) * pv_b
+
+
+@mistake("r1_dot", "omega3", share=0.5)
+def value_sense(r1_dot, omega3):
+    return -r1_dot, -omega3
+
+
+@mistake("omega3")
+def crank_for_rod(omega3, r2, r3):
+    return omega3 * r3 / r2
+
+
+@mistake("omega3")
+def omega3_of_V_B(kv, pv_b, r3, omega3):
+    """The absolute velocity of B, where that about A is meant."""
+    return np.sign(omega3) * kv * pv_b / r3
+
+
+@judge
+def drawing(answers, r2, r3, theta2, omega2):
+    """Any pole and any scale; see :mod:`coursework.drawn`."""
+    bars = _bars(r2, r3, theta2)
+    _, rod, _ = bars
+    of_rod = {"crank_for_rod": ("a", "b", 1 / r2), "omega3_of_V_B": ("p_v", "b", 1 / r3)}
+    asked = _Asked(
+        scale="kv",
+        points={"p": "p_v", "a": "a", "b": "b"},
+        lengths={"ab": ("a", "b"), "pv_b": ("p_v", "b")},
+        reads={
+            "r1_dot": _Read("p_v", "b", lambda v: v.real, 1.0),
+            "omega3": _Read("a", "b", lambda v: (v / (1j * rod)).real, 1 / r3, of_rod),
+        },
+        sides={("p_v", "a"): "a", ("a", "b"): "ba", ("p_v", "b"): "vb"},
+        hung=frozenset({"ba_on_p"}),
+    )
+    return _verdicts(answers, _polygon(bars, omega2), asked)
+
+
+def _polygon(bars, omega2, scale=None):
+    crank, rod, ratio = bars
+    v_B = _images(bars, omega2)[1].real
+    return _velocities(
+        _crank_v("A", "OA", crank, omega2), _slider_v("B", "A", rod, ratio * omega2, v_B), scale=scale
+    )
+
+
+def polygons(r2, r3, theta2, omega2, kv):
+    """At the scale of the answers."""
+    return (_polygon(_bars(r2, r3, theta2), omega2, kv),)
+
+
+def residual(r2, r3, theta2, omega2, kv, a, b, ab, pv_b, r1_dot, omega3):
+    """The rod turned as a complex exponential; b on the guide, at its rate from a."""
+    A = r2 * np.exp(1j * np.radians(theta2))
+    rod = r3 * np.exp(-1j * np.arcsin(A.imag / r3))
+    z_a, z_b = (q[..., 0] + 1j * q[..., 1] for q in (a, b))
+    size = r2 * abs(omega2)
+    return (
+        abs(z_a * kv - 1j * omega2 * A) / size,
+        abs(z_b * kv - r1_dot) / size,
+        abs(z_b * kv - 1j * (omega2 * A + omega3 * rod)) / size,
+        abs(abs(z_b - z_a) - ab) * kv / size,
+        abs(abs(z_b) - pv_b) * kv / size,
+    )
+
+
+KNOWN = (
+    # Crank upright: the rod translates, and the piston goes left at the speed of the pin.
+    (
+        {"r2": 30, "r3": 50, "theta2": 90, "omega2": 8},
+        {"kv": 2, "a": (-120, 0), "b": (-120, 0), "ab": 0, "pv_b": 120, "r1_dot": -240, "omega3": 0},
+    ),
+    # Rod and crank equal: an isosceles triangle, r1 = 2 r2 cos theta2.
+    (
+        {"r2": 100, "r3": 100, "theta2": 60, "omega2": 5},
+        {"kv": 10, "r1_dot": -500 * 3**0.5, "omega3": -5, "ab": 50, "pv_b": 50 * 3**0.5},
+    ),
+)

@@ -1,0 +1,76 @@
+"""Drawn velocity polygons: against the exercises that compute the same motion."""
+
+import pytest
+
+import coursework
+
+COURSE = coursework.open_course()
+FOUR_BAR, SLIDER = COURSE["velocity_polygon"], COURSE["velocity_polygon_slider"]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_four_bar_is_that_of_the_computed_motion(seed):
+    variant = FOUR_BAR.variant(seed)
+    found = variant.solution()
+    motion = COURSE["four_bar_motion"].solve(**variant.given, alpha2=0.0)
+    for name in ("omega3", "omega4", "v_B"):
+        assert found[name] == pytest.approx(motion[name], rel=1e-10)
+    assert found["ab"] * found["kv"] == pytest.approx(motion["v_BA"], rel=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_slider_crank_is_that_of_the_computed_motion(seed):
+    variant = SLIDER.variant(seed)
+    found = variant.solution()
+    motion = COURSE["slider_crank"].solve(**variant.given, only=("omega3", "r1_dot"))
+    for name, value in motion.items():
+        assert found[name] == pytest.approx(value, rel=1e-10)
+
+
+@pytest.mark.parametrize("exercise", [FOUR_BAR, SLIDER], ids=lambda e: e.name)
+def test_the_reference_drawing_fits_the_box_and_can_be_measured(exercise):
+    for variant in exercise.variants(range(200)):
+        found = variant.solution()
+        xs, ys = zip(*(found[n] for n in "pab"), strict=True)
+        assert max(xs) - min(xs) <= 130 + 1e-9
+        assert max(ys) - min(ys) <= 90 + 1e-9
+        assert min(found["ab"], found["pv_b"]) > 10
+
+
+@pytest.mark.parametrize(
+    ("wrong", "verdict"),
+    [
+        (lambda v: v["v_B"] / v["kv"], "mistake:scale_forgotten"),
+        (lambda v: v["v_B"] * 1.3, "wrong"),
+        (lambda v: v["v_B"] * 1.01, "correct"),
+    ],
+)
+def test_a_speed_is_read_off_to_what_the_drawing_shows(wrong, verdict):
+    variant = FOUR_BAR.variant(3)
+    found = variant.solution()
+    drawing = {n: f"{found[n][0]}; {found[n][1]}" for n in "pab"} | {"kv": found["kv"]}
+    assert variant.grade({**drawing, "v_B": wrong(found)})["v_B"].verdict == verdict
+
+
+def test_a_value_that_follows_from_ones_own_wrong_length_follows():
+    variant = FOUR_BAR.variant(3)
+    found = variant.solution()
+    long = found["pv_b"] + 15
+    given = {"kv": found["kv"], "pv_b": long, "v_B": long * found["kv"]}
+    marking = variant.grade(given)
+    assert marking["pv_b"].verdict == "wrong"
+    assert marking["v_B"].verdict == "follow_through"
+
+
+def test_a_right_length_on_a_wrong_drawing_is_right_and_one_of_the_drawing_follows():
+    variant = FOUR_BAR.variant(5)
+    found = variant.solution()
+    p, a, b = (found[n] for n in "pab")
+    away = b + 0.4 * (b - p)  # on the line of the velocity of B, too far
+    drawing = {"p": p, "a": a, "b": away, "kv": found["kv"]}
+    given = {n: f"{v[0]}; {v[1]}" if n != "kv" else v for n, v in drawing.items()}
+    own = 1.4 * found["pv_b"]
+    assert variant.grade({**given, "pv_b": found["pv_b"]})["pv_b"].verdict == "correct"
+    marking = variant.grade({**given, "pv_b": own})
+    assert marking["pv_b"].verdict == "follow_through"
+    assert marking["b"].verdict == "mistake:ba_direction"
