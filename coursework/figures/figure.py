@@ -14,6 +14,7 @@ from coursework.figures.paper import Paper
 from coursework.figures.placing import Label, place
 from coursework.figures.writing import pieces, written
 
+_PAPER_MM = (110.0, 75.0)  #: what a drawing takes at most unless told
 _MARGIN = 1.0  #: white round the drawing, mm
 _TRIES = 40
 
@@ -71,8 +72,9 @@ class _Layout:
 class Figure:
     """Elements in mechanism coordinates (complex, mm, y up), drawn to one scale in a paper box.
 
-    ``paper_mm`` is the largest width and height the drawing may take, labels included; the
-    aspect is kept, so one of the two is usually not used up. With ``scale``, mm on paper for one of mechanism,
+    ``paper_mm`` is the largest width and height the drawing may take, labels included, 110 by 75 unless
+    told; the aspect is kept, so one of the two is usually not used up. A sheet lays the figure out
+    again for the room that it has (see :meth:`fitted`). With ``scale``, mm on paper for one of mechanism,
     the drawing has that scale and whatever size comes of it.
 
     Raises WrongValue if an element is not one of this package's, if the drawing has no
@@ -82,18 +84,21 @@ class Figure:
     elements: tuple[Element, ...]
     paper_mm: tuple[float, float]
     fixed_scale: float | None
+    bounded: bool  #: whether the author told ``paper_mm``
 
     def __init__(
         self,
         *elements: Element,
-        paper_mm: tuple[float, float] = (110, 75),
+        paper_mm: tuple[float, float] | None = None,
         scale: float | None = None,
     ) -> None:
         for element in elements:
             if not isinstance(element, Element):
                 raise WrongValue(f"a figure is made of elements such as pin(0, 'A'); found {element!r}")
         object.__setattr__(self, "elements", elements)
-        object.__setattr__(self, "paper_mm", (float(paper_mm[0]), float(paper_mm[1])))
+        wide, high = paper_mm or _PAPER_MM
+        object.__setattr__(self, "paper_mm", (float(wide), float(high)))
+        object.__setattr__(self, "bounded", paper_mm is not None)
         if scale is not None and not 0 < scale < float("inf"):
             raise WrongValue(f"the scale of a figure is a positive number; found {scale!r}")
         object.__setattr__(self, "fixed_scale", scale)
@@ -161,6 +166,33 @@ class Figure:
         # The frame lies on tenths of a mm too, so that rounded points stay rounded in the file.
         corners = _tenths(first - margin), _tenths(last + margin)
         return _Layout(scale, ink, labels, *corners, tuple(drew), tuple(named))
+
+    def fitted(self, width: float, height: float) -> Figure:
+        """The figure laid out for a room of so many mm: the bars shrink or grow, the letters keep their size.
+
+        A box told by the author is not exceeded, and a figure with a scale of its own stays as it is. So does
+        one whose symbols and labels alone are larger than the room: who prints it makes it smaller as a whole.
+        Laid out once for each room.
+        """
+        if self.fixed_scale is not None:
+            return self
+        if self.bounded:
+            width, height = min(width, self.paper_mm[0]), min(height, self.paper_mm[1])
+        room = (float(width), float(height))
+        if room == self.paper_mm:
+            return self
+        if room not in self._fitted:
+            figure = Figure(*self.elements, paper_mm=room)
+            try:
+                figure._layout  # noqa: B018  a room that is too small shows in laying out
+            except WrongValue:
+                figure = self
+            self._fitted[room] = figure
+        return self._fitted[room]
+
+    @cached_property
+    def _fitted(self) -> dict[tuple[float, float], Figure]:
+        return {}
 
     def beginning(self, count: int) -> Beginning:
         """The first elements of the figure, each where it is in the whole and in the same frame.

@@ -26,7 +26,6 @@ MARKS = {
     "comment_end_string": "#>",
 }
 BABEL = {"fr": "french", "en": "english"}
-_LARGER = 1.25  #: a figure is drawn so much above its own size at most
 
 
 def source(
@@ -59,9 +58,9 @@ def _environment(folders: tuple[Path, ...], lang: str) -> Environment:
 
 
 def _width(figure: Figure, room: float, tall: float) -> str:
-    """The width of a figure in mm: as large as the room allows, and not much above its own size."""
+    """The width of a figure in mm: its own, for which it is laid out, or less where the room does not do."""
     wide, high = figure.size_mm
-    return f"{wide * min(_LARGER, room / wide, tall / high):.1f}"
+    return f"{wide * min(1.0, room / wide, tall / high):.1f}"
 
 
 def to_latex_markup(markdown: str, lang: str) -> str:

@@ -17,6 +17,10 @@ from coursework.rendering.markup import to_text
 
 Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 
+#: Room that a figure has on paper, width and height in mm: beside the data, and with the data below it.
+ROOM_BESIDE, ROOM_ALONE = (112.0, 62.0), (165.0, 72.0)
+_BESIDE = 9  #: data at most that stand beside the figure
+
 #: The template of each type of sheet.
 TEMPLATES = {Handout: "sheet", AnswerSheet: "solution", FeedbackSheet: "feedback"}
 
@@ -35,6 +39,7 @@ def context(sheet: Sheet) -> dict[str, object]:
         "words": words(handout.lang),
         "title": title(sheet),
         "figure": figure_of(sheet),
+        "beside": _data_beside(sheet),
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
         "variant": f"{handout.exercise} · {handout.seed} · v{handout.version}",
         "tolerances": tolerances(handout.questions, handout.lang),
@@ -42,9 +47,19 @@ def context(sheet: Sheet) -> dict[str, object]:
 
 
 def figure_of(sheet: Sheet) -> Figure | None:
-    """The figure a sheet shows: a solution's own, else the handout's."""
+    """The figure a sheet shows, laid out for its room: a solution's own, else the handout's."""
+    figure = _shown(sheet)
+    return figure and figure.fitted(*(ROOM_BESIDE if _data_beside(sheet) else ROOM_ALONE))
+
+
+def _shown(sheet: Sheet) -> Figure | None:
     own = sheet.figure if isinstance(sheet, AnswerSheet) else None
     return own or handout_of(sheet).figure
+
+
+def _data_beside(sheet: Sheet) -> bool:
+    """Whether the data stand beside the figure; a longer list stands below it."""
+    return _shown(sheet) is not None and 0 < len(handout_of(sheet).given) <= _BESIDE
 
 
 def polygon_drawings(sheet: Sheet) -> tuple[Figure | Beginning, ...]:
