@@ -54,7 +54,14 @@ def coordinate() -> GivenSpec:
 def table(*joints):
     """The lines of a statement's table of joints, each (bodies, name, direction, point)."""
     return [
-        {"number": k, "bodies": bodies, "joint": name, "along": along, "point": [int(c) for c in point]}
+        {
+            "number": k,
+            "bodies": bodies,
+            "joint": name,
+            "along": along,
+            "point": [int(c) for c in point],
+            "freedoms": FREEDOMS[name],
+        }
         for k, (bodies, name, along, point) in enumerate(joints, start=1)
     ]
 
