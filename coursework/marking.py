@@ -182,7 +182,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             together |= best_judged(variant, part.judge, readings, before.own, before.wrong)
         if i in together:
             nearest = together[i].reading, math.inf
-            marks[i] = _mark_judged(variant, key, part, reading, together[i])
+            told = next((asked[j] for j in marks if _is_told_with(asked[j], part, together)), None)
+            marks[i] = _mark_judged(variant, key, part, reading, together[i], told)
         else:
             own = loops.get(i)
             if own is None:
@@ -277,8 +278,16 @@ def _made(
     )
 
 
-def _mark_judged(variant: Variant, key: Key, part: Part, reading: Reading, found: Verdict) -> Mark:
-    """The mark of a part that is judged together with others."""
+def _is_told_with(earlier: Part, part: Part, together: Mapping[str, Verdict]) -> bool:
+    """Whether what is to be said of a judged part has been said of an earlier one of its group."""
+    same_group = earlier.judge == part.judge and earlier.id in together
+    return same_group and together[earlier.id][1:] == together[part.id][1:]
+
+
+def _mark_judged(
+    variant: Variant, key: Key, part: Part, reading: Reading, found: Verdict, told_with: Part | None
+) -> Mark:
+    """The mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
     read_as, verdict = reading.read_as[found.reading], found.said
     if verdict is None:
         alone = partial(_say, variant, part, "incomplete", read=echo(read_as, variant.lang))
@@ -289,7 +298,8 @@ def _mark_judged(variant: Variant, key: Key, part: Part, reading: Reading, found
         said = _say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
         return said._replace(sentence=said.sentence + follows, pieces={**said.pieces, **told})
 
-    told = {f"found{n}": _quantity(variant, q, v) for n, (q, v) in enumerate(verdict.found.items())}
+    tells = {} if told_with else verdict.found
+    told = {f"found{n}": _quantity(variant, q, v) for n, (q, v) in enumerate(tells.items())}
     listed = ", ".join("{" + name + "}" for name in told)
     follows = f" {words(variant.lang)['marking']['found'].format(listed)}" if listed else ""
     if share == 1.0:
@@ -304,6 +314,8 @@ def _mark_judged(variant: Variant, key: Key, part: Part, reading: Reading, found
         kind = f"mistake:{name}"
 
         def tell() -> _Said:
+            if told_with and verdict.mistake:
+                return say("told_with", first=part_name(variant, told_with))
             return say("mistake", says=variant.told(name))
 
         also = tuple(f"mistake:{other}" for other in verdict.also)

@@ -548,12 +548,22 @@ def _folded(text: str) -> str:
     return " ".join(re.sub(r"[^\w\s+<>=%°.,]", " ", text).split()).strip(" .,")
 
 
+_AFTER_HEAD = re.compile(r"\s*(?:[(,;]|:\s).*", re.DOTALL)
+
+
+def _head(label: str) -> str:
+    """A label as people shorten it: ``isostatic`` of "isostatic, all actions can be computed"."""
+    return _AFTER_HEAD.sub("", label.replace("\u202f", " "))
+
+
 def _by_label(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that are called so: by their key, else by a whole label, else by the head of one."""
     folded = _folded(text)
     if not folded:
         return []
     keys = [key for key in choices if _folded(key) == folded]
-    return keys or [key for key, labels in choices.items() if folded in map(_folded, labels)]
+    keys = keys or [key for key, labels in choices.items() if folded in map(_folded, labels)]
+    return keys or [k for k, labels in choices.items() if any(folded == _folded(_head(s)) for s in labels)]
 
 
 def _by_position(text: str, choices: Mapping[str, Sequence[str]]) -> tuple[list[str], str]:
@@ -577,7 +587,7 @@ def _choice(text: str, choices: Mapping[str, Sequence[str]]) -> Reading:
 
 
 def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
-    """The key of a choice, given by its key, a label of any language, or its place: ``b)``, ``2``.
+    """The key of a choice, given by its key, a label of any language or its head, or its place: ``b)``, ``2``.
 
     ``choices`` maps each key to its labels, in the order in which they are printed.
     """

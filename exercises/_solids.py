@@ -39,16 +39,31 @@ IN_CHAINS = ("revolute", "prismatic", "cylindrical", "spherical", "planar", "ann
 
 
 def joint_kind(names: tuple[str, ...] = DRAWN) -> GivenSpec:
-    return chosen(*names)
+    return chosen(*names, shown=False)
 
 
 def direction() -> GivenSpec:
-    return chosen("x", "y", "z")
+    return chosen("x", "y", "z", shown=False)
 
 
 def coordinate() -> GivenSpec:
     """Few values, so that axes often meet or coincide."""
-    return drawn(-40, 40, step=20, unit="mm")
+    return drawn(-40, 40, step=20, unit="mm", shown=False)
+
+
+def table(*joints):
+    """The lines of a statement's table of joints, each (bodies, name, direction, point)."""
+    return [
+        {
+            "number": k,
+            "bodies": bodies,
+            "joint": name,
+            "along": along,
+            "point": [int(c) for c in point],
+            "freedoms": FREEDOMS[name],
+        }
+        for k, (bodies, name, along, point) in enumerate(joints, start=1)
+    ]
 
 
 def freedoms_of(joint):

@@ -2,7 +2,7 @@
 
 from coursework.model import Exercise, Part
 
-from ._solids import IN_CHAINS, coordinate, direction, joint_kind, mobility_of_loop
+from ._solids import IN_CHAINS, coordinate, direction, joint_kind, mobility_of_loop, table
 
 
 def mobility(
@@ -23,6 +23,20 @@ def moves(mobility):
 
 def mobility_is_small(mobility):
     return mobility <= 3
+
+
+def tells(
+    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
+    x2, y2, z2, x3, y3, z3, x4, y4, z4,
+):  # fmt: skip
+    return {
+        "rows": table(
+            ((0, 1), joint_1, direction_1, (0, 0, 0)),
+            ((1, 2), joint_2, direction_2, (x2, y2, z2)),
+            ((2, 3), joint_3, direction_3, (x3, y3, z3)),
+            ((3, 0), joint_4, direction_4, (x4, y4, z4)),
+        )
+    }
 
 
 EXERCISE = Exercise(
@@ -52,6 +66,7 @@ EXERCISE = Exercise(
         Part("m_useful", kind="integer", points=1),
         Part("statics", kind="choice", choices=("isostatic", "hyperstatic"), points=1),
     ),
+    tells=tells,
     symbols={
         **{f"joint_{k}": f"L_{k}" for k in (1, 2, 3, 4)},
         **{f"direction_{k}": rf"\vec{{u}}_{k}" for k in (1, 2, 3, 4)},

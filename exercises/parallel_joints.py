@@ -5,7 +5,7 @@ import numpy as np
 from coursework.model import Exercise, Part
 from coursework.solids import EQUIVALENTS, each_distinct
 
-from ._solids import WITH_DIRECTION, WITH_LINE, combined, coordinate, direction, joint_kind
+from ._solids import WITH_DIRECTION, WITH_LINE, combined, coordinate, direction, joint_kind, table
 
 
 def _of_signs(joint_1, direction_1, joint_2, direction_2, x, y, z):
@@ -34,6 +34,15 @@ def has_line(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
     return _name(joint_1, direction_1, joint_2, direction_2, x2 != 0, y2 != 0, z2 != 0) in WITH_LINE
 
 
+def tells(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
+    return {
+        "rows": table(
+            ((1, 2), joint_1, direction_1, (0, 0, 0)),
+            ((1, 2), joint_2, direction_2, (x2, y2, z2)),
+        )
+    }
+
+
 EXERCISE = Exercise(
     given={
         "joint_1": joint_kind(),
@@ -56,6 +65,7 @@ EXERCISE = Exercise(
             "axis_point", unit="mm", kind="point_on_line", along="axis_dir", atol=1.0, points=1, when=has_line
         ),
     ),
+    tells=tells,
     symbols={
         "joint_1": "L_1",
         "joint_2": "L_2",

@@ -3,7 +3,7 @@
 from coursework.model import Exercise, Part
 from coursework.solids import EQUIVALENTS
 
-from ._solids import WITH_DIRECTION, WITH_LINE, combined, coordinate, direction, joint_kind
+from ._solids import WITH_DIRECTION, WITH_LINE, combined, coordinate, direction, joint_kind, table
 
 
 def _name(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
@@ -17,6 +17,15 @@ def has_direction(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
 
 def has_line(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
     return _name(joint_1, direction_1, joint_2, direction_2, x2, y2, z2) in WITH_LINE
+
+
+def tells(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
+    return {
+        "rows": table(
+            ((0, 1), joint_1, direction_1, (0, 0, 0)),
+            ((1, 2), joint_2, direction_2, (x2, y2, z2)),
+        )
+    }
 
 
 EXERCISE = Exercise(
@@ -41,6 +50,7 @@ EXERCISE = Exercise(
             "axis_point", unit="mm", kind="point_on_line", along="axis_dir", atol=1.0, points=1, when=has_line
         ),
     ),
+    tells=tells,
     symbols={
         "joint_1": "L_1",
         "joint_2": "L_2",

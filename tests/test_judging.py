@@ -106,6 +106,16 @@ def test_a_named_mistake_says_what_follows_from_the_answers(variant):
     assert f"{2 * total:g} mm" in marking["x"].feedback
 
 
+def test_what_is_said_of_a_whole_group_is_said_once(variant):
+    total = variant.given["sum"]
+    marking = variant.grade({"x": total, "y": total})
+    assert marking["y"].verdict == "mistake:twice"
+    assert "Twice too much." not in marking["y"].feedback
+    assert "mm" not in marking["y"].feedback
+    assert "remark on x" in marking["y"].feedback
+    assert "remark on x" not in variant.grade({"x": "?", "y": total})["y"].feedback
+
+
 def test_what_is_not_right_and_has_no_name_is_wrong_and_keeps_its_share(variant):
     marking = variant.grade({"x": 1, "y": 1})
     assert (marking["x"].verdict, marking["x"].points) == ("wrong", 1.0)

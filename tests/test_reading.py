@@ -502,6 +502,26 @@ def test_a_label_of_two_choices_chooses_neither():
     assert read_choice("same", {"p": ("same",), "q": ("same",)}).code == "two_values"
 
 
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [("isostatique", "iso"), ("Hyperstatic", "hyper"), ("un pivot", "pivot"), ("none", "none"), ("aucune", "none"), ("II", "II")],
+)  # fmt: skip
+def test_a_choice_is_known_by_what_stands_before_its_explanation(text, key):
+    choices = {
+        "iso": ("isostatique, tout se calcule", "isostatic, all is known"),
+        "hyper": ("hyperstatique, rien ne va", "hyperstatic, some is not"),
+        "pivot": ("un pivot (rotation seule)", "a pivot (rotation alone)"),
+        "none": ("aucune : tout est libre", "none: all is free"),
+        "II": ("II",),
+        "twice": ("II, deux fois",),
+    }
+    assert read_choice(text, choices).values == (key,)
+
+
+def test_a_head_of_two_choices_chooses_neither():
+    assert read_choice("none", {"p": ("none, ever",), "q": ("none (yet)",)}).code == "two_values"
+
+
 # --- equations --------------------------------------------------------------------------
 
 NAMES = ("r1", "r2", "r3", "r4", "theta2", "theta3", "theta4")
