@@ -170,7 +170,7 @@ def class_of_twelve(
     marked = sum(r["answers"] for r in rows)
     report = [
         f"{written} files built, {book.rows_in} rows handed in: {marked} marked, {len(book.rejected)} rejected.",
-        *(f"  rejected: {r.source.removeprefix(str(out))}: {r.reason}" for r in book.rejected),
+        *(f"  rejected: {r.source}: {r.reason}" for r in book.rejected),
         f"sheets and notebooks to give away   {out / 'handouts'}",
         f"worked solutions and key            {out / 'instructor'}",
         f"answers as they came                {out / 'submissions'}",

@@ -132,7 +132,8 @@ def test_a_command_that_does_not_exist_would_be_found(wrong):
 
 
 @every_page
-def test_every_python_block_runs(page):
+def test_every_python_block_runs(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # a study keeps its answers beside itself
     for number, block in enumerate(blocks(page, "python")):
         exec(compile(block, f"{page.name}, block {number + 1}", "exec"), {"__name__": "shown"})
 
