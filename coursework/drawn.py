@@ -23,7 +23,7 @@ from coursework.errors import WrongValue, unknown
 from coursework.polygons import Polygon, Side
 
 TOLERANCE_MM = 1.0  #: by which each drawn point may be off
-LEAST_MM = 30.0  #: of the longest vector, for tolerances of a millimetre; below, directions tell nothing
+LEAST_MM = 20.0  #: of the longest vector, for tolerances of a millimetre; below, directions tell nothing
 
 _SAME_SCALE = 0.05  #: by which two scales may differ and be one, drawn inexactly
 

@@ -8,7 +8,7 @@ from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.language import significant
 from coursework.model import Part, chosen, drawn
 
-PAPER_MM = (160, 110)  #: the box of millimetre paper to draw in
+PAPER_MM = (160, 90)  #: the box of millimetre paper to draw in
 KNOWN = ("both", "direction", "length", "neither")
 
 

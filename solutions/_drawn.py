@@ -9,7 +9,7 @@ import numpy as np
 from coursework.drawn import HUNG, SENSE, ancestors, judge_drawing
 from coursework.solution import Judged
 
-_BOX_MM = (130.0, 90.0)  #: in which the reference drawing fits
+_BOX_MM = (130.0, 80.0)  #: in which the reference drawing fits
 
 
 def _paper(image, scale):

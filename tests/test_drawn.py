@@ -168,7 +168,7 @@ def test_a_scale_that_the_drawing_does_not_have_costs_the_scale_alone():
 
 def test_a_drawing_too_small_to_tell_directions_is_not_legible():
     (polygon,) = polygons("velocity_polygon", [1])
-    assert not judge_drawing(polygon, on_paper(polygon, polygon.size / 20, 0j)).is_legible
+    assert not judge_drawing(polygon, on_paper(polygon, polygon.size / 15, 0j)).is_legible
     nothing = dict.fromkeys(polygon.points, 5 + 5j)
     assert not judge_drawing(polygon, nothing).is_legible
 

@@ -33,7 +33,7 @@ def test_the_reference_drawing_fits_the_box_and_can_be_measured(exercise):
         found = variant.solution()
         xs, ys = zip(*(found[n] for n in "pab"), strict=True)
         assert max(xs) - min(xs) <= 130 + 1e-9
-        assert max(ys) - min(ys) <= 90 + 1e-9
+        assert max(ys) - min(ys) <= 80 + 1e-9
         assert min(found["ab"], found["pv_b"]) > 10
 
 
