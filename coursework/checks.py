@@ -19,9 +19,10 @@ from coursework import draws
 from coursework.blocks import processors
 from coursework.comparing import distance
 from coursework.course import Course, open_course
+from coursework.equations import parse_equation
 from coursework.errors import CourseworkError, Starved
 from coursework.exercise import ALL, CourseExercise
-from coursework.expressions import MAX_LENGTH, parse_equation
+from coursework.expressions import MAX_LENGTH
 from coursework.graph import plain_scalar
 from coursework.issuing import distinct_variants
 from coursework.judging import judged, judges_of

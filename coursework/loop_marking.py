@@ -23,8 +23,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from coursework.equations import Equation, parse_equation
+from coursework.equivalence import same_equation
 from coursework.errors import BadCourse, CourseworkError
-from coursework.expressions import Equation, parse_equation, same_equation
 from coursework.judging import Verdict
 from coursework.loops import Fault, Loop
 from coursework.reading import Reading

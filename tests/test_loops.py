@@ -10,8 +10,8 @@ import pytest
 
 import coursework
 from coursework.checks import Report, check_loops, equation_holds
+from coursework.equations import parse_equation
 from coursework.errors import BadCourse, UnknownName, WrongValue
-from coursework.expressions import parse_equation
 from coursework.issuing import issue
 from coursework.kinematics.chains import Chain, Vector
 from coursework.loop_marking import judge_of
