@@ -792,7 +792,7 @@ def _write_report(course: Course, told: Any, lang: str, out: Path) -> None:
 @click.pass_context
 def check(context: click.Context, exercises: Sequence[str], count: int, as_json: bool) -> int:
     """Prove the promises of every exercise of the course; status 1 when one is broken."""
-    from coursework import checks
+    from coursework import check_report, checks
 
     course = _course(context)
     names = _exercise_names(course, exercises)
@@ -814,8 +814,8 @@ def check(context: click.Context, exercises: Sequence[str], count: int, as_json:
                 }
             )
     else:
-        _print_table(checks.table(reports))
-        for note in checks.notes(reports):
+        _print_table(check_report.table(reports))
+        for note in check_report.notes(reports):
             click.echo(note)
         for report in reports:
             for failure in report.failures[:20]:
