@@ -31,7 +31,22 @@ class Report:
         return not self.failures
 
     def fail(self, what: str) -> None:
+        """A promise is broken: how, in one line."""
         self.failures.append(what)
+
+    def as_json(self) -> dict[str, Any]:
+        """What ``coursework check --json`` prints of it."""
+        return {
+            "exercise": self.name,
+            "variants": self.variants,
+            "acceptance": self.acceptance if self.variants else None,
+            "counts": dict(self.counts),
+            "mistakes": {n: dict(t) for n, t in self.mistakes.items()},
+            "refused": dict(self.refused),
+            "conditioning": dict(zip(("median", "largest"), self.conditioning, strict=True)),
+            "cases": {n: dict(c) for n, c in self.cases.items()},
+            "failures": self.failures,
+        }
 
 
 def table(reports: Sequence[Report]) -> list[Mapping[str, Any]]:
