@@ -8,7 +8,8 @@ from __future__ import annotations
 import numpy as np
 from timing import best_in_turn, machine, print_table
 
-from coursework.expressions import parse_equation, same_equation
+from coursework.equations import parse_equation
+from coursework.equivalence import same_equation
 from coursework.reading import read_equation, read_number, read_numbers, read_point
 
 COUNT = 100_000

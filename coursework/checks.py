@@ -10,57 +10,32 @@ import multiprocessing
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from coursework import draws
 from coursework.blocks import processors
+from coursework.check_report import KEPT_DIGITS, RESIDUAL, Report
 from coursework.comparing import distance
 from coursework.course import Course, open_course
 from coursework.errors import CourseworkError, Starved
 from coursework.exercise import ALL, CourseExercise
-from coursework.expressions import MAX_LENGTH, parse_equation
 from coursework.graph import plain_scalar
 from coursework.issuing import distinct_variants
 from coursework.judging import judged, judges_of
 from coursework.key import Key, envelopes, exists
 from coursework.language import languages, plain, significant
-from coursework.loop_marking import fault_answers, judge_of
+from coursework.loop_checks import check_loops
 from coursework.model import Part
 from coursework.rounding import student_who_rounds
 from coursework.sheets import prompt
 from coursework.variant import Variant
 from coursework.worth import SHOWN, conditioning, judged_wrong, visibility, worthy
 
-RESIDUAL = 1e-9  #: largest relative residual of the governing equations
 RENDERED = 1  #: variants whose sheets are rendered in every format and language
 NONSENSICAL = 20  #: variants that are answered by nonsense; it is read alike on all
-KEPT_DIGITS = (3, 4, 5)  #: of simulated students who round at every step
 NONSENSE = ("?", "je ne sais pas", "12 +", "nan", "9**9**9", "1 = 1 = 1", "__import__('os')", "((((")
-
-
-@dataclass
-class Report:
-    """What the check of one exercise found."""
-
-    name: str
-    variants: int = 0
-    counts: Counter[str] = field(default_factory=Counter)
-    failures: list[str] = field(default_factory=list)
-    mistakes: dict[str, Counter[str]] = field(default_factory=dict)  #: shown, murky, hidden, by mistake
-    refused: Counter[str] = field(default_factory=Counter)  #: variants not worth issuing, by their first flaw
-    acceptance: float = math.nan
-    conditioning: tuple[float, float] = (math.nan, math.nan)  #: median and largest, of what may be issued
-    cases: dict[str, Counter[str]] = field(default_factory=dict)  #: branches that students met, by quantity
-
-    @property
-    def passed(self) -> bool:
-        return not self.failures
-
-    def fail(self, what: str) -> None:
-        self.failures.append(what)
 
 
 def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) -> Report:
@@ -506,64 +481,6 @@ def check_nonsense(variant: Variant, report: Report) -> None:
                 report.fail(f"seed {variant.seed}: {nonsense!r} marks correct on {part_id}")
 
 
-def check_loops(variant: Variant, report: Report) -> None:
-    """The equations of the loops hold for the answers, are right in other forms, and wrong links are told.
-
-    An equation does not depend on the variant: one is enough.
-    """
-    parts = [p for p in variant.exercise.spec.parts if p.loop]
-    for part in parts:
-        if not equation_holds(variant, part):
-            report.fail(f"{part.id} does not hold for the answers of seed {variant.seed}")
-    for sheet in _other_forms(variant, parts):
-        marking = variant.grade(sheet)
-        for part_id, answer in sheet.items():
-            report.counts["right answers"] += 1
-            if marking[part_id].verdict != "correct":
-                report.fail(f"{part_id} = {answer!r} is right but marks {marking[part_id].verdict}")
-    for part in parts:
-        judge, reference = judge_of(variant.exercise, part), variant.key.reference[part.quantity]
-        for fault, answer in fault_answers(variant.exercise, part):
-            if judge.are_alike(answer, str(reference)):
-                continue  # nothing is wrong in this form
-            report.counts["loops told"] += 1
-            mark = variant.grade({part.id: answer})[part.id]
-            if not mark.matches:
-                names = ", ".join(fault.names)
-                report.fail(f"{part.id} = {answer!r} ({fault.kind} of {names}) marks {mark.verdict}, untold")
-
-
-def equation_holds(variant: Variant, part: Part) -> bool:
-    """Whether a reference equation holds for the variant's own answers."""
-    exercise, equation = variant.exercise, variant.key.reference[part.quantity]
-    angles = {n for loop in exercise.solution.loops.values() for n in loop.angles}
-    found = exercise.solve(**variant.used, only=part.variables, effects=variant.effects)
-    values = {n: math.radians(v) if n in angles else v for n, v in found.items()}
-    size = max(abs(v) for n, v in values.items() if n not in angles) ** 2
-    return abs(parse_equation(str(equation), part.variables).difference(values)) <= RESIDUAL * size
-
-
-def _other_forms(variant: Variant, parts: Sequence[Part]) -> Iterator[dict[str, str]]:
-    """Right answers about loops in other forms: exchanged, projected on turned axes, conjugate."""
-    exchanged, turned, complex_ones = {}, {}, {}
-    for part in parts:
-        form, _ = part.loop_form
-        texts = {
-            f: str(variant.exercise.solution.graph.evaluate((n,), {})[n])
-            for f in ("x", "y", "complex")
-            for n in (part.quantity.replace(f"{part.loop}_{form}", f"{part.loop}_{f}"),)
-        }
-        sides = {f: "({1}) - ({0})".format(*text.split(" = ")) for f, text in texts.items()}
-        if form == "complex":
-            complex_ones[part.id] = f"{sides['x']} + i*({sides['y']}) = 0"
-        else:
-            exchanged[part.id] = texts["y" if form == "x" else "x"]
-            sign, other = ("+", "y") if form == "x" else ("-", "x")
-            turned[part.id] = f"cos(20°)*({sides[form]}) {sign} sin(20°)*({sides[other]}) = 0"
-    for sheet in (exchanged, turned, complex_ones):
-        yield {part_id: text for part_id, text in sheet.items() if len(text) <= MAX_LENGTH}
-
-
 # -------------------------------------------------------------------- rendering
 
 
@@ -581,47 +498,3 @@ def check_rendering(exercise: CourseExercise, count: int, report: Report) -> Non
                 renderer.html(sheet),
             ):
                 report.counts["sheets rendered"] += bool(made)
-
-
-def table(reports: Sequence[Report]) -> list[Mapping[str, Any]]:
-    """A line an exercise, for printing."""
-    return [
-        {
-            "exercise": r.name,
-            "variants": r.variants,
-            "draws kept": f"{100 * r.acceptance:.0f} %" if r.variants else "",
-            "worth issuing": _share_worthy(r),
-            "right answers": r.counts["right answers"],
-            "rounded": sum(r.counts[f"rounding to {d}"] for d in KEPT_DIGITS),
-            "mistakes": r.counts["mistakes recognised"],
-            "slips": r.counts["slips recognised"],
-            "loops": r.counts["loops told"],
-            "followed": r.counts["follow-through"],
-            "nonsense": r.counts["nonsense"],
-            "failures": len(r.failures),
-        }
-        for r in reports
-    ]
-
-
-def notes(reports: Sequence[Report]) -> list[str]:
-    """What the variants are like: what refuses most draws, conditioning, and the branches met."""
-    lines = []
-    for r in reports:
-        if not r.variants:
-            continue
-        median, largest = r.conditioning
-        line = f"{r.name}: rounding takes {100 * median:.0f} % of what a variant may have, {100 * largest:.0f} % at most"
-        for name, cases in r.cases.items():
-            if len(cases) == 1 and cases.total() < r.variants:
-                continue  # a question of a bank: its answer is the same wherever it is asked
-            told = ", ".join(f"{case} {100 * n / r.variants:.0f} %" for case, n in cases.most_common())
-            line += f"; {name}: {told}"
-        flaws = ", ".join(f"{flaw} ({n})" for flaw, n in r.refused.most_common(3))
-        lines.append(line + (f"; passed over most for {flaws}" if flaws else ""))
-    return lines
-
-
-def _share_worthy(report: Report) -> str:
-    tried = report.variants + sum(report.refused.values())
-    return f"{100 * report.variants / tried:.0f} %" if tried else ""

@@ -1,16 +1,16 @@
-"""The command line: the only module that reads arguments, writes files and prints."""
+"""The command line: reads arguments, calls what does the work, says what became of it."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from coursework.errors import BadInput, CourseworkError, WrongValue
+from coursework.printing import print_json, print_table, progress_bar
 
 if TYPE_CHECKING:
     from coursework.course import Course
@@ -134,52 +134,6 @@ def _exercise_names(course: Course, names: Sequence[str]) -> tuple[str, ...]:
     return tuple(dict.fromkeys(names)) or course.names
 
 
-def _print_json(content: Any) -> None:
-    import json
-
-    click.echo(json.dumps(content, ensure_ascii=False))
-
-
-def _print_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text  # as it is: brackets are not markup
-
-    if not rows:
-        return
-    table = Table(title=title or None, title_justify="left")
-    for column in rows[0]:
-        right = all(isinstance(r[column], (int, float)) for r in rows)
-        table.add_column(Text(str(column)), justify="right" if right else "left", overflow="fold")
-    for row in rows:
-        table.add_row(*[Text(str(v)) for v in row.values()])
-    console = Console()
-    # Piped into a file there is no width to fit: nothing is cut.
-    Console(width=None if console.is_terminal else 200).print(table)
-
-
-@contextmanager
-def _progress(what: str, total: int | None) -> Iterator[Callable[..., None]]:
-    """A progress bar on a terminal; nothing elsewhere."""
-    if not sys.stderr.isatty():
-        yield lambda *_: None
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task(what, total=total)
-
-        def advance(*progress: Any) -> None:
-            """One more, or so many of so many."""
-            if len(progress) == 2:
-                bar.update(task, completed=progress[0], total=progress[1])
-            else:
-                bar.advance(task)
-
-        yield advance
-
-
 # ------------------------------------------------------------------------- look
 
 
@@ -200,9 +154,9 @@ def list_exercises(context: click.Context, as_json: bool) -> None:
         for name in course.names
     ]
     if as_json:
-        _print_json(rows)
+        print_json(rows)
     else:
-        _print_table([{**r, "title": "\n".join(r["title"].values())} for r in rows])
+        print_table([{**r, "title": "\n".join(r["title"].values())} for r in rows])
         if not rows:
             click.echo("This course has no exercise yet.")
 
@@ -258,14 +212,14 @@ def variant(
     for drawn in _drawn(_course(context)[exercise], range(seed, seed + count), lang, parts):
         record = record_with_answers(drawn) if solution else drawn.record
         if as_json:
-            _print_json(record)
+            print_json(record)
             continue
         rows = [{"quantity": n, "value": g["value"], "unit": g["unit"]} for n, g in record["given"].items()]
         rows += [
             {"quantity": f"{part} (asked)", "value": a["value"], "unit": a["unit"]}
             for part, a in record.get("answers", {}).items()
         ]
-        _print_table(rows, title=f"{exercise}, seed {drawn.seed}")
+        print_table(rows, title=f"{exercise}, seed {drawn.seed}")
 
 
 @cli.command()
@@ -294,9 +248,9 @@ def solve(
         "quantities": {n: {"value": _json_value(v), "unit": units.get(n, "1")} for n, v in found.items()},
     }
     if as_json:
-        _print_json(content)
+        print_json(content)
         return
-    _print_table(
+    print_table(
         [
             {
                 "quantity": n,
@@ -368,9 +322,6 @@ def simulate(
 
     Values that are not set are those of the variant of --seed.
     """
-    from coursework.building import write_whole
-    from coursework.charts import curves
-    from coursework.issuing import csv_text
     from coursework.scenes import Scene
 
     one = _course(context)[exercise]
@@ -378,23 +329,33 @@ def simulate(
     table = scene.over_cycle(steps) if drive is None else scene.in_time(_drive(one, drive), duration)
     rows = table.rows()
     if as_json:
-        _print_json({"exercise": exercise, "evaluated": table.evaluated, "rows": rows, "notes": table.notes})
+        print_json({"exercise": exercise, "evaluated": table.evaluated, "rows": rows, "notes": table.notes})
     else:
         click.echo(f"evaluated: {', '.join(table.evaluated)}")
         for note in table.notes:
             click.echo(f"note: {note}")
     if out is not None:
-        first, *others = table.columns
-        name = f"{exercise}-{'cycle' if drive is None else 'motion'}"
-        write_whole(out / f"{name}.csv", csv_text(rows, list(rows[0])).encode("utf-8"))
-        shown = {n: table.columns[n] for n in others if n != "dead_centre"}
-        plot = curves((f"{first} [{table.units[first]}]", table.columns[first]), shown, table.units, exercise)
-        write_whole(out / f"{name}.svg", plot)
+        stem = out / f"{exercise}-{'cycle' if drive is None else 'motion'}"
+        _write_scene(table, exercise, stem)
         if not as_json:
-            click.echo(f"table and plot: {out / name}.csv, .svg")
+            click.echo(f"table and plot: {stem}.csv, .svg")
     elif not as_json:
         shown_rows = rows[:: max(1, len(rows) // 12)]
-        _print_table([{h: _short_number(v) for h, v in row.items()} for row in shown_rows])
+        print_table([{h: _short_number(v) for h, v in row.items()} for row in shown_rows])
+
+
+def _write_scene(table: Any, title: str, stem: Path) -> None:
+    """The table of a scene as ``STEM.csv`` and its curves as ``STEM.svg``."""
+    from coursework.building import write_whole
+    from coursework.charts import curves
+    from coursework.issuing import csv_text
+
+    first, *others = table.columns
+    rows = table.rows()
+    write_whole(stem.parent / f"{stem.name}.csv", csv_text(rows, list(rows[0])).encode("utf-8"))
+    shown = {n: table.columns[n] for n in others if n != "dead_centre"}
+    plot = curves((f"{first} [{table.units[first]}]", table.columns[first]), shown, table.units, title)
+    write_whole(stem.parent / f"{stem.name}.svg", plot)
 
 
 def _short_number(value: Any) -> str:
@@ -546,7 +507,7 @@ def accuracy(
                 )
     as_rows = [row.as_json() for row in rows]
     if as_json:
-        _print_json(as_rows)
+        print_json(as_rows)
     if out is not None:
         from coursework.accuracy.page import report
 
@@ -669,7 +630,7 @@ def build_files(
             course, issues, formats, practice=practice, paper=paper, booklet=booklet, polygons=polygons
         )
     )
-    with _progress("building", len(wanted)) as advance:
+    with progress_bar("building", len(wanted)) as advance:
         building.write_tree(out, wanted, advance)
     return len(wanted)
 
@@ -735,7 +696,7 @@ def grade_with_bar(
     """Mark files and write the tables, with a bar on a terminal."""
     from coursework.grading import grade_files
 
-    with _progress("marking", None) as advance:
+    with progress_bar("marking", None) as advance:
         return grade_files(
             course, submissions, issued, out, feedback=feedback, accepted=accepted, progress=advance
         )
@@ -765,7 +726,7 @@ def report(context: click.Context, folder: Path, lang: str, out: Path | None, as
     marks = statistics.read(folder)
     told = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
     if as_json:
-        _print_json(told.as_json())
+        print_json(told.as_json())
     if out is not None or not as_json:
         out = out or folder / "report"
         _write_report(course, told, lang, out)
@@ -804,30 +765,18 @@ def _write_report(course: Course, told: Any, lang: str, out: Path) -> None:
 @click.pass_context
 def check(context: click.Context, exercises: Sequence[str], count: int, as_json: bool) -> int:
     """Prove the promises of every exercise of the course; status 1 when one is broken."""
-    from coursework import checks
+    from coursework import check_report, checks
 
     course = _course(context)
     names = _exercise_names(course, exercises)
-    with _progress("checking", len(names)) as advance:
+    with progress_bar("checking", len(names)) as advance:
         reports = checks.check_all(course, names, count, advance)
     if as_json:
         for report in reports:
-            _print_json(
-                {
-                    "exercise": report.name,
-                    "variants": report.variants,
-                    "acceptance": report.acceptance if report.variants else None,
-                    "counts": dict(report.counts),
-                    "mistakes": {n: dict(t) for n, t in report.mistakes.items()},
-                    "refused": dict(report.refused),
-                    "conditioning": dict(zip(("median", "largest"), report.conditioning, strict=True)),
-                    "cases": {n: dict(c) for n, c in report.cases.items()},
-                    "failures": report.failures,
-                }
-            )
+            print_json(report.as_json())
     else:
-        _print_table(checks.table(reports))
-        for note in checks.notes(reports):
+        print_table(check_report.table(reports))
+        for note in check_report.notes(reports):
             click.echo(note)
         for report in reports:
             for failure in report.failures[:20]:
@@ -863,6 +812,6 @@ def demo(out: Path) -> None:
     from coursework.demo import class_of_twelve
 
     rows, report = class_of_twelve(out, build_files, grade_with_bar)
-    _print_table(rows, title="What became of the answers")
+    print_table(rows, title="What became of the answers")
     for line in report:
         click.echo(line)

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from coursework.expressions import Equation, parse_equation, same_equation
+from coursework.equations import Equation, parse_equation
+from coursework.equivalence import same_equation
 from coursework.graph import plain_scalar
 from coursework.model import Part
 

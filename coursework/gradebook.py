@@ -19,10 +19,11 @@ from coursework.course import Course, open_course
 from coursework.errors import CourseworkError, nearest
 from coursework.issued import Issued
 from coursework.key import keys_of
-from coursework.marking import Mark, mark, right_feedback
+from coursework.marking import Mark, mark
 from coursework.model import Part
 from coursework.plainly import plainly_right
 from coursework.submissions import Rejected, Row
+from coursework.telling import right_feedback
 from coursework.variant import Variant
 
 CHUNK = 500  #: sheets marked together

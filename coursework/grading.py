@@ -20,9 +20,9 @@ from coursework.gradebook import Gradebook, Graded
 from coursework.handout import FeedbackLine, FeedbackSheet
 from coursework.issued import Issued
 from coursework.issuing import file_stems, inert
-from coursework.marking import localised
 from coursework.regrading import CHANGES_COLUMNS, Accepted, Before
 from coursework.submissions import Rejected, Row, find, read_file
+from coursework.telling import localised
 
 #: For so many students at most, feedback sheets are printed unless told.
 FEEDBACK_STUDENTS = 1000

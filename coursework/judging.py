@@ -71,11 +71,13 @@ def _needs(variant: Variant, name: str) -> list[str]:
 
 
 class Verdict(NamedTuple):
-    """What became of one answer of a group."""
+    """What became of one answer of a group: parts of a judge of the solution, or equations of a loop."""
 
     reading: int  #: which of its honest readings was taken
     said: Judged | None  #: None where it cannot be judged because others are missing
     followed: bool = False  #: judged from the student's own earlier answers
+    slip: str = ""  #: what is missed, where that needs no naming by the solution
+    about: tuple[str, ...] = ()  #: the quantities that the slip may be about
 
 
 def best_judged(

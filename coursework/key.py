@@ -152,11 +152,7 @@ class Key:
     @cached_property
     def _other_cases(self) -> dict[str, list[Any]]:
         found: dict[str, list[Any]] = {}
-        for name, spec in self.variant.exercise.spec.given.items():
-            if len(spec.choices) != 2 or name not in self.variant.used:
-                continue
-            (other,) = (c for c in spec.choices if c != self.variant.used[name])
-            given = {**self.variant.used, name: other}
+        for given in _with_other_cases(self.variant.exercise, self.variant.used):
             for quantity in self._quantities:
                 with suppress(CourseworkError):
                     value = self.solution.graph.evaluate((quantity,), given, self.variant.effects)[quantity]
@@ -233,11 +229,7 @@ class Batch:
     def other_cases(self) -> dict[str, list[list]]:
         """By quantity, columns of its values when a given case of two is taken for the other one."""
         found: dict[str, list[list]] = {}
-        for name, spec in self.exercise.spec.given.items():
-            if len(spec.choices) != 2 or name not in self.given:
-                continue
-            one, other = spec.choices
-            given = {**self.given, name: np.where(self.given[name] == one, other, one)}
+        for given in _with_other_cases(self.exercise, self.given):
             with suppress(CourseworkError):
                 graph, effects = self.exercise.solution.graph, self.exercise.spec.effects
                 for quantity, column in _rows(
@@ -273,6 +265,15 @@ class Batch:
                 if len(some) == len(reached):
                     break
         return found
+
+
+def _with_other_cases(exercise: CourseExercise, given: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """Given values, of one variant or of many, with one case of two exchanged for the other, case by case."""
+    for name, spec in exercise.spec.given.items():
+        if len(spec.choices) == 2 and name in given:
+            one, other = spec.choices
+            exchanged = np.where(np.asarray(given[name]) == one, other, one)
+            yield {**given, name: exchanged if exchanged.ndim else str(exchanged)}
 
 
 class _KeyOfBatch(Key):

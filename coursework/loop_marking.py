@@ -23,10 +23,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from coursework.equations import Equation, parse_equation
+from coursework.equivalence import same_equation
 from coursework.errors import BadCourse, CourseworkError
-from coursework.expressions import Equation, parse_equation, same_equation
+from coursework.judging import Verdict
 from coursework.loops import Fault, Loop
 from coursework.reading import Reading
+from coursework.solution import Judged
 
 if TYPE_CHECKING:
     from coursework.exercise import CourseExercise
@@ -53,14 +56,6 @@ class Finding(NamedTuple):
 
     rank: int
     rows: np.ndarray | None = None
-    fault: str = ""
-    names: tuple[str, ...] = ()
-
-
-class Judged(NamedTuple):
-    """Whether an answer is right beside the others, and else what is missed."""
-
-    right: bool
     fault: str = ""
     names: tuple[str, ...] = ()
 
@@ -366,9 +361,9 @@ def judge_of(exercise: CourseExercise, part: Part) -> LoopJudge:
     return exercise.loop_judges[key]
 
 
-def judged(variant: Variant, readings: Mapping[str, Reading]) -> dict[str, Judged]:
-    """The answers about loops, those of one loop together, by part id; only those that were read."""
-    found: dict[str, Judged] = {}
+def loop_verdicts(variant: Variant, readings: Mapping[str, Reading]) -> dict[str, Verdict]:
+    """What became of the answers about loops, those of one loop together, by part id; only those that were read."""
+    found: dict[str, Verdict] = {}
     before: dict[tuple[str, int], list[np.ndarray]] = {}
     for part in variant.parts:
         reading = readings.get(part.id)
@@ -379,20 +374,26 @@ def judged(variant: Variant, readings: Mapping[str, Reading]) -> dict[str, Judge
             if finding.rank == 0 and not finding.fault and judge.holds_with_numbers(equation, variant):
                 finding = Finding(0, fault="numbers")
             others = before.setdefault((part.loop, order), []) if form != "complex" else []
-            found[part.id] = _beside(finding, others, 2 if form == "complex" else 1)
-            if found[part.id].right and finding.rows is not None:
+            missed, about = _missed_beside(finding, others, 2 if form == "complex" else 1)
+            right = finding.rank > 0 and not missed
+            found[part.id] = Verdict(0, Judged(float(right)), slip=missed, about=about)
+            if right:
                 others.append(finding.rows)
     return found
 
 
-def _beside(finding: Finding, others: Sequence[np.ndarray], wanted: int) -> Judged:
+def _missed_beside(
+    finding: Finding, others: Sequence[np.ndarray], wanted: int
+) -> tuple[str, tuple[str, ...]]:
+    """What an equation misses beside the right ones before it, and about which symbols; nothing where it is right,
+    or where nobody knows."""
     if finding.rank == 0:
-        return Judged(False, finding.fault, finding.names)
+        return finding.fault, finding.names
     if finding.rank < wanted:
-        return Judged(False, "one_projection")
+        return "one_projection", ()
     if others and _rank(np.concatenate([*others, finding.rows], axis=1)) < 2:
-        return Judged(False, "repeated_equation")
-    return Judged(True)
+        return "repeated_equation", ()
+    return "", ()
 
 
 def fault_answers(exercise: CourseExercise, part: Part) -> Iterator[tuple[Fault, str]]:

@@ -9,18 +9,17 @@ from __future__ import annotations
 
 import itertools
 import math
-import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, lru_cache, partial
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from coursework.comparing import distance
 from coursework.errors import WrongValue, unknown
 from coursework.judging import Verdict, best_judged
 from coursework.key import Key
-from coursework.language import localise, significant, unit_text, with_unit, words
-from coursework.loop_marking import Judged, judged
+from coursework.language import words
+from coursework.loop_marking import loop_verdicts
 from coursework.model import Part
 from coursework.reading import (
     Reading,
@@ -30,12 +29,10 @@ from coursework.reading import (
     read_number,
     read_point,
 )
+from coursework.telling import Said, amount, echo, either_symbol, part_name, plain_line, say, say_not_read
 
 if TYPE_CHECKING:
-    from coursework.exercise import CourseExercise
     from coursework.variant import Variant
-
-ECHO = 60  #: characters of an answer quoted back in feedback
 
 
 @dataclass(eq=False)
@@ -51,7 +48,7 @@ class Mark:
     lang: str
     matches: tuple[str, ...] = ()  #: every verdict that explains this answer, the one given first
     in_other_order: bool = False  #: right because the student exchanged two assemblies
-    _tell: Callable[[], _Said] = field(default=lambda: _Said("", {}), repr=False)
+    _tell: Callable[[], Said] = field(default=lambda: Said("", {}), repr=False)
 
     @cached_property
     def says(self) -> str:
@@ -71,31 +68,6 @@ class Mark:
     def mistakes(self) -> tuple[str, ...]:
         """The named mistakes that give this answer."""
         return tuple(m.partition(":")[2] for m in self.matches if m.startswith("mistake:"))
-
-
-class _Said(NamedTuple):
-    """A sentence of the engine, and the Markdown that fills it: ``{name}: {read} is right.``"""
-
-    sentence: str
-    pieces: Mapping[str, str]
-
-    def markdown(self) -> str:
-        return self.sentence.format(**self.pieces)
-
-    def plain(self, lang: str) -> str:
-        """One line of plain text. Sentences and most pieces recur: each is made plain once."""
-        pieces = {n: text if _is_plain(text) else _plain(text, lang) for n, text in self.pieces.items()}
-        return " ".join(_plain_sentence(self.sentence, lang).format(**pieces).split())
-
-
-_BARE = re.compile(r"[\w\s.,;:()=/°%·²³−…+^?!-]*")
-_is_plain = _BARE.fullmatch
-
-
-@lru_cache(maxsize=1024)
-def _plain_sentence(sentence: str, lang: str) -> str:
-    """A sentence with its places still open. Braces are no markup, and come through."""
-    return _plain(sentence, lang)
 
 
 class Marking(Mapping[str, Mark]):
@@ -169,8 +141,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     key, known = variant.key, known or {}
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
-    together: dict[str, Verdict] = {}
-    loops = judged(variant, readings)
+    together = loop_verdicts(variant, readings)
     before = _Before({}, set())
     marks = {}
     for i, part in asked.items():
@@ -185,12 +156,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             told = next((asked[j] for j in marks if _is_told_with(asked[j], part, together)), None)
             marks[i] = _mark_judged(variant, key, part, reading, together[i], told)
         else:
-            own = loops.get(i)
-            if own is None:
-                nearest = _nearest(part, reading, key, judged_by)
-            else:
-                nearest = 0, 0.0 if own.right else math.inf
-            marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before, own)
+            nearest = _nearest(part, reading, key, judged_by)
+            marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
         if reading.status == "read" and part.kind in ("number", "angle"):
             before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
@@ -245,22 +212,6 @@ def _nearest(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[i
     return index, gaps[index]
 
 
-def right_feedback(variant: Variant, part: Part, read_as: str) -> str:
-    """What is said of a right answer, as one line of plain text."""
-    sentence = _plain_right(variant.exercise, part, variant.lang)
-    return sentence.replace(_READ, echo(read_as, variant.lang))
-
-
-_READ = "\N{OBJECT REPLACEMENT CHARACTER}"
-
-
-@lru_cache(maxsize=4096)
-def _plain_right(exercise: CourseExercise, part: Part, lang: str) -> str:
-    name = f"${exercise.symbol(part.quantity)}$"
-    pieces = {"name": name[:1].upper() + name[1:], "read": _READ}
-    return _Said(words(lang)["marking"]["correct"], pieces).plain(lang)
-
-
 class _Before(NamedTuple):
     """The numbers that a student has answered before a part, by quantity, and which of them are wrong."""
 
@@ -270,7 +221,7 @@ class _Before(NamedTuple):
 
 def _made(
     variant: Variant, part: Part, reading: Reading, verdict: str, share: float, read_as: str,
-    tell: Callable[[], _Said], matches: tuple[str, ...] = (),
+    tell: Callable[[], Said], matches: tuple[str, ...] = (),
 ) -> Mark:  # fmt: skip
     points = float(part.points)
     return Mark(
@@ -280,8 +231,8 @@ def _made(
 
 def _is_told_with(earlier: Part, part: Part, together: Mapping[str, Verdict]) -> bool:
     """Whether what is to be said of a judged part has been said of an earlier one of its group."""
-    same_group = earlier.judge == part.judge and earlier.id in together
-    return same_group and together[earlier.id][1:] == together[part.id][1:]
+    same_group = part.judge and earlier.judge == part.judge and earlier.id in together
+    return bool(same_group) and together[earlier.id][1:] == together[part.id][1:]
 
 
 def _mark_judged(
@@ -289,45 +240,50 @@ def _mark_judged(
 ) -> Mark:
     """The mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
     read_as, verdict = reading.read_as[found.reading], found.said
+    made = partial(_made, variant, part, reading)
     if verdict is None:
-        alone = partial(_say, variant, part, "incomplete", read=echo(read_as, variant.lang))
-        return _made(variant, part, reading, "wrong", 0.0, read_as, alone)
+        alone = partial(say, variant, part, "incomplete", read=echo(read_as, variant.lang))
+        return made("wrong", 0.0, read_as, alone)
     share = min(1.0, max(0.0, float(verdict.share)))
 
-    def say(sentence: str, **pieces: str) -> _Said:
-        said = _say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
-        return said._replace(sentence=said.sentence + follows, pieces={**said.pieces, **told})
+    def told(sentence: str, **pieces: str) -> Said:
+        """A sentence, then what follows from the student's own answers."""
+        said = say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
+        tells = {} if told_with else verdict.found
+        own = {f"found{n}": amount(variant, q, v) for n, (q, v) in enumerate(tells.items())}
+        if not own:
+            return said
+        listed = ", ".join("{" + name + "}" for name in own)
+        follows = words(variant.lang)["marking"]["found"].format(listed)
+        return Said(f"{said.sentence} {follows}", {**said.pieces, **own})
 
-    tells = {} if told_with else verdict.found
-    told = {f"found{n}": _quantity(variant, q, v) for n, (q, v) in enumerate(tells.items())}
-    listed = ", ".join("{" + name + "}" for name in told)
-    follows = f" {words(variant.lang)['marking']['found'].format(listed)}" if listed else ""
     if share == 1.0:
         is_followed = found.followed or verdict.follows
         kind, share = ("follow_through", key.rules.follow_through) if is_followed else ("correct", 1.0)
-        return _made(variant, part, reading, kind, share, read_as, lambda: say(kind))
-    name = verdict.mistake
-    if not name:
-        name = next((n for n, v in key.wrong_ways(part.quantity) if _fits(part, reading, v, None, 0.0)), "")
-    if name:
-        share = share if verdict.mistake and share else key.solution.mistakes[name].share
-        kind = f"mistake:{name}"
+        return made(kind, share, read_as, lambda: told(kind))
+    shown = [verdict.mistake, *verdict.also] if verdict.mistake else _mistakes_that_fit(key, part, reading)
+    matches = tuple(f"mistake:{name}" for name in shown) + ((f"slip:{found.slip}",) if found.slip else ())
+    if shown:
+        share = share if verdict.mistake and share else key.solution.mistakes[shown[0]].share
 
-        def tell() -> _Said:
+        def tell() -> Said:
             if told_with and verdict.mistake:
-                return say("told_with", first=part_name(variant, told_with))
-            return say("mistake", says=variant.told(name))
+                return told("told_with", first=part_name(variant, told_with))
+            return told("mistake", says=variant.told(shown[0]))
 
-        also = tuple(f"mistake:{other}" for other in verdict.also)
-        return _made(variant, part, reading, kind, share, read_as, tell, (kind, *also))
-    return _made(variant, part, reading, "wrong", share, read_as, lambda: say("wrong"))
+        return made(matches[0], share, read_as, tell, matches)
+    if found.slip:
+        about = either_symbol(variant, found.about, both=found.slip == "frame_missing")
+        return made(
+            matches[0], key.rules.slip, read_as, lambda: told(f"slip_{found.slip}", about=about), matches
+        )
+    return made("wrong", share, read_as, lambda: told(_WRONG.get(part.kind, "wrong")))
 
 
-def _quantity(variant: Variant, name: str, value: float) -> str:
-    """A quantity and its value as Markdown: ``$r_3$ = 120,4 mm``."""
-    exercise = variant.exercise
-    symbol = exercise.solution.symbols.get(name) or exercise.symbol(name)
-    return f"${symbol}$ = {with_unit(significant(value), exercise.units.get(name, '1'), variant.lang)}"
+def _mistakes_that_fit(key: Key, part: Part, reading: Reading) -> list[str]:
+    """The named mistakes that give an answer, in the solution's order."""
+    ways = key.wrong_ways(part.quantity)
+    return [name for name, value in ways if _fits(part, reading, value, None, 0.0)]
 
 
 def _mark_part(
@@ -338,52 +294,37 @@ def _mark_part(
     judged_by: Part,
     nearest: tuple[int, float],
     before: _Before,
-    closes: Judged | None,
 ) -> Mark:
     made = partial(_made, variant, part, reading)
     if reading.status != "read":
-        return made(reading.status, 0.0, "", lambda: _say_not_read(variant, part, reading))
+        return made(reading.status, 0.0, "", lambda: say_not_read(variant, part, reading))
     index, gap = nearest
     read_as = reading.read_as[index]
     if part.kind == "choice":
-        read_as = _plain(variant.label(part.id, str(reading.values[index])), variant.lang)
+        read_as = plain_line(variant.label(part.id, str(reading.values[index])), variant.lang)
 
-    def say(sentence: str, **pieces: str) -> _Said:
-        return _say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
+    def told(sentence: str, **pieces: str) -> Said:
+        return say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
 
     if gap <= 1:
         if part.asks_unit and not reading.unit_given:
-            return made("missing_unit", 0.0, read_as, lambda: say("missing_unit"))
-        return made("correct", 1.0, read_as, lambda: say("correct"))
+            return made("missing_unit", 0.0, read_as, lambda: told("missing_unit"))
+        return made("correct", 1.0, read_as, lambda: told("correct"))
     matches = tuple(_explanations(key, part, reading, judged_by, before))
-    if closes is not None and closes.fault:
-        matches += (f"slip:{closes.fault}",)
     verdict = matches[0] if matches else "wrong"
     kind, _, name = verdict.partition(":")
     if kind == "mistake":
         share = key.solution.mistakes[name].share
-
-        def told() -> _Said:
-            return say("mistake", says=variant.told(name))
-
-        return made(verdict, share, read_as, told, matches)
+        return made(verdict, share, read_as, lambda: told("mistake", says=variant.told(name)), matches)
     if kind == "slip":
-        about = _symbols(variant, closes)
-        return made(verdict, key.rules.slip, read_as, lambda: say(f"slip_{name}", about=about), matches)
+        return made(verdict, key.rules.slip, read_as, lambda: told(f"slip_{name}"), matches)
     if kind == "follow_through":
-        return made(verdict, key.rules.follow_through, read_as, lambda: say("follow_through"), matches)
-    sentence = {"choice": "wrong_case", "equation": "wrong_equation"}.get(part.kind, "wrong")
-    return made("wrong", 0.0, read_as, lambda: say(sentence))
+        return made(verdict, key.rules.follow_through, read_as, lambda: told("follow_through"), matches)
+    return made("wrong", 0.0, read_as, lambda: told(_WRONG.get(part.kind, "wrong")))
 
 
-def _symbols(variant: Variant, closes: Judged | None) -> str:
-    """The links that a fault is about, as they are printed."""
-    if closes is None:
-        return ""
-    table = words(variant.lang)["marking"]
-    joint = table["and" if closes.fault == "frame_missing" else "or"]
-    symbols, exercise = variant.exercise.solution.symbols, variant.exercise
-    return f" {joint} ".join(f"${symbols.get(name) or exercise.symbol(name)}$" for name in closes.names)
+#: the sentence about a wrong answer, by kind of part
+_WRONG = {"choice": "wrong_case", "equation": "wrong_equation"}
 
 
 def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before) -> Iterator[str]:
@@ -417,68 +358,3 @@ def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, befor
 
 def _fits(part: Part, reading: Reading, value: Any, along: Any, width: float) -> bool:
     return any(distance(part, v, value, along, width) <= 1 for v in reading.values)
-
-
-def part_name(variant: Variant, part: Part) -> str:
-    """What a part is called in feedback: its symbol, or its number when a symbol says nothing."""
-    if part.kind in ("choice", "equation", "direction", "point_on_line"):
-        number = 1 + [p.id for p in variant.parts].index(part.id)
-        return f"{words(variant.lang)['sheet']['question']['one']} {number}"
-    return f"${variant.exercise.symbol(part.quantity)}$"
-
-
-def echo(text: str, lang: str) -> str:
-    """What was read, shortened, as the language writes numbers; safe inside Markdown."""
-    shown = text if len(text) <= ECHO else text[: ECHO - 1] + "…"
-    if "=" in shown:
-        return "`" + "".join(c for c in shown if c.isprintable() and c not in "`$") + "`"
-    return _harmless(localised(shown, lang))
-
-
-_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
-
-
-def localised(read_as: str, lang: str) -> str:
-    """What was read, as the language writes numbers; an equation is left as it is."""
-    if "=" in read_as:
-        return read_as
-    if _NUMBER.fullmatch(read_as):
-        return localise(read_as, lang)
-    number = re.sub(r"(?<![A-Za-z.])-?\d+(?:\.\d+)?", lambda m: localise(m.group(), lang), read_as)
-    return number.replace(" °", "°")
-
-
-def _say(variant: Variant, part: Part, sentence: str, **pieces: str) -> _Said:
-    name = part_name(variant, part)
-    return _Said(words(variant.lang)["marking"][sentence], {"name": name[:1].upper() + name[1:], **pieces})
-
-
-def _say_not_read(variant: Variant, part: Part, reading: Reading) -> _Said:
-    name = part_name(variant, part)
-    name = name[:1].upper() + name[1:]
-    table = words(variant.lang)["marking"]
-    unit = unit_text(part.unit, variant.lang)
-    found = (reading.found or reading.text)[:ECHO]
-    if reading.status == "unreadable":
-        kinds = table["unreadable"]
-        in_equation = part.kind == "equation"
-        code = "not_a_number" if reading.code == "unknown_symbol" and not in_equation else reading.code
-        sentence = kinds.get(code, kinds["otherwise"])
-    elif reading.status == "wrong_unit":
-        sentence = table["wrong_unit" if unit else "wrong_unit_ratio"]
-    else:
-        sentence = table["missing"]
-    return _Said(sentence, {"name": name, "found": _harmless(found), "unit": unit or "1"})
-
-
-def _harmless(text: str) -> str:
-    """A quotation that no Markdown reader takes for markup."""
-    return "".join(c for c in text if c.isprintable() and c not in "$`*_\\<>[]#|")
-
-
-@lru_cache(maxsize=8192)
-def _plain(markdown: str, lang: str) -> str:
-    """Markdown as one line of plain text."""
-    from coursework.rendering.markup import to_text
-
-    return " ".join(to_text(markdown, lang).split())

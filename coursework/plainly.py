@@ -38,7 +38,11 @@ def plainly_right(
 
 
 def _within(part: Part, values: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """Which values are accepted, the boundary inclusive up to rounding; never where one is NaN."""
+    """Which values are accepted, the boundary inclusive up to rounding; never where one is NaN.
+
+    The rule is that of :func:`coursework.comparing.distance`, which takes one value at a time; here a
+    whole column is compared at once.
+    """
     size = np.abs(reference)
     half_width = np.maximum(part.atol, part.rtol * size)
     with np.errstate(invalid="ignore"):

@@ -18,17 +18,10 @@ from numbers import Real
 
 import numpy as np
 
+from coursework.equations import parse_equation
 from coursework.errors import WrongUnit
-from coursework.expressions import (
-    MAX_LENGTH,
-    Expression,
-    Unreadable,
-    parse_equation,
-    parse_expression,
-    shorten,
-    tidy,
-    without_latex,
-)
+from coursework.expressions import MAX_LENGTH, Expression, Unreadable, parse_expression
+from coursework.spelling import shorten, tidy, without_latex
 from coursework.units import Unit, convert, find_unit, parse_unit, same_dimension
 
 _MAX_INTEGER = 10**15
@@ -40,7 +33,7 @@ class Reading:
 
     ``status``: ``read``, ``missing``, ``unreadable`` or ``wrong_unit``. ``values``: one or two honest
     readings in the canonical unit (floats; integers; tuples of floats for a point; a key for a choice; an
-    :class:`~coursework.expressions.Equation`), empty unless read. ``read_as``: one echo a value, with a
+    :class:`~coursework.equations.Equation`), empty unless read. ``read_as``: one echo a value, with a
     decimal point and the unit as written. When it is not read, ``code`` is a short key for the reason and
     ``found`` the piece that stops the reading.
     """
@@ -602,7 +595,7 @@ def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
 
 
 def read_equation(text: object, variables: Iterable[str]) -> Reading:
-    """An equation over the given variables; the value is an :class:`~coursework.expressions.Equation`."""
+    """An equation over the given variables; the value is an :class:`~coursework.equations.Equation`."""
     if isinstance(text, Real) and not isinstance(text, bool):
         text = str(text)
 

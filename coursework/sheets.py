@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coursework.constructions import Construction
+from coursework.equation_latex import latex_of_equation
 from coursework.errors import BadCourse, BadStatement, BrokenFunction
-from coursework.expressions import latex_of_equation
 from coursework.graph import Graph
 from coursework.handout import Answer, AnswerSheet, Given, Handout, Question, Step
 from coursework.language import localise, plain, significant, unit_text

@@ -16,7 +16,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from coursework.errors import WrongUnit
-from coursework.expressions import shorten, tidy, without_latex
+from coursework.spelling import shorten, tidy, without_latex
 
 #: What the entries of a dimension count. A cycle is a count (1 Hz is one a second) that is a turn
 #: where an angle is expected.

@@ -13,9 +13,9 @@ from functools import lru_cache
 from typing import Any
 
 from coursework.comparing import distance
+from coursework.equations import parse_equation
 from coursework.errors import CourseworkError
 from coursework.exercise import CourseExercise
-from coursework.expressions import parse_equation
 from coursework.judging import judged, judges_of
 from coursework.key import Key, exists, ill_limit, keys_of
 from coursework.model import Part

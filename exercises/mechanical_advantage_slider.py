@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coursework.degrees import cos, polar, sin
+from coursework.degrees import polar, sin
 from coursework.figures import (
     Figure,
     angle_mark,
@@ -15,41 +15,17 @@ from coursework.figures import (
     slider,
     vector,
 )
-from coursework.kinematics.dyads import rrp
 from coursework.model import Driver, Exercise, Part, drawn
 
-
-def rod(r2, r3, e, theta2):
-    """Vector AB."""
-    crank = polar(r2, theta2)
-    return rrp(crank, r3, e) - crank
-
-
-def rates(rod, r2, theta2):
-    """omega3 and r1_dot, over omega2."""
-    omega3 = -r2 * cos(theta2) / rod.real
-    return omega3, -r2 * sin(theta2) - omega3 * rod.imag
-
-
-def largest_offset(r2):
-    """Half of the cranks, those of whole centimetres, are in line with their piston."""
-    return np.where(r2 % 10 == 0, 0.0, 0.5 * r2)
+from ._slider_crank import largest_offset, offset_is_none_or_visible, rates, rod, rod_turns_visibly
 
 
 def crank_turns_visibly(omega2):
     return abs(omega2) >= 5
 
 
-def offset_is_none_or_visible(e, r2):
-    return (e == 0) | (abs(e) >= 0.1 * r2)
-
-
 def crank_off_the_axes(theta2):
     return theta2 % 90 != 0
-
-
-def rod_turns_visibly(rates, r2, r3):
-    return abs(rates[0]) * r3 > 0.1 * r2
 
 
 def piston_moves_visibly(rates, r2):

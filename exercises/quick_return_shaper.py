@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coursework.degrees import angle, asin, polar, sin, sqrt, wrap
+from coursework.degrees import angle, asin, polar, sqrt
 from coursework.figures import (
     Figure,
     angle_mark,
@@ -21,23 +21,7 @@ from coursework.figures import (
 from coursework.kinematics.dyads import rrp
 from coursework.model import Driver, Exercise, Part, drawn, loop_equations
 
-
-def arm(r1, r2, theta2):
-    """Vector O4A."""
-    return 1j * r1 + polar(r2, theta2)
-
-
-def guide_rate(arm, r1, r2, theta2):
-    """omega4 / omega2."""
-    return r2 * (r2 + r1 * sin(theta2)) / abs(arm) ** 2
-
-
-def P(arm, r4):
-    return r4 * arm / abs(arm)
-
-
-def C(P, r5, h):
-    return rrp(P, r5, h)
+from ._slotted_ram import C, P, _clearest, arm, crank_off_the_axes, guide_rate
 
 
 def _ram(P, r5, h, guide_rate):
@@ -69,10 +53,6 @@ def pins_can_be_told_apart_on_paper(arm, r4):
     return abs(abs(arm) - r4) > 0.1 * r4
 
 
-def crank_off_the_axes(theta2):
-    return theta2 % 90 >= 5
-
-
 def ram_away_from_the_y_axis(ram, r5):
     return abs(ram[0]) > 0.5 * r5
 
@@ -101,11 +81,6 @@ def turning_of_the_guide_tells(r4, theta2, r5, h, ram):
 
 def projection_on_the_guide_tells(arm, P, r2, r5, h, ram):
     return _tells(_ram(P, r5, h, r2 / abs(arm)), ram)
-
-
-def _clearest(*directions):
-    """The direction, by steps of 15 degrees, that is farthest from all of these."""
-    return max(range(0, 360, 15), key=lambda way: min(abs(wrap(way - taken)) for taken in directions))
 
 
 def figure(arm, P, C, r1, r2, r4, theta2, omega2):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coursework.degrees import angle, asin, atan, cos, polar, sin, sqrt, wrap
+from coursework.degrees import angle, asin, atan, cos, polar, sqrt
 from coursework.figures import (
     Figure,
     angle_mark,
@@ -21,23 +21,7 @@ from coursework.figures import (
 from coursework.kinematics.dyads import rrp
 from coursework.model import Driver, Exercise, Part, drawn, loop_equations
 
-
-def arm(r1, r2, theta2):
-    """Vector O4A."""
-    return 1j * r1 + polar(r2, theta2)
-
-
-def guide_rate(arm, r1, r2, theta2):
-    """omega4 / omega2."""
-    return r2 * (r2 + r1 * sin(theta2)) / abs(arm) ** 2
-
-
-def P(arm, r4):
-    return r4 * arm / abs(arm)
-
-
-def C(P, r5, h):
-    return rrp(P, r5, h)
+from ._slotted_ram import C, P, _clearest, arm, crank_off_the_axes, guide_rate
 
 
 def _rod_share(P, C):
@@ -90,10 +74,6 @@ def rod_reaches_with_room(r4, r5, h):
     return r5 > 1.8 * r4 + abs(h)
 
 
-def crank_off_the_axes(theta2):
-    return theta2 % 90 >= 5
-
-
 def ram_moves_visibly(ram, r4):
     return abs(ram[1]) > 0.15 * r4
 
@@ -143,11 +123,6 @@ def sine_and_tangent_tell(lines_to_the_ends, unequal_halves, r1, r2):
 
 def height_of_the_line_tells(unequal_halves, r1, r2):
     return _arcs_tell(2 * asin(r1 / r2), unequal_halves)
-
-
-def _clearest(*directions):
-    """The direction, by steps of 15 degrees, that is farthest from all of these."""
-    return max(range(0, 360, 15), key=lambda way: min(abs(wrap(way - taken)) for taken in directions))
 
 
 def figure(arm, P, C, r1, r2, r4, theta2, omega2):

@@ -4,20 +4,9 @@ import numpy as np
 
 from coursework.degrees import cos, polar, sin
 from coursework.figures import Figure, angle_mark, dimension, ground_pivot, line, link, pin, rail, slider
-from coursework.kinematics.dyads import rrp
 from coursework.model import Driver, Exercise, Part, drawn, fixed, loop_equations
 
-
-def rod(r2, r3, e, theta2):
-    """Vector AB."""
-    crank = polar(r2, theta2)
-    return rrp(crank, r3, e) - crank
-
-
-def rates(rod, r2, theta2):
-    """omega3 and r1_dot, over omega2."""
-    omega3 = -r2 * cos(theta2) / rod.real
-    return omega3, -r2 * sin(theta2) - omega3 * rod.imag
+from ._slider_crank import largest_offset, offset_is_none_or_visible, rates, rod, rod_turns_visibly
 
 
 def accelerations(rates, rod, r2, theta2):
@@ -25,11 +14,6 @@ def accelerations(rates, rod, r2, theta2):
     omega3, _ = rates
     alpha3 = (r2 * sin(theta2) + omega3**2 * rod.imag) / rod.real
     return alpha3, -r2 * cos(theta2) - alpha3 * rod.imag - omega3**2 * rod.real
-
-
-def largest_offset(r2):
-    """Half of the cranks, those of whole centimetres, are in line with their piston."""
-    return np.where(r2 % 10 == 0, 0.0, 0.5 * r2)
 
 
 def velocity_scale(r2, omega2):
@@ -52,16 +36,8 @@ def crank_turns(omega2):
     return omega2 != 0
 
 
-def offset_is_none_or_visible(e, r2):
-    return (e == 0) | (abs(e) >= 0.1 * r2)
-
-
 def rod_leans_visibly(rod):
     return abs(rod.imag) > 0.03 * abs(rod)
-
-
-def rod_turns_visibly(rates, r2, r3):
-    return abs(rates[0]) * r3 > 0.1 * r2
 
 
 def piston_moves_visibly(rates, r2):

@@ -19,6 +19,7 @@ from coursework.kinematics.four_bar import FourBar
 from coursework.polygons import normal, tangential, turning
 from coursework.solution import Moving, formula, mistake, stable
 
+from ._first_four_bar import *
 from ._polygons import (
     _accelerations,
     _crank_a,
@@ -77,10 +78,6 @@ def _frame(xC, yC):
 def _loop_1(xC, yC, r2, r3, r4, side, theta2, _frame):
     """The linkage O, A, B, C, its angles counted from OC."""
     return FourBar(abs(xC + 1j * yC), r2, r3, r4, side).at(Degrees.between(_frame, theta2))
-
-
-def AC(xC, yC, r2, theta2):
-    return sqrt((xC - r2 * cos(theta2)) ** 2 + (yC - r2 * sin(theta2)) ** 2)
 
 
 def phi(xC, yC, r2, theta2):
@@ -163,16 +160,6 @@ def x8(xD, r5, theta5, r7, theta7):
     return xD + r5 * cos(theta5) + r7 * cos(theta7)
 
 
-@stable(lambda omega2, _loop_1: _loop_1.coupler_ratio * omega2)
-def omega3(r2, omega2, r3, theta2, theta3, theta4):
-    return r2 * omega2 * sin(theta2 - theta4) / (r3 * sin(theta4 - theta3))
-
-
-@stable(lambda omega2, _loop_1: _loop_1.rocker_ratio * omega2)
-def omega4(r2, omega2, r4, theta2, theta3, theta4):
-    return r2 * omega2 * sin(theta2 - theta3) / (r4 * sin(theta4 - theta3))
-
-
 def omega5(r2, omega2, theta2, r6, omega3, theta6, d5, theta5):
     """Component of the velocity of E across the bar, over its distance from D."""
     return (r2 * omega2 * cos(theta2 - theta5) + r6 * omega3 * cos(theta6 - theta5)) / d5
@@ -198,14 +185,6 @@ def alpha3(r2, omega2, theta2, r3, omega3, theta3, r4, omega4, theta4):
     return (
         r2 * omega2**2 * cos(theta2 - theta4) + r3 * omega3**2 * cos(theta4 - theta3) - r4 * omega4**2
     ) / (r3 * sin(theta4 - theta3))
-
-
-@stable(lambda omega2, _loop_1: _loop_1.rocker_gain * omega2**2)
-def alpha4(r2, omega2, theta2, r3, omega3, theta3, r4, omega4, theta4):
-    """They have the same projection along the coupler."""
-    return (
-        r2 * omega2**2 * cos(theta2 - theta3) + r3 * omega3**2 - r4 * omega4**2 * cos(theta4 - theta3)
-    ) / (r4 * sin(theta4 - theta3))
 
 
 @formula(

@@ -19,6 +19,7 @@ from coursework.kinematics.four_bar import FourBar
 from coursework.polygons import normal, tangential, turning
 from coursework.solution import Moving, formula, mistake, stable
 
+from ._first_four_bar import *
 from ._polygons import _accelerations, _crank_a, _crank_v, _two_bars_a, _two_bars_v, _velocities
 
 UNITS = {
@@ -83,10 +84,6 @@ def _loop_2(xC, yC, xF, yF, r5, r6, r7, side_2, theta5, _frame_2):
     """The linkage C, D, E, F, its angles counted from CF."""
     CF = abs(xF - xC + 1j * (yF - yC))
     return FourBar(CF, r5, r6, r7, side_2).at(Degrees.between(_frame_2, theta5))
-
-
-def AC(xC, yC, r2, theta2):
-    return sqrt((xC - r2 * cos(theta2)) ** 2 + (yC - r2 * sin(theta2)) ** 2)
 
 
 def phi_1(xC, yC, r2, theta2):
@@ -167,16 +164,6 @@ def theta7(xD, yD, r6, theta6, xF, yF):
     return atan2(yD + r6 * sin(theta6) - yF, xD + r6 * cos(theta6) - xF)
 
 
-@stable(lambda omega2, _loop_1: _loop_1.coupler_ratio * omega2)
-def omega3(r2, omega2, r3, theta2, theta3, theta4):
-    return r2 * omega2 * sin(theta2 - theta4) / (r3 * sin(theta4 - theta3))
-
-
-@stable(lambda omega2, _loop_1: _loop_1.rocker_ratio * omega2)
-def omega4(r2, omega2, r4, theta2, theta3, theta4):
-    return r2 * omega2 * sin(theta2 - theta3) / (r4 * sin(theta4 - theta3))
-
-
 @stable(lambda omega4, _loop_2: _loop_2.coupler_ratio * omega4)
 def omega6(r5, omega4, r6, theta5, theta6, theta7):
     """The plate turns at omega4, and drives the second loop as the crank drives the first."""
@@ -194,14 +181,6 @@ def alpha3(r2, omega2, theta2, r3, omega3, theta3, r4, omega4, theta4):
     return (
         r2 * omega2**2 * cos(theta2 - theta4) + r3 * omega3**2 * cos(theta4 - theta3) - r4 * omega4**2
     ) / (r3 * sin(theta4 - theta3))
-
-
-@stable(lambda omega2, _loop_1: _loop_1.rocker_gain * omega2**2)
-def alpha4(r2, omega2, theta2, r3, omega3, theta3, r4, omega4, theta4):
-    """They have the same projection along the coupler."""
-    return (
-        r2 * omega2**2 * cos(theta2 - theta3) + r3 * omega3**2 - r4 * omega4**2 * cos(theta4 - theta3)
-    ) / (r4 * sin(theta4 - theta3))
 
 
 @formula(

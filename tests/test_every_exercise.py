@@ -10,6 +10,7 @@ import pytest
 
 import coursework
 from coursework import checks
+from coursework.check_report import Report
 from coursework.draws import BLOCK, acceptance
 from coursework.errors import NoSolution
 from coursework.language import languages
@@ -27,7 +28,7 @@ def keys(name):
 
 
 def failures(name, check, *arguments):
-    report = checks.Report(name)
+    report = Report(name)
     check(*arguments, report)
     assert sum(report.counts.values()) > 0 or report.mistakes, "the check tried nothing"
     return report.failures
@@ -74,7 +75,7 @@ def test_texts_are_complete_in_every_language(name):
 
 @every_exercise
 def test_sheets_render_in_every_format_and_language(name):
-    report = checks.Report(name)
+    report = Report(name)
     checks.check_rendering(COURSE[name], 2, report)
     assert report.counts["sheets rendered"] == 2 * 5 * len(languages())
 

@@ -8,13 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coursework.expressions import (
-    Unreadable,
-    latex_of_equation,
-    parse_equation,
-    parse_expression,
-    same_equation,
-)
+from coursework.equation_latex import latex_of_equation
+from coursework.equations import parse_equation
+from coursework.equivalence import same_equation
+from coursework.expressions import Unreadable, parse_expression
 
 NAMES = (
     "r1", "r2", "r3", "r4", "theta2", "theta3", "theta4",

@@ -10,6 +10,7 @@ import pytest
 
 import coursework
 from coursework import checks
+from coursework.check_report import KEPT_DIGITS, Report
 from coursework.comparing import distance
 from coursework.errors import BadCourse, Starved
 from coursework.issuing import distinct_variants
@@ -48,9 +49,9 @@ def test_what_is_no_number_is_not_rounded():
 
 
 @every_exercise
-@pytest.mark.parametrize("digits", checks.KEPT_DIGITS)
+@pytest.mark.parametrize("digits", KEPT_DIGITS)
 def test_who_rounds_at_every_step_is_right(name, digits):
-    report = checks.Report(name)
+    report = Report(name)
     drawn = issued(name)
     keys_of(COURSE[name], drawn)
     checks.check_rounding_students(COURSE[name], drawn, report, (digits,))
@@ -61,7 +62,7 @@ def test_who_rounds_at_every_step_is_right(name, digits):
 
 def test_rounding_would_cost_honest_students_the_usual_margin():
     """Why the margin follows the graph: at three digits many land outside 1 % by rounding alone."""
-    report = checks.Report("slider_extras")
+    report = Report("slider_extras")
     drawn = issued("slider_extras", 60)
     keys_of(COURSE["slider_extras"], drawn)
     checks.check_rounding_students(COURSE["slider_extras"], drawn, report, (3,))

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 import coursework
-from coursework.checks import Report, check_loops, equation_holds
+from coursework.check_report import Report
+from coursework.equations import parse_equation
 from coursework.errors import BadCourse, UnknownName, WrongValue
-from coursework.expressions import parse_equation
 from coursework.issuing import issue
 from coursework.kinematics.chains import Chain, Vector
+from coursework.loop_checks import check_loops, equation_holds
 from coursework.loop_marking import judge_of
 from coursework.loops import Loop, stated
 from coursework.model import Part, loop_equations

@@ -18,7 +18,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from coursework.expressions import parse_equation, same_equation
+from coursework.equations import parse_equation
+from coursework.equivalence import same_equation
 from coursework.reading import (
     Reading,
     read_choice,

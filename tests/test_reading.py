@@ -8,8 +8,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from coursework.equations import parse_equation
+from coursework.equivalence import same_equation
 from coursework.errors import WrongUnit
-from coursework.expressions import parse_equation, same_equation
 from coursework.reading import (
     Reading,
     read_choice,

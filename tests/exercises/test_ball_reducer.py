@@ -144,7 +144,7 @@ def test_no_slip_equations_are_judged_as_equations(part, text, verdict):
 
 
 def test_no_slip_equations_hold_for_the_answers():
-    from coursework.expressions import parse_equation
+    from coursework.equations import parse_equation
 
     variant = EXERCISE.variant(0)
     answers = variant.solution()

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import coursework
+from coursework.equations import parse_equation
 from coursework.errors import CannotAssemble
-from coursework.expressions import parse_equation
 from coursework.kinematics.chains import Chain, Vector
 
 EXERCISE = coursework.open_course()["two_loop_linkage"]

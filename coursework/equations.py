@@ -1,0 +1,91 @@
+"""Equations as people write them: two formulas with an equals sign between them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coursework.expressions import MAX_LENGTH, Expression, Operation, Unreadable, Value, parse_expression
+from coursework.spelling import shorten, tidy
+
+
+@dataclass(frozen=True)
+class Equation:
+    """Two formulas with an equals sign between them."""
+
+    text: str
+    left: Expression
+    right: Expression
+
+    @property
+    def variables(self) -> frozenset[str]:
+        return self.left.variables | self.right.variables
+
+    def difference(self, values: Mapping[str, object]) -> Value:
+        """Left side minus right side."""
+        return self.left.evaluate(values) - self.right.evaluate(values)
+
+    def gap(self, values: Mapping[str, np.ndarray], count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Left side minus right side at points, of shape ``(count,)``, and the sum of their sizes.
+
+        NaN where there is no value.
+        """
+        with np.errstate(all="ignore"):
+            left = np.broadcast_to(value_or_nan(self.left, values), (count,))
+            right = np.broadcast_to(value_or_nan(self.right, values), (count,))
+            return left - right, np.abs(left) + np.abs(right)
+
+    def in_degrees(self) -> Equation | None:
+        """The equation with numbers that stand beside angles taken as degrees: ``sin(theta2 + 90)``.
+
+        None where no such number is.
+        """
+        sides = [_in_degrees(side.root) for side in (self.left, self.right)]
+        if sides == [self.left.root, self.right.root]:
+            return None
+        return Equation(self.text, *(Expression(self.text, root) for root in sides))
+
+
+def _in_degrees(node: Operation) -> Operation:
+    """A tree in which plain numbers added to angles under a sine, a cosine or a tangent are degrees."""
+    args = tuple(map(_in_degrees, node.args))
+    if node.kind == "call" and node.name in ("sin", "cos", "tan") and args[0].kind == "sum":
+        terms = (
+            Operation("degree", args=(term,), angle=True) if term.constant and not term.angle else term
+            for term in args[0].args
+        )
+        args = (replace(args[0], args=tuple(terms)),)
+    return replace(node, args=args) if args != node.args else node
+
+
+def parse_equation(text: str, variables: Iterable[str]) -> Equation:
+    """Read an equation over the given variables; there must be exactly one equals sign.
+
+    Raises
+    ------
+    Unreadable
+        As :func:`parse_expression`, and ``no_equals_sign``, ``two_equals_signs``.
+    """
+    if len(text) > MAX_LENGTH:
+        message = f"an equation of {len(text)} characters is not read; at most {MAX_LENGTH} are"
+        raise Unreadable(message, code="too_long", found=text)
+    sides = tidy(text).strip("$ ").split("=")
+    if len(sides) != 2:
+        code = "no_equals_sign" if len(sides) == 1 else "two_equals_signs"
+        raise Unreadable(
+            f"an equation has one equals sign, {shorten(text)!r} has {len(sides) - 1}", code=code, found=text
+        )
+    variables = tuple(variables)
+    left, right = (parse_expression(side, variables) for side in sides)
+    return Equation(text, left, right)
+
+
+def value_or_nan(expression: Expression, values: Mapping[str, np.ndarray]) -> Value:
+    """The value, NaN where there is none."""
+    try:
+        return expression.evaluate(values)
+    except Unreadable:
+        return math.nan

@@ -1,0 +1,120 @@
+"""One spelling for the many ways in which people write signs, digits, Greek letters and LaTeX."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+
+MAX_FOUND = 60  #: characters of a text that a message quotes
+
+
+def shorten(text: str) -> str:
+    """A piece of text short enough for a message."""
+    return text if len(text) <= MAX_FOUND else text[: MAX_FOUND - 1] + "…"
+
+
+_ALIKE = {
+    "*": "×⋅·∙•∗✕",
+    "/": "÷∕⁄",
+    "-": "−–‐‑‒﹣",
+    "'": "’‘′ʹ´",
+    '"': "″”“",
+    "°": "º˚∘",
+    "μ": "µ",
+    "Ω": "\N{OHM SIGN}",
+    "φ": "ϕ",
+    "θ": "ϑ",
+    "ε": "ϵ",
+    ".": "٫",
+    " ": "\t\n\r\v\f\x85\u2028\u2029٬",
+    "": "\u200b\u200c\u200d\u2060\ufeff\u00ad",
+}
+_SUPERSCRIPTS = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-", strict=True))
+_SUPERSCRIPT_RUN = re.compile(f"[{''.join(_SUPERSCRIPTS)}]+")
+
+
+class _Characters(dict):
+    """Translation table of ``tidy``, filled as characters are met."""
+
+    def __missing__(self, code: int) -> str:
+        char = chr(code)
+        if 0xFF01 <= code <= 0xFF5E:  # full-width forms of ASCII
+            char = chr(code - 0xFEE0)
+        elif unicodedata.category(char) == "Nd" or 0x2080 <= code <= 0x2089:  # subscript digits as well
+            char = str(unicodedata.digit(char))
+        elif unicodedata.category(char) == "Zs":
+            char = " "
+        self[code] = char
+        return char
+
+
+_TABLE = _Characters({ord(odd): plain for plain, odds in _ALIKE.items() for odd in odds})
+
+
+def tidy(text: str) -> str:
+    """The text with one spelling for each kind of space, sign, digit, dot and quote; ``²`` is ``^(2)``."""
+    if text.isascii() and text.isprintable():
+        return text.strip()
+    text = unicodedata.normalize("NFC", text)
+    text = _SUPERSCRIPT_RUN.sub(lambda run: f"^({''.join(_SUPERSCRIPTS[c] for c in run[0])})", text)
+    return text.translate(_TABLE).strip()
+
+
+_LATEX = (
+    (re.compile(r"\\(?:left|right|displaystyle|quad|qquad)(?![A-Za-z])"), " "),
+    (re.compile(r"\\[,;:! ]|~"), " "),
+    (re.compile(r"\{,\}"), ","),
+    (re.compile(r"\^\s*\{?\s*\\circ(?![A-Za-z])\s*\}?|\\degree(?![A-Za-z])|\^\s*°"), "°"),
+    (re.compile(r"\\(?:cdot|times)(?![A-Za-z])"), "*"),
+    (re.compile(r"\\(?:approx|simeq)(?![A-Za-z])"), "≈"),
+    (re.compile(r"\\(?:SI|qty)\{([^{}]*)\}\{([^{}]*)\}"), r"\1 \2"),
+    (re.compile(r"\\(?:mathrm|mathit|text|operatorname|num|si|unit)\s*\{([^{}]*)\}"), r" \1 "),
+    (re.compile(r"\\mu(?![A-Za-z])"), "μ"),
+    (re.compile(r"\\Omega(?![A-Za-z])"), "Ω"),
+    (re.compile(r"\\%"), "%"),
+    (re.compile(r"\^\s*(?:\\prime\s*\\prime|\{\s*(?:\\prime\s*\\prime|'')\s*\})"), "''"),
+    (re.compile(r"\^\s*(?:\\prime(?![A-Za-z])|\{\s*(?:\\prime|')\s*\})"), "'"),
+    (re.compile(r"\\?\$|\\[()]"), " "),
+)
+
+
+def without_latex(text: str) -> str:
+    """A tidy text with the commonest LaTeX spelled plainly; fractions and roots are left to the parser."""
+    if "\\" in text or "$" in text or "{" in text or "^" in text:
+        for pattern, plain in _LATEX:
+            text = pattern.sub(plain, text)
+    return text.strip()
+
+
+_DOTS = re.compile(r"\\(d?dot)\s*(?:\{([^{}]*)\}|(\\[A-Za-z]+|[^\W\d_]))")
+_PRIMES = re.compile(r"([A-Za-z][A-Za-z0-9_]*)('{1,2}|\")(?!')")
+_SUBSCRIPT = re.compile(r"\s*_\s*\{\s*([A-Za-z0-9_]*)\s*\}")
+_COMMAND = re.compile(r"\\(?!frac|dfrac|tfrac)([A-Za-z]+)")
+
+
+def _greek(char: str) -> str:
+    """ASCII name of a Greek letter, ``θ`` -> ``theta``; of the dots above a letter; else the character."""
+    if char == "\u0307":
+        return "_dot"
+    if char == "\u0308":
+        return "_ddot"
+    name = unicodedata.name(char, "").split()
+    if len(name) == 4 and name[0] == "GREEK" and name[2] == "LETTER":
+        letter = name[3].lower().replace("lamda", "lambda")
+        return " " + (letter.capitalize() if name[1] == "CAPITAL" else letter)
+    return char
+
+
+def spelled_out(text: str) -> str:
+    """A text in which every name is ASCII: ``ψ̇``, ``\\dot\\psi`` -> ``psi_dot``, ``θ_{2}`` -> ``theta_2``."""
+    text = _DOTS.sub(lambda m: f"{m[2] or m[3]}_{m[1]}", text)
+    text = _SUBSCRIPT.sub(r"_\1", text)
+    text = _COMMAND.sub(r" \1", text)
+    if not text.isascii():
+        text = "".join(map(_greek, unicodedata.normalize("NFD", text)))
+    return text.replace("**", "^")
+
+
+def primes_as_dots(text: str) -> str:
+    """A text with ASCII names in which ``phi'`` and ``r1\"`` are ``phi_dot`` and ``r1_ddot``."""
+    return _PRIMES.sub(lambda m: m[1] + ("_dot" if m[2] == "'" else "_ddot"), text)
