@@ -70,7 +70,7 @@ PLACES: Mapping[str, Mapping[str, complex]] = MappingProxyType(
         "figure_6_gears": {"O": 0j, "A": 13 + 0j, "B": 33 + 0j},
         "figure_8a_motor": {"O": 0j},
         "figure_8c_shaper": {
-            "O": 0j, "A": 8 + 18j, "B": 38 + 30j, "C": 48 + 8j, "D": 28 - 6j, "E": 76 + 18j, "F": 76 + 18j,
+            "O": 0j, "A": 8 + 18j, "B": 38 + 30j, "C": 48 + 8j, "D": 28 - 6j, "E": 82 + 0j, "F": 82 + 0j,
         },
         "figure_8d": {
             "O": 0j, "A": -6 + 18j, "B": 14 + 42j, "C": 62 + 44j, "D": 58 + 20j, "E": 26 + 20j, "F": 78 + 0j,

@@ -68,9 +68,9 @@ class _Scheme:
         self.normals = {k: self._normal(j) for k, j in enumerate(graph.joints) if j.kind == "higher"}
 
     def figure(self) -> Figure:
-        elements: list[Element] = []
-        for body in self.graph.moving:
-            elements += self._body(body)
+        elements = [element for body in self.graph.moving for element in self._body(body)]
+        # A wheel lies beneath the plate that carries its pivot.
+        elements.sort(key=lambda element: not isinstance(element, wheel))
         for index, joint in enumerate(self.graph.joints):
             if joint.kind == "prismatic":
                 elements += self._slide(index)
