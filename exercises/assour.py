@@ -2,7 +2,7 @@
 
 from coursework.model import Exercise, Part, drawn
 from coursework.structure.numbered import to_decompose
-from coursework.structure.picture import kinematic_graph
+from coursework.structure.scheme import kinematic_scheme
 
 CLASSES = ("I", "II", "III", "IV")
 
@@ -13,8 +13,9 @@ def tells(mechanism):
 
 
 def figure(mechanism):
-    """The joint graph: shapes and lengths are of no account here."""
-    return kinematic_graph(to_decompose(int(mechanism)).joints)
+    """The scheme, with the motor as an arrow."""
+    found = to_decompose(int(mechanism))
+    return kinematic_scheme(found.joints, driver=found.driver)
 
 
 EXERCISE = Exercise(

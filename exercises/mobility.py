@@ -2,7 +2,7 @@
 
 from coursework.model import Exercise, Part, drawn
 from coursework.structure.numbered import to_count
-from coursework.structure.picture import kinematic_graph
+from coursework.structure.scheme import kinematic_scheme
 
 
 def tells(mechanism):
@@ -10,8 +10,8 @@ def tells(mechanism):
 
 
 def figure(mechanism):
-    """The joint graph: shapes and lengths are of no account here."""
-    return kinematic_graph(to_count(int(mechanism)))
+    """The scheme, without letters: bodies and joints are counted on it."""
+    return kinematic_scheme(to_count(int(mechanism)), letters=False)
 
 
 EXERCISE = Exercise(

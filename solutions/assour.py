@@ -8,6 +8,7 @@ from coursework.structure.columns import each
 from coursework.structure.joints import FRAME, JointGraph, copied
 from coursework.structure.library import LIBRARY
 from coursework.structure.numbered import last_body, to_decompose
+from coursework.structure.picture import kinematic_graph
 
 STRUCTURES = ("joints", "driver", "groups")
 SYMBOLS = {"body": "j"}
@@ -159,6 +160,11 @@ def frame_in_the_loop(_graph):
 @mistake("assour_class")
 def lowest_group(groups):
     return each(lambda found: assour.roman(min(map(_rank, found), default=1)), groups, dtype=str)
+
+
+def figure(joints):
+    """The joint graph of the scheme."""
+    return kinematic_graph(joints)
 
 
 def residual(_graph, driver, groups):

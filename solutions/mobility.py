@@ -5,6 +5,7 @@ from coursework.structure.columns import each
 from coursework.structure.joints import FRAME, JointGraph, copied
 from coursework.structure.library import LIBRARY
 from coursework.structure.numbered import to_count
+from coursework.structure.picture import kinematic_graph
 
 STRUCTURES = ("joints",)
 
@@ -97,6 +98,11 @@ def higher_left_out(n, b):
 @mistake("gamma")
 def joint_count_minus(L, N):
     return L - N
+
+
+def figure(joints):
+    """The joint graph of the scheme."""
+    return kinematic_graph(joints)
 
 
 def residual(joints, n, b, h, w, gamma):

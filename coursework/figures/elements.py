@@ -624,3 +624,20 @@ class ball(Element):
         center, radius = paper.at(self.center), paper.length(self.radius)
         paper.draw(Disc(center, radius, EDGE, TINT, layer=GUIDES))
         paper.around(self.label, center, 0.9)
+
+
+@dataclass(frozen=True)
+class wheel(Element):
+    """A wheel or a cam: a tinted disc beneath the bars, the supports and the pins."""
+
+    center: complex
+    radius: Positive
+    label: str | None = None
+
+    def reach(self) -> tuple[complex, ...]:
+        return _round(self.center, self.radius)
+
+    def draw(self, paper: Paper) -> None:
+        center, radius = paper.at(self.center), paper.length(self.radius)
+        paper.draw(Disc(center, radius, EDGE, TINT, layer=FILLS))
+        paper.around(self.label, center, 0.9)

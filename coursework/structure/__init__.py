@@ -10,6 +10,9 @@ A mechanism is a list of joints, records ``{"between": [i, j], "kind": "revolute
 ``numbered`` those that exercises hand out, by number
 ``library``  the mechanisms of the course's figures
 ``picture``  the joint graph as a figure
+``scheme``   the kinematic scheme as a figure: bars, plates, blocks, wheels, on a hatched frame
+``layout``   where the joints of a scheme are drawn
+``likeness`` whether a mechanism is one of the course's, under other numbers and letters
 ``columns``  functions of one mechanism, applied to many
 """
 

@@ -56,12 +56,18 @@ def test_variants_are_of_every_sort():
     assert 0.2 < np.mean(shared) < 0.8
 
 
-def test_the_statement_lists_the_joints_that_are_solved():
+def test_the_words_of_the_figure_list_the_joints_that_are_solved_and_the_statement_does_not():
+    """Who sees the scheme counts on it; who does not has every joint in words."""
     for variant in EXERCISE.variants(range(20), "en"):
         graph = JointGraph.of(variant.printed["joints"])
         assert EXERCISE.solve(joints=graph.records()) == variant.solution()
-        rows = [line for line in variant.text.opening.splitlines() if line.startswith("| ")][1:]
-        assert len(rows) == len(graph.joints)
+        assert "|" not in variant.text.opening
+        words = variant.text.section("figure").text
+        for joint in variant.printed["joints"]:
+            *others, last = joint["between"]
+            kind = {"revolute": "pivot", "prismatic": "slide", "higher": "contact"}[joint["kind"]]
+            assert f"{kind} between {', '.join(map(str, others))} and {last}" in words
+        assert words.count(" between ") == len(graph.joints)
 
 
 def test_the_number_of_the_mechanism_is_in_the_record_and_not_on_the_sheet():

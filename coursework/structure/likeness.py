@@ -1,0 +1,64 @@
+"""Whether a mechanism is one of the course's under other numbers and letters, and where its joints are drawn then."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from coursework.structure.joints import FRAME, JointGraph
+from coursework.structure.library import LIBRARY, PLACES, RAILS
+
+Drawn = tuple[tuple[complex, ...], dict[int, float]]
+
+
+def drawn_in_course(graph: JointGraph) -> Drawn | None:
+    """A place for each joint, and the direction of each fixed rail that is not level; None if no figure is like it."""
+    for figure, known in LIBRARY.items():
+        if figure not in PLACES or len(known.joints) != len(graph.joints):
+            continue
+        bodies = likeness(graph, known)
+        if bodies is not None:
+            return _drawn(graph, known, bodies, figure)
+    return None
+
+
+def _drawn(graph: JointGraph, known: JointGraph, bodies: Mapping[int, int], figure: str) -> Drawn:
+    letters: dict[tuple[tuple[int, ...], str], str] = {(j.bodies, j.kind): j.at for j in known.joints}
+    names = [letters[tuple(sorted(bodies[b] for b in j.bodies)), j.kind] for j in graph.joints]
+    rails = RAILS.get(figure, {})
+    slides = {
+        k: rails[at] for k, at in enumerate(names) if graph.joints[k].kind == "prismatic" and at in rails
+    }
+    return tuple(PLACES[figure][at] for at in names), slides
+
+
+def likeness(graph: JointGraph, known: JointGraph) -> dict[int, int] | None:
+    """For each body of a mechanism the one of ``known`` that it stands for; None if they are not alike.
+
+    The same numbers are tried first, so a figure of the course is like itself.
+    """
+    if len(graph.bodies) != len(known.bodies) or _kinds(graph) != _kinds(known):
+        return None
+    return next(_matched(graph, known, {FRAME: FRAME}), None)
+
+
+def _kinds(graph: JointGraph) -> list[tuple[str, int]]:
+    return sorted((joint.kind, len(joint.bodies)) for joint in graph.joints)
+
+
+def _matched(graph: JointGraph, known: JointGraph, found: dict[int, int]) -> Iterator[dict[int, int]]:
+    body = next((b for b in graph.bodies if b not in found), None)
+    if body is None:
+        yield found
+        return
+    for other in sorted(set(known.bodies) - set(found.values()), key=lambda b: (b != body, b)):
+        more = {**found, body: other}
+        if _seen(graph, body, more) == _seen(known, other, {b: b for b in more.values()}):
+            yield from _matched(graph, known, more)
+
+
+def _seen(graph: JointGraph, body: int, names: Mapping[int, int]) -> list[tuple[str, int, list[int]]]:
+    """A body's joints as far as its neighbours are named: their kinds, how many they hold, and whom."""
+    return sorted(
+        (joint.kind, len(joint.bodies), sorted(names[b] for b in joint.bodies if b in names))
+        for joint in graph.joints_of(body)
+    )

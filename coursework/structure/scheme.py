@@ -1,0 +1,294 @@
+"""The kinematic scheme of a mechanism as a figure: bars, plates, blocks and guides, wheels and cams, on a hatched frame.
+
+Bodies bear their numbers; the frame is what is hatched, and bears none.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterable, Sequence
+
+from coursework.figures import (
+    Element,
+    Figure,
+    ball,
+    contact,
+    ground_pivot,
+    link,
+    pin,
+    rail,
+    rotation_arrow,
+    slider,
+    slot_link,
+    vector,
+    wheel,
+)
+from coursework.figures.elements import BLOCK
+from coursework.structure.joints import FRAME, Joint, JointGraph, Record
+from coursework.structure.layout import BEYOND, places, slides
+from coursework.structure.likeness import drawn_in_course
+
+_ROTOR = 8.0  #: radius of a body that turns and touches nothing
+_NOSE = 2.6  #: radius of the rounded end with which a bar touches another body
+_RAIL = 9.0  #: half the length of a fixed guide
+_FLAT = 7.0  #: half the length of a fixed profile
+_LARGEST = 20.0  #: distance from a wheel's pivot to its contact
+_OFF_AXIS = math.radians(35)  #: a wheel's pivot is no farther from the normal of its contact
+
+
+def kinematic_scheme(
+    joints: JointGraph | Iterable[Record], *, letters: bool = True, driver: Sequence[int] = ()
+) -> Figure:
+    """The scheme at a scale of its own: lengths are of no account.
+
+    A mechanism of the course's figures is drawn as the course draws it, any other one as it reads best.
+
+    Parameters
+    ----------
+    joints
+        Records or a graph.
+    letters
+        Whether joints bear the letters of their ``at``.
+    driver
+        The frame and the body that an arrow shows to be driven, if any.
+    """
+    graph = JointGraph.of(joints)
+    return _Scheme(graph, letters, max(driver, default=0)).figure()
+
+
+class _Scheme:
+    def __init__(self, graph: JointGraph, letters: bool, driven: int):
+        self.graph = graph
+        self.letters = letters
+        self.driven = driven
+        known = drawn_in_course(graph)
+        self.at, self.rails = known if known else (places(graph), {})
+        self.slides = slides(graph, self.at if known else ())
+        self.normals = {k: self._normal(j) for k, j in enumerate(graph.joints) if j.kind == "higher"}
+
+    def figure(self) -> Figure:
+        elements = [element for body in self.graph.moving for element in self._body(body)]
+        # A wheel lies beneath the plate that carries its pivot.
+        elements.sort(key=lambda element: not isinstance(element, wheel))
+        for index, joint in enumerate(self.graph.joints):
+            if joint.kind == "prismatic":
+                elements += self._slide(index)
+            elif joint.kind == "higher":
+                elements += self._contact(index)
+        elements += self._pins()
+        if self.driven:
+            elements += self._arrow()
+        return Figure(*elements, scale=1.0)
+
+    def _letter(self, joint: Joint) -> str:
+        return joint.at if self.letters else ""
+
+    def _own(self, body: int) -> list[int]:
+        return [k for k, joint in enumerate(self.graph.joints) if body in joint.bodies]
+
+    # ---------------------------------------------------------------- bodies
+
+    def _body(self, body: int) -> list[Element]:
+        """Its bar or plate, its wheel, its guides; its number once, at the block of a body that has nothing else."""
+        rigid, number = self._rigid(body), str(body)
+        own = [k for k in self._own(body) if k in self.slides and self.slides[k].guide == body]
+        guides = [self._guide(k, self._base(k, rigid, own)) for k in own]
+        slots = [self._way_of(k, *guide) for k, guide in zip(own, guides, strict=True)]
+        if len(guides) == 1 and (lever := _straight(rigid, *guides[0])):
+            return [*slots, link(*lever[0], label=number), link(*lever[1])]
+        corners = [*rigid, *(foot for foot, _ in guides)]
+        if len(corners) > 1:
+            return [*slots, link(*_around(corners), label=number)]
+        disc = self._wheel(body)
+        return [wheel(*disc, label=number)] if disc else []
+
+    def _rigid(self, body: int) -> list[complex]:
+        """The points that a bar or a plate of the body holds together: pins, blocks, noses."""
+        found: list[complex] = []
+        for k in self._own(body):
+            if k in self.slides and self.slides[k].guide == body:
+                continue
+            place = self.at[k]
+            if self.graph.joints[k].kind == "higher":
+                if self._wheel(body):
+                    continue
+                place = self._nose(k, body)
+            if all(abs(place - z) > 1e-6 for z in found):
+                found.append(place)
+        return found
+
+    def _base(self, index: int, rigid: Sequence[complex], guides: Sequence[int]) -> complex:
+        """The nearest point of the body from which a guide comes to its block."""
+        here = self.at[index]
+        able = [z for z in rigid if abs(z - here) > 1] or [self.at[k] for k in guides if k != index]
+        return min(able, key=lambda z: (z not in self.at, abs(z - here)), default=here - 2 * BEYOND)
+
+    def _way_of(self, index: int, foot: complex, tip: complex) -> Element:
+        """A slot, or a rod through a block that turns on the frame, whose support a slot would hide."""
+        fixed = any(
+            self._together(index, k) and FRAME in self.graph.joints[k].bodies for k in range(len(self.at))
+        )
+        return link(foot, tip) if fixed else slot_link(foot, tip)
+
+    def _guide(self, index: int, base: complex) -> tuple[complex, complex]:
+        """Foot and tip of the slot in which a block slides."""
+        here = self.at[index]
+        way = (here - base) / abs(here - base)
+        return here - way * min(BEYOND, 0.5 * abs(here - base)), here + way * BEYOND
+
+    # ---------------------------------------------------------------- joints
+
+    def _pins(self) -> list[Element]:
+        """Pivots, each with its letter and that of a block on it."""
+        found: list[Element] = []
+        for k, joint in enumerate(self.graph.joints):
+            if joint.kind == "revolute":
+                here = [j.at for i, j in enumerate(self.graph.joints) if self._together(i, k)]
+                letters = ",".join(dict.fromkeys([joint.at, *here])) if self.letters else ""
+                kind = ground_pivot if FRAME in joint.bodies else pin
+                found.append(kind(self.at[k], letters.strip(",")))
+        return found
+
+    def _together(self, one: int, other: int) -> bool:
+        return abs(self.at[one] - self.at[other]) < 1e-6
+
+    def _direction(self, index: int) -> float:
+        """Of a slide, degrees: along its guide; a fixed guide is level, or along what pushes a follower."""
+        slide = self.slides[index]
+        here = self.at[index]
+        if slide.guide != FRAME:
+            own = [
+                k for k in self._own(slide.guide) if k in self.slides and self.slides[k].guide == slide.guide
+            ]
+            return _degrees(here - self._base(index, self._rigid(slide.guide), own))
+        if index in self.rails:
+            return self.rails[index]
+        others = [k for k in self._own(slide.block) if k != index]
+        if len(others) == 1 and self.graph.joints[others[0]].kind == "higher":
+            return _degrees(self.at[others[0]] - here)
+        if len(others) == 1 and others[0] in self.slides:
+            steep = abs((self.at[others[0]] - here).real) > abs((self.at[others[0]] - here).imag)
+            return 90.0 if steep else 0.0
+        return 0.0
+
+    def _below(self, index: int) -> complex:
+        """The side of a block on which its fixed guide lies: the one with fewer bars, below if there is none."""
+        along = cmath.exp(1j * math.radians(self._direction(index)))
+        here, side = self.at[index], -1j * along if along.real >= 0 else 1j * along
+        bodies = {
+            b for k, j in enumerate(self.graph.joints) if abs(self.at[k] - here) < 1e-6 for b in j.bodies
+        }
+        ways = [z - here for b in bodies - {FRAME} for z in self._rigid(b) if abs(z - here) > 1]
+        crowd = sum((way / abs(way) / side).real for way in ways)
+        return -side if crowd > 0.3 else side
+
+    def _slide(self, index: int) -> list[Element]:
+        """The block, with its number if it is a body of its own, else with its letter; its rail on the frame."""
+        here, block = self.at[index], self.slides[index].block
+        alone = len(self._rigid(block)) == 1
+        label = str(block) if alone else self._letter(self.graph.joints[index])
+        found: list[Element] = [slider(here, self._direction(index), label or None)]
+        if self.slides[index].guide == FRAME:
+            along = 1j * self._below(index) * _RAIL
+            found.append(rail(here - along, here + along))
+        return found
+
+    def _normal(self, joint: Joint) -> complex:
+        """From the first body of a contact towards the second."""
+        one, other = (self._comes_from(body, joint) for body in joint.bodies)
+        way = one - other
+        return way / abs(way) if abs(way) > 1e-6 else (one or -other) * 1j
+
+    def _comes_from(self, body: int, joint: Joint) -> complex:
+        """A unit vector from a body's other joints to a contact; none for the frame."""
+        here = self.at[self.graph.joints.index(joint)]
+        others = [self.at[k] for k in self._own(body) if self.graph.joints[k] != joint]
+        if body == FRAME or not others:
+            return 0j
+        way = here - sum(others) / len(others)
+        return way / (abs(way) or 1.0)
+
+    def _inward(self, index: int, body: int) -> complex:
+        """From a contact into one of its bodies."""
+        first = self.graph.joints[index].bodies[0] == body
+        return -self.normals[index] if first else self.normals[index]
+
+    def _nose(self, index: int, body: int) -> complex:
+        return self.at[index] + _NOSE * self._inward(index, body)
+
+    def _wheel(self, body: int) -> tuple[complex, float] | None:
+        """Centre and radius of the disc about the pivot of a body that has a pivot and a contact alone."""
+        own = self._own(body)
+        kinds = sorted(self.graph.joints[k].kind for k in own)
+        if kinds == ["revolute"]:
+            return self.at[own[0]], _ROTOR
+        if kinds != ["higher", "revolute"]:
+            return None
+        index = next(k for k in own if k in self.normals)
+        pivot = self.at[next(k for k in own if k != index)]
+        arm, inward = pivot - self.at[index], self._inward(index, body)
+        if abs(arm) > _LARGEST or abs(cmath.phase(arm / inward)) > _OFF_AXIS:
+            return None
+        radius = abs(arm) * (1.0 if abs(cmath.phase(arm / inward)) < 0.1 else 0.75)
+        return self.at[index] + radius * inward, radius
+
+    def _contact(self, index: int) -> list[Element]:
+        joint, here = self.graph.joints[index], self.at[index]
+        found: list[Element] = []
+        for body in joint.bodies:
+            if body != FRAME and not self._wheel(body):
+                found.append(ball(self._nose(index, body), _NOSE))
+            elif body == FRAME:
+                inward = self._inward(index, body)
+                shift = -inward * (BLOCK.imag + 0.175)
+                along = 1j * inward * _FLAT
+                found.append(rail(here + shift - along, here + shift + along))
+        return [*found, contact(here, self._letter(joint) or None)]
+
+    # ---------------------------------------------------------------- driver
+
+    def _arrow(self) -> list[Element]:
+        """What drives: an arrow round the pivot, or along the slide, that ties the driven body to the frame."""
+        for k in self._own(self.driven):
+            joint, here = self.graph.joints[k], self.at[k]
+            if FRAME not in joint.bodies:
+                continue
+            if joint.kind == "revolute":
+                middle, half = self._gap(here)
+                return [rotation_arrow(here, 6.0, middle - half, middle + half)]
+            along = 1j * self._below(k)
+            crowd = sum(((z - here) / along).real for z in self._rigid(self.driven))
+            along = -along if crowd > 0 else along
+            return [vector(here + 4.5 * along, 7 * along)]
+        return []
+
+    def _gap(self, here: complex) -> tuple[float, float]:
+        """The middle of the widest angle between bars at a pivot, and half of what an arrow takes of it."""
+        around = [z for b in self.graph.moving for z in self._rigid(b) if here in self._rigid(b)]
+        taken = sorted({_degrees(z - here) for z in around if abs(z - here) > 1} | {-120.0, -60.0})
+        gaps = [(b - a, a) for a, b in zip(taken, [*taken[1:], taken[0] + 360], strict=True)]
+        width, start = max(gaps, key=lambda gap: round(gap[0], 6))
+        return start + width / 2, min(40.0, 0.35 * width)
+
+
+def _degrees(way: complex) -> float:
+    return math.degrees(cmath.phase(way))
+
+
+def _around(points: Sequence[complex]) -> list[complex]:
+    """The ends of a bar, or the corners of a plate in order round their middle."""
+    middle = sum(points) / len(points)
+    return sorted(points, key=lambda z: cmath.phase(z - middle))
+
+
+def _straight(rigid: Sequence[complex], foot: complex, tip: complex) -> tuple[tuple[complex, complex], ...]:
+    """The two bars of a lever whose slot lies between its two pins, in one line with them; none if it does not."""
+    if len(rigid) != 2:
+        return ()
+    base, other = sorted(rigid, key=lambda z: abs(z - foot))
+    way = (tip - foot) / abs(tip - foot)
+    ahead = (other - tip) / way
+    if abs(ahead.imag) > 1 or ahead.real <= 0:
+        return ()
+    return ((base, foot), (tip, other))
