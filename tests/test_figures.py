@@ -632,7 +632,8 @@ def test_a_bar_of_scale_is_as_long_as_it_says_with_its_words_under_it():
 def test_a_figure_laid_out_for_a_room_keeps_its_letters_and_changes_its_bars():
     whole = four_bar()
     small = whole.fitted(60, 40)
-    assert small.size_mm[0] <= 60 and small.size_mm[1] <= 40
+    assert small.size_mm[0] <= 60
+    assert small.size_mm[1] <= 40
     assert small.scale < whole.scale
     heights = {box.label: box.height for box in whole.labels()}
     assert {box.label: box.height for box in small.labels()} == heights
