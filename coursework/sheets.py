@@ -227,7 +227,9 @@ def _step(variant: Variant, name: str, values: Mapping[str, Any], text: Any) -> 
         # A case has no symbol that would say which question it answers.
         number = 1 + [p.id for p in variant.parts].index(part.id)
         asks = f"{engine_words(variant.lang)['sheet']['question']['one']} {number}."
-        words = f"*{asks[:1].upper()}{asks[1:]}* {words} **{variant.text.label(part.id, str(values[name]))}**"
+        words = (
+            f"*{asks[:1].upper()}{asks[1:]}* {words} **{variant.text.label(part.id, str(values[name]))}**."
+        )
     try:
         formula = formula_latex(function, symbols)
         substitution = formula_latex(function, numbers) if formula and value else ""

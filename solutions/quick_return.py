@@ -412,9 +412,9 @@ def T_is_frequency(omega2):
     return abs(omega2) / (2 * math.pi)
 
 
-@mistake("t_advance", "t_return", share=0.5)
-def advance_and_return_exchanged(t_advance, t_return):
-    return t_return, t_advance
+@mistake("alpha", "beta", share=0.5)
+def advance_and_return_exchanged(alpha, beta):
+    return beta, alpha
 
 
 @mistake("mechanical_advantage", share=0.5)

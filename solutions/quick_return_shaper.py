@@ -150,9 +150,9 @@ def T_is_frequency(omega2):
     return abs(omega2) / (2 * math.pi)
 
 
-@mistake("t_advance", "t_return", share=0.5)
-def advance_and_return_exchanged(t_advance, t_return):
-    return t_return, t_advance
+@mistake("alpha", "beta", share=0.5)
+def advance_and_return_exchanged(alpha, beta):
+    return beta, alpha
 
 
 def figure(r1, r2, r4, r5, h, omega2, sigma):

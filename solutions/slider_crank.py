@@ -156,6 +156,11 @@ def multiplied_by_the_scale(kv, ka):
     return 1 / kv, 1 / ka
 
 
+@mistake("kv", "ka")
+def scale_left_out(kv, ka):
+    return 1, 1
+
+
 def motion(r2, e, theta2, omega2, alpha2, r1, r1_dot, r1_ddot):
     """The crank pin and the piston."""
     A = polar(r2, theta2)

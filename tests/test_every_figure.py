@@ -1,4 +1,4 @@
-"""Every exercise's figures over 200 variants: no label on a line or on another label, none off the paper."""
+"""Every exercise's figures as sheets show them, over 200 variants: no label on a line, on another label, off the paper."""
 
 import math
 import re
@@ -9,6 +9,7 @@ import pytest
 
 import coursework
 from coursework.figures import Figure, link, pin
+from coursework.rendering import views
 from coursework.sheets import solution_figure
 
 COURSE = coursework.open_course()
@@ -75,9 +76,13 @@ def faults(figure):
 @pytest.mark.parametrize("name", WITH_FIGURE)
 def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(name):
     found = {}
+    room = views.room(COURSE[name].variant(0).handout())
     for variant in COURSE[name].variants(range(VARIANTS)):
-        figures = (variant.figure, solution_figure(variant))
-        found[variant.seed] = [fault for figure in figures if figure is not None for fault in faults(figure)]
+        drawn = (variant.figure, solution_figure(variant))
+        figures = [figure.fitted(*room) for figure in drawn if figure is not None]
+        found[variant.seed] = [fault for figure in figures for fault in faults(figure)]
+        # What fits its room is printed at its own size, so its letters are as large as they are drawn.
+        assert all(np.less_equal(figure.size_mm, room).all() for figure in figures)
     assert not {seed: bad for seed, bad in found.items() if bad}
 
 

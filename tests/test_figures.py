@@ -627,3 +627,26 @@ def test_a_bar_of_scale_is_as_long_as_it_says_with_its_words_under_it():
     assert abs(bar[1] - bar[0]) == pytest.approx(20)
     (label,) = figure.labels()
     assert label.y > bar[0].imag
+
+
+def test_a_figure_laid_out_for_a_room_keeps_its_letters_and_changes_its_bars():
+    whole = four_bar()
+    small = whole.fitted(60, 40)
+    assert small.size_mm[0] <= 60
+    assert small.size_mm[1] <= 40
+    assert small.scale < whole.scale
+    heights = {box.label: box.height for box in whole.labels()}
+    assert {box.label: box.height for box in small.labels()} == heights
+    assert small is whole.fitted(60, 40)
+
+
+def test_a_room_does_not_overrule_what_an_author_told():
+    elements = link(0, 100), link(100, 100 + 80j)
+    assert Figure(*elements, paper_mm=(50, 60)).fitted(112, 58).paper_mm == (50, 58)
+    drawn_to_scale = Figure(*elements, scale=1)
+    assert drawn_to_scale.fitted(40, 40) is drawn_to_scale
+
+
+def test_a_room_too_small_for_the_labels_leaves_the_figure_as_it_is():
+    whole = four_bar()
+    assert whole.fitted(6, 6) is whole

@@ -120,8 +120,9 @@ def _cell(identity: str, kind: str, tags: tuple[str, ...], source: str) -> dict[
 
 def _attach_figure(cell: dict[str, object], handout: Handout) -> None:
     shown = any(f"attachment:{FIGURE}" in line for line in cell["source"])
-    if cell["cell_type"] == "markdown" and handout.figure is not None and shown:
-        png = base64.b64encode(handout.figure.png(ppi=_FIGURE_PPI)).decode()
+    figure = views.figure_of(handout)
+    if cell["cell_type"] == "markdown" and figure is not None and shown:
+        png = base64.b64encode(figure.png(ppi=_FIGURE_PPI)).decode()
         cell["attachments"] = {FIGURE: {"image/png": png}}
 
 

@@ -49,7 +49,12 @@ def context(sheet: Sheet) -> dict[str, object]:
 def figure_of(sheet: Sheet) -> Figure | None:
     """The figure a sheet shows, laid out for its room: a solution's own, else the handout's."""
     figure = _shown(sheet)
-    return figure and figure.fitted(*(ROOM_BESIDE if _data_beside(sheet) else ROOM_ALONE))
+    return figure and figure.fitted(*room(sheet))
+
+
+def room(sheet: Sheet) -> tuple[float, float]:
+    """Width and height in mm that a sheet leaves its figure."""
+    return ROOM_BESIDE if _data_beside(sheet) else ROOM_ALONE
 
 
 def _shown(sheet: Sheet) -> Figure | None:
