@@ -170,7 +170,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     target = _targets(variant, readings, key)
     together: dict[str, Verdict] = {}
     loops = judged(variant, readings)
-    before = _Before({}, set())
+    before = _Before({}, set(), set())
     marks = {}
     for i, part in asked.items():
         if i in known:
@@ -190,6 +190,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             else:
                 nearest = 0, 0.0 if own.right else math.inf
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before, own)
+        before.shown.update(marks[i].matches)
         if reading.status == "read" and part.kind in ("number", "angle"):
             before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
@@ -261,10 +262,11 @@ def _plain_right(exercise: CourseExercise, part: Part, lang: str) -> str:
 
 
 class _Before(NamedTuple):
-    """The numbers that a student has answered before a part, by quantity, and which of them are wrong."""
+    """What a student has answered before a part: numbers by quantity, and which of them are wrong."""
 
     own: dict[str, float]
     wrong: set[str]
+    shown: set[str]  #: verdicts that explain earlier answers
 
 
 def _made(
@@ -353,9 +355,12 @@ def _mark_part(
             return made("missing_unit", 0.0, read_as, lambda: say("missing_unit"))
         return made("correct", 1.0, read_as, lambda: say("correct"))
     matches = tuple(_explanations(key, part, reading, judged_by, before))
+    likely = {m for m in matches if _is_likely(m, key, judged_by, before)}
+    matches = tuple(sorted(matches, key=lambda m: m not in likely))
     if closes is not None and closes.fault:
+        likely.add(f"slip:{closes.fault}")
         matches += (f"slip:{closes.fault}",)
-    verdict = matches[0] if matches else "wrong"
+    verdict = matches[0] if likely else "wrong"
     kind, _, name = verdict.partition(":")
     if kind == "mistake":
         share = key.solution.mistakes[name].share
@@ -369,8 +374,27 @@ def _mark_part(
         return made(verdict, key.rules.slip, read_as, lambda: say(f"slip_{name}", about=about), matches)
     if kind == "follow_through":
         return made(verdict, key.rules.follow_through, read_as, lambda: say("follow_through"), matches)
-    sentence = {"choice": "wrong_case", "equation": "wrong_equation"}.get(part.kind, "wrong")
+    sentence = _NOT_RIGHT.get(part.kind, "wrong")
     return made("wrong", 0.0, read_as, lambda: say(sentence))
+
+
+_NOT_RIGHT = {
+    "choice": "wrong_case",
+    "equation": "wrong_equation",
+    "direction": "wrong_place",
+    "point_on_line": "wrong_place",
+}
+
+
+def _is_likely(match: str, key: Key, part: Part, before: _Before) -> bool:
+    """Whether a verdict may be told of an answer that it explains.
+
+    Among few cases many mistakes lead to the same one: a choice that follows from an error made elsewhere, of
+    which no other answer shows anything, tells nothing of that error.
+    """
+    if part.kind != "choice" or match in before.shown:
+        return True
+    return part.quantity in key.solution.mistakes[match.partition(":")[2]].targets
 
 
 def _symbols(variant: Variant, closes: Judged | None) -> str:
