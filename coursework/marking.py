@@ -142,7 +142,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
-    before = _Before({}, set())
+    before = _Before({}, set(), set())
     marks = {}
     for i, part in asked.items():
         if i in known:
@@ -158,6 +158,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
         else:
             nearest = _nearest(part, reading, key, judged_by)
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
+        before.shown.update(marks[i].matches)
         if reading.status == "read" and part.kind in ("number", "angle"):
             before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
@@ -213,10 +214,11 @@ def _nearest(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[i
 
 
 class _Before(NamedTuple):
-    """The numbers that a student has answered before a part, by quantity, and which of them are wrong."""
+    """What a student has answered before a part: numbers by quantity, and which of them are wrong."""
 
     own: dict[str, float]
     wrong: set[str]
+    shown: set[str]  #: verdicts that explain earlier answers
 
 
 def _made(
@@ -311,7 +313,9 @@ def _mark_part(
             return made("missing_unit", 0.0, read_as, lambda: told("missing_unit"))
         return made("correct", 1.0, read_as, lambda: told("correct"))
     matches = tuple(_explanations(key, part, reading, judged_by, before))
-    verdict = matches[0] if matches else "wrong"
+    likely = {m for m in matches if _is_likely(m, key, judged_by, before)}
+    matches = tuple(sorted(matches, key=lambda m: m not in likely))
+    verdict = matches[0] if likely else "wrong"
     kind, _, name = verdict.partition(":")
     if kind == "mistake":
         share = key.solution.mistakes[name].share
@@ -324,7 +328,23 @@ def _mark_part(
 
 
 #: the sentence about a wrong answer, by kind of part
-_WRONG = {"choice": "wrong_case", "equation": "wrong_equation"}
+_WRONG = {
+    "choice": "wrong_case",
+    "equation": "wrong_equation",
+    "direction": "wrong_place",
+    "point_on_line": "wrong_place",
+}
+
+
+def _is_likely(match: str, key: Key, part: Part, before: _Before) -> bool:
+    """Whether a verdict may be told of an answer that it explains.
+
+    Among few cases many mistakes lead to the same one: a choice that follows from an error made elsewhere, of
+    which no other answer shows anything, tells nothing of that error.
+    """
+    if part.kind != "choice" or match in before.shown:
+        return True
+    return part.quantity in key.solution.mistakes[match.partition(":")[2]].targets
 
 
 def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before) -> Iterator[str]:

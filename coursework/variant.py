@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from coursework import statement
 from coursework.errors import unknown
 from coursework.graph import plain_scalar
-from coursework.language import languages, localise, plain, significant, with_unit
+from coursework.language import languages, localise, plain, significant, with_unit, words
 from coursework.model import Part
 
 if TYPE_CHECKING:
@@ -148,11 +148,20 @@ class Variant:
         known = self.exercise.constant_labels
         place = (part.id, self.lang)
         if place not in known:
-            found = {case: [self.label(part.id, case, lang) for lang in self._langs] for case in part.choices}
+            found = {case: [*self._called(part.id, case)] for case in part.choices}
             if not all(self.exercise.is_constant(part.id, case) for case in part.choices):
                 return found
             known[place] = found
         return known[place]
+
+    def _called(self, part: str, case: str) -> Iterator[str]:
+        """The labels of a case, and each without its article."""
+        for lang in self._langs:
+            yield (label := self.label(part, case, lang))
+            for article in words(lang)["choices"]["articles"]:
+                start = article if article.endswith("'") else f"{article} "
+                if label.replace("’", "'").lower().startswith(start):
+                    yield label[len(start) :]
 
     @property
     def _langs(self) -> tuple[str, ...]:

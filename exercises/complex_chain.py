@@ -80,7 +80,7 @@ def figure(layout, xA, yA, xB, yB, xC, xD, yD, xE, yE):
     elements = [
         link(O, A, label="S_1"),
         link(A, B, D, label="S_2") if on_coupler else link(A, B, label="S_2"),
-        link(B, C, label="S_3") if on_coupler else link(B, C, D, label="S_3"),
+        link(B, C) if on_coupler else link(B, C, D, label="S_3"),
         link(D, E, label="S_4"),
         ground_pivot(O, "O"),
         ground_pivot(C, "C"),
@@ -88,6 +88,9 @@ def figure(layout, xA, yA, xB, yB, xC, xD, yD, xE, yE):
         pin(B, "B"),
         pin(D, "D"),
     ]
+    if on_coupler:
+        # Near C the bar is clear of the coupler's triangle.
+        elements.append(note(0.25 * B + 0.75 * C + 12, "S_3"))
     if layout == "strut":
         return Figure(*elements, ground_pivot(E, "E"))
     end = F if layout == "two_guides" else E

@@ -111,3 +111,12 @@ def test_all_mobilities_are_met():
     found = {variant.solution()["m"] for variant in EXERCISE.variants(range(60))}
     assert found == {1, 2, 3}
     assert len(np.unique([v.solution()["h"] for v in EXERCISE.variants(range(60))])) > 1
+
+
+def test_a_choice_is_explained_by_a_mistake_only_where_another_answer_shows_it():
+    variant = coursework.open_course()["closed_chain"].variant(29)
+    right = {"Nc": "9", "rc": "6", "m": "3"}
+    alone = variant.grade({**right, "statics": "hyperstatique"})["statics"]
+    assert alone.verdict == "wrong"
+    shown = variant.grade({**right, "Nc": "15", "statics": "hyperstatique"})["statics"]
+    assert shown.verdict == "mistake:unknowns_exchanged"

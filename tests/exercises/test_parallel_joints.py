@@ -116,3 +116,15 @@ def test_what_makes_no_sense_is_refused():
     slightly = [{"joint": "prismatic", "axis": a} for a in ([1, 0, 0], [1, 1e-9, 0])]
     with pytest.raises(CannotTell):
         EXERCISE.solve(joints=slightly, only="m")
+
+
+def test_a_joint_is_known_with_its_article_or_without():
+    variant = coursework.open_course()["parallel_joints"].variant(27, lang="fr")
+    for said in ("une liaison pivot", "liaison pivot", "Liaison pivot", "a revolute joint", "revolute joint"):
+        assert variant.grade({"equivalent": said})["equivalent"].verdict == "correct", said
+
+
+def test_a_wrong_direction_is_not_told_to_start_from_a_relation():
+    said = coursework.open_course()["parallel_joints"].variant(27, lang="en").grade({"axis_dir": "(1; 0; 0)"})
+    assert said["axis_dir"].verdict == "wrong"
+    assert "the basis of the coordinates" in said["axis_dir"].feedback
