@@ -20,6 +20,7 @@ exclude_patterns = ["gallery.py"]
 html_theme = "furo"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+html_extra_path = ["gallery/whole"]
 html_copy_source = False
 html_show_sphinx = False
 html_show_copyright = False
@@ -59,7 +60,26 @@ def _mathml(translator, node):
     raise nodes.SkipNode
 
 
+_PARAMETERS = re.compile(r"<dl>((?:\s*<dd>.*?</dd>)+\s*)</dl>", re.DOTALL)
+
+
+def _for_everybody(app, pagename, templatename, context, doctree):
+    """What scrolls sideways is reached by keyboard; the parameters of a signature are no list of definitions."""
+    body = context.get("body", "")
+    body = body.replace("<pre>", '<pre tabindex="0">')
+    body = body.replace('<div class="table-wrapper', '<div tabindex="0" class="table-wrapper')
+    context["body"] = _PARAMETERS.sub(
+        lambda m: (
+            '<span class="parameters">'
+            + m[1].replace("<dd>", "<span>").replace("</dd>", "</span>")
+            + "</span>"
+        ),
+        body,
+    )
+
+
 def setup(app):
     app.add_html_math_renderer("mathml", (_mathml, None), (_mathml, None))
+    app.connect("html-page-context", _for_everybody)
     app.connect("autodoc-process-docstring", _as_written, priority=400)
     app.connect("autodoc-process-docstring", _colons_are_colons, priority=600)

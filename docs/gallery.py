@@ -20,11 +20,13 @@ from coursework.exercise import CourseExercise
 from coursework.handout import Question
 from coursework.language import plain, with_unit
 from coursework.model import GivenSpec
+from coursework.motion import Animation
 from coursework.rendering.formulas import to_mathml
 from coursework.rendering.markup import html_inline, to_html
 from coursework.variant import Variant
 
 SEED = 0  #: the variant shown
+WHOLE = "whole/pages"  #: copied as they are into the site, as ``pages``
 PPI = 75  #: of the picture of a sheet
 LANGUAGE_NAMES = {"en": "English", "fr": "Français"}
 
@@ -40,7 +42,30 @@ def pages(course: Course) -> Iterator[tuple[str, bytes]]:
         figure = exercise.variant(SEED, exercise.languages[0]).figure
         if figure is not None:
             yield f"{name}.svg", figure.outlined_svg().encode()
+        for file, made in attached(exercise):
+            yield file, made.encode()
         yield f"{name}.md", page(exercise).encode()
+
+
+def attached(exercise: CourseExercise) -> Iterator[tuple[str, str]]:
+    """What a page shows or leads to: polygons, the motion, and whole pages that stand alone, in ``WHOLE``."""
+    for lang in exercise.languages:
+        variant = exercise.variant(SEED, lang)
+        solution = exercise.course.renderer.html(variant.answer_sheet())
+        yield f"{WHOLE}/{exercise.name}.{lang}.solution.html", solution
+        if exercise.spec.driver is not None:
+            yield f"{WHOLE}/{exercise.name}.{lang}.motion.html", animation(variant).html()
+    first = exercise.variant(SEED, exercise.languages[0])
+    if exercise.spec.driver is not None:
+        yield f"{exercise.name}.motion.svg", animation(first).svg()
+    for number, polygon in enumerate(first.polygons()):
+        yield f"{exercise.name}.polygon{number}.svg", polygon.figure.outlined_svg()
+
+
+def animation(variant: Variant) -> Animation:
+    """The mechanism in motion, with its velocities where the solution states them."""
+    moving = variant.animation()
+    return variant.animation(("position", "velocity")) if "velocity" in moving.available else moving
 
 
 def first_page(typst_source: str) -> bytes:
@@ -98,6 +123,10 @@ def page(exercise: CourseExercise) -> str:
     ]
     if first.figure is not None:
         lines += [f"![{_alt(first)}]({exercise.name}.svg){{.figure}}", ""]
+    if exercise.spec.driver is not None:
+        words = f"The mechanism over its cycle. {_alt(first)}"
+        lines += ["## In motion", "", f"![{words}]({exercise.name}.motion.svg){{.figure}}", ""]
+    lines += _polygons(first)
     lines += ["## What varies", "", _html(_given_table(exercise)), ""]
     for lang in exercise.languages:
         lines += _in_language(exercise.variant(SEED, lang), lang)
@@ -116,7 +145,29 @@ def _in_language(variant: Variant, lang: str) -> list[str]:
         "",
         f"![The first page of the sheet, {lang}]({variant.exercise.name}.{lang}.png){{.sheet}}",
         "",
+        *_links(variant.exercise, lang),
     ]
+
+
+def _polygons(variant: Variant) -> list[str]:
+    drawn = [
+        f"![{polygon.title}, to scale]({variant.exercise.name}.polygon{number}.svg){{.polygon}}"
+        for number, polygon in enumerate(variant.polygons())
+    ]
+    return ["## Polygons", "", "Drawn step by step in the worked solution.", "", *drawn, ""] if drawn else []
+
+
+def _links(exercise: CourseExercise, lang: str) -> list[str]:
+    """Whole pages that stand alone: the worked solution, with its polygons, and the animation with its slider."""
+    to = {"solution": "The worked solution"}
+    if exercise.spec.driver is not None:
+        to["motion"] = "The mechanism in motion, with a slider"
+    language = LANGUAGE_NAMES.get(lang, lang)
+    links = "".join(
+        f'<li><a href="../pages/{exercise.name}.{lang}.{kind}.html">{words} ({language})</a></li>'
+        for kind, words in to.items()
+    )
+    return [_html(f"<ul>{links}</ul>"), ""]
 
 
 def _question(question: Question, lang: str) -> str:
@@ -163,6 +214,7 @@ def main(folder: str) -> None:
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
     for name, content in pages(coursework.open_course()):
+        (target / name).parent.mkdir(parents=True, exist_ok=True)
         (target / name).write_bytes(content)
 
 
