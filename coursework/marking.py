@@ -170,7 +170,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     target = _targets(variant, readings, key)
     together: dict[str, Verdict] = {}
     loops = judged(variant, readings)
-    before = _Before({}, set(), set())
+    before = _Before({}, set(), set(), [])
     marks = {}
     for i, part in asked.items():
         if i in known:
@@ -191,6 +191,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
                 nearest = 0, 0.0 if own.right else math.inf
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before, own)
         before.shown.update(marks[i].matches)
+        if reading.status == "read" and part.kind in ("number", "angle", "integer", "choice"):
+            before.read.append((judged_by, reading))
         if reading.status == "read" and part.kind in ("number", "angle"):
             before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
@@ -267,6 +269,7 @@ class _Before(NamedTuple):
     own: dict[str, float]
     wrong: set[str]
     shown: set[str]  #: verdicts that explain earlier answers
+    read: list[tuple[Part, Reading]]  #: numbers, whole ones too, and choices
 
 
 def _made(
@@ -375,7 +378,7 @@ def _mark_part(
     if kind == "follow_through":
         return made(verdict, key.rules.follow_through, read_as, lambda: say("follow_through"), matches)
     sentence = _NOT_RIGHT.get(part.kind, "wrong")
-    return made("wrong", 0.0, read_as, lambda: say(sentence))
+    return made("wrong", 0.0, read_as, lambda: say(sentence), matches)
 
 
 _NOT_RIGHT = {
@@ -389,12 +392,17 @@ _NOT_RIGHT = {
 def _is_likely(match: str, key: Key, part: Part, before: _Before) -> bool:
     """Whether a verdict may be told of an answer that it explains.
 
-    Among few cases many mistakes lead to the same one: a choice that follows from an error made elsewhere, of
-    which no other answer shows anything, tells nothing of that error.
+    Among few cases many mistakes lead to the same one: a choice tells nothing of a mistake made elsewhere that
+    an earlier answer, which it would have changed, does not show.
     """
-    if part.kind != "choice" or match in before.shown:
+    name = match.partition(":")[2]
+    if part.kind != "choice" or part.quantity in key.solution.mistakes[name].targets:
         return True
-    return part.quantity in key.solution.mistakes[match.partition(":")[2]].targets
+    return match in before.shown or not any(
+        name == other and not _fits(earlier, reading, value, None, 0.0)
+        for earlier, reading in before.read
+        for other, value in key.wrong_ways(earlier.quantity)
+    )
 
 
 def _symbols(variant: Variant, closes: Judged | None) -> str:
