@@ -142,7 +142,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
-    before = _Before({}, set(), set())
+    before = _Before({}, set(), set(), [])
     marks = {}
     for i, part in asked.items():
         if i in known:
@@ -159,6 +159,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             nearest = _nearest(part, reading, key, judged_by)
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
         before.shown.update(marks[i].matches)
+        if reading.status == "read" and part.kind in ("number", "angle", "integer", "choice"):
+            before.read.append((judged_by, reading))
         if reading.status == "read" and part.kind in ("number", "angle"):
             before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
@@ -219,6 +221,7 @@ class _Before(NamedTuple):
     own: dict[str, float]
     wrong: set[str]
     shown: set[str]  #: verdicts that explain earlier answers
+    read: list[tuple[Part, Reading]]  #: numbers, whole ones too, and choices
 
 
 def _made(
@@ -324,7 +327,7 @@ def _mark_part(
         return made(verdict, key.rules.slip, read_as, lambda: told(f"slip_{name}"), matches)
     if kind == "follow_through":
         return made(verdict, key.rules.follow_through, read_as, lambda: told("follow_through"), matches)
-    return made("wrong", 0.0, read_as, lambda: told(_WRONG.get(part.kind, "wrong")))
+    return made("wrong", 0.0, read_as, lambda: told(_WRONG.get(part.kind, "wrong")), matches)
 
 
 #: the sentence about a wrong answer, by kind of part
@@ -339,12 +342,17 @@ _WRONG = {
 def _is_likely(match: str, key: Key, part: Part, before: _Before) -> bool:
     """Whether a verdict may be told of an answer that it explains.
 
-    Among few cases many mistakes lead to the same one: a choice that follows from an error made elsewhere, of
-    which no other answer shows anything, tells nothing of that error.
+    Among few cases many mistakes lead to the same one: a choice tells nothing of a mistake made elsewhere that
+    an earlier answer, which it would have changed, does not show.
     """
-    if part.kind != "choice" or match in before.shown:
+    name = match.partition(":")[2]
+    if part.kind != "choice" or part.quantity in key.solution.mistakes[name].targets:
         return True
-    return part.quantity in key.solution.mistakes[match.partition(":")[2]].targets
+    return match in before.shown or not any(
+        name == other and not _fits(earlier, reading, value, None, 0.0)
+        for earlier, reading in before.read
+        for other, value in key.wrong_ways(earlier.quantity)
+    )
 
 
 def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before) -> Iterator[str]:
