@@ -673,7 +673,12 @@ def grade(
     book = grade_with_bar(_course(context), submissions, issued, out, feedback=feedback, accepted=accepted)
     click.echo(f"{book.rows_in} rows: {book.marked} marked, {len(book.rejected)} rejected; see {out}")
     if book.changes:
-        click.echo(f"{book.changes} marks are not what they were before; see {out / 'changes.csv'}")
+        what = (
+            "1 mark is not what it was"
+            if book.changes == 1
+            else f"{book.changes} marks are not what they were"
+        )
+        click.echo(f"{what} before; see {out / 'changes.csv'}")
     for warning in book.warnings:
         click.echo(f"coursework: note: {warning}", err=True)
     for rejected in book.rejected[:10]:
