@@ -304,6 +304,10 @@ def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
             elif part.kind == "angle":
                 edge[part.id] = plain(value + 360.0 - part.half_width(value))
     comma = {i: text for i, text in comma.items() if text != printed[i]}
+    # Parts that are judged together stand on a sheet together.
+    beside = {part.id: printed[part.id] for part in variant.parts if part.judge}
+    if not beside.keys().isdisjoint(comma):
+        comma = beside | comma
     yield from filter(None, (full, printed, comma, edge))
 
 

@@ -20,12 +20,12 @@ from ._drawn import (
 
 
 def vectors_are_long_enough_to_draw(of_four_bar):
-    """The normal ones an eighth of the longest at least, the tangential ones and that of B a quarter."""
+    """The normal ones a ninth of the longest at least, the tangential ones and that of B two ninths."""
     of_A, normal_BA, tangential_BA, normal_B, tangential_B = of_four_bar
     of_B = normal_B + tangential_B
-    normal = all_long(1 / 8, of_A, normal_BA, normal_B, tangential_BA, tangential_B, of_B)
-    longest = (2 * normal_BA, 2 * normal_B)  # a quarter of the others is asked, an eighth of these
-    return normal & all_long(1 / 4, of_A, *longest, tangential_BA, tangential_B, of_B)
+    normal = all_long(1 / 9, of_A, normal_BA, normal_B, tangential_BA, tangential_B, of_B)
+    longest = (2 * normal_BA, 2 * normal_B)  # two ninths of the others are asked, one of these
+    return normal & all_long(2 / 9, of_A, *longest, tangential_BA, tangential_B, of_B)
 
 
 def tells(r1, r2, r3, r4, theta2, omega2, mode):

@@ -62,9 +62,9 @@ def _read(quantity, unit):
 
 EXERCISE = Exercise(
     given={
-        "d": drawn(20, 70, unit="mm"),
         "r2": drawn(20, 40, step=2, unit="mm"),
         "r3": drawn(20, 40, step=2, unit="mm"),
+        "d": drawn(lambda r2, r3: 0.2 * (r2 + r3), lambda r2, r3: 0.8 * (r2 + r3), unit="mm", positive=True),
         "b": drawn(30, 70, step=2, unit="mm"),
         "theta1": drawn(-175, 180, step=5, unit="deg"),
         "omega1": drawn(-20, 20, unit="rad/s"),

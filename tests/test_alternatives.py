@@ -74,8 +74,9 @@ def test_a_statements_figure_is_told_in_every_format_without_an_answer(name, lan
     numbers = set(re.findall(r"(?<![\w.,])\d+(?:[.,]\d+)?", words))
     printed = " ".join(str(v) for v in variant.printed.values()) + str(variant.text.opening)
     assert all(number in printed for number in numbers)
-    (told,) = Images(COURSE.renderer.html(variant.handout())).told
+    told, *paper = Images(COURSE.renderer.html(variant.handout())).told
     assert plainly(told) == plainly(words)
+    assert len(paper) == bool(COURSE[name].spec.drawing_mm)
     notebook = json.loads(COURSE.renderer.notebook(variant.handout()))
     shown = ["".join(c["source"]) for c in notebook["cells"] if c.get("attachments")]
     told = [re.search(r"!\[(.*?)\]\(attachment:", one)[1] for one in shown]
@@ -86,8 +87,10 @@ def test_a_statements_figure_is_told_in_every_format_without_an_answer(name, lan
 @both
 def test_a_solutions_own_figure_has_its_own_words(name, lang):
     variant = COURSE[name].variant(1, lang)
-    (told,) = Images(COURSE.renderer.html(variant.answer_sheet())).told
+    told, *drawings = Images(COURSE.renderer.html(variant.answer_sheet())).told
     assert_tells(told, solution_figure(variant), lang)
+    assert all(drawings)
+    assert bool(drawings) == bool(variant.polygons())
     assert told != " ".join(variant.text.section("figure").text.split())
 
 

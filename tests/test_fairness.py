@@ -56,7 +56,7 @@ def test_who_rounds_at_every_step_is_right(name, digits):
     keys_of(COURSE[name], drawn)
     checks.check_rounding_students(COURSE[name], drawn, report, (digits,))
     assert report.failures == []
-    rounded_parts = [p for p in COURSE[name].spec.parts if not p.is_exact]
+    rounded_parts = [p for p in COURSE[name].spec.parts if p.has_margin]
     assert (report.counts[f"rounding to {digits}"] > 0) == bool(rounded_parts)
 
 

@@ -125,15 +125,16 @@ def constructions(name):
 
 
 def test_every_exercise_that_asks_a_rate_states_its_polygons():
-    """All but the one whose rates are one vector."""
+    """All but those whose rates are one vector, or arrows each at its own point."""
     asking = {
         name
         for name in COURSE.names
         if any(part.unit in ("mm/s", "mm/s^2", "rad/s", "rad/s^2") for part in COURSE[name].spec.parts)
     }
     stating = {name for name in COURSE.names if COURSE[name].solution.polygons is not None}
-    assert asking - stating <= {"coriolis", "ball_reducer"}
-    assert stating == set(PLACES)
+    assert asking - stating <= {"coriolis", "ball_reducer", "havens_construction"}
+    # Polygons that are themselves the answer are compared with those of these exercises elsewhere.
+    assert {name for name in stating if not COURSE[name].spec.drawing_mm} == set(PLACES)
 
 
 def derivatives(name, variant):

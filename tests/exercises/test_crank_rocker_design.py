@@ -70,7 +70,7 @@ def test_what_is_told_is_the_motion_of_the_students_own_lengths():
     r4 = variant.given["r4"]
     lengths = {"r1": round(1.2 * r4), "r2": round(0.3 * r4), "r3": round(1.1 * r4)}
     swing, arc, mu = simulated(**lengths, r4=r4)
-    feedback = variant.grade(lengths)["r2"].feedback
+    feedback = variant.grade(lengths)["r1"].feedback
     found = [float(number) for number in re.findall(r"= ([\d.]+)°", feedback)]
     assert found == pytest.approx([swing, arc, mu], abs=0.06)
 

@@ -62,6 +62,6 @@ def test_every_crank_shorter_than_half_the_stroke_is_judged_as_its_motion_is(see
 def test_what_is_told_is_the_motion_of_the_students_own_lengths():
     variant = EXERCISE.variant(1, "en")
     stroke, _, lean = simulated(40, 120, 30)
-    feedback = variant.grade({"r2": "4 cm", "r3": 120, "e": 30})["r3"].feedback
+    feedback = variant.grade({"r2": "4 cm", "r3": 120, "e": 30})["r2"].feedback
     assert f"{stroke:.4g} mm" in feedback
     assert f"{lean:.4g}" in feedback
