@@ -130,19 +130,35 @@ class Constants:
 def constants(path: Path) -> Constants:
     """What of a file needs no variant to be read; nothing where there is no file."""
     source = path.read_text("utf-8") if path.exists() else ""
-    rest = source.partition("\n## ")[2]
-    if not source or "{%" in rest or "{#" in rest:
-        return Constants({}, {})  # a block may hold whole sections, unless it ends before the first
+    if not source or not all(map(_stands_alone, source.split("\n## "))):
+        return Constants({}, {})  # a block that holds whole sections may repeat or leave out some of them
     sections = parse(source, path.name).sections
+    # A label is part of its section: a block may stand round it.
     return Constants(
-        {name: section.text for name, section in sections.items() if "{{" not in section.text},
+        {name: section.text for name, section in sections.items() if not _TAG.search(section.text)},
         {
             (name, case): label
             for name, section in sections.items()
             for case, label in section.labels.items()
-            if "{{" not in label
+            if not _TAG.search(label) and "{%" not in section.text
         },
     )
+
+
+_TAG = re.compile(r"\{[{%#]")
+
+
+def _stands_alone(section: str) -> bool:
+    """Whether the blocks that begin in a section end in it."""
+    import jinja2
+
+    if "{%" not in section and "{#" not in section:
+        return True
+    try:
+        jinja2.Environment().parse(section)
+    except jinja2.TemplateSyntaxError:
+        return False
+    return True
 
 
 _templates: dict[tuple, object] = {}

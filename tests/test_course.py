@@ -225,3 +225,15 @@ def use(course):
     variant = course["crank_pin"].variant(0)
     course.renderer.html(variant.handout())
     course.renderer.pdf(variant.answer_sheet())
+
+
+def test_what_every_variant_says_alike_is_known_without_a_variant(tmp_path):
+    from coursework.statement import constants
+
+    path = tmp_path / "x.en.md.j2"
+    alike = "# T\n\n{% for n in numbers %}{{ n }}{% endfor %}\n\n## a\nAlike.\n- I: one\n\n## b\n{{ r }} long.\n- I: {{ r }}\n"
+    path.write_text(alike + "\n## c\n{% if r %}Long.{% endif %}\n- I: other\n", "utf-8")
+    assert constants(path).texts == {"a": "Alike."}
+    assert constants(path).labels == {("a", "I"): "one"}
+    path.write_text(alike + "{% for n in numbers %}\n## c\nRepeated.\n{% endfor %}\n", "utf-8")
+    assert constants(path).texts == {}

@@ -79,7 +79,8 @@ class _Scheme:
         elements += self._pins()
         if self.driven:
             elements += self._arrow()
-        return Figure(*elements, scale=1.0)
+        # At its own size where there is room for it, smaller where there is not.
+        return Figure(*elements, paper_mm=Figure(*elements, scale=1.0).size_mm)
 
     def _letter(self, joint: Joint) -> str:
         return joint.at if self.letters else ""
