@@ -75,7 +75,10 @@ class Variant:
 
     def in_language(self, lang: str) -> Variant:
         """The same variant on a sheet in another language."""
-        return Variant(self.exercise, self.seed, self.given, lang, self.chosen)
+        variant = Variant(self.exercise, self.seed, self.given, lang, self.chosen)
+        if "key" in self.__dict__:
+            variant.__dict__["key"] = self.key  # it speaks no language
+        return variant
 
     def solution(self) -> dict[str, Any]:
         """The asked quantities in canonical units and full precision."""
