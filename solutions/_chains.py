@@ -5,37 +5,12 @@ import numpy as np
 from coursework.solids import joint_of
 from coursework.solution import mistake
 
-from ._solids import _chain, _chain_of, _each
+from ._counts import *
+from ._solids import _chain, _chain_of
 
 
 def _solids(joints):
     return _chain_of(joints)
-
-
-def n(_solids):
-    """Moving bodies."""
-    return _each(lambda one: one.n, _solids)
-
-
-def gamma(_solids):
-    return _each(lambda one: one.gamma, _solids)
-
-
-def Nc(_solids):
-    return _each(lambda one: one.Nc, _solids)
-
-
-def rc(_solids):
-    """The rank of the loop equations."""
-    return _each(lambda one: one.rc, _solids)
-
-
-def m(Nc, rc):
-    return Nc - rc
-
-
-def Ns(_solids):
-    return _each(lambda one: one.Ns, _solids)
 
 
 def rs(n, m):
@@ -44,10 +19,6 @@ def rs(n, m):
 
 def h(m, n, Ns):
     return m - 6 * n + Ns
-
-
-def i(m, h):
-    return m - h
 
 
 def m_internal(_solids, input_body, output_body):

@@ -1,7 +1,8 @@
-"""Mistakes on a drawn acceleration polygon: the pole p, the end a of a known acceleration, the end n (b') of the normal
+"""A drawn acceleration polygon, and mistakes on it: the pole p, the end a of a known acceleration, the end n (b') of the normal
 part of B about A, b where two lines cross.
 
-A solution that takes these has the hidden ``_lines``: of each of the two lines that find b, the point through which it goes
+A solution that takes these has three hidden ones: ``_images``, what is drawn, complex, from that of A to that of B; ``_start``,
+the point where the second line starts; and ``_lines``: of each of the two lines that find b, the point through which it goes
 and its direction, complex.
 """
 
@@ -9,28 +10,39 @@ import numpy as np
 
 from coursework.solution import mistake
 
-from ._drawn import _met, _off_both, _turned
+from ._drawn import _met, _off_both, _paper, _scale_for, _turned
+from ._drawn_start import *
 
 
-@mistake("a")
-def a_length(p, a):
-    return p + 1.35 * (a - p)
+def known_BA_n():
+    return "both"
 
 
-@mistake("a")
-def a_direction(p, a):
-    """Square to the crank."""
-    return _turned(p, a, 90)
+def known_BA_t():
+    return "direction"
 
 
-@mistake("a", share=0.5)
-def a_sense(p, a):
-    return 2 * p - a
+def ka(_images):
+    """A round scale at which the drawing fills its box."""
+    return _scale_for(*_images)
 
 
-@mistake("a")
-def a_vector(p, a):
-    return p + 0.6 * (_turned(p, a, 75) - p)
+def a(_images, ka):
+    return _paper(_images[0], ka)
+
+
+def n(_images, ka):
+    return _paper(_images[1], ka)
+
+
+def b(n, _start, _lines):
+    along, other = _lines
+    return _met(n, along, _start, other)
+
+
+def pa_b(_images, ka):
+    """Measured on the drawing."""
+    return abs(_images[-1]) / ka
 
 
 @mistake("n")

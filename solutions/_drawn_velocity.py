@@ -1,35 +1,54 @@
-"""Mistakes on a drawn velocity polygon: the pole p, the end a of a known velocity, b where two lines cross.
+"""A drawn velocity polygon, and mistakes on it: the pole p, the end a of a known velocity, b where two lines cross.
 
-A solution that takes these has the hidden ``_lines``: the directions on which b lies, complex: square to AB, through a, and that of
-the velocity of B, through p.
+A solution that takes these has two hidden bundles: ``_images``, the velocities of A and of B, complex; and ``_lines``, the
+directions on which b lies, complex: square to AB, through a, and that of the
+velocity of B, through p.
 """
 
 import numpy as np
 
 from coursework.solution import mistake
 
-from ._drawn import _met, _off_both, _turned
+from ._drawn import _met, _off_both, _paper, _scale_for
+from ._drawn_start import *
 
 
-@mistake("a")
-def a_length(p, a):
-    return p + 1.35 * (a - p)
+def known_A():
+    return "both"
 
 
-@mistake("a")
-def a_direction(p, a):
-    """Along the crank."""
-    return _turned(p, a, 90)
+def known_BA():
+    return "direction"
 
 
-@mistake("a", share=0.5)
-def a_sense(p, a):
-    return 2 * p - a
+def known_B():
+    return "direction"
 
 
-@mistake("a")
-def a_vector(p, a):
-    return p + 0.6 * (_turned(p, a, 75) - p)
+def kv(_images):
+    """A round scale at which the drawing fills its box."""
+    return _scale_for(*_images)
+
+
+def a(_images, kv):
+    return _paper(_images[0], kv)
+
+
+def b(p, a, _lines):
+    across, way = _lines
+    return _met(a, across, p, way)
+
+
+def ab(_images, kv):
+    """Measured on the drawing."""
+    v_A, v_B = _images
+    return abs(v_B - v_A) / kv
+
+
+def pv_b(_images, kv):
+    """Measured on the drawing."""
+    _, v_B = _images
+    return abs(v_B) / kv
 
 
 @mistake("b")

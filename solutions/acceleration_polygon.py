@@ -8,7 +8,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.solution import formula, judge, mistake
 
-from ._drawn import _Asked, _met, _paper, _Read, _scale_for, _turned, _verdicts
+from ._drawn import _Asked, _met, _paper, _Read, _turned, _verdicts
 from ._drawn_acceleration import *
 from ._polygons import _accelerations, _crank_a, _two_bars_a
 
@@ -39,38 +39,12 @@ def _lines(_bars):
     return 1j * coupler, 1j * rocker
 
 
-def known_BA_n():
-    return "both"
-
-
-def known_BA_t():
-    return "direction"
-
-
 def known_B_n():
     return "both"
 
 
 def known_B_t():
     return "direction"
-
-
-def ka(_images):
-    """A round scale at which the drawing fills its box."""
-    return _scale_for(*_images)
-
-
-def p(_images):
-    """Anywhere: here it is the origin."""
-    return _paper(0 * _images[0], 1.0)
-
-
-def a(_images, ka):
-    return _paper(_images[0], ka)
-
-
-def n(_images, ka):
-    return _paper(_images[1], ka)
 
 
 def m(_images, ka):
@@ -82,11 +56,6 @@ def _start(m):
     return m
 
 
-def b(n, _start, _lines):
-    along, other = _lines
-    return _met(n, along, _start, other)
-
-
 def bb_t(_images, ka):
     """Measured on the drawing."""
     _, of_n, _, of_B = _images
@@ -96,11 +65,6 @@ def bb_t(_images, ka):
 def _rocker_part(_images, ka):
     *_, of_m, of_B = _images
     return abs(of_B - of_m) / ka
-
-
-def pa_b(_images, ka):
-    """Measured on the drawing."""
-    return abs(_images[-1]) / ka
 
 
 def a_B(ka, pa_b):

@@ -8,7 +8,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import formula, judge, mistake
 
-from ._drawn import _Asked, _met, _paper, _Read, _scale_for, _verdicts
+from ._drawn import _Asked, _met, _Read, _verdicts
 from ._drawn_acceleration import *
 from ._polygons import _accelerations, _crank_a, _slider_a
 
@@ -39,34 +39,8 @@ def known_A():
     return "both"
 
 
-def known_BA_n():
-    return "both"
-
-
-def known_BA_t():
-    return "direction"
-
-
 def known_B():
     return "direction"
-
-
-def ka(_images):
-    """A round scale at which the drawing fills its box."""
-    return _scale_for(*_images)
-
-
-def p(_images):
-    """Anywhere: here it is the origin."""
-    return _paper(0 * _images[0], 1.0)
-
-
-def a(_images, ka):
-    return _paper(_images[0], ka)
-
-
-def n(_images, ka):
-    return _paper(_images[1], ka)
 
 
 def _start(p):
@@ -74,20 +48,10 @@ def _start(p):
     return p
 
 
-def b(n, _start, _lines):
-    along, other = _lines
-    return _met(n, along, _start, other)
-
-
 def bb_t(_images, ka):
     """Measured on the drawing."""
     _, of_n, of_B = _images
     return abs(of_B - of_n) / ka
-
-
-def pa_b(_images, ka):
-    """Measured on the drawing."""
-    return abs(_images[-1]) / ka
 
 
 @formula(r"\pm <ka> \times <pa_b>")

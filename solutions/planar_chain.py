@@ -6,6 +6,7 @@ from coursework.errors import WrongValue
 from coursework.solids import aligned, each_distinct, joints_of, planar_kind
 from coursework.solution import mistake
 
+from ._counts import *
 from ._solids import _chain_of, _each, _planar_chain_of
 
 STRUCTURES = ("joints",)
@@ -37,7 +38,7 @@ def joints(
     )  # fmt: skip
 
 
-def _plane(joints):
+def _solids(joints):
     return _planar_chain_of(joints)
 
 
@@ -55,46 +56,20 @@ def _kinds(chains, number):
     return _each(lambda one: planar_kind(_joint(one, number)), chains)
 
 
-def planar_1(_plane):
-    return _kinds(_plane, 1)
+def planar_1(_solids):
+    return _kinds(_solids, 1)
 
 
-def planar_2(_plane):
-    return _kinds(_plane, 2)
+def planar_2(_solids):
+    return _kinds(_solids, 2)
 
 
-def planar_3(_plane):
-    return _kinds(_plane, 3)
+def planar_3(_solids):
+    return _kinds(_solids, 3)
 
 
-def planar_4(_plane):
-    return _kinds(_plane, 4)
-
-
-def n(_plane):
-    """Moving bodies."""
-    return _each(lambda one: one.n, _plane)
-
-
-def gamma(_plane):
-    return _each(lambda one: one.gamma, _plane)
-
-
-def Nc(_plane):
-    return _each(lambda one: one.Nc, _plane)
-
-
-def rc(_plane):
-    """The rank of the three equations of each loop."""
-    return _each(lambda one: one.rc, _plane)
-
-
-def m(Nc, rc):
-    return Nc - rc
-
-
-def Ns(_plane):
-    return _each(lambda one: one.Ns, _plane)
+def planar_4(_solids):
+    return _kinds(_solids, 4)
 
 
 def rs(n, m):
@@ -103,10 +78,6 @@ def rs(n, m):
 
 def h(Ns, rs):
     return Ns - rs
-
-
-def i(m, h):
-    return m - h
 
 
 def Nc_space(_space):
@@ -149,20 +120,20 @@ def _is_along_z(joint):
 
 
 @mistake("planar_1", "planar_2", "planar_3", "planar_4")
-def contact_of_normal_z_as_slide(planar_1, planar_2, planar_3, planar_4, _plane):
-    return _misread((planar_1, planar_2, planar_3, planar_4), _plane, "planar", _is_along_z, "prismatic")
+def contact_of_normal_z_as_slide(planar_1, planar_2, planar_3, planar_4, _solids):
+    return _misread((planar_1, planar_2, planar_3, planar_4), _solids, "planar", _is_along_z, "prismatic")
 
 
 @mistake("planar_1", "planar_2", "planar_3", "planar_4")
-def ball_in_groove_as_pivot(planar_1, planar_2, planar_3, planar_4, _plane):
+def ball_in_groove_as_pivot(planar_1, planar_2, planar_3, planar_4, _solids):
     kinds = planar_1, planar_2, planar_3, planar_4
-    return _misread(kinds, _plane, "annular", lambda joint: not _is_along_z(joint), "revolute")
+    return _misread(kinds, _solids, "annular", lambda joint: not _is_along_z(joint), "revolute")
 
 
 @mistake("planar_1", "planar_2", "planar_3", "planar_4")
-def cylinder_always_pivot(planar_1, planar_2, planar_3, planar_4, _plane):
+def cylinder_always_pivot(planar_1, planar_2, planar_3, planar_4, _solids):
     kinds = planar_1, planar_2, planar_3, planar_4
-    return _misread(kinds, _plane, "cylindrical", lambda joint: not _is_along_z(joint), "revolute")
+    return _misread(kinds, _solids, "cylindrical", lambda joint: not _is_along_z(joint), "revolute")
 
 
 @mistake("gamma")

@@ -7,7 +7,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import formula, judge, mistake
 
-from ._drawn import _Asked, _met, _paper, _Read, _scale_for, _verdicts
+from ._drawn import _Asked, _Read, _verdicts
 from ._drawn_velocity import *
 from ._polygons import _crank_v, _slider_v, _velocities
 
@@ -29,49 +29,6 @@ def _images(_bars, omega2):
 def _lines(_bars):
     _, rod, _ = _bars
     return 1j * rod, 1 + 0j
-
-
-def known_A():
-    return "both"
-
-
-def known_BA():
-    return "direction"
-
-
-def known_B():
-    return "direction"
-
-
-def kv(_images):
-    """A round scale at which the drawing fills its box."""
-    return _scale_for(*_images)
-
-
-def p(_images):
-    """Anywhere: here it is the origin."""
-    return _paper(0 * _images[0], 1.0)
-
-
-def a(_images, kv):
-    return _paper(_images[0], kv)
-
-
-def b(p, a, _lines):
-    across, way = _lines
-    return _met(a, across, p, way)
-
-
-def ab(_images, kv):
-    """Measured on the drawing."""
-    v_A, v_B = _images
-    return abs(v_B - v_A) / kv
-
-
-def pv_b(_images, kv):
-    """Measured on the drawing."""
-    _, v_B = _images
-    return abs(v_B) / kv
 
 
 @formula(r"\pm <kv> \times <pv_b>")

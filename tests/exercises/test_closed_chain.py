@@ -1,60 +1,25 @@
 """Closed chains: the answers against exact ranks of whole numbers, and lists of joints that a caller gives."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
+from exact_joints import exact_rank, motions
 
 import coursework
 from coursework.errors import CannotTell, WrongValue
 
 EXERCISE = coursework.open_course()["closed_chain"]
-AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
-
-#: Free rotations and translations: along the direction (d), the one after it (e), the one after that (f).
-FREE = {
-    "revolute": ("d", ""),
-    "prismatic": ("", "d"),
-    "cylindrical": ("d", "d"),
-    "spherical": ("def", ""),
-    "planar": ("d", "ef"),
-    "annular": ("def", "d"),
-}
 
 
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def exact_rank(rows):
-    rows, rank = [[Fraction(x) for x in row] for row in rows], 0
-    for column in range(6):
-        pivot = next((r for r in range(rank, len(rows)) if rows[r][column]), None)
-        if pivot is None:
-            continue
-        rows[rank], rows[pivot] = rows[pivot], rows[rank]
-        for r in range(rank + 1, len(rows)):
-            factor = rows[r][column] / rows[rank][column]
-            rows[r] = [a - factor * b for a, b in zip(rows[r], rows[rank], strict=True)]
-        rank += 1
-    return rank
-
-
-def motions(given, number):
-    """Rotation and velocity at the origin of what a joint leaves free, in whole numbers."""
-    first = "xyz".index(given[f"direction_{number}"])
-    letters = {k: AXES[a] for k, a in zip("def", "xyzxy"[first : first + 3], strict=True)}
+def motions_of(given, number):
+    """What a joint of the chain leaves free, in whole numbers."""
     point = [int(given[f"{a}{number}"]) for a in "xyz"] if number > 1 else (0, 0, 0)
-    turns, slides = FREE[given[f"joint_{number}"]]
-    return [[*letters[k], *cross(point, letters[k])] for k in turns] + [
-        [0, 0, 0, *letters[k]] for k in slides
-    ]
+    return motions(given[f"joint_{number}"], given[f"direction_{number}"], point)
 
 
 def test_ranks_are_those_of_whole_numbers():
     for variant in EXERCISE.variants(range(120)):
         answers = variant.solution()
-        parts = [motions(variant.given, k) for k in (1, 2, 3, 4)]
+        parts = [motions_of(variant.given, k) for k in (1, 2, 3, 4)]
         rows = [row for part in parts for row in part]
         rank = exact_rank(rows)
         assert (answers["gamma"], answers["Nc"], answers["rc"]) == (1, len(rows), rank)

@@ -1,57 +1,14 @@
 """Joints in parallel: the answers against exact ranks, and lists of joints that a caller gives."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
+from exact_joints import actions, exact_rank
 
 import coursework
 from coursework.errors import CannotTell, UnknownName, WrongValue
 from coursework.solids import FREEDOMS
 
 EXERCISE = coursework.open_course()["parallel_joints"]
-AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
-
-#: Blocked rotations and translations: along the direction (d), the one after it (e), the one after that (f).
-BLOCKED = {
-    "revolute": ("ef", "def"),
-    "prismatic": ("def", "ef"),
-    "cylindrical": ("ef", "ef"),
-    "spherical_pin": ("d", "def"),
-    "spherical": ("", "def"),
-    "planar": ("ef", "d"),
-    "annular": ("", "ef"),
-    "line_contact": ("f", "e"),
-    "point_contact": ("", "d"),
-}
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def exact_rank(rows):
-    rows, rank = [[Fraction(x) for x in row] for row in rows], 0
-    for column in range(6):
-        pivot = next((r for r in range(rank, len(rows)) if rows[r][column]), None)
-        if pivot is None:
-            continue
-        rows[rank], rows[pivot] = rows[pivot], rows[rank]
-        for r in range(rank + 1, len(rows)):
-            factor = rows[r][column] / rows[rank][column]
-            rows[r] = [a - factor * b for a, b in zip(rows[r], rows[rank], strict=True)]
-        rank += 1
-    return rank
-
-
-def actions(name, direction, point):
-    """Moment at the origin and force of what a joint transmits, in whole numbers."""
-    first = "xyz".index(direction)
-    letters = {k: AXES[a] for k, a in zip("def", "xyzxy"[first : first + 3], strict=True)}
-    moments, forces = BLOCKED[name]
-    return [[*letters[k], 0, 0, 0] for k in moments] + [
-        [*cross(point, letters[k]), *letters[k]] for k in forces
-    ]
 
 
 def test_ranks_are_those_of_whole_numbers():

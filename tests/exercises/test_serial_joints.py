@@ -1,56 +1,13 @@
 """Joints in series: the answers against exact ranks, and lists of joints that a caller gives."""
 
-from fractions import Fraction
-
 import numpy as np
 import pytest
+from exact_joints import exact_rank, motions
 
 import coursework
 from coursework.solids import FREEDOMS
 
 EXERCISE = coursework.open_course()["serial_joints"]
-AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
-
-#: Free rotations and translations: along the direction (d), the one after it (e), the one after that (f).
-FREE = {
-    "revolute": ("d", ""),
-    "prismatic": ("", "d"),
-    "cylindrical": ("d", "d"),
-    "spherical_pin": ("ef", ""),
-    "spherical": ("def", ""),
-    "planar": ("d", "ef"),
-    "annular": ("def", "d"),
-    "line_contact": ("de", "df"),
-    "point_contact": ("def", "ef"),
-}
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def exact_rank(rows):
-    rows, rank = [[Fraction(x) for x in row] for row in rows], 0
-    for column in range(6):
-        pivot = next((r for r in range(rank, len(rows)) if rows[r][column]), None)
-        if pivot is None:
-            continue
-        rows[rank], rows[pivot] = rows[pivot], rows[rank]
-        for r in range(rank + 1, len(rows)):
-            factor = rows[r][column] / rows[rank][column]
-            rows[r] = [a - factor * b for a, b in zip(rows[r], rows[rank], strict=True)]
-        rank += 1
-    return rank
-
-
-def motions(name, direction, point):
-    """Rotation and velocity at the origin of what a joint leaves free, in whole numbers."""
-    first = "xyz".index(direction)
-    letters = {k: AXES[a] for k, a in zip("def", "xyzxy"[first : first + 3], strict=True)}
-    turns, slides = FREE[name]
-    return [[*letters[k], *cross(point, letters[k])] for k in turns] + [
-        [0, 0, 0, *letters[k]] for k in slides
-    ]
 
 
 def test_ranks_are_those_of_whole_numbers():

@@ -1,0 +1,31 @@
+"""What every drawn polygon begins with: the pole p, and the end a of the first vector, which is known whole."""
+
+from coursework.solution import mistake
+
+from ._drawn import _paper, _turned
+
+
+def p(_images):
+    """Anywhere: here it is the origin."""
+    return _paper(0 * _images[0], 1.0)
+
+
+@mistake("a")
+def a_length(p, a):
+    return p + 1.35 * (a - p)
+
+
+@mistake("a")
+def a_direction(p, a):
+    """Turned by a quarter of a turn."""
+    return _turned(p, a, 90)
+
+
+@mistake("a", share=0.5)
+def a_sense(p, a):
+    return 2 * p - a
+
+
+@mistake("a")
+def a_vector(p, a):
+    return p + 0.6 * (_turned(p, a, 75) - p)

@@ -1,0 +1,67 @@
+"""Joints along the axes of space in whole numbers: what they leave free, what they transmit, exact ranks."""
+
+from fractions import Fraction
+
+AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
+
+#: Free rotations and translations: along the direction (d), the one after it (e), the one after that (f).
+FREE = {
+    "revolute": ("d", ""),
+    "prismatic": ("", "d"),
+    "cylindrical": ("d", "d"),
+    "spherical_pin": ("ef", ""),
+    "spherical": ("def", ""),
+    "planar": ("d", "ef"),
+    "annular": ("def", "d"),
+    "line_contact": ("de", "df"),
+    "point_contact": ("def", "ef"),
+}
+
+#: Blocked rotations and translations: along the direction (d), the one after it (e), the one after that (f).
+BLOCKED = {
+    "revolute": ("ef", "def"),
+    "prismatic": ("def", "ef"),
+    "cylindrical": ("ef", "ef"),
+    "spherical_pin": ("d", "def"),
+    "spherical": ("", "def"),
+    "planar": ("ef", "d"),
+    "annular": ("", "ef"),
+    "line_contact": ("f", "e"),
+    "point_contact": ("", "d"),
+}
+
+
+def cross(a, b):
+    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+
+
+def exact_rank(rows):
+    rows, rank = [[Fraction(x) for x in row] for row in rows], 0
+    for column in range(6):
+        pivot = next((r for r in range(rank, len(rows)) if rows[r][column]), None)
+        if pivot is None:
+            continue
+        rows[rank], rows[pivot] = rows[pivot], rows[rank]
+        for r in range(rank + 1, len(rows)):
+            factor = rows[r][column] / rows[rank][column]
+            rows[r] = [a - factor * b for a, b in zip(rows[r], rows[rank], strict=True)]
+        rank += 1
+    return rank
+
+
+def letters(direction):
+    """The axes by letter: d along a direction, e the one after it, f the one after that."""
+    first = "xyz".index(direction)
+    return {k: AXES[a] for k, a in zip("def", "xyzxy"[first : first + 3], strict=True)}
+
+
+def motions(name, direction, point):
+    """Rotation and velocity at the origin of what a joint leaves free."""
+    axes, (turns, slides) = letters(direction), FREE[name]
+    return [[*axes[k], *cross(point, axes[k])] for k in turns] + [[0, 0, 0, *axes[k]] for k in slides]
+
+
+def actions(name, direction, point):
+    """Moment at the origin and force of what a joint transmits."""
+    axes, (moments, forces) = letters(direction), BLOCKED[name]
+    return [[*axes[k], 0, 0, 0] for k in moments] + [[*cross(point, axes[k]), *axes[k]] for k in forces]
