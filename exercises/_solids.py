@@ -4,7 +4,7 @@ from functools import cache
 
 import numpy as np
 
-from coursework.model import GivenSpec, chosen, drawn
+from coursework.model import GivenSpec, Part, chosen, drawn
 from coursework.solids import FREEDOMS, Parallel, Series, aligned, in_parallel, in_series, joint_of
 
 COMBINE = {"parallel": in_parallel, "series": in_series}
@@ -136,3 +136,26 @@ def _planar_freedoms() -> np.ndarray:
     """What each joint of :func:`_motions` leaves free in the plane xy."""
     products = _motions()[2][:, _IN_PLANE, _IN_PLANE]
     return (np.linalg.eigvalsh(products) > 1e-6).sum(axis=-1)
+
+
+def two_joints():
+    """Given: the kinds and directions of two joints, the first at the origin, and the place of the second."""
+    return {
+        "joint_1": joint_kind(),
+        "direction_1": direction(),
+        "joint_2": joint_kind(),
+        "direction_2": direction(),
+        "x2": coordinate(),
+        "y2": coordinate(),
+        "z2": coordinate(),
+    }
+
+
+def axis_parts(has_direction, has_line):
+    """The questions about the axis of an equivalent joint, each asked where the joint has one."""
+    return (
+        Part("axis_dir", kind="direction", points=1, when=has_direction),
+        Part(
+            "axis_point", unit="mm", kind="point_on_line", along="axis_dir", atol=1.0, points=1, when=has_line
+        ),
+    )

@@ -3,7 +3,7 @@
 from coursework.model import Exercise, Part
 from coursework.solids import EQUIVALENTS
 
-from ._solids import WITH_DIRECTION, WITH_LINE, combined, coordinate, direction, joint_kind, table
+from ._solids import WITH_DIRECTION, WITH_LINE, axis_parts, combined, table, two_joints
 
 
 def _name(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
@@ -29,15 +29,7 @@ def tells(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
 
 
 EXERCISE = Exercise(
-    given={
-        "joint_1": joint_kind(),
-        "direction_1": direction(),
-        "joint_2": joint_kind(),
-        "direction_2": direction(),
-        "x2": coordinate(),
-        "y2": coordinate(),
-        "z2": coordinate(),
-    },
+    given=two_joints(),
     parts=(
         Part("Nc", kind="integer", points=1),
         Part("m", kind="integer", points=1),
@@ -45,10 +37,7 @@ EXERCISE = Exercise(
         Part("m_internal", kind="integer", points=1),
         Part("h", kind="integer", points=1),
         Part("equivalent", kind="choice", choices=EQUIVALENTS, points=2),
-        Part("axis_dir", kind="direction", points=1, when=has_direction),
-        Part(
-            "axis_point", unit="mm", kind="point_on_line", along="axis_dir", atol=1.0, points=1, when=has_line
-        ),
+        *axis_parts(has_direction, has_line),
     ),
     tells=tells,
     symbols={
