@@ -114,13 +114,54 @@ def _support(half: complex, way: complex) -> float:
 Segment = tuple[complex, complex, float]
 
 
+class _Bounded(NamedTuple):
+    """A segment with the least box round it, its middle and its half, all in mm: labels are tried by the thousand."""
+
+    left: float
+    low: float
+    right: float
+    high: float
+    across: float
+    up: float
+    half_across: float
+    half_up: float
+    half_width: float
+
+    def meets(self, across: float, up: float, wide: float, tall: float) -> bool:
+        """Whether a box, told by its middle and its half-sides, meets the segment: no axis separates them."""
+        return (
+            self.left <= across + wide
+            and self.right >= across - wide
+            and self.low <= up + tall
+            and self.high >= up - tall
+            and self.crosses(across, up, wide, tall)
+        )
+
+    def crosses(self, across: float, up: float, wide: float, tall: float) -> bool:
+        """The same for a box that meets the box round the segment."""
+        turned = (self.across - across) * self.half_up - (self.up - up) * self.half_across
+        reach = (wide + self.half_width) * abs(self.half_up) + (tall + self.half_width) * abs(
+            self.half_across
+        )
+        return abs(turned) <= reach
+
+
+def _bounded(segment: Segment) -> _Bounded:
+    a, b, half = segment
+    left, right = (a.real, b.real) if a.real < b.real else (b.real, a.real)
+    low, high = (a.imag, b.imag) if a.imag < b.imag else (b.imag, a.imag)
+    middle, d = (a + b) / 2, (b - a) / 2
+    sides = (left - half, low - half, right + half, high + half)
+    return _Bounded(*sides, middle.real, middle.imag, d.real, d.imag, half)
+
+
 class Obstacles:
     """The lines already drawn: segments with half their width, and areas that labels avoid."""
 
     def __init__(self, ink: Sequence[Ink]) -> None:
-        self._bounded: list[tuple[float, float, float, float, Segment]] = []
-        self._cells: dict[tuple[int, int], list[tuple[float, float, float, float, Segment]]] = {}
-        self._columns: dict[int, list[tuple[float, float, float, float, Segment]]] = {}
+        self._lines: list[_Bounded] = []
+        self._cells: dict[tuple[int, int], list[_Bounded]] = {}
+        self._columns: dict[int, list[_Bounded]] = {}
         segments = [(a, b, item.width / 2) for item in ink for a, b in pairwise(item.outline())]
         self.add(segments)
         self.areas = [item.outline() for item in ink if item.solid]
@@ -139,67 +180,60 @@ class Obstacles:
     def add(self, segments: Iterable[Segment]) -> None:
         self._cells.clear()
         self._columns.clear()
-        for a, b, half in segments:
-            left, right = (a.real, b.real) if a.real < b.real else (b.real, a.real)
-            low, high = (a.imag, b.imag) if a.imag < b.imag else (b.imag, a.imag)
-            self._bounded.append((left - half, low - half, right + half, high + half, (a, b, half)))
+        self._lines += map(_bounded, segments)
 
-    def _near(self, column: int, row: int) -> list[tuple[float, float, float, float, Segment]]:
+    def _near(self, column: int, row: int) -> list[_Bounded]:
         """The segments that come into a square of the paper."""
-        if (column, row) not in self._cells:
-            if column not in self._columns:
-                left, right = column * _CELL, (column + 1) * _CELL
-                self._columns[column] = [it for it in self._bounded if it[0] <= right and it[2] >= left]
-            low, high, half = row * _CELL, (row + 1) * _CELL, _CELL / 2
-            middle = complex(column * _CELL + half, low + half)
-            self._cells[column, row] = [
-                it
-                for it in self._columns[column]
-                if it[1] <= high and it[3] >= low and _crosses(middle, half, half, it[4])
-            ]
-        return self._cells[column, row]
+        if column not in self._columns:
+            left, right = column * _CELL, (column + 1) * _CELL
+            self._columns[column] = [it for it in self._lines if it.left <= right and it.right >= left]
+        low, high, half = row * _CELL, (row + 1) * _CELL, _CELL / 2
+        across, up = column * _CELL + half, low + half
+        return [
+            it
+            for it in self._columns[column]
+            if it.low <= high and it.high >= low and it.crosses(across, up, half, half)
+        ]
 
     def white(self, center: complex, half: complex, inside: bool = False) -> float:
         """The white that a box has: the one that labels prefer, the least there may be, or 0 for too little."""
-        for across, up, wide, tall in self._boxes:
-            if abs(center.real - across) < half.real + wide and abs(center.imag - up) < half.imag + tall:
+        cx, cy, wide, tall = center.real, center.imag, half.real, half.imag
+        for across, up, width, height in self._boxes:
+            if abs(cx - across) < wide + width and abs(cy - up) < tall + height:
                 return 0.0
-        found, x, y = _AIRY, half.real + _AIRY, half.imag + _AIRY
-        left, right, bottom, top = center.real - x, center.real + x, center.imag - y, center.imag + y
+        found, x, y = _AIRY, wide + _AIRY, tall + _AIRY
+        left, right, low, high = cx - x, cx + x, cy - y, cy + y
+        rows = range(math.floor(low / _CELL), math.floor(high / _CELL) + 1)
         for column in range(math.floor(left / _CELL), math.floor(right / _CELL) + 1):
-            for row in range(math.floor(bottom / _CELL), math.floor(top / _CELL) + 1):
-                for x0, y0, x1, y1, segment in self._near(column, row):
-                    near = x0 <= right and x1 >= left and y0 <= top and y1 >= bottom
-                    if near and _crosses(center, x, y, segment):
-                        if found == _CLEAR or _crosses(
-                            center, half.real + _CLEAR, half.imag + _CLEAR, segment
-                        ):
-                            return 0.0
-                        found, x, y = _CLEAR, half.real + _CLEAR, half.imag + _CLEAR
+            for row in rows:
+                near = self._cells.get((column, row))
+                if near is None:
+                    near = self._cells[column, row] = self._near(column, row)
+                for it in near:
+                    if it[0] > right or it[2] < left or it[1] > high or it[3] < low:
+                        continue
+                    if not it.crosses(cx, cy, x, y):
+                        continue
+                    if found == _CLEAR or it.meets(cx, cy, wide + _CLEAR, tall + _CLEAR):
+                        return 0.0
+                    found, x, y = _CLEAR, wide + _CLEAR, tall + _CLEAR
+                    left, right, low, high = cx - x, cx + x, cy - y, cy + y
         return 0.0 if not inside and any(within(center, area) for area in self.areas) else found
 
     @property
     def right(self) -> float:
         """Abscissa of the rightmost line."""
-        return max((bounds[2] for bounds in self._bounded), default=0.0)
+        return max((it.right for it in self._lines), default=0.0)
 
     def hides(self, anchor: complex, center: complex) -> bool:
         """Whether a bar passes between an anchor and its label."""
         return any(_meet(anchor, center, a, b) for a, b in self.bars if distance(anchor, a, b) > 1.3)
 
     def leader_free(self, a: complex, b: complex) -> bool:
-        thin = (a, b, 0.3)
-        return not any(_crosses(it.center, it.width / 2, it.height / 2, thin) for it in self.labels)
-
-
-def _crosses(center: complex, hx: float, hy: float, segment: Segment) -> bool:
-    """Separating axes of a box, given by its half-sides, and a segment with some half-width."""
-    a, b, width = segment
-    middle, d = (a + b) / 2 - center, (b - a) / 2
-    hx, hy = hx + width, hy + width
-    if abs(middle.real) > hx + abs(d.real) or abs(middle.imag) > hy + abs(d.imag):
-        return False
-    return abs(middle.real * d.imag - middle.imag * d.real) <= hx * abs(d.imag) + hy * abs(d.real)
+        thin = _bounded((a, b, 0.3))
+        return not any(
+            thin.meets(it.center.real, it.center.imag, it.width / 2, it.height / 2) for it in self.labels
+        )
 
 
 def within(z: complex, area: Sequence[complex]) -> bool:

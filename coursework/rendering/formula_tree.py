@@ -13,6 +13,7 @@ from functools import lru_cache
 from typing import TypeAlias
 
 from coursework.errors import BadStatement, nearest
+from coursework.rendering.number_holes import FIRST_HOLE, LAST_HOLE
 
 # Each symbol is its Unicode character and what it is, for spacing.
 LETTERS = {
@@ -200,7 +201,7 @@ def _upright(node: Node) -> Node:
 
 
 _TOKEN = re.compile(r"\\(?:[A-Za-z]+|.)|\s+|.", re.DOTALL)
-_NUM = re.compile(r"([+-]?)(\d+(?:\.\d+)?|\.\d+)(?:[eE]([+-]?\d+))?")
+_NUM = re.compile(rf"([+-]?)(\d+(?:\.\d+)?|\.\d+|[{FIRST_HOLE}-{LAST_HOLE}])(?:[eE]([+-]?\d+))?")
 
 
 def tokens(tex: str) -> tuple[str, ...]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
-from functools import lru_cache
 from html import escape
 
 from coursework.language import MINUS, NARROW_SPACE, localise, words
@@ -31,6 +30,7 @@ from coursework.rendering.formula_tree import (
     parse,
     tokens,
 )
+from coursework.rendering.number_holes import once_for_all_numbers
 
 SUPERSCRIPTS = str.maketrans("0123456789-−+()n", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻⁺⁽⁾ⁿ")
 SUBSCRIPTS = str.maketrans("0123456789-−+()", "₀₁₂₃₄₅₆₇₈₉₋₋₊₍₎")
@@ -76,7 +76,7 @@ _TYPST_ACCENTS = {
 _TYPST_GRIDS = {"pmatrix": '"("', "bmatrix": '"["', "vmatrix": '"|"', "matrix": "#none"}
 
 
-@lru_cache(maxsize=4096)
+@once_for_all_numbers
 def to_typst(tex: str, lang: str) -> str:
     """The formula as Typst math, without the dollars."""
     return _typst(parse(tex), lang)
@@ -182,15 +182,19 @@ def _latex_number(text: str, lang: str) -> str:
 # -- MathML -----------------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=4096)
 def to_mathml(tex: str, lang: str, display: bool = False) -> str:
     """The formula as a ``<math>`` element that needs no script and no font of its own."""
     layout = "block" if display else "inline"
     label = escape(spoken(tex, lang))
-    body = _mathml(parse(tex), lang)
+    body = _mathml_body(tex, lang)
     # A displayed formula may be wider than a telephone: it scrolls, so a keyboard must reach it.
     reached = ' tabindex="0"' if display else ""
     return f'<math display="{layout}" alttext="{label}"{reached}>{body}</math>'
+
+
+@once_for_all_numbers
+def _mathml_body(tex: str, lang: str) -> str:
+    return _mathml(parse(tex), lang)
 
 
 def _tag(name: str, *parts: str, **attributes: str) -> str:
@@ -367,7 +371,7 @@ _MATHML_ACCENTS = {
 # -- words and lines --------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=4096)
+@once_for_all_numbers
 def spoken(tex: str, lang: str) -> str:
     """The formula in words, for those who hear the sheet: ``θ_4`` is ``theta 4``."""
     said = _spoken(parse(tex), lang, words(lang)["formula"])
@@ -450,7 +454,7 @@ def _spoken_script(node: Script, of: Callable[[Node], str], phrase: Callable[...
     return phrase("power", said, of(node.above))
 
 
-@lru_cache(maxsize=4096)
+@once_for_all_numbers
 def to_line(tex: str, lang: str) -> str:
     """The formula as one line of plain text, for a terminal: ``θ₄ = arctan(y/x)``."""
     return re.sub(r"  +", " ", _line(parse(tex), lang)).strip()
