@@ -1,7 +1,5 @@
 """Joints along the axes of space in whole numbers: what they leave free, what they transmit, exact ranks."""
 
-from fractions import Fraction
-
 AXES = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
 
 #: Free rotations and translations: along the direction (d), the one after it (e), the one after that (f).
@@ -36,17 +34,21 @@ def cross(a, b):
 
 
 def exact_rank(rows):
-    rows, rank = [[Fraction(x) for x in row] for row in rows], 0
-    for column in range(6):
-        pivot = next((r for r in range(rank, len(rows)) if rows[r][column]), None)
-        if pivot is None:
+    """Of rows of whole numbers, by elimination without fractions (each division is exact)."""
+    rows, found, before = [list(row) for row in rows], 0, 1
+    for column in range(len(rows[0]) if rows else 0):
+        place = next((r for r in range(found, len(rows)) if rows[r][column]), None)
+        if place is None:
             continue
-        rows[rank], rows[pivot] = rows[pivot], rows[rank]
-        for r in range(rank + 1, len(rows)):
-            factor = rows[r][column] / rows[rank][column]
-            rows[r] = [a - factor * b for a, b in zip(rows[r], rows[rank], strict=True)]
-        rank += 1
-    return rank
+        rows[found], rows[place] = rows[place], rows[found]
+        leading = rows[found]
+        pivot = leading[column]
+        for r in range(found + 1, len(rows)):
+            factor = rows[r][column]
+            rows[r] = [(pivot * x - factor * y) // before for x, y in zip(rows[r], leading, strict=True)]
+        before = pivot
+        found += 1
+    return found
 
 
 def letters(direction):

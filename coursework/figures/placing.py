@@ -139,11 +139,9 @@ class _Bounded(NamedTuple):
 
     def crosses(self, across: float, up: float, wide: float, tall: float) -> bool:
         """The same for a box that meets the box round the segment."""
+        wide, tall = wide + self.half_width, tall + self.half_width
         turned = (self.across - across) * self.half_up - (self.up - up) * self.half_across
-        reach = (wide + self.half_width) * abs(self.half_up) + (tall + self.half_width) * abs(
-            self.half_across
-        )
-        return abs(turned) <= reach
+        return abs(turned) <= wide * abs(self.half_up) + tall * abs(self.half_across)
 
 
 def _bounded(segment: Segment) -> _Bounded:
@@ -210,6 +208,7 @@ class Obstacles:
                 if near is None:
                     near = self._cells[column, row] = self._near(column, row)
                 for it in near:
+                    # As ``meets`` does, without a call for each line: most are off.
                     if it[0] > right or it[2] < left or it[1] > high or it[3] < low:
                         continue
                     if not it.crosses(cx, cy, x, y):

@@ -7,7 +7,7 @@ numbers is remembered, and a student's numbers are put in.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import lru_cache, wraps
 
 from coursework.errors import BadStatement
@@ -63,9 +63,4 @@ def once_for_all_numbers(turn: Turn) -> Turn:
 
 
 def _filled(cut: tuple[str, ...], numbers: list[str]) -> str:
-    return "".join(_fillings(cut, numbers))
-
-
-def _fillings(cut: tuple[str, ...], numbers: list[str]) -> Iterator[str]:
-    for at, piece in enumerate(cut):
-        yield numbers[ord(piece) - ord(FIRST_HOLE)] if at % 2 else piece
+    return "".join(numbers[ord(piece) - ord(FIRST_HOLE)] if at % 2 else piece for at, piece in enumerate(cut))
