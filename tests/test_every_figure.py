@@ -2,6 +2,7 @@
 
 import math
 import re
+import xml.etree.ElementTree as ET
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from coursework.sheets import solution_figure
 COURSE = coursework.open_course()
 WITH_FIGURE = [n for n in COURSE.names if COURSE[n].spec.figure is not None]
 VARIANTS = 200
+SVG = "{http://www.w3.org/2000/svg}"
 
 _RING = np.exp(2j * np.pi * np.arange(61) / 60)
 _THING = re.compile(r'<path d="([^"]*)"|<circle cx="([^"]*)" cy="([^"]*)" r="([^"]*)"')
@@ -84,6 +86,19 @@ def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(na
         # What fits its room is printed at its own size, so its letters are as large as they are drawn.
         assert all(np.less_equal(figure.size_mm, room).all() for figure in figures)
     assert not {seed: bad for seed, bad in found.items() if bad}
+
+
+@pytest.mark.parametrize("name", WITH_FIGURE)
+def test_letters_set_over_a_drawing_are_those_that_it_would_hold(name):
+    figure = COURSE[name].variant(0).figure
+    held = ET.fromstring(figure.svg()).findall(f".//{SVG}text")
+    assert len(held) == len(figure.letters()) > 0
+    for element, (x, y, runs) in zip(held, figure.letters(), strict=True):
+        assert "".join(element.itertext()) == "".join(run.text for run in runs)
+        assert (float(element.get("x")), float(element.get("y"))) == pytest.approx((x, y), abs=0.0051)
+    bare = ET.fromstring(figure.bare_svg())
+    assert not bare.findall(f".//{SVG}text")
+    assert strokes(figure.bare_svg())[0] == pytest.approx(strokes(figure.svg())[0])
 
 
 def test_the_measure_sees_a_label_on_a_line_and_on_another_label():

@@ -12,7 +12,16 @@ from coursework.figures.elements import Element
 from coursework.figures.ink import MARKS, THIN, Ink, Path
 from coursework.figures.paper import Paper
 from coursework.figures.placing import Label, place
-from coursework.figures.writing import pieces, written
+from coursework.figures.writing import (
+    Lettering,
+    Letters,
+    as_outlines,
+    as_text,
+    left_out,
+    letters,
+    pieces,
+    written,
+)
 
 _PAPER_MM = (110.0, 75.0)  #: what a drawing takes at most unless told
 _MARGIN = 1.0  #: white round the drawing, mm
@@ -46,26 +55,37 @@ class _Layout:
         size = self.high - self.low
         return round(size.real, 1), round(size.imag, 1)
 
+    @property
+    def corner(self) -> complex:
+        return complex(self.low.real, self.high.imag)
+
     @cached_property
-    def _written(self) -> dict[bool, tuple[list[tuple[int, str]], list[tuple[int, str]]]]:
+    def _written(self) -> dict[Lettering, tuple[list[tuple[int, str]], list[tuple[int, str]]]]:
         return {}
 
-    def svg(self, count: int | None, outlined: bool) -> str:
+    def svg(self, count: int | None, lettering: Lettering) -> str:
         """What the first elements drew, in the frame of them all."""
-        if outlined not in self._written:
+        if lettering not in self._written:
             # Every piece is written once, however many times a part of the drawing is shown.
-            corner = complex(self.low.real, self.high.imag)
-            lines, texts = pieces(self.ink, self.labels, corner, outlined=outlined)
+            lines, texts = pieces(self.ink, self.labels, self.corner, lettering)
             pile = sorted(range(len(lines)), key=lambda k: self.ink[k].layer)
-            self._written[outlined] = (
+            self._written[lettering] = (
                 [(self.drew[k], lines[k]) for k in pile],
                 list(zip(self.named, texts, strict=True)),
             )
         kept = (
             [text for element, text in pieces_ if count is None or element < count]
-            for pieces_ in self._written[outlined]
+            for pieces_ in self._written[lettering]
         )
-        return written(*kept, self.size_mm, outlined=outlined)
+        return written(*kept, self.size_mm, lettering)
+
+    def letters(self, count: int | None) -> tuple[Letters, ...]:
+        """The letters of the labels of the first elements."""
+        return tuple(one for element, one in self._letters if count is None or element < count)
+
+    @cached_property
+    def _letters(self) -> list[tuple[int, Letters]]:
+        return [(k, letters(label, self.corner)) for k, label in zip(self.named, self.labels, strict=True)]
 
 
 @dataclass(frozen=True, init=False)
@@ -213,8 +233,7 @@ class Figure:
 
     def labels(self) -> tuple[LabelBox, ...]:
         """The boxes of the labels as placed."""
-        low, high = self._layout.low, self._layout.high
-        corner = complex(low.real, high.imag)
+        corner = self._layout.corner
         return tuple(
             LabelBox(
                 it.label,
@@ -226,16 +245,21 @@ class Figure:
             for it in self._layout.labels
         )
 
-    def _written(self, outlined: bool) -> str:
-        return self._layout.svg(None, outlined)
-
     def svg(self) -> str:
         """The drawing as SVG, in mm, labels as text."""
-        return self._written(outlined=False)
+        return self._layout.svg(None, as_text)
 
     def outlined_svg(self) -> str:
         """The same with labels as outlines: looks the same on a machine without the font."""
-        return self._written(outlined=True)
+        return self._layout.svg(None, as_outlines)
+
+    def bare_svg(self) -> str:
+        """The same without the letters of its labels, for who sets them over it: see :meth:`letters`."""
+        return self._layout.svg(None, left_out)
+
+    def letters(self) -> tuple[Letters, ...]:
+        """The letters of the labels, each with its place on the drawing."""
+        return self._layout.letters(None)
 
     def _repr_svg_(self) -> str:
         """What a notebook shows of a figure that ends a cell."""
@@ -268,11 +292,19 @@ class Beginning:
 
     def svg(self) -> str:
         """The drawing as SVG, in mm, labels as text."""
-        return self.whole._layout.svg(self.count, outlined=False)
+        return self.whole._layout.svg(self.count, as_text)
 
     def outlined_svg(self) -> str:
         """The same with labels as outlines."""
-        return self.whole._layout.svg(self.count, outlined=True)
+        return self.whole._layout.svg(self.count, as_outlines)
+
+    def bare_svg(self) -> str:
+        """The same without the letters of its labels."""
+        return self.whole._layout.svg(self.count, left_out)
+
+    def letters(self) -> tuple[Letters, ...]:
+        """The letters of the labels, each with its place on the drawing."""
+        return self.whole._layout.letters(self.count)
 
     def _repr_svg_(self) -> str:
         return self.outlined_svg()

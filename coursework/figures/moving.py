@@ -34,10 +34,10 @@ from coursework.figures.ink import (
     turn,
 )
 from coursework.figures.paper import Paper
-from coursework.figures.placing import NAMES, Label, Wish
+from coursework.figures.placing import NAMES, Wish
 from coursework.figures.riding import ride
-from coursework.figures.text import SIZE, read
-from coursework.figures.writing import _label, _outlines
+from coursework.figures.text import read
+from coursework.figures.writing import accents, as_outlines, baseline
 
 COLOURS = {"position": "#1b7a4b", "velocity": "#0a58a8", "acceleration": "#b3261e", "coriolis": "#7a2f9e"}
 ARROW, TIP = 0.5, 2.6  #: width of a vector's shaft and length of its head, mm
@@ -391,10 +391,10 @@ def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float, close
 def _letters(label: str, colour: str) -> str:
     """A label centred on the origin, on a white rim of its own: lines may pass under it."""
     text = read(label)
-    box = Label(label, text, 0j, *text.box)
-    left = 1j * SIZE * (text.top + text.bottom) / 2 - SIZE * text.width / 2
-    rim = f'<g fill="{WHITE}" stroke="{WHITE}" stroke-width="{_RIM}">{_outlines(text, left)}</g>'
-    return f'{rim}<g fill="{colour}" stroke="none">{_label(box, 0j, outlined=True)}</g>'
+    at = baseline(text, 0j)
+    letters = as_outlines(text, at)
+    rim = f'<g fill="{WHITE}" stroke="{WHITE}" stroke-width="{_RIM}">{letters}</g>'
+    return f'{rim}<g fill="{colour}" stroke="none">{letters}{accents(text, at)}</g>'
 
 
 def _segments(inks: Sequence[Sequence[Ink]]) -> tuple[np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ import numpy as np
 from coursework.errors import UnknownName, WrongValue
 from coursework.figures.ink import number
 from coursework.figures.text import SIZE, Text, read
-from coursework.figures.writing import _accent, _outlines
+from coursework.figures.writing import accents, as_outlines
 from coursework.language import localise, significant
 
 _WIDTH, _HEIGHT = 112.0, 26.0  #: of a panel, mm
@@ -188,7 +188,8 @@ def _letters(text: Text, at: complex, anchor: str, size: float = 1.0) -> str:
     """A text as outlines; ``at`` is its start, middle or end on the baseline."""
     width = text.width * SIZE * size
     start = at - {"start": 0.0, "middle": width / 2, "end": width}[anchor]
-    inner = _outlines(text, 0j) + "".join(_accent(text, accent, 0j) for accent in text.accents)
+    middle = SIZE * text.width / 2
+    inner = as_outlines(text, middle) + accents(text, middle)
     scale = f" scale({number(size)})" if size != 1 else ""
     return (
         f'<g fill="#000" transform="translate({number(start.real)} {number(start.imag)}){scale}">{inner}</g>'

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from html import escape
+from typing import NamedTuple, TypeAlias
 
 from coursework.figures.ink import BLACK, Ink, number, pair
 from coursework.figures.placing import Label
@@ -12,9 +13,21 @@ from coursework.figures.text import SIZE, Accent, Run, Text
 FONT = "Libertinus Serif"
 _FALLBACK = f"{FONT}, Linux Libertine O, Times New Roman, serif"
 
+#: What writes the letters of a text, given the middle of its baseline, mm, y down; accents are drawn in any case.
+Lettering: TypeAlias = Callable[[Text, complex], str]
+
+
+class Letters(NamedTuple):
+    """The letters of a label, for who sets them over the drawing: the middle of their baseline, mm from the top
+    left corner of the figure, y down, and their runs."""
+
+    x: float
+    y: float
+    runs: tuple[Run, ...]
+
 
 def pieces(
-    ink: Sequence[Ink], labels: Sequence[Label], corner: complex, *, outlined: bool
+    ink: Sequence[Ink], labels: Sequence[Label], corner: complex, lettering: Lettering
 ) -> tuple[list[str], list[str]]:
     """Each piece of a paper-mm drawing and each label as SVG; ``corner`` is the frame's top left, which becomes
     (0, 0), y down."""
@@ -23,13 +36,32 @@ def pieces(
         return complex(z.real - corner.real, corner.imag - z.imag)
 
     lines = [item.svg(place) for item in ink]
-    return lines, [_label(label, place(label.center), outlined) for label in labels]
+    middles = [baseline(label.text, place(label.center)) for label in labels]
+    texts = [
+        lettering(label.text, at) + accents(label.text, at) for label, at in zip(labels, middles, strict=True)
+    ]
+    return lines, texts
 
 
-def written(lines: Sequence[str], texts: Sequence[str], size: tuple[float, float], *, outlined: bool) -> str:
+def letters(label: Label, corner: complex) -> Letters:
+    """A label's letters and their place, from the frame's top left ``corner``."""
+    center = complex(label.center.real - corner.real, corner.imag - label.center.imag)
+    at = baseline(label.text, center)
+    return Letters(at.real, at.imag, label.text.runs)
+
+
+def baseline(text: Text, center: complex) -> complex:
+    """The middle of the baseline of a text whose box has this centre, y down."""
+    return center + 1j * SIZE * (text.top + text.bottom) / 2
+
+
+def written(
+    lines: Sequence[str], texts: Sequence[str], size: tuple[float, float], lettering: Lettering
+) -> str:
     """A whole SVG from its pieces, from the bottom to the top of the pile."""
     width, height = map(number, size)
-    style = "" if outlined else f' font-family="{_FALLBACK}" font-size="{number(SIZE)}" text-anchor="middle"'
+    font = f' font-family="{_FALLBACK}" font-size="{number(SIZE)}" text-anchor="middle"'
+    style = font if lettering is as_text else ""
     return "\n".join([
         f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
         f'viewBox="0 0 {width} {height}">',
@@ -40,15 +72,13 @@ def written(lines: Sequence[str], texts: Sequence[str], size: tuple[float, float
     ])  # fmt: skip
 
 
-def _label(label: Label, center: complex, outlined: bool) -> str:
-    text = label.text
-    baseline = center + 1j * SIZE * (text.top + text.bottom) / 2
-    left = baseline - SIZE * text.width / 2
-    letters = _outlines(text, left) if outlined else _text(text, baseline)
-    return letters + "".join(_accent(text, accent, left) for accent in text.accents)
+def left_out(text: Text, at: complex) -> str:
+    """No letters: they are set over the drawing."""
+    return ""
 
 
-def _text(text: Text, at: complex) -> str:
+def as_text(text: Text, at: complex) -> str:
+    """Letters as text, in the font that the reader has."""
     if len(text.runs) == 1 and text.runs[0].size == 1:
         italic = ' font-style="italic"' if text.runs[0].italic else ""
         body = escape(text.runs[0].text)
@@ -67,9 +97,11 @@ def _tspan(run: Run, rise: float) -> str:
     return f"<tspan{style}>{escape(run.text)}</tspan>"
 
 
-def _outlines(text: Text, left: complex) -> str:
+def as_outlines(text: Text, at: complex) -> str:
+    """Letters as outlines: they look the same on a machine without the font."""
     from coursework.figures.typesetting import glyph
 
+    left = at - SIZE * text.width / 2
     paths = []
     for index, run in enumerate(text.runs):
         at = left + SIZE * complex(text.start(index), -run.rise)
@@ -88,8 +120,14 @@ def _fine(x: float) -> str:
     return f"{x:.5f}".rstrip("0")
 
 
+def accents(text: Text, at: complex) -> str:
+    """The accents over a text, given the middle of its baseline: they need no combining character of the font."""
+    left = at - SIZE * text.width / 2
+    return "".join(_accent(text, accent, left) for accent in text.accents)
+
+
 def _accent(text: Text, accent: Accent, left: complex) -> str:
-    """Dots as discs, bars and arrows as lines: they need no combining character of the font."""
+    """Dots as discs, bars and arrows as lines."""
     runs = text.runs[accent.first : accent.last]
     start = left.real + SIZE * text.start(accent.first)
     width = SIZE * sum(run.width for run in runs)

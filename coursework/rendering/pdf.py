@@ -15,6 +15,8 @@ from markupsafe import Markup
 
 from coursework.errors import BadStatement
 from coursework.figures import Beginning, Figure
+from coursework.figures.text import SIZE
+from coursework.figures.writing import Letters
 from coursework.rendering import markup, views
 from coursework.rendering.environment import environment, render
 from coursework.rendering.formulas import spoken, to_typst
@@ -123,6 +125,17 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
 
 
 def _drawing(figure: Figure | Beginning, alt: str) -> str:
-    """The figure's SVG inside the source: a sheet's source stands alone."""
-    svg = markup.typst_string(figure.svg())
-    return f"bytes({svg}), alt: {markup.typst_string(alt)}"
+    """The figure inside the source, which so stands alone: an SVG without letters, its size, and the letters."""
+    width, height = figure.size_mm
+    listed = json.dumps([_letters(one, width) for one in figure.letters()], ensure_ascii=False)
+    svg, letters, words = map(markup.typst_string, (figure.bare_svg(), listed, alt))
+    return f"bytes({svg}), size: ({width}mm, {height}mm), letters: {letters}, alt: {words}"
+
+
+def _letters(label: Letters, width: float) -> tuple[object, ...]:
+    """A label for the typesetter, mm: the middle of its baseline from the middle of the upper edge, and its runs,
+    each with its size and how far it stands below the baseline."""
+    runs = [
+        (run.text, run.italic, round(run.size * SIZE, 2), round(-run.rise * SIZE, 2)) for run in label.runs
+    ]
+    return round(label.x - width / 2, 2), round(label.y, 2), runs
