@@ -164,6 +164,8 @@ def check_texts(exercise: CourseExercise, report: Report) -> None:
         if exercise.spec.figure and not text.section("figure").text:
             report.fail(f"{text.source}: the figure has no words")
         words = exercise.text("solutions", lang, _every_name(exercise, variant))
+        if exercise.film and not words.section("motion").text:
+            report.fail(f"{words.source}: the film has no words")
         for name in exercise.solution.mistakes:
             if not words.section(f"mistake {name}").text:
                 report.fail(f"{words.source}: mistake {name} is told in no words")

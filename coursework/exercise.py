@@ -17,7 +17,7 @@ from coursework.intake import Intake
 from coursework.language import languages
 from coursework.model import Exercise, Part
 from coursework.records import Records
-from coursework.solution import Solution
+from coursework.solution import Film, Solution
 from coursework.variant import Variant
 
 if TYPE_CHECKING:
@@ -148,6 +148,16 @@ class CourseExercise:
                     told = ", ".join(f"{n} = {values[n]}" for n in given if n in values)
                     raise Undefined(f"{self.name}: {name} does not exist for {told}")
         return found
+
+    @property
+    def film(self) -> Film | None:
+        """The animation that the solution states in a picture of its own; none where the course has no solutions."""
+        return self.solution.film if self.course.has_solutions else None
+
+    @property
+    def is_animated(self) -> bool:
+        """Whether there is an animation: a film, or a figure that a driver moves."""
+        return self.film is not None or (self.spec.driver is not None and self.spec.figure is not None)
 
     def driver_angle(self, given: Mapping[str, Any]) -> float:
         """Where the driver stands for these given quantities, degrees.

@@ -1,7 +1,8 @@
 """An exercise in motion: its figure over the cycle of its driver, paths of points, and vectors.
 
-The figure is the statement's own, asked again at every angle. Which points leave a trace, and which vectors
-they carry, a solution states in a function ``motion`` of its quantities, called once with arrays over the cycle::
+The figure is the statement's own, asked again at every angle, unless the solution states a :class:`~coursework.solution.Film`
+with one that can move. Which points leave a trace, and which vectors they carry, a solution states in a function ``motion``
+of its quantities, called once with arrays over the cycle::
 
     def motion(r2, theta2, omega2):
         A = polar(r2, theta2)
@@ -11,7 +12,7 @@ they carry, a solution states in a function ``motion`` of its quantities, called
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from html import escape
@@ -25,16 +26,15 @@ from coursework.figures.moving import Arrow, Drawing, Key, Spot, drawing, extent
 from coursework.graph import Graph
 from coursework.language import localise, significant, unit_text, words
 from coursework.scenes import LEVELS, Scene
-from coursework.solution import Moving
+from coursework.solution import Film, Moving
 from coursework.variant import Variant
 
 if TYPE_CHECKING:
     from coursework.figures.elements import Element
-    from coursework.model import Driver
 
 EFFECTS = tuple(LEVELS)
 UNIT = {"velocity": "mm/s", "acceleration": "mm/s^2", "coriolis": "mm/s^2"}
-SECONDS = 6.0  #: how long a loop lasts on the screen
+SECONDS = 6.0  #: how long a turn of the driver, or a swing, lasts on the screen
 _LONGEST = 0.3  #: of the longest vector, over the size of the mechanism
 
 
@@ -50,12 +50,12 @@ class Reading:
 
 
 class Animation:
-    """A variant's mechanism over the cycle of its driver.
+    """A variant's mechanism over the cycle of its driver, or over the turns that its film shows.
 
     Parameters
     ----------
     variant
-        Of an exercise that names a driver and a figure.
+        Of an exercise that names a driver and a figure, or whose solution states a film.
     effects
         What is seen from the start: ``position`` (paths of points), ``velocity``, ``acceleration``,
         ``coriolis``; paths alone unless told.
@@ -65,7 +65,7 @@ class Animation:
     Raises
     ------
     BadCourse
-        The exercise names no driver or no figure.
+        The exercise names no driver or no figure, and no solution at hand states a film.
     UnknownName
         An effect that is none of the four.
     WrongValue
@@ -73,11 +73,13 @@ class Animation:
     """
 
     def __init__(self, variant: Variant, effects: Sequence[str] = (), count: int = 72):
-        spec = variant.exercise.spec
-        if spec.driver is None:
-            raise BadCourse(f"{variant.exercise.name} names no driver=Driver(…), so it cannot be moved")
-        if spec.figure is None:
-            raise BadCourse(f"{variant.exercise.name} has no figure to move")
+        exercise = variant.exercise
+        if exercise.film is None and exercise.spec.driver is None:
+            raise BadCourse(
+                f"{exercise.name} names no driver=Driver(…) and no solution at hand states a FILM, so it cannot be moved"
+            )
+        if not exercise.is_animated:
+            raise BadCourse(f"{exercise.name} has no figure to move")
         if count < 3:
             raise WrongValue(f"a cycle has at least three angles; found {count}")
         self.variant = variant
@@ -93,8 +95,34 @@ class Animation:
         self.effects = tuple(e for e in EFFECTS if e in effects) or ("position",)
 
     @property
-    def _driver(self) -> Driver:
-        return self.variant.exercise.spec.driver
+    def film(self) -> Film | None:
+        """The film that the solution states, if it is one."""
+        return self.variant.exercise.film
+
+    @property
+    def driver(self) -> str:
+        """The name of the driving angle."""
+        return (self.film or self.variant.exercise.spec.driver).angle
+
+    @property
+    def _sign(self) -> int:
+        """Which way the driver turns."""
+        speed = (self.film or self.variant.exercise.spec.driver).speed
+        return -1 if float(self.variant.given.get(speed, 1.0)) < 0 else 1
+
+    def _with_driver_at(self, angle: Any) -> dict[str, Any]:
+        """The given quantities, the driver at an angle, degrees, or at each of an array of angles."""
+        given = self.variant.given
+        if self.film is not None:
+            return {**given, self.film.angle: angle}
+        return {**given, **self.variant.exercise.posed(given, angle)}
+
+    def _stated(self, name: str, function: Callable[..., Any], given: Mapping[str, Any]) -> Any:
+        """What a function of the solution's quantities gives, called by a name that is none of theirs."""
+        exercise = self.variant.exercise
+        graph = exercise.solution.graph.with_functions({name: function})
+        known = {n: v for n, v in given.items() if n in exercise.quantity_names | graph.leaves}
+        return graph.evaluate((name,), known, self.variant.effects)[name]
 
     # ------------------------------------------------------------------- instants
 
@@ -106,8 +134,9 @@ class Animation:
             return None
 
     def _elements_or_fault(self, angle: float) -> tuple[Element, ...]:
-        given = self.variant.given
-        given = {**given, **self.variant.exercise.posed(given, wrap(float(angle)))}
+        if self.film is not None:
+            return self._stated("figure", self.film.figure, self._with_driver_at(float(angle))).elements
+        given = self._with_driver_at(wrap(float(angle)))
         values = {n: v for n, v in given.items() if n in self._graph.leaves}
         return self._graph.evaluate(("figure",), values)["figure"].elements
 
@@ -118,7 +147,9 @@ class Animation:
 
     @cached_property
     def _cycle(self) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
-        """Angles of the driver, increasing; elements at each; the variant's own; whether it turns fully."""
+        """Angles of the driver, increasing; elements at each; the first shown; whether it turns fully."""
+        if self.film is not None:
+            return self._reel(self.film)
         start, step = self.variant.exercise.driver_angle(self.variant.given), 360.0 / self.count
         found = {0: self.variant.figure.elements}
         for k in range(1, self.count):
@@ -139,6 +170,19 @@ class Animation:
             closing |= self._toward_limit(last, way * step, min(len(closing) - 1, 2))
         angles = sorted(closing)
         return np.array(angles), [closing[a] for a in angles], angles.index(start), False
+
+    def _reel(self, film: Film) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
+        """The same for a film: from 0, by equal steps and a last one that may be shorter."""
+        turns = float(self._stated("figure", film.turns, self.variant.given))
+        if not 0 < turns < math.inf:
+            raise BadCourse(
+                f"{self.variant.exercise.name}: a film shows some turns of its driver; found {turns}"
+            )
+        steps = math.ceil(self.count * turns - 1e-9)
+        angles = self._sign * np.array([*(360.0 / self.count * np.arange(steps)), 360.0 * turns])
+        angles = angles[:: self._sign] + 0.0  # no negative zero
+        first = 0 if self._sign > 0 else steps
+        return angles, [self._elements_or_fault(angle) for angle in angles], first, True
 
     def _toward_limit(self, last: float, step: float, back: int) -> dict[float, tuple[Element, ...]]:
         """The limit beyond the last angle, and more angles before it, where the links turn as its square root."""
@@ -175,7 +219,7 @@ class Animation:
 
     @property
     def first(self) -> int:
-        """The instant that the sheet shows."""
+        """The instant that the sheet shows; of a film the first one."""
         return self._cycle[2]
 
     @property
@@ -183,11 +227,22 @@ class Animation:
         """Whether the driver turns fully; otherwise the mechanism swings between its limits."""
         return self._cycle[3]
 
+    @property
+    def closed(self) -> bool:
+        """Whether the last instant is followed by the first as any by the next; neither in a swing nor in a film."""
+        return self.turns and self.film is None
+
+    @property
+    def seconds(self) -> float:
+        """How long a loop lasts on the screen."""
+        return SECONDS * (1.0 if self.film is None else round(float(np.ptp(self.angles)) / 360.0, 3))
+
     @cached_property
     def order(self) -> tuple[int, ...]:
-        """The instants of a loop, in time, from the sheet's own back to it."""
-        count, first = len(self.angles), self.first
-        sign = -1 if float(self.variant.given.get(self._driver.speed, 1.0)) < 0 else 1
+        """The instants of a loop, in time, from the sheet's own back to it; a film's from its first to its last."""
+        count, first, sign = len(self.angles), self.first, self._sign
+        if self.film is not None:
+            return tuple(range(count))[::sign]
         if self.turns:
             return tuple((first + sign * k) % count for k in range(count + 1))
         there, back = [*range(first, count), *range(count - 2, -1, -1)], range(1, first + 1)
@@ -202,11 +257,8 @@ class Animation:
         exercise = self.variant.exercise
         if not exercise.course.has_solutions or exercise.solution.motion is None:
             return {}
-        graph = exercise.solution.graph.with_functions({"motion": exercise.solution.motion})
-        given = {**self.variant.given, **exercise.posed(self.variant.given, self.angles)}
-        known = {n: v for n, v in given.items() if n in exercise.quantity_names | graph.leaves}
-        found = graph.evaluate(("motion",), known, self.variant.effects)
-        return {name: point.over(len(self.angles)) for name, point in found["motion"].items()}
+        found = self._stated("motion", exercise.solution.motion, self._with_driver_at(self.angles))
+        return {name: point.over(len(self.angles)) for name, point in found.items()}
 
     @cached_property
     def available(self) -> tuple[str, ...]:
@@ -254,9 +306,9 @@ class Animation:
                 shown[self._inside] = v[self._inside] / self.scales[effect]
                 arrows.append(Arrow(self.points[name].position, shown, effect, name))
         if "position" in effects:
-            spots = [Spot(point.position, name, self.turns) for name, point in self.points.items()]
+            spots = [Spot(point.position, name, self.closed) for name, point in self.points.items()]
         keys = self._keys({a.effect for a in arrows})
-        return drawing(self.frames, arrows=arrows, spots=spots, keys=keys, closed=self.turns)
+        return drawing(self.frames, arrows=arrows, spots=spots, keys=keys, closed=self.closed)
 
     def _keys(self, effects: set[str]) -> list[Key]:
         """The legend: for each effect an arrow of a round value."""
@@ -280,10 +332,15 @@ class Animation:
 
     @cached_property
     def words(self) -> str:
-        """What the figure shows, for those who cannot see it: the statement's own words."""
+        """What the picture shows, for those who cannot see it: the statement's own words, or the film's."""
         from coursework.rendering.typography import typeset
 
-        said = " ".join(self.variant.text.section("figure").text.split())
+        section = (
+            self.variant.text.section("figure")
+            if self.film is None
+            else self.variant.solution_text.section("motion")
+        )
+        said = " ".join(section.text.split())
         return typeset(said, self.variant.lang) or self.title
 
     def svg(self) -> str:
@@ -298,7 +355,11 @@ class Animation:
                 continue
             lines.append(track.svg(self.first, ' class="coursework-still"'))
             lines.append(
-                track.svg(self.first, ' class="coursework-moving"', _animate(track, self.order, times))
+                track.svg(
+                    self.first,
+                    ' class="coursework-moving"',
+                    _animate(track, self.order, times, self.seconds),
+                )
             )
         return "\n".join([
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
@@ -315,6 +376,9 @@ class Animation:
     @cached_property
     def times(self) -> np.ndarray:
         """When each instant of a loop is reached, from 0 to 1: a turn goes steadily, a swing like a pendulum's."""
+        if self.film is not None:
+            gone = np.abs(self.angles - self.angles[self.first])[list(self.order)]
+            return gone / gone[-1]
         if self.turns:
             return np.linspace(0.0, 1.0, len(self.order))
         low, high = self.angles[[0, -1]]
@@ -324,7 +388,7 @@ class Animation:
 
     def _key_times(self) -> str:
         """The same for SVG; nothing when they are evenly spread."""
-        if self.turns:
+        if np.ptp(np.diff(self.times)) < 1e-9:
             return ""
         return ";".join([*(f"{t:.5f}" for t in self.times[:-1]), "1"])
 
@@ -347,14 +411,13 @@ class Animation:
             return ()
         effects_of: dict[str, list[str]] = {}
         for effect in EFFECTS:
-            try:
-                names = Scene(exercise, self.variant.used, (effect,)).quantities
-            except CourseworkError:
-                continue
-            for name in names:
+            for name in self._measured(effect):
                 effects_of.setdefault(name, []).append(effect)
-        given = {**self.variant.used, **exercise.posed(self.variant.given, self.angles)}
-        found = exercise.solve(**given, only=tuple(effects_of)) if effects_of else {}
+        found = {}
+        if effects_of:
+            posed = {} if self.film is not None else exercise.posed(self.variant.given, self.angles)
+            given = {**self.variant.used, **posed}
+            found = exercise.solve(**given, only=tuple(effects_of))
         told = [
             self._reading(
                 exercise.solution.symbols.get(name) or exercise.symbol(name),
@@ -368,6 +431,17 @@ class Animation:
         if any("coriolis" in reading.effects for reading in told):
             known |= {_symbol("coriolis", name) for name in self.points}
         return (*told, *(r for r in self._norms() if r.symbol not in known))
+
+    def _measured(self, effect: str) -> Sequence[str]:
+        """The quantities of an effect: those of the scene; of a film, those asked, which keep their values."""
+        exercise = self.variant.exercise
+        if self.film is not None:
+            parts = [p for p in exercise.spec.parts if p.kind in ("number", "angle")]
+            return [p.quantity for p in parts if p.unit in LEVELS[effect]]
+        try:
+            return Scene(exercise, self.variant.used, (effect,)).quantities
+        except CourseworkError:
+            return ()
 
     def _norms(self) -> list[Reading]:
         """The length of every vector, under the name that it has in the course."""
@@ -392,10 +466,10 @@ class Animation:
         )
 
 
-def _animate(track: Any, order: Sequence[int], times: str) -> str:
+def _animate(track: Any, order: Sequence[int], times: str, seconds: float) -> str:
     values = ";".join(track.value(k) for k in order)
     timing = f' keyTimes="{times}"' if times else ""
-    loop = f'dur="{SECONDS:g}s" repeatCount="indefinite"{timing} values="{values}"'
+    loop = f'dur="{seconds:g}s" repeatCount="indefinite"{timing} values="{values}"'
     if track.mark:
         return f'<animateTransform attributeName="transform" type="translate" {loop}/>'
     return f'<animate attributeName="d" {loop}/>'

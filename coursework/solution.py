@@ -11,6 +11,7 @@
   right to its last printed digit, a number to 1e-9 relative; a third item names the case's effects,
   where they are not those of the exercise's own parts;
 * ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
+* ``FILM``, a :class:`Film`, states a picture of its own for the animation, where the statement's figure cannot move;
 * ``polygons`` gives the velocity and acceleration polygons, each a :class:`~coursework.polygons.Polygon`;
 * ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities: :mod:`coursework.loops`;
   ``RATES`` gives the names of derivatives that do not follow from a quantity's own;
@@ -166,6 +167,23 @@ class Moving:
 
 
 @dataclass(frozen=True)
+class Film:
+    """An animation in a picture of its own, where nothing would move in the statement's figure.
+
+    ``angle`` names the driving angle, degrees: 0 in the first picture, so no given quantity. ``speed`` names its rate,
+    whose sign says which way it turns. ``figure`` is a function of that angle and of any quantities of the
+    solution to a :class:`~coursework.figures.Figure`, ``turns`` one of quantities alone to how many turns of the driver
+    are shown, whole or not; then the film starts over. Its words are the section ``motion`` of the solution's texts, and the
+    points of ``motion`` may take the angle as well.
+    """
+
+    figure: Callable[..., Any]
+    angle: str
+    speed: str
+    turns: Callable[..., Any]
+
+
+@dataclass(frozen=True)
 class Solution:
     """A loaded solution."""
 
@@ -182,6 +200,7 @@ class Solution:
     judges: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
     polygons: Callable[..., Sequence[Polygon]] | None = None
     loops: Mapping[str, Loop] = field(default_factory=dict)
+    film: Film | None = None
 
     @staticmethod
     def of(name: str, module: ModuleType) -> Solution:
@@ -190,7 +209,7 @@ class Solution:
         Raises
         ------
         BadCourse
-            It defines no quantity, or a mistake about something that it does not have.
+            It defines no quantity, a mistake about something that it does not have, or a ``FILM`` that is none.
         """
         own = {
             key: value
@@ -236,6 +255,7 @@ class Solution:
             judges,
             own.get("polygons"),
             loops,
+            _film(name, module),
         )
 
     def judge(self, name: str) -> Callable[..., Any]:
@@ -290,6 +310,13 @@ class Solution:
         if self.residual is None:
             raise BadCourse(f"solutions/{self.name}.py states no residual; write the governing equations")
         return self.graph.with_functions({"residual": self.residual})
+
+
+def _film(name: str, module: ModuleType) -> Film | None:
+    film = getattr(module, "FILM", None)
+    if film is not None and not isinstance(film, Film):
+        raise BadCourse(f"solutions/{name}.py: FILM is a Film(…); found {str(film)[:60]}")
+    return film
 
 
 def _belongs(function: Any, module: ModuleType) -> bool:

@@ -53,10 +53,10 @@ def attached(exercise: CourseExercise) -> Iterator[tuple[str, str]]:
         variant = exercise.variant(SEED, lang)
         solution = exercise.course.renderer.html(variant.answer_sheet())
         yield f"{WHOLE}/{exercise.name}.{lang}.solution.html", solution
-        if exercise.spec.driver is not None:
+        if exercise.is_animated:
             yield f"{WHOLE}/{exercise.name}.{lang}.motion.html", animation(variant).html()
     first = exercise.variant(SEED, exercise.languages[0])
-    if exercise.spec.driver is not None:
+    if exercise.is_animated:
         yield f"{exercise.name}.motion.svg", animation(first).svg()
     for number, polygon in enumerate(first.polygons()):
         yield f"{exercise.name}.polygon{number}.svg", polygon.figure.outlined_svg()
@@ -123,8 +123,8 @@ def page(exercise: CourseExercise) -> str:
     ]
     if first.figure is not None:
         lines += [f"![{_alt(first)}]({exercise.name}.svg){{.figure}}", ""]
-    if exercise.spec.driver is not None:
-        words = f"The mechanism over its cycle. {_alt(first)}"
+    if exercise.is_animated:
+        words = f"The mechanism in motion. {_told(first.animation().words)}"
         lines += ["## In motion", "", f"![{words}]({exercise.name}.motion.svg){{.figure}}", ""]
     lines += _polygons(first)
     lines += ["## What varies", "", _html(_given_table(exercise)), ""]
@@ -160,7 +160,7 @@ def _polygons(variant: Variant) -> list[str]:
 def _links(exercise: CourseExercise, lang: str) -> list[str]:
     """Whole pages that stand alone: the worked solution, with its polygons, and the animation with its slider."""
     to = {"solution": "The worked solution"}
-    if exercise.spec.driver is not None:
+    if exercise.is_animated:
         to["motion"] = "The mechanism in motion, with a slider"
     language = LANGUAGE_NAMES.get(lang, lang)
     links = "".join(
@@ -202,7 +202,11 @@ def _bound(bound: object, unit: str) -> str:
 
 
 def _alt(variant: Variant) -> str:
-    words = variant.handout().figure_alt
+    return _told(variant.handout().figure_alt)
+
+
+def _told(words: str) -> str:
+    """Words as they may stand in the brackets of a picture."""
     return re.sub(r"[\[\]\n]+", " ", words)
 
 

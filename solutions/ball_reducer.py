@@ -6,7 +6,9 @@ and the same; with those at C and D, three relations tie four rates.
 
 import numpy as np
 
-from coursework.solution import formula, mistake
+from coursework.degrees import polar
+from coursework.figures import Figure, circle, contact, line, note, point, trace, wheel
+from coursework.solution import Film, Moving, formula, mistake
 
 UNITS = {"phi_ddot": "rad/s^2"}
 
@@ -127,6 +129,88 @@ def rolling_D(omega):
 
 def spin_D(omega, theta_dot):
     return omega - theta_dot
+
+
+# The statement's half-section looks the same at every instant: the film looks down along z instead, and sees D and B
+# where O3 is. In the basis (x_a, y_a, z) the ball turns about one axis, at Omega 3/0 less phi_dot z.
+
+
+def _one_round_of_the_ball(psi_dot, phi_dot):
+    return psi_dot / phi_dot
+
+
+def _ball_in_basis(psi, omega, phi_dot, psi_dot):
+    """Unit vector of the ball's axis, upwards, and how far it has turned about it, degrees."""
+    turning = _vector(1.0, 0.0, 1 - phi_dot / omega)
+    return turning / np.linalg.norm(turning), psi * omega / psi_dot * np.linalg.norm(turning)
+
+
+def _turned(place, axis, angle):
+    """A place on the ball, turned about an axis through its centre."""
+    angle = np.radians(angle)[..., None]
+    along = np.dot(place, axis) * axis
+    return along + np.cos(angle) * (place - along) + np.sin(angle) * np.cross(axis, place)
+
+
+def _seen(vector):
+    return vector[..., 0] + 1j * vector[..., 1]
+
+
+def _seam(axis, place, r):
+    """The great circle of the ball through its axis and a place on it: the upper half, which is what one sees."""
+    normal = np.cross(axis, place)
+    normal /= np.linalg.norm(normal)
+    end = np.cross((0.0, 0.0, 1.0), normal)
+    end /= np.linalg.norm(end)
+    top = np.cross(normal, end)
+    return [_seen(r * (end * np.cos(s) + top * np.sin(s))) for s in np.linspace(0, np.pi, 13)]
+
+
+def _spokes(length, angle, label, *, dashed):
+    return [
+        line(0, polar(length, angle + 120 * k), dashed=dashed, label=label if k == 0 else None)
+        for k in range(3)
+    ]
+
+
+def _end_view(psi, R, r, psi_dot, omega, phi_dot, theta_dot):
+    phi, theta, outer = psi * phi_dot / psi_dot, psi * theta_dot / psi_dot, R + 2 * r
+    x_a = polar(1.0, phi)
+    O3 = (R + r) * x_a
+    axis, angle = _ball_in_basis(psi, omega, phi_dot, psi_dot)
+    seam = _seam(axis, _turned(_vector(1.0, 0.0, 0.0), axis, angle), r)
+    return Figure(
+        circle(0, outer),
+        *(line(polar(outer, a), polar(outer + 0.25 * r, a + 3)) for a in range(0, 360, 12)),
+        wheel(0, R),
+        wheel(O3, r),
+        trace([O3 + x_a * z for z in seam], dotted=False),
+        *_spokes(R, psi, "S_1", dashed=False),
+        *_spokes(outer, theta, "S_2", dashed=True),
+        point(0, "O_1"),
+        point(O3, "O_3"),
+        contact(outer * x_a, "A"),
+        contact(R * x_a, "C"),
+        note(polar(outer + 0.8 * r, 135), "S_0"),
+    )
+
+
+def motion(psi, R, r, psi_dot, psi_ddot, omega, phi_dot, theta_dot, v_O3, a_O3_x, a_O3_y):
+    """The centre of the ball, and the points of the shafts and of the ball that are at C, D and A at the start."""
+    phi, theta = psi * phi_dot / psi_dot, psi * theta_dot / psi_dot
+    axis, angle = _ball_in_basis(psi, omega, phi_dot, psi_dot)
+    from_O3 = _turned(_vector(r, 0.0, 0.0), axis, angle)
+    x_a, C_1, D_2 = polar(1.0, phi), polar(R, psi), polar(R + r, theta)
+    theta_ddot = theta_dot * psi_ddot / psi_dot
+    return {
+        "O_3": Moving((R + r) * x_a, 1j * v_O3 * x_a, (a_O3_x + 1j * a_O3_y) * x_a),
+        "C_1": Moving(C_1, 1j * psi_dot * C_1, (1j * psi_ddot - psi_dot**2) * C_1),
+        "D_2": Moving(D_2, 1j * theta_dot * D_2, (1j * theta_ddot - theta_dot**2) * D_2),
+        "A_3": Moving((R + r + _seen(from_O3)) * x_a),  # its velocity leaves the plane of the picture
+    }
+
+
+FILM = Film(_end_view, angle="psi", speed="psi_dot", turns=_one_round_of_the_ball)
 
 
 # Where two mistakes give one answer, the first is told: what is wrong there before what is wrong earlier.

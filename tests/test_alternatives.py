@@ -11,7 +11,7 @@ from html.parser import HTMLParser
 import pytest
 
 import coursework
-from coursework.figures import ball, contact, ground_pivot, pin, point, slider
+from coursework.figures import Figure, ball, contact, ground_pivot, pin, point, slider
 from coursework.motion import Animation
 from coursework.sheets import solution_figure
 
@@ -20,6 +20,7 @@ LANGS = ("fr", "en")
 WITH_FIGURE = [n for n in COURSE.names if COURSE[n].spec.figure is not None]
 WITH_OWN = [n for n in COURSE.names if COURSE[n].solution.figure is not None]
 DRIVEN = [n for n in COURSE.names if COURSE[n].spec.driver is not None]
+FILMED = [n for n in COURSE.names if COURSE[n].film is not None]
 COMMON = {"fr": {"de", "la", "le", "les", "et", "à"}, "en": {"the", "of", "and", "a", "at"}}
 
 both = pytest.mark.parametrize("lang", LANGS)
@@ -103,6 +104,20 @@ def test_a_moving_figure_is_told_as_its_still_one(name, lang):
     assert told == animation.words
     assert plainly(told) == plainly(words)
     assert f"<desc>{told}</desc>" in animation.svg()
+
+
+@pytest.mark.parametrize("name", FILMED)
+@both
+def test_a_film_is_told_in_its_own_words(name, lang):
+    variant = COURSE[name].variant(1, lang)
+    animation = Animation(variant, count=12)
+    (told,) = Images(animation.html()).told
+    assert told == animation.words
+    assert f"<desc>{told}</desc>" in animation.svg()
+    assert_tells(plainly(told), Figure(*animation.frames[0]), lang)
+    assert {point.replace("_", "") for point in animation.points} <= set(re.findall(r"[A-Z]\d?", told))
+    assert plainly(told) != plainly(" ".join(variant.text.section("figure").text.split()))
+    assert plainly(told) not in plainly(COURSE.renderer.html(variant.handout()))
 
 
 def alternatives(pdf):

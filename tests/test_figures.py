@@ -650,3 +650,9 @@ def test_a_room_does_not_overrule_what_an_author_told():
 def test_a_room_too_small_for_the_labels_leaves_the_figure_as_it_is():
     whole = four_bar()
     assert whole.fitted(6, 6) is whole
+
+
+def test_a_trace_is_dotted_unless_told():
+    corners = (0, 50, 50 + 50j)
+    assert "stroke-dasharray" in Figure(trace(corners)).svg()
+    assert "stroke-dasharray" not in Figure(trace(corners, dotted=False)).svg()

@@ -146,7 +146,13 @@ def test_a_students_copy_says_that_its_solutions_are_missing(small_course, monke
     variant = coursework.open_course(small_course)["crank_pin"].variant(0, "en")
     shown = run_cells(code_cells(variant.exercise.course.renderer.study(variant.study_sheet())))
     session = coursework.study("crank_pin", lang="en", course="small", folder=small_course)
-    for said in (session.check({"x": "1"}), session.hint("x"), session.reveal("x"), session.plot()):
+    for said in (
+        session.check({"x": "1"}),
+        session.hint("x"),
+        session.reveal("x"),
+        session.plot(),
+        session.motion(),
+    ):
         assert "solutions are not in this copy" in str(said)
     assert session.answers == {"x": "1"}
     assert any("solutions are not in this copy" in text for text in shown)

@@ -33,7 +33,7 @@ p→q goes to the right, above it when to the left; ``wheel(center, radius, labe
 
 **Lines.** ``line(p, q, dashed=False, thin=True, label=)``; ``circle(center, radius, dashed=, label=)``;
 ``arc(center, radius, from_deg, to_deg, dashed=)``; ``centre_line(p, q, label)`` chain-dotted, label
-beyond q; ``trace(points)`` a dotted path.
+beyond q; ``trace(points, dotted=True)`` a path, or another curve.
 
 **Marks.** ``axes(origin, length, labels=("x", "y"))``; ``vector(p, v, label)`` an arrow from p
 to p + v; ``dimension(p, q, label, offset=)``, offset in mm of mechanism, positive on the left of p→q,

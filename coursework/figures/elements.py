@@ -528,12 +528,13 @@ class scale_bar(Element):
 
 @dataclass(frozen=True)
 class trace(Element):
-    """The path of a point: a thin dotted curve."""
+    """A thin curve through points: the path of one, dotted unless told."""
 
     points: tuple[complex, ...]
+    dotted: bool = True
 
     def draw(self, paper: Paper) -> None:
-        paper.draw(Path(tuple(map(paper.at, self.points)), THIN, dash=DOTTED))
+        paper.draw(Path(tuple(map(paper.at, self.points)), THIN, dash=DOTTED if self.dotted else ""))
 
 
 @dataclass(frozen=True)

@@ -21,7 +21,7 @@ _START, _FARTHER = 0.5, 0.25  #: what it costs to leave a place, and each mm of 
 _STEPS = (0.0, 1.0, 2.2, 4.0, 6.0)
 _SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.2, 0.8)
 _WHITE = 0.2  #: white asked for round a label, mm
-_LOOKED_AT = 72  #: instants of a cycle at which places are compared; between them labels go steadily
+_LOOKED_AT = 216  #: instants at which places are compared; between them labels go steadily
 
 Segments = tuple[np.ndarray, np.ndarray]
 

@@ -8,11 +8,11 @@ from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from markupsafe import Markup
 
 from coursework.figures.moving import COLOURS, Track
 from coursework.language import localise, significant, words
-from coursework.motion import SECONDS
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 
@@ -26,20 +26,23 @@ def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> st
     lang = variant.lang
     shown = animation.drawing(animation.available)
     first = animation.first
-    angles = [f"{localise(significant(a % 360.0, 5), lang)}°" for a in animation.angles]
+    film = animation.film is not None
+    told = animation.angles if film else animation.angles % 360.0
+    angles = [f"{localise(significant(a, 5), lang)}°" for a in told]
     data = {
         "tracks": [_numbers(track) for track in shown.tracks if track.moves],
         "order": list(animation.order),
         "times": [round(float(t), 6) for t in animation.times],
-        "seconds": SECONDS,
+        "seconds": animation.seconds,
         "first": first,
         "angles": angles,
+        "film": film,
         "degrees": [round(float(a), 4) for a in animation.angles],
         "readings": [list(reading.values) for reading in animation.readings],
     }
     sheet = {"course": variant.exercise.course.title(lang), "title": animation.title}
-    driver = variant.exercise.spec.driver.angle
     said = words(lang)
+    start = said["motion"]["film" if film else "statement"]
     names = {
         "lang": lang,
         "paper": paper,
@@ -52,11 +55,13 @@ def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> st
         "effects": [(e, e in animation.effects, COLOURS[e]) for e in animation.available],
         "points": list(animation.points),
         "readings": animation.readings,
-        "driver": variant.exercise.symbol(driver),
+        "driver": variant.exercise.symbol(animation.driver),
         "count": len(animation.angles),
         "first": first,
         "angle": angles[first],
+        "start": start,
         "swings": not animation.turns,
+        "turns": localise(significant(float(np.ptp(animation.angles)) / 360.0, 3), lang) if film else "",
         "has_vectors": bool(animation.scales),
         "data": Markup(json.dumps(data, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")),
     }

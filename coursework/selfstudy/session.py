@@ -150,7 +150,7 @@ class StudySession:
         try:
             moving = self.variant.animation(effects)
         except BadCourse:
-            return self._shown(self._said["no_motion"])
+            return self._shown(self._missing() or self._said["no_motion"])
         if not effects:
             usual = [e for e in ("position", "velocity") if e in moving.available]
             moving = self.variant.animation(usual)

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 import coursework
+from coursework.figures import contact, line, point, trace, wheel
+from coursework.motion import Animation
 
 EXERCISE = coursework.open_course()["ball_reducer"]
 MOTIONS = ("30", "31", "32")
@@ -183,3 +185,182 @@ def test_known_cases(case):
     found = EXERCISE.solve(**given, only=tuple(expected))
     for name, value in expected.items():
         assert found[name] == pytest.approx(value, rel=1e-14, abs=1e-12), name
+
+
+# ------------------------------------------------------------------------ film
+#
+# What follows is read from the drawn elements: where a body is, its marks say.
+
+
+def drawn(seed, count=360):
+    """The film of a variant in time: the driver's angles, the elements at each instant, the places of A_3."""
+    film = Animation(EXERCISE.variant(seed), count=count)
+    order = list(film.order)
+    return film.angles[order], [film.frames[k] for k in order], film.points["A_3"].position[order]
+
+
+def named(elements, kind, label):
+    (found,) = [e for e in elements if type(e) is kind and e.label == label]
+    return found
+
+
+def places(frames, kind, label):
+    return np.array([named(elements, kind, label).p for elements in frames])
+
+
+def shaft_angles(frames, label):
+    """How far a shaft has turned since the start, by its marked spoke, radians."""
+    spokes = np.array([named(elements, line, label).q for elements in frames])
+    return np.unwrap(np.angle(spokes / spokes[0]))
+
+
+def space(z):
+    return np.stack([z.real, z.imag, 0 * z.real], axis=-1)
+
+
+def ball_attitudes(frames, A_3):
+    """The rotation of the ball since the start, 3 by 3 matrices: from its seam, whose upper half is drawn, and
+    from A_3, which lies on it."""
+    found = []
+    for elements, mark in zip(frames, A_3, strict=True):
+        ball = max((e for e in elements if type(e) is wheel), key=lambda e: abs(e.center))
+        (seam,) = [e for e in elements if type(e) is trace]
+        *_, ways = np.linalg.svd(np.array([raised(z - ball.center, ball.radius)[0] for z in seam.points]))
+        normal = ways[2]  # of a great circle, which has two: the one nearest to that just before
+        if found:
+            normal = normal * np.sign(normal @ found[-1][0])
+        # A_3 is on the upper half of the ball or on the lower one.
+        place = min(raised(mark - ball.center, ball.radius), key=lambda way: abs(way @ normal))
+        assert abs(place @ normal) < 1e-6
+        found.append([normal, place, np.cross(normal, place)])
+    axes = np.swapaxes(np.array(found), 1, 2)
+    return axes @ np.linalg.inv(axes[0])
+
+
+def raised(flat, radius):
+    """Unit vectors from the centre of a ball to the two points of it that are seen at one place."""
+    up = np.sqrt(max(radius**2 - abs(flat) ** 2, 0.0))
+    return [np.array([flat.real, flat.imag, z]) / radius for z in (up, -up)]
+
+
+def turned_between(attitudes):
+    """The rotation vector from each attitude to the next, at the attitudes' own middle, radians."""
+    steps = attitudes[1:] @ np.linalg.inv(attitudes[:-1])
+    skew = (steps - np.swapaxes(steps, 1, 2)) / 2
+    vector = np.stack([skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0]], axis=-1)
+    sine = np.linalg.norm(vector, axis=-1, keepdims=True)
+    return vector * np.arcsin(sine) / sine
+
+
+FILMS = pytest.mark.parametrize("seed", [1, 3])  # the input turns one way, the other way
+
+
+@FILMS
+def test_in_the_film_the_drawn_ball_slips_at_none_of_its_four_contacts(seed):
+    _, frames, A_3 = drawn(seed)
+    given = EXERCISE.variant(seed).given
+    R, r = given["R"], given["r"]
+    O3 = places(frames, point, "O_3")
+    moved, rolled = space(np.diff(O3)), turned_between(ball_attitudes(frames, A_3))
+    middle = (O3[1:] + O3[:-1]) / 2
+    out = space(middle / abs(middle))
+    up = np.array([0.0, 0.0, 1.0])
+    shafts = {label: np.diff(shaft_angles(frames, label)) for label in ("S_1", "S_2")}
+    contacts = (
+        (r * out, np.zeros(len(moved))),
+        (-r * up, np.zeros(len(moved))),
+        (-r * out, shafts["S_1"]),
+        (r * up, shafts["S_2"]),
+    )
+    step = R * abs(shafts["S_1"]).max()
+    for across, turned in contacts:
+        place = space(middle) + across
+        slip = (
+            moved
+            + np.cross(rolled, np.broadcast_to(across, moved.shape))
+            - turned[:, None] * np.cross(up, place)
+        )
+        assert np.linalg.norm(slip, axis=-1).max() < 1e-4 * step
+
+
+@FILMS
+def test_in_the_film_contacts_run_equal_arcs_on_the_two_bodies_that_roll(seed):
+    _, frames, A_3 = drawn(seed)
+    R, r = (EXERCISE.variant(seed).given[n] for n in ("R", "r"))
+    O3, attitudes = places(frames, point, "O_3"), ball_attitudes(frames, A_3)
+
+    def run(way):
+        return (
+            abs(np.diff(way)).sum() if way.ndim == 1 else np.linalg.norm(np.diff(way, axis=0), axis=-1).sum()
+        )
+
+    def on_the_ball(z):
+        return np.einsum("nji,nj->ni", attitudes, space(z - O3))
+
+    A, C = places(frames, contact, "A"), places(frames, contact, "C")
+    assert abs(A) == pytest.approx(np.full(len(A), R + 2 * r))
+    assert abs(C) == pytest.approx(np.full(len(C), R))
+    on_the_shaft = C * np.exp(-1j * shaft_angles(frames, "S_1"))
+    assert run(on_the_ball(A)) == pytest.approx(run(A), rel=1e-3)
+    assert run(on_the_ball(C)) == pytest.approx(run(on_the_shaft), rel=1e-3)
+    assert run(A) == pytest.approx(2 * np.pi * (R + 2 * r), rel=1e-3)
+
+
+@FILMS
+def test_the_film_shows_one_round_of_the_ball_by_the_exact_ratios(seed):
+    angles, frames, _ = drawn(seed, count=72)
+    variant = EXERCISE.variant(seed)
+    rates, R, r = exact(variant.given), variant.given["R"], variant.given["r"]
+    O3 = places(frames, point, "O_3")
+    assert abs(O3) == pytest.approx(np.full(len(O3), R + r))
+    phi, theta = np.degrees(np.unwrap(np.angle(O3))), np.degrees(shaft_angles(frames, "S_2"))
+    assert np.degrees(shaft_angles(frames, "S_1")) == pytest.approx(angles)
+    for turns in (1, 2):
+        (k,) = np.flatnonzero(abs(angles) == 360 * turns)
+        assert phi[k] == pytest.approx(float(angles[k] * rates["phi_dot"] / variant.given["psi_dot"]))
+        assert theta[k] == pytest.approx(float(angles[k] * rates["theta_dot"] / variant.given["psi_dot"]))
+    way = np.sign(variant.given["psi_dot"])
+    assert (phi[-1], theta[-1]) == pytest.approx((360 * way, 720 * way))
+
+
+@FILMS
+def test_the_point_of_the_ball_that_touches_the_frame_is_then_at_rest(seed):
+    _, frames, A_3 = drawn(seed)
+    A = places(frames, contact, "A")
+    assert A_3[0] == pytest.approx(A[0])
+    steps = abs(np.gradient(A_3))
+    touching = np.flatnonzero(abs(A_3 - A) < 0.02 * abs(A[0]))
+    assert len(touching) > 3
+    assert steps[touching].max() < 0.2 * steps.max()
+
+
+@FILMS
+def test_velocities_and_accelerations_in_the_film_are_differences_over_time(seed):
+    variant = EXERCISE.variant(seed)
+    psi_dot, psi_ddot = variant.given["psi_dot"], variant.given["psi_ddot"]
+    graph = EXERCISE.solution.graph.with_functions({"motion": EXERCISE.solution.motion})
+    h, angles = 1e-5, np.arange(0.0, 900.0, 15.0)
+
+    def after(t):
+        psi = angles + np.degrees(psi_dot * t + psi_ddot * t**2 / 2)
+        return graph.evaluate(("motion",), {**variant.used, "psi": psi})["motion"]
+
+    before, now, later = after(-h), after(0.0), after(h)
+    assert {n for n, moving in now.items() if moving.velocity is not None} == {"O_3", "C_1", "D_2"}
+    for name, moving in now.items():
+        p, q, s = before[name].position, moving.position, later[name].position
+        if moving.velocity is not None:
+            assert abs((s - p) / (2 * h) - moving.velocity).max() < 1e-5 * abs(moving.velocity).max()
+            wanted = (s - 2 * q + p) / h**2
+            assert abs(wanted - moving.acceleration).max() < 1e-4 * abs(moving.acceleration).max()
+
+
+def test_no_copy_without_solutions_shows_the_film(tmp_path):
+    import shutil
+
+    for folder in ("exercises", "templates"):
+        shutil.copytree(EXERCISE.course.root / folder, tmp_path / folder)
+    copied = coursework.open_course(tmp_path)["ball_reducer"]
+    with pytest.raises(coursework.errors.BadCourse, match="no solution at hand"):
+        copied.variant(0).animation()
+    assert copied.variant(0).given == EXERCISE.variant(0).given
