@@ -390,7 +390,7 @@ def _drive(exercise: Any, text: str) -> float:
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=".", help="Folder to write.")
 @click.pass_context
 def animate(context: click.Context, exercise: str, seed: int, effects: str, lang: str, out: Path) -> None:
-    """Show a mechanism over the cycle of its driver.
+    """Show a mechanism in motion: over the cycle of its driver, or over the turns of its film.
 
     Writes a moving picture (SVG) and a page with a slider (HTML).
     """

@@ -36,7 +36,7 @@ class StudySheet:
     before: tuple[Ask, ...]  #: predictions before any computation
     cycle: tuple[Ask, ...]  #: predictions before the curves
     moves: bool  #: whether there are curves over a cycle
-    animates: bool  #: whether the figure moves
+    animates: bool  #: whether the mechanism can be shown in motion
     questions: tuple[Question, ...]  #: of the first fresh variant; none where there is no other variant
 
 
@@ -51,7 +51,7 @@ def study_sheet(variant: Variant, student: str = "") -> StudySheet:
         before=tuple(_ask(variant, p) for p in predictions.before_answers(variant)),
         cycle=tuple(_ask(variant, p) for p in predictions.over_the_cycle(variant)),
         moves=bool(predictions.moving(variant)),
-        animates=exercise.spec.driver is not None and exercise.spec.figure is not None,
+        animates=exercise.is_animated,
         questions=_fresh_questions(variant),
     )
 
