@@ -36,7 +36,7 @@ def test_formulas_that_are_taken_to_fit_do(lang):
                     continue
                 if views.is_short(step, lang):
                     sure[views.chain_on_one_line(step)] = (name, step.name)
-                elif views.is_long(step, lang):
+                elif views.fits_on_lines(step, lang):
                     sure[views.chain_on_lines(step)] = (name, step.name)
     assert len(sure) > 500
     too_wide = [sure[tex] for tex, width in zip(sure, widths(sure, lang), strict=True) if width > LINE]

@@ -60,7 +60,7 @@ def environment(
         many_lines=views.chain_on_lines,
         chain=views.chain,
         is_short=lambda step: views.is_short(step, lang),
-        is_long=lambda step: views.is_long(step, lang),
+        fits_on_lines=lambda step: views.fits_on_lines(step, lang),
         answer_comment=lambda question: views.answer_comment(question, lang),
         python_name=views.python_name,
         fill=lambda pattern, *parts: pattern.format(*parts),

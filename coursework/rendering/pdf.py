@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import threading
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -39,7 +38,7 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = 
 
 
 _DEFINITIONS_END = "\n//=\n"
-_PIECE = re.compile(r"(?<=\n)//\(\n(.*?)\n//\)(?=\n)", re.DOTALL)
+_PIECE_START, _PIECE_END = "//(\n", "\n//)\n"
 
 
 def files(typst_source: str) -> dict[str, bytes]:
@@ -53,13 +52,14 @@ def files(typst_source: str) -> dict[str, bytes]:
         return {"main.typ": typst_source.encode()}
     opening = '#import "definitions.typ": *\n'
     found = {"definitions.typ": definitions.encode()}
-
-    def include(piece: re.Match[str]) -> str:
+    first, *marked = rest.split(_PIECE_START)
+    main = [opening, first]
+    for one in marked:
+        piece, _, after = one.partition(_PIECE_END)
         name = f"{len(found)}.typ"
-        found[name] = (opening + piece[1]).encode()
-        return f'#include "{name}"'
-
-    found["main.typ"] = (opening + _PIECE.sub(include, rest)).encode()
+        found[name] = (opening + piece).encode()
+        main += [f'#include "{name}"\n', after]
+    found["main.typ"] = "".join(main).encode()
     return found
 
 
@@ -124,12 +124,15 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
     return environment(folders, lang, markup.typst_text, filters)
 
 
-def _drawing(figure: Figure | Beginning, alt: str) -> str:
-    """The figure inside the source, which so stands alone: an SVG without letters, its size, and the letters."""
+def _drawing(figure: Figure | Beginning, alt: str, room: tuple[float, float] | None = None) -> str:
+    """The figure inside the source, which so stands alone: an SVG without letters, its size, and the letters; and by
+    how much it is made smaller for a room of so many mm that it was not laid out for."""
     width, height = figure.size_mm
     listed = json.dumps([_letters(one, width) for one in figure.letters()], ensure_ascii=False)
     svg, letters, words = map(markup.typst_string, (figure.bare_svg(), listed, alt))
-    return f"bytes({svg}), size: ({width}mm, {height}mm), letters: {letters}, alt: {words}"
+    ratio = min(room[0] / width, room[1] / height) if room else 1
+    smaller = f", ratio: {ratio:.4f}" if ratio < 1 else ""
+    return f"bytes({svg}), size: ({width}mm, {height}mm), letters: {letters}, alt: {words}{smaller}"
 
 
 def _letters(label: Letters, width: float) -> tuple[object, ...]:

@@ -19,6 +19,7 @@ Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 
 #: Room that a figure has on paper, width and height in mm: beside the data, and with the data below it.
 ROOM_BESIDE, ROOM_ALONE = (112.0, 62.0), (165.0, 72.0)
+ROOM_STEP = (53.0, 200.0)  #: of a step of a construction, three of which stand side by side
 _BESIDE = 9  #: data at most that stand beside the figure
 
 #: The template of each type of sheet.
@@ -40,6 +41,8 @@ def context(sheet: Sheet) -> dict[str, object]:
         "title": title(sheet),
         "figure": figure_of(sheet),
         "beside": _data_beside(sheet),
+        "room": room(sheet),
+        "step_room": ROOM_STEP,
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
         "variant": f"{handout.exercise} · {handout.seed} · v{handout.version}",
         "tolerances": tolerances(handout.questions, handout.lang),
@@ -191,12 +194,9 @@ def is_short(step: Step, lang: str) -> bool:
     return len(to_line(chain_on_one_line(step), lang)) <= _SURELY_FITS
 
 
-_SURELY_TOO_LONG = 130  #: characters that no printed line holds, or only just
-
-
-def is_long(step: Step, lang: str) -> bool:
-    """Whether the step's chain needs a line an equality without any doubt, and each is on one."""
-    if _is_equation(step) or len(to_line(chain_on_one_line(step), lang)) < _SURELY_TOO_LONG:
+def fits_on_lines(step: Step, lang: str) -> bool:
+    """Whether each equality of the step's chain is on a line of its own without any doubt."""
+    if _is_equation(step):
         return False
     own = len(to_line(step.symbol, lang)) + 3
     lines = (line for member in chain(step) for line in _broken(member))
