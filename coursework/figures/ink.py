@@ -6,6 +6,7 @@ import cmath
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 BAR, EDGE, THIN = 0.6, 0.35, 0.2  #: line widths, mm
 DASHED, CHAIN, DOTTED = "1.6 1", "4 1 0.6 1", "0.8 0.8"
@@ -30,6 +31,12 @@ def pair(z: complex) -> str:
 def turn(degrees: float) -> complex:
     """Unit vector at an angle."""
     return cmath.rect(1.0, math.radians(degrees))
+
+
+@lru_cache(maxsize=64)
+def _round(sides: int) -> tuple[complex, ...]:
+    """Unit vectors to the corners of a regular polygon, the first of them again at the end."""
+    return tuple(turn(360 * k / sides) for k in range(sides + 1))
 
 
 def _paint(width: float, fill: str, dash: str = "") -> str:
@@ -72,7 +79,7 @@ class Disc:
 
     def outline(self) -> tuple[complex, ...]:
         sides = max(12, min(72, round(4 * self.radius)))
-        return tuple(self.center + self.radius * turn(360 * k / sides) for k in range(sides + 1))
+        return tuple(self.center + self.radius * way for way in _round(sides))
 
     def svg(self, place: Place) -> str:
         center = place(self.center)
