@@ -49,8 +49,8 @@ _TYPST_MARKS = re.compile(r"([\\`*_$#<>@~=+/\[\]{}\"'|-])")
 
 #: Scripts and signs that the typesetter's own fonts draw: Latin, Greek, Cyrillic, punctuation, mathematics.
 _UNDRAWN = re.compile(
-    "[^ -\u024f\u02b0-\u03ff\u0400-\u045f\u1e00-\u1eff\u2000-\u2040\u2070-\u209f\u20a0-\u20bf"
-    "\u2100-\u211e\u2126-\u214f\u2190-\u22ff\u2500-\u25ff\n\t]|[\x7f-\x9f]"
+    "[^ -~\u00a0-\u024f\u02b0-\u03ff\u0400-\u045f\u1e00-\u1eff\u2000-\u2040\u2070-\u209f\u20a0-\u20bf"
+    "\u2100-\u211e\u2126-\u214f\u2190-\u22ff\u2500-\u25ff\n\t]"
 )
 SUBSTITUTE = "\N{WHITE SQUARE}"  #: stands for a character that no font at hand draws
 

@@ -7,7 +7,7 @@ numbers is remembered, and a student's numbers are put in.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache, wraps
 
 from coursework.errors import BadStatement
@@ -49,18 +49,24 @@ def once_for_all_numbers(turn: Turn) -> Turn:
 
     @wraps(turn)
     def of(tex: str, lang: str) -> str:
-        numbers: list[str] = []
-
-        def hole(number: re.Match[str]) -> str:
-            numbers.append(localise(number[2], lang))
-            return number[1] + chr(ord(FIRST_HOLE) + len(numbers) - 1)
-
-        holed = _DIGITS.sub(hole, tex)
+        holed, numbers = _holed(tex, lang)
         cut = pieces(holed, lang) if 0 < len(numbers) < _MOST else None
         return turned(tex, lang) if cut is None else _filled(cut, numbers)
 
     return of
 
 
-def _filled(cut: tuple[str, ...], numbers: list[str]) -> str:
+@lru_cache(maxsize=1024)
+def _holed(tex: str, lang: str) -> tuple[str, tuple[str, ...]]:
+    """A formula with holes, and the numbers of the holes as the language prints them."""
+    numbers: list[str] = []
+
+    def hole(number: re.Match[str]) -> str:
+        numbers.append(localise(number[2], lang))
+        return number[1] + chr(ord(FIRST_HOLE) + len(numbers) - 1)
+
+    return _DIGITS.sub(hole, tex), tuple(numbers)
+
+
+def _filled(cut: tuple[str, ...], numbers: Sequence[str]) -> str:
     return "".join(numbers[ord(piece) - ord(FIRST_HOLE)] if at % 2 else piece for at, piece in enumerate(cut))
