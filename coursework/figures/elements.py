@@ -62,7 +62,7 @@ class Element:
         except (TypeError, ValueError) as error:
             raise WrongValue(f"{type(self).__name__}: {name} is {value!r}, not {_ASKED[kind]}") from error
         numbers = value if isinstance(value, tuple) else (value,)
-        if any(isinstance(x, float | complex) and not cmath.isfinite(x) for x in numbers):
+        if any(isinstance(x, (float, complex)) and not cmath.isfinite(x) for x in numbers):
             raise WrongValue(f"{type(self).__name__}: {name} is {value!r}, not finite")
         return value
 

@@ -21,7 +21,7 @@ Place = Callable[[complex], complex]
 def number(x: float) -> str:
     """A length in mm, to the hundredth at most, without idle zeros."""
     text = f"{x:.2f}".rstrip("0").rstrip(".")
-    return "0" if text in ("-0", "") else text
+    return "0" if text == "-0" else text
 
 
 def pair(z: complex) -> str:
@@ -39,6 +39,7 @@ def _round(sides: int) -> tuple[complex, ...]:
     return tuple(turn(360 * k / sides) for k in range(sides + 1))
 
 
+@lru_cache(maxsize=256)
 def _paint(width: float, fill: str, dash: str = "") -> str:
     stroke = f' stroke-width="{number(width)}"' if width else ' stroke="none"'
     filled = f' fill="{fill}"' if fill != NONE else ""

@@ -120,8 +120,10 @@ def _line(a: complex, b: complex, half: float) -> Line:
     ax, ay, bx, by = a.real, a.imag, b.real, b.imag
     left, right = (ax, bx) if ax < bx else (bx, ax)
     low, high = (ay, by) if ay < by else (by, ay)
-    sides = (left - half, low - half, right + half, high + half)
-    return *sides, (ax + bx) / 2, (ay + by) / 2, (bx - ax) / 2, (by - ay) / 2, half
+    return (
+        left - half, low - half, right + half, high + half,
+        (ax + bx) / 2, (ay + by) / 2, (bx - ax) / 2, (by - ay) / 2, half,
+    )  # fmt: skip
 
 
 def _meets(line: Line, across: float, up: float, wide: float, tall: float) -> bool:
@@ -137,19 +139,15 @@ class Obstacles:
     """The lines already drawn, with areas that labels avoid, and the labels already placed."""
 
     def __init__(self, ink: Sequence[Ink]) -> None:
-        outlines = [item.outline() for item in ink]
-        self._lines: list[Line] = [
-            _line(a, b, item.width / 2)
-            for item, outline in zip(ink, outlines, strict=True)
-            for a, b in pairwise(outline)
-        ]
-        self.areas = [outline for item, outline in zip(ink, outlines, strict=True) if item.solid]
-        self.bars = [
-            side
-            for item, outline in zip(ink, outlines, strict=True)
-            if item.width >= BAR
-            for side in pairwise(outline)
-        ]
+        self._lines: list[Line] = []
+        self.areas: list[tuple[complex, ...]] = []
+        self.bars: list[tuple[complex, complex]] = []
+        for item in ink:
+            outline = item.outline()
+            sides = list(pairwise(outline))
+            self._lines += [_line(a, b, item.width / 2) for a, b in sides]
+            self.areas += [outline] if item.solid else []
+            self.bars += sides if item.width >= BAR else []
         self.labels: list[Label] = []
         self._boxes: list[tuple[float, float, float, float]] = []  #: of the labels, with the white round them
         self._start()
