@@ -87,9 +87,15 @@ def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
     return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${whole});"
 
 
+#: A text that is one formula, as most answers are, is read at a glance.
+_ONE_FORMULA = re.compile(r"\$([^$`\n]+)(?<![\\\s])\$")
+
+
 @lru_cache(maxsize=1024)
 def to_typst_markup(markdown: str, lang: str) -> str:
     """Markdown as Typst markup."""
+    if formula := _ONE_FORMULA.fullmatch(markdown):
+        return typst_formula(formula[1].strip(), lang)
     return _typst(tree(markdown), lang).strip()
 
 
