@@ -27,8 +27,8 @@ PRINTED_DIGITS = 5  #: significant digits of a value in a worked solution
 _WITHOUT_SYMBOL = ("choice", "equation")
 
 
-def handout(variant: Variant, student: str = "") -> Handout:
-    """What the student's sheet shows.
+def handout(variant: Variant) -> Handout:
+    """What a student's sheet shows, before it is given to one.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def handout(variant: Variant, student: str = "") -> Handout:
         exercise=exercise.name,
         version=exercise.version,
         seed=variant.seed,
-        student=student,
+        student="",
         title=text.title,
         statement=text.opening,
         given=tuple(_given(variant, name) for name, spec in exercise.spec.given.items() if spec.shown),
@@ -157,7 +157,7 @@ def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) 
     NoSolution
         The course folder has no solutions.
     """
-    sheet = handout(variant, student)
+    sheet = variant.handout(student)
     values, text = variant.walk, variant.solution_text
     steps = _steps(variant, values, text)
     answers = tuple(
