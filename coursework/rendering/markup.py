@@ -60,7 +60,6 @@ def drawable(text: str) -> str:
     return _UNDRAWN.sub(SUBSTITUTE, text)
 
 
-@lru_cache(maxsize=4096)
 def typst_text(text: str, lang: str) -> str:
     """Plain text as Typst markup that prints exactly these characters."""
     escaped = _TYPST_MARKS.sub(r"\\\1", typeset(drawable(text), lang))
