@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Iterable, Mapping, Sequence
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from coursework.language import localise, plain, significant, unit_text
 from coursework.language import words as engine_words
 from coursework.model import Part
 from coursework.polygons import Polygon
-from coursework.worked import formula_latex, number_latex
+from coursework.worked import Shown, formula_in_symbols, formula_latex, number_latex
 
 if TYPE_CHECKING:
     from coursework.figures import Figure
@@ -27,8 +27,8 @@ PRINTED_DIGITS = 5  #: significant digits of a value in a worked solution
 _WITHOUT_SYMBOL = ("choice", "equation")
 
 
-def handout(variant: Variant, student: str = "") -> Handout:
-    """What the student's sheet shows.
+def handout(variant: Variant) -> Handout:
+    """What a student's sheet shows, before it is given to one.
 
     Raises
     ------
@@ -42,7 +42,7 @@ def handout(variant: Variant, student: str = "") -> Handout:
         exercise=exercise.name,
         version=exercise.version,
         seed=variant.seed,
-        student=student,
+        student="",
         title=text.title,
         statement=text.opening,
         given=tuple(_given(variant, name) for name, spec in exercise.spec.given.items() if spec.shown),
@@ -133,9 +133,14 @@ def tolerance_words(part: Part, lang: str) -> str:
 
 def _call(function: Any, values: Mapping[str, Any], helpers: tuple = ()) -> Any:
     """Call a function that draws, or states what is drawn, with the quantities its parameters name."""
-    name = function.__name__
-    graph = Graph({**{f.__name__: f for f in helpers}, name: function})
+    name, graph = function.__name__, _graph(function, helpers)
     return graph.evaluate((name,), {n: v for n, v in values.items() if n in graph.leaves})[name]
+
+
+@lru_cache(maxsize=256)
+def _graph(function: Any, helpers: tuple = ()) -> Graph:
+    """The same graph for all variants, so that its plans are made once."""
+    return Graph({**{f.__name__: f for f in helpers}, function.__name__: function})
 
 
 def figure(variant: Variant) -> Figure | None:
@@ -152,9 +157,9 @@ def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) 
     NoSolution
         The course folder has no solutions.
     """
-    sheet = handout(variant, student)
+    sheet = variant.handout(student)
     values, text = variant.walk, variant.solution_text
-    steps = tuple(_step(variant, name, values, text) for name in values if name not in variant.given)
+    steps = _steps(variant, values, text)
     answers = tuple(
         Answer(question, answer_text(variant, part, values), _margin(variant, part))
         for question, part in zip(sheet.questions, variant.parts, strict=True)
@@ -176,7 +181,7 @@ def solution_figure(variant: Variant) -> Figure | None:
 def _quantities(variant: Variant, function: Any) -> dict[str, Any]:
     """The quantities of a variant's solution, and those besides that a function of the solution needs."""
     values = dict(variant.walk)
-    more = tuple(n for n in inspect.signature(function).parameters if n not in values)
+    more = tuple(n for n in _graph(function).node(function.__name__).arguments if n not in values)
     return {**values, **variant.exercise.solution.graph.evaluate(more, variant.used, variant.effects)}
 
 
@@ -209,29 +214,38 @@ def _symbol(variant: Variant, name: str) -> str:
     return variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)
 
 
-def _step(variant: Variant, name: str, values: Mapping[str, Any], text: Any) -> Step:
-    exercise = variant.exercise
-    function = exercise.solution.graph.node(name).function
-    section = text.sections.get(name)
-    asked = {p.quantity for p in variant.parts}
-    symbols = {n: (_symbol(variant, n), False) for n in values}
+def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step, ...]:
+    """The quantities that are not given, in order."""
+    units = variant.exercise.units
+    symbols = tuple((n, _symbol(variant, n)) for n in values)
     numbers = {
-        n: (number_latex(v, exercise.units.get(n, "1"), PRINTED_DIGITS), True)
+        n: (number_latex(v, units.get(n, "1"), PRINTED_DIGITS), True)
         for n, v in values.items()
         if isinstance(v, (int, float, complex))
     }
-    value = _value_latex(variant, name, values[name])
+    return tuple(
+        _step(variant, name, value, text, symbols, numbers)
+        for name, value in values.items()
+        if name not in variant.given
+    )
+
+
+def _step(
+    variant: Variant, name: str, found: Any, text: Any, symbols: tuple[tuple[str, str], ...], numbers: Shown
+) -> Step:
+    exercise = variant.exercise
+    function = exercise.solution.graph.node(name).function
+    section = text.sections.get(name)
+    value = _value_latex(variant, name, found)
     words = section.text if section else ""
     part = next((p for p in variant.parts if p.quantity == name and p.kind == "choice"), None)
     if part is not None:
         # A case has no symbol that would say which question it answers.
         number = 1 + [p.id for p in variant.parts].index(part.id)
         asks = f"{engine_words(variant.lang)['sheet']['question']['one']} {number}."
-        words = (
-            f"*{asks[:1].upper()}{asks[1:]}* {words} **{variant.text.label(part.id, str(values[name]))}**."
-        )
+        words = f"*{asks[:1].upper()}{asks[1:]}* {words} **{variant.text.label(part.id, str(found))}**."
     try:
-        formula = formula_latex(function, symbols)
+        formula = formula_in_symbols(function, symbols)
         substitution = formula_latex(function, numbers) if formula and value else ""
     except KeyError as fault:
         raise BadCourse(
@@ -250,7 +264,7 @@ def _step(variant: Variant, name: str, values: Mapping[str, Any], text: Any) -> 
         value=value,
         words=words,
         remarks=remarks,
-        asked=name in asked,
+        asked=any(p.quantity == name for p in variant.parts),
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -237,9 +238,13 @@ class Variant:
 
     def handout(self, student: str = "") -> Handout:
         """What the student's sheet shows."""
+        return replace(self._handout, student=student)
+
+    @cached_property
+    def _handout(self) -> Handout:
         from coursework.sheets import handout
 
-        return handout(self, student)
+        return handout(self)
 
     def study_sheet(self, student: str = "") -> StudySheet:
         """What the self-study notebook of this variant shows."""

@@ -180,6 +180,12 @@ def formula_latex(function: Callable[..., Any], shown: Shown) -> str:
         return ""
 
 
+@lru_cache(maxsize=1024)
+def formula_in_symbols(function: Callable[..., Any], symbols: tuple[tuple[str, str], ...]) -> str:
+    """The same with the symbol of each name: what all students of an exercise read."""
+    return formula_latex(function, {name: (symbol, False) for name, symbol in symbols})
+
+
 def _in_template(shown: Shown, name: re.Match[str]) -> str:
     """A name of a stated formula; a negative number in brackets unless an opening bracket stands before it."""
     text, is_number = shown[name.group(1)]

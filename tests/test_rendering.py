@@ -311,6 +311,11 @@ def test_markdown_reaches_every_back_end():
         assert word in plain
 
 
+@pytest.mark.parametrize("tex", [r"\num{1.5}\ \mathrm{mm}", " a ", r"\{", "-1"])
+def test_a_formula_alone_is_written_as_in_a_text(tex):
+    assert to_typst_markup(f"${tex}$", "fr") == to_typst_markup(f"${tex}$ et", "fr").removesuffix(" et")
+
+
 def test_a_notebook_keeps_formulas_and_code_as_they_are_but_for_numbers():
     assert to_notebook_markdown(r"a $x < \num{1.5}$ `$\num{2.5}$` < b", "fr") == (
         r"a $x \lt  1{,}5$ `$\num{2.5}$` &lt; b"

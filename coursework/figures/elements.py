@@ -8,6 +8,7 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass, fields
+from functools import lru_cache
 from itertools import pairwise
 
 from coursework.errors import CourseworkError, WrongValue
@@ -50,8 +51,8 @@ class Element:
     """A part of a figure, in mechanism coordinates: complex numbers, mm, y up; degrees from +x."""
 
     def __post_init__(self) -> None:
-        for item in fields(self):
-            object.__setattr__(self, item.name, self._checked(item.name, str(item.type)))
+        for name, kind in _fields(type(self)):
+            object.__setattr__(self, name, self._checked(name, kind))
 
     def _checked(self, name: str, kind: str) -> object:
         value = getattr(self, name)
@@ -62,13 +63,13 @@ class Element:
         except (TypeError, ValueError) as error:
             raise WrongValue(f"{type(self).__name__}: {name} is {value!r}, not {_ASKED[kind]}") from error
         numbers = value if isinstance(value, tuple) else (value,)
-        if any(isinstance(x, float | complex) and not cmath.isfinite(x) for x in numbers):
+        if any(isinstance(x, (float, complex)) and not cmath.isfinite(x) for x in numbers):
             raise WrongValue(f"{type(self).__name__}: {name} is {value!r}, not finite")
         return value
 
     def reach(self) -> tuple[complex, ...]:
         """Points that bound the element."""
-        return tuple(z for item in fields(self) for z in _points(getattr(self, item.name)))
+        return tuple(z for name, _ in _fields(type(self)) for z in _points(getattr(self, name)))
 
     def bars(self) -> Bars:
         """Segments of the links, which labels and supports of pins keep away from."""
@@ -76,6 +77,12 @@ class Element:
 
     def draw(self, paper: Paper) -> None:
         raise NotImplementedError
+
+
+@lru_cache(maxsize=128)
+def _fields(element: type[Element]) -> tuple[tuple[str, str], ...]:
+    """What a kind of element is told: the name of each value and its type, as written."""
+    return tuple((item.name, str(item.type)) for item in fields(element))
 
 
 def _points(value: object) -> tuple[complex, ...]:

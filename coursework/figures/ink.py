@@ -6,6 +6,7 @@ import cmath
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 BAR, EDGE, THIN = 0.6, 0.35, 0.2  #: line widths, mm
 DASHED, CHAIN, DOTTED = "1.6 1", "4 1 0.6 1", "0.8 0.8"
@@ -20,7 +21,7 @@ Place = Callable[[complex], complex]
 def number(x: float) -> str:
     """A length in mm, to the hundredth at most, without idle zeros."""
     text = f"{x:.2f}".rstrip("0").rstrip(".")
-    return "0" if text in ("-0", "") else text
+    return "0" if text == "-0" else text
 
 
 def pair(z: complex) -> str:
@@ -32,6 +33,13 @@ def turn(degrees: float) -> complex:
     return cmath.rect(1.0, math.radians(degrees))
 
 
+@lru_cache(maxsize=64)
+def _round(sides: int) -> tuple[complex, ...]:
+    """Unit vectors to the corners of a regular polygon, the first of them again at the end."""
+    return tuple(turn(360 * k / sides) for k in range(sides + 1))
+
+
+@lru_cache(maxsize=256)
 def _paint(width: float, fill: str, dash: str = "") -> str:
     stroke = f' stroke-width="{number(width)}"' if width else ' stroke="none"'
     filled = f' fill="{fill}"' if fill != NONE else ""
@@ -72,7 +80,7 @@ class Disc:
 
     def outline(self) -> tuple[complex, ...]:
         sides = max(12, min(72, round(4 * self.radius)))
-        return tuple(self.center + self.radius * turn(360 * k / sides) for k in range(sides + 1))
+        return tuple(self.center + self.radius * way for way in _round(sides))
 
     def svg(self, place: Place) -> str:
         center = place(self.center)

@@ -7,7 +7,7 @@ Labels are placed in a fixed order, so the same figure always comes out the same
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -24,7 +24,7 @@ _AT_ARC = 3.0  #: the same for an angle, from the middle of its arc, mm
 _STEPS = (0.0, 0.5, 1.0, 1.7, 2.5, 3.5, 5.0, 7.0, 9.5, 12.5, 16.0, 20.0, 26.0, 34.0, 45.0, 60.0)
 INSIDE, NAMES, ANGLES, SIDES = range(4)  #: ranks of labels: those with least choice first
 _FRACTIONS = (0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75)
-_CELL = 8.0  #: side of the squares in which the lines near a place are looked up, mm
+_MORE = 8.0  #: mm round a place in which lines are looked up with it
 
 
 class Place(NamedTuple):
@@ -111,61 +111,52 @@ def _support(half: complex, way: complex) -> float:
     return half.real * abs(way.real) + half.imag * abs(way.imag)
 
 
-Segment = tuple[complex, complex, float]
+#: A line with its half-width, mm: the left, low, right and high sides of the least box round it, its middle (across
+#: and up), and from there to its end. A plain tuple, since labels are tried against lines by the thousand.
+Line = tuple[float, float, float, float, float, float, float, float, float]
 
 
-class _Bounded(NamedTuple):
-    """A segment with the least box round it, its middle and its half, all in mm: labels are tried by the thousand."""
-
-    left: float
-    low: float
-    right: float
-    high: float
-    across: float
-    up: float
-    half_across: float
-    half_up: float
-    half_width: float
-
-    def meets(self, across: float, up: float, wide: float, tall: float) -> bool:
-        """Whether a box, told by its middle and its half-sides, meets the segment: no axis separates them."""
-        return (
-            self.left <= across + wide
-            and self.right >= across - wide
-            and self.low <= up + tall
-            and self.high >= up - tall
-            and self.crosses(across, up, wide, tall)
-        )
-
-    def crosses(self, across: float, up: float, wide: float, tall: float) -> bool:
-        """The same for a box that meets the box round the segment."""
-        wide, tall = wide + self.half_width, tall + self.half_width
-        turned = (self.across - across) * self.half_up - (self.up - up) * self.half_across
-        return abs(turned) <= wide * abs(self.half_up) + tall * abs(self.half_across)
+def _line(a: complex, b: complex, half: float) -> Line:
+    ax, ay, bx, by = a.real, a.imag, b.real, b.imag
+    left, right = (ax, bx) if ax < bx else (bx, ax)
+    low, high = (ay, by) if ay < by else (by, ay)
+    return (
+        left - half, low - half, right + half, high + half,
+        (ax + bx) / 2, (ay + by) / 2, (bx - ax) / 2, (by - ay) / 2, half,
+    )  # fmt: skip
 
 
-def _bounded(segment: Segment) -> _Bounded:
-    a, b, half = segment
-    left, right = (a.real, b.real) if a.real < b.real else (b.real, a.real)
-    low, high = (a.imag, b.imag) if a.imag < b.imag else (b.imag, a.imag)
-    middle, d = (a + b) / 2, (b - a) / 2
-    sides = (left - half, low - half, right + half, high + half)
-    return _Bounded(*sides, middle.real, middle.imag, d.real, d.imag, half)
+def _meets(line: Line, across: float, up: float, wide: float, tall: float) -> bool:
+    """Whether a box, told by its middle and its half-sides, meets a line: no axis separates them."""
+    left, low, right, high, middle_across, middle_up, half_across, half_up, half = line
+    if left > across + wide or right < across - wide or low > up + tall or high < up - tall:
+        return False
+    turned = (middle_across - across) * half_up - (middle_up - up) * half_across
+    return abs(turned) <= (wide + half) * abs(half_up) + (tall + half) * abs(half_across)
 
 
 class Obstacles:
-    """The lines already drawn: segments with half their width, and areas that labels avoid."""
+    """The lines already drawn, with areas that labels avoid, and the labels already placed."""
 
     def __init__(self, ink: Sequence[Ink]) -> None:
-        self._lines: list[_Bounded] = []
-        self._cells: dict[tuple[int, int], list[_Bounded]] = {}
-        self._columns: dict[int, list[_Bounded]] = {}
-        segments = [(a, b, item.width / 2) for item in ink for a, b in pairwise(item.outline())]
-        self.add(segments)
-        self.areas = [item.outline() for item in ink if item.solid]
-        self.bars = [(a, b) for a, b, half in segments if half >= BAR / 2]
+        self._lines: list[Line] = []
+        self.areas: list[tuple[complex, ...]] = []
+        self.bars: list[tuple[complex, complex]] = []
+        for item in ink:
+            outline = item.outline()
+            sides = list(pairwise(outline))
+            self._lines += [_line(a, b, item.width / 2) for a, b in sides]
+            self.areas += [outline] if item.solid else []
+            self.bars += sides if item.width >= BAR else []
         self.labels: list[Label] = []
         self._boxes: list[tuple[float, float, float, float]] = []  #: of the labels, with the white round them
+        self._start()
+
+    def _start(self) -> None:
+        """Nothing is known yet of the label to place."""
+        self._window = (math.inf, math.inf, -math.inf, -math.inf)  #: of the paper where it was tried
+        self._near: list[Line] = []  #: the lines that come into the window
+        self._blocking: list[Line] = []  #: those that it has met, the last one first
 
     def put(self, label: Label) -> None:
         """A label that is placed, with its leader."""
@@ -173,65 +164,61 @@ class Obstacles:
         reach = complex(label.width, label.height) / 2 + complex(_APART, _APART)
         self._boxes.append((label.center.real, label.center.imag, reach.real, reach.imag))
         if label.leader:
-            self.add([(*label.leader, THIN / 2)])
+            self._lines.append(_line(*label.leader, THIN / 2))
+        self._start()
 
-    def add(self, segments: Iterable[Segment]) -> None:
-        self._cells.clear()
-        self._columns.clear()
-        self._lines += map(_bounded, segments)
-
-    def _near(self, column: int, row: int) -> list[_Bounded]:
-        """The segments that come into a square of the paper."""
-        if column not in self._columns:
-            left, right = column * _CELL, (column + 1) * _CELL
-            self._columns[column] = [it for it in self._lines if it.left <= right and it.right >= left]
-        low, high, half = row * _CELL, (row + 1) * _CELL, _CELL / 2
-        across, up = column * _CELL + half, low + half
-        return [
-            it
-            for it in self._columns[column]
-            if it.low <= high and it.high >= low and it.crosses(across, up, half, half)
-        ]
+    def _look(self, left: float, low: float, right: float, high: float) -> None:
+        """Widens the window so that it holds a box, and some more for the next ones."""
+        a, b, c, d = self._window
+        if left < a or low < b or right > c or high > d:
+            a, b, c, d = (
+                min(a, left - _MORE),
+                min(b, low - _MORE),
+                max(c, right + _MORE),
+                max(d, high + _MORE),
+            )
+            self._window = a, b, c, d
+            self._near = [it for it in self._lines if it[0] <= c and it[2] >= a and it[1] <= d and it[3] >= b]
 
     def white(self, center: complex, half: complex, inside: bool = False) -> float:
         """The white that a box has: the one that labels prefer, the least there may be, or 0 for too little."""
         cx, cy, wide, tall = center.real, center.imag, half.real, half.imag
+        # What was in the way of the last places is most often in the way of this one.
+        for k, line in enumerate(self._blocking):
+            if _meets(line, cx, cy, wide + _CLEAR, tall + _CLEAR):
+                self._blocking.insert(0, self._blocking.pop(k))
+                return 0.0
         for across, up, width, height in self._boxes:
             if abs(cx - across) < wide + width and abs(cy - up) < tall + height:
                 return 0.0
         found, x, y = _AIRY, wide + _AIRY, tall + _AIRY
-        left, right, low, high = cx - x, cx + x, cy - y, cy + y
-        rows = range(math.floor(low / _CELL), math.floor(high / _CELL) + 1)
-        for column in range(math.floor(left / _CELL), math.floor(right / _CELL) + 1):
-            for row in rows:
-                near = self._cells.get((column, row))
-                if near is None:
-                    near = self._cells[column, row] = self._near(column, row)
-                for it in near:
-                    # As ``meets`` does, without a call for each line: most are off.
-                    if it[0] > right or it[2] < left or it[1] > high or it[3] < low:
-                        continue
-                    if not it.crosses(cx, cy, x, y):
-                        continue
-                    if found == _CLEAR or it.meets(cx, cy, wide + _CLEAR, tall + _CLEAR):
-                        return 0.0
-                    found, x, y = _CLEAR, wide + _CLEAR, tall + _CLEAR
-                    left, right, low, high = cx - x, cx + x, cy - y, cy + y
+        left, low, right, high = cx - x, cy - y, cx + x, cy + y
+        self._look(left, low, right, high)
+        for line in self._near:
+            # The first thing that ``_meets`` asks, without a call: most lines are off.
+            if line[0] > right or line[2] < left or line[1] > high or line[3] < low:
+                continue
+            if _meets(line, cx, cy, x, y):
+                if found == _CLEAR or _meets(line, cx, cy, wide + _CLEAR, tall + _CLEAR):
+                    self._blocking.insert(0, line)
+                    return 0.0
+                found, x, y = _CLEAR, wide + _CLEAR, tall + _CLEAR
+                left, low, right, high = cx - x, cy - y, cx + x, cy + y
         return 0.0 if not inside and any(within(center, area) for area in self.areas) else found
 
     @property
     def right(self) -> float:
         """Abscissa of the rightmost line."""
-        return max((it.right for it in self._lines), default=0.0)
+        return max((line[2] for line in self._lines), default=0.0)
 
     def hides(self, anchor: complex, center: complex) -> bool:
         """Whether a bar passes between an anchor and its label."""
         return any(_meet(anchor, center, a, b) for a, b in self.bars if distance(anchor, a, b) > 1.3)
 
     def leader_free(self, a: complex, b: complex) -> bool:
-        thin = _bounded((a, b, 0.3))
+        thin = _line(a, b, 0.3)
         return not any(
-            thin.meets(it.center.real, it.center.imag, it.width / 2, it.height / 2) for it in self.labels
+            _meets(thin, it.center.real, it.center.imag, it.width / 2, it.height / 2) for it in self.labels
         )
 
 
@@ -272,13 +259,14 @@ def _choose(wish: Wish, obstacles: Obstacles) -> Label:
     width, height = text.box
     half = complex(width, height) / 2
     # A label is in sight of what it names; failing that, a leader may pass over a bar.
-    white: dict[int, float] = {}
+    tried: dict[int, tuple[complex, float]] = {}  #: the centre of each place, and its white
     for in_sight in (True, False):
         for place in wish.places():
-            center = wish.center(place, half)
-            if place.number not in white:
-                white[place.number] = obstacles.white(center, half, wish.inside)
-            if white[place.number] < place.clear:
+            if place.number not in tried:
+                center = wish.center(place, half)
+                tried[place.number] = center, obstacles.white(center, half, wish.inside)
+            center, white = tried[place.number]
+            if white < place.clear:
                 continue
             leader = _leader(wish, center, half)
             if (in_sight or leader is None) and obstacles.hides(wish.source, center):

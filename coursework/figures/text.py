@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 from coursework.errors import WrongValue, unknown
 
@@ -63,16 +63,16 @@ class Run:
     size: float = 1.0
     rise: float = 0.0
 
-    @property
+    @cached_property
     def width(self) -> float:
         table = _WIDTHS[self.italic]
         return self.size * sum(table.get(letter, 0.75) for letter in self.text)
 
-    @property
+    @cached_property
     def top(self) -> float:
         return self.rise + self.size * (0.46 if set(self.text) <= _LOW else 0.70)
 
-    @property
+    @cached_property
     def bottom(self) -> float:
         descending = _ITALIC_DESCENDING if self.italic else _DESCENDING
         return self.rise - self.size * (0.24 if descending & set(self.text) else 0.02)
@@ -94,16 +94,16 @@ class Text:
     runs: tuple[Run, ...]
     accents: tuple[Accent, ...]
 
-    @property
+    @cached_property
     def width(self) -> float:
         return sum(run.width for run in self.runs)
 
-    @property
+    @cached_property
     def top(self) -> float:
         above = 0.36 if any(accent.kind == "arrow" for accent in self.accents) else 0.24
         return max(run.top for run in self.runs) + (above if self.accents else 0.0)
 
-    @property
+    @cached_property
     def bottom(self) -> float:
         return min(run.bottom for run in self.runs)
 
@@ -111,7 +111,7 @@ class Text:
         """Abscissa of a run, from the left of the label."""
         return sum(run.width for run in self.runs[:index])
 
-    @property
+    @cached_property
     def box(self) -> tuple[float, float]:
         """Width and height of the label's box, mm on paper, with some slack."""
         return self.width * SIZE * _SLACK + 0.2, (self.top - self.bottom) * SIZE

@@ -7,6 +7,7 @@ with a ``#`` or a ``<`` in it prints as itself, in every template, whoever wrote
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound, Undefined
@@ -33,9 +34,11 @@ def environment(
     """
 
     def printed(value: object) -> object:
-        if isinstance(value, (Markup, Undefined)):
-            return value
-        return Markup(text(str(value), lang))
+        return value if isinstance(value, (Markup, Undefined)) else escaped(str(value))
+
+    @lru_cache(maxsize=4096)
+    def escaped(value: str) -> Markup:
+        return Markup(text(value, lang))
 
     env = Environment(
         loader=FileSystemLoader([str(folder) for folder in folders]),

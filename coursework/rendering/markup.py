@@ -49,8 +49,8 @@ _TYPST_MARKS = re.compile(r"([\\`*_$#<>@~=+/\[\]{}\"'|-])")
 
 #: Scripts and signs that the typesetter's own fonts draw: Latin, Greek, Cyrillic, punctuation, mathematics.
 _UNDRAWN = re.compile(
-    "[^ -\u024f\u02b0-\u03ff\u0400-\u045f\u1e00-\u1eff\u2000-\u2040\u2070-\u209f\u20a0-\u20bf"
-    "\u2100-\u211e\u2126-\u214f\u2190-\u22ff\u2500-\u25ff\n\t]|[\x7f-\x9f]"
+    "[^ -~\u00a0-\u024f\u02b0-\u03ff\u0400-\u045f\u1e00-\u1eff\u2000-\u2040\u2070-\u209f\u20a0-\u20bf"
+    "\u2100-\u211e\u2126-\u214f\u2190-\u22ff\u2500-\u25ff\n\t]"
 )
 SUBSTITUTE = "\N{WHITE SQUARE}"  #: stands for a character that no font at hand draws
 
@@ -60,7 +60,6 @@ def drawable(text: str) -> str:
     return _UNDRAWN.sub(SUBSTITUTE, text)
 
 
-@lru_cache(maxsize=4096)
 def typst_text(text: str, lang: str) -> str:
     """Plain text as Typst markup that prints exactly these characters."""
     escaped = _TYPST_MARKS.sub(r"\\\1", typeset(drawable(text), lang))
@@ -87,9 +86,15 @@ def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
     return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${whole});"
 
 
+#: A text that is one formula, as most answers are, is read at a glance.
+_ONE_FORMULA = re.compile(r"\$([^$`\n]+)(?<![\\\s])\$")
+
+
 @lru_cache(maxsize=1024)
 def to_typst_markup(markdown: str, lang: str) -> str:
     """Markdown as Typst markup."""
+    if formula := _ONE_FORMULA.fullmatch(markdown):
+        return typst_formula(formula[1].strip(), lang)
     return _typst(tree(markdown), lang).strip()
 
 

@@ -7,7 +7,7 @@ numbers is remembered, and a student's numbers are put in.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache, wraps
 
 from coursework.errors import BadStatement
@@ -49,18 +49,23 @@ def once_for_all_numbers(turn: Turn) -> Turn:
 
     @wraps(turn)
     def of(tex: str, lang: str) -> str:
-        numbers: list[str] = []
-
-        def hole(number: re.Match[str]) -> str:
-            numbers.append(localise(number[2], lang))
-            return number[1] + chr(ord(FIRST_HOLE) + len(numbers) - 1)
-
-        holed = _DIGITS.sub(hole, tex)
+        holed, numbers = _holed(tex, lang)
         cut = pieces(holed, lang) if 0 < len(numbers) < _MOST else None
         return turned(tex, lang) if cut is None else _filled(cut, numbers)
 
     return of
 
 
-def _filled(cut: tuple[str, ...], numbers: list[str]) -> str:
-    return "".join(numbers[ord(piece) - ord(FIRST_HOLE)] if at % 2 else piece for at, piece in enumerate(cut))
+@lru_cache(maxsize=1024)
+def _holed(tex: str, lang: str) -> tuple[str, tuple[str, ...]]:
+    """A formula with holes, and the numbers of the holes as the language prints them."""
+    parts = _DIGITS.split(tex)  # text, what opens a number and its digits, in turn
+    numbers = tuple(localise(digits, lang) for digits in parts[2::3])
+    parts[2::3] = (chr(ord(FIRST_HOLE) + at) for at in range(len(numbers)))
+    return "".join(parts), numbers
+
+
+def _filled(cut: tuple[str, ...], numbers: Sequence[str]) -> str:
+    parts = list(cut)
+    parts[1::2] = [numbers[ord(hole) - ord(FIRST_HOLE)] for hole in cut[1::2]]
+    return "".join(parts)

@@ -6,6 +6,7 @@ import keyword
 import re
 import sys
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import TypeAlias
 
 from coursework.figures import Beginning, Figure
@@ -155,6 +156,7 @@ def _ranges(numbers: Sequence[int]) -> str:
     )
 
 
+@lru_cache(maxsize=256)
 def chain(step: Step) -> tuple[str, ...]:
     """What a worked step equals, in order: formula, numbers put in, value; those that add something."""
     value = "".join(step.value.split())
@@ -171,10 +173,12 @@ def _without_idle_signs(latex: str) -> str:
     return _IDLE_SIGN.sub(r"\\,", latex)
 
 
+@lru_cache(maxsize=256)
 def _is_equation(step: Step) -> bool:
     return any(token == "=" for token in tokens(step.value))
 
 
+@lru_cache(maxsize=256)
 def chain_on_one_line(step: Step) -> str:
     return " = ".join(chain(step) if _is_equation(step) else (step.symbol, *chain(step)))
 
@@ -206,7 +210,8 @@ def fits_on_lines(step: Step, lang: str) -> bool:
 _LINE = 85  #: characters of a formula written out that a printed line holds
 
 
-def _broken(member: str) -> list[str]:
+@lru_cache(maxsize=256)
+def _broken(member: str) -> tuple[str, ...]:
     """A member of a chain as lines of an aligned formula, cut before its signs where it is too wide."""
     terms = _terms(member)
     width = len(to_line(member, "en"))
@@ -216,7 +221,7 @@ def _broken(member: str) -> list[str]:
         if lines[-1] and len(lines) < count and len(to_line(lines[-1] + term, "en")) > 1.1 * share:
             lines.append("")
         lines[-1] += term
-    return [f"&= {lines[0]}", *(rf"&\quad {line}" for line in lines[1:])]
+    return f"&= {lines[0]}", *(rf"&\quad {line}" for line in lines[1:])
 
 
 def _terms(latex: str) -> list[str]:
