@@ -1,4 +1,4 @@
-"""Formulas of worked solutions that are set without being measured fit on a printed line."""
+"""What worked solutions set without measuring it fits: formulas on a printed line, cells in their rows."""
 
 from __future__ import annotations
 
@@ -10,20 +10,32 @@ import typst
 import coursework
 from coursework.rendering import views
 from coursework.rendering.formulas import to_typst
+from coursework.rendering.markup import to_typst_markup
 
 COURSE = coursework.open_course()
 LINE = (210 - 2 * 20) / 25.4 * 72 - 1.2 * 10.5  #: points: A4 less margins, less what a chain is indented by
 
 
+MM = 72 / 25.4  #: points
+
+
+def sizes(pieces):
+    """Width and height of pieces of Typst as printed, points."""
+    measured = (
+        f"#context {{ let of = measure({piece}); [#metadata((of.width.pt(), of.height.pt())) <w>] }}"
+        for piece in pieces
+    )
+    opening = (
+        '#set text(font: "Libertinus Serif", size: 10.5pt)\n#let formula(words, eq, whole: false) = eq\n'
+    )
+    compiler = typst.Compiler(input=(opening + "\n".join(measured)).encode(), ignore_system_fonts=True)
+    return json.loads(compiler.query("<w>", field="value"))
+
+
 def widths(formulas, lang):
     """Their widths as printed, points."""
-    measured = (
-        f"#context [#metadata(measure(math.equation(math.display($ {to_typst(tex, lang)} $.body))).width.pt()) <w>]"
-        for tex in formulas
-    )
-    source = '#set text(font: "Libertinus Serif", size: 10.5pt)\n' + "\n".join(measured)
-    compiler = typst.Compiler(input=source.encode(), ignore_system_fonts=True)
-    return json.loads(compiler.query("<w>", field="value"))
+    drawn = [f"math.equation(math.display($ {to_typst(tex, lang)} $.body))" for tex in formulas]
+    return [width for width, _ in sizes(drawn)]
 
 
 @pytest.mark.parametrize("lang", ["fr", "en"])
@@ -42,3 +54,38 @@ def test_formulas_that_are_taken_to_fit_do(lang):
     too_wide = [sure[tex] for tex, width in zip(sure, widths(sure, lang), strict=True) if width > LINE]
     assert too_wide == []
     assert any(r"\begin{aligned}" in tex for tex in sure)
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_rows_whose_height_is_told_hold_their_cells_on_one_line(lang):
+    told, count = {}, 0
+
+    def note(row, height, *cells):
+        for markdown, wide in cells if height != "auto" else ():
+            told[f"[{to_typst_markup(markdown, lang)}]"] = (row, wide - 4.5, float(height.removesuffix("mm")))
+
+    for name in COURSE.names:
+        for variant in COURSE[name].variants(range(3), lang):
+            sheet = variant.answer_sheet()
+            for answer in sheet.answers:
+                asked = answer.question
+                named = f"${asked.symbol}$" if asked.symbol else views.quantity_words(asked, lang)
+                margin = views.margin_words(answer, lang)
+                height = views.summary_row(answer, lang)
+                note((name, asked.id), height, (named, 24), (answer.text, 84), (margin, 36))
+                count += 1
+            for row in (row for polygon in sheet.polygons for row in polygon.rows):
+                cells = ((row.name, 24), (row.direction, 22), (row.length, 59), (row.segment, 31))
+                cells = [(f"${tex}$", wide) for tex, wide in cells if tex]
+                note((name, row.name), views.polygon_row(row, lang), *cells)
+                count += 1
+    assert count > 1500
+    assert len(told) > 0.5 * count
+    # Of the ink, which reaches beyond the edges that lines are set by.
+    drawn = [f'text(top-edge: "bounds", bottom-edge: "bounds"){cell}' for cell in told]
+    faults = [
+        row
+        for (row, room, tall), (width, height) in zip(told.values(), sizes(drawn), strict=True)
+        if width > room * MM or height > (tall - 1.2) * MM
+    ]
+    assert faults == []

@@ -9,8 +9,19 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import TypeAlias
 
+from coursework.constructions import Row
 from coursework.figures import Beginning, Figure
-from coursework.handout import AnswerSheet, FeedbackLine, FeedbackSheet, Given, Handout, Question, Step
+from coursework.figures.text import SIZE, Run
+from coursework.handout import (
+    Answer,
+    AnswerSheet,
+    FeedbackLine,
+    FeedbackSheet,
+    Given,
+    Handout,
+    Question,
+    Step,
+)
 from coursework.language import localise, plain, words
 from coursework.rendering.formula_tree import tokens
 from coursework.rendering.formulas import quantity_formula, to_line
@@ -236,6 +247,59 @@ def _terms(latex: str) -> list[str]:
         terms[-1] += token
         before = token
     return terms
+
+
+def quantity_words(question: Question, lang: str) -> str:
+    """What a solution's summary calls an answer that has no symbol."""
+    return words(lang)["solution"]["kinds"].get(question.kind, question.id)
+
+
+def margin_words(answer: Answer, lang: str) -> str:
+    """How far from the reference an answer may be, in the summary's few words."""
+    said = words(lang)["solution"]
+    if answer.margin:
+        return f"± {answer.margin}"
+    return answer.question.tolerance or said["together" if answer.question.judge else "exact"]
+
+
+#: What a table's row on one line takes, and the sides of a cell, mm; and parts of a formula that are taller.
+_ROW, _SIDES, _TALL = 7.0, 4.5, re.compile(r"\\(?:frac|sqrt|begin|sum|int)|\\\\")
+
+
+def summary_row(answer: Answer, lang: str) -> str:
+    """The height of a row of a solution's summary."""
+    named = f"${answer.question.symbol}$" if answer.question.symbol else quantity_words(answer.question, lang)
+    return _row(lang, (named, 24.0), (answer.text, 84.0), (margin_words(answer, lang), 36.0))
+
+
+def polygon_row(row: Row, lang: str) -> str:
+    """The height of a row of a polygon's table."""
+    return _row(
+        lang,
+        *(
+            (f"${tex}$", wide)
+            for tex, wide in (
+                (row.name, 24.0),
+                (row.direction, 22.0),
+                (row.length, 59.0),
+                (row.segment, 31.0),
+            )
+            if tex
+        ),
+    )
+
+
+def _row(lang: str, *cells: tuple[str, float]) -> str:
+    """The height of a row of cells, each of Markdown and so many mm wide: where all are surely on one line it is
+    told, since the typesetter would set the row twice to find it."""
+    flat = all(not _TALL.search(text) and _surely_fits(text, wide, lang) for text, wide in cells)
+    return f"{_ROW}mm" if flat else "auto"
+
+
+def _surely_fits(markdown: str, wide: float, lang: str) -> bool:
+    """Whether a cell holds a text on one line: its room less its sides, its letters measured with some to spare."""
+    said = re.sub("[_^\N{COMBINING RIGHT ARROW ABOVE}]", "", to_text(markdown, lang, sys.maxsize))
+    return 1.2 * Run(said, italic=False).width * SIZE <= wide - _SIDES
 
 
 def python_name(name: str) -> str:
