@@ -21,25 +21,29 @@ from coursework import building, issuing
 BY_LATEX = 20  #: sheets that pdflatex is timed on
 
 
-def peak_megabytes() -> float:
-    """The most memory this process has held so far."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1 if sys.platform == "darwin" else 1024)
+def used() -> tuple[float, float, float]:
+    """Seconds of processor so far, of this process and of those that it has started; the most memory that this process
+    has held, MB, and the most that one of the others has."""
+    own, others = resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN)
+    unit = 1 if sys.platform == "darwin" else 1024
+    seconds = own.ru_utime + own.ru_stime + others.ru_utime + others.ru_stime
+    return seconds, own.ru_maxrss / unit, others.ru_maxrss / unit
 
 
 def build(
-    name: str, first: int, students: int, formats: tuple[str, ...], out: Path, polygons: bool = True
+    name: str, students: int, formats: tuple[str, ...], out: Path, polygons: bool = True
 ) -> tuple[float, float]:
     """Seconds of a build of sheets and solutions, on the wall and of all processors."""
     course = coursework.open_course()
-    wall, processors = time.perf_counter(), time.process_time()
-    issues = issuing.issue(course, [name], first_seed=first, count=students, langs=["fr"])
+    wall, processors = time.perf_counter(), used()[0]
+    issues = issuing.issue(course, [name], first_seed=0, count=students, langs=["fr"])
     building.write(out, list(building.files(course, issues, formats, polygons=polygons)))
-    return time.perf_counter() - wall, time.process_time() - processors
+    return time.perf_counter() - wall, used()[0] - processors
 
 
 def by_latex(name: str, folder: Path, polygons: bool) -> float:
     """Seconds that pdflatex takes for a file of the same content, one after another."""
-    build(name, 0, BY_LATEX // 2, ("tex",), folder, polygons)
+    build(name, BY_LATEX // 2, ("tex",), folder, polygons)
     sources = sorted(folder.rglob("*.tex"))
     start = time.perf_counter()
     for source in sources:
@@ -56,25 +60,27 @@ def main() -> None:
     drawn = "with its polygons" if polygons else "without polygons"
     print(f"{machine()}; {name}, a sheet and a worked solution {drawn} for each student\n")
     rows = []
-    done = 0
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder)
-        for count in (students // 10, students * 4 // 10, students // 2):
-            wall, processors = build(name, done, count, ("pdf",), out / f"{done}", polygons)
-            done += count
+        for count in (students // 4, students):
+            wall, processors = build(name, count, ("pdf",), out / f"{count}", polygons)
+            _, own, others = used()
             rows.append(
                 (
-                    f"{count}, {done} so far",
+                    str(count),
                     f"{wall:.1f}",
                     f"{1e3 * wall / (2 * count):.1f}",
                     f"{1e3 * processors / (2 * count):.1f}",
-                    f"{peak_megabytes():.0f}",
+                    f"{own:.0f}",
+                    f"{others:.0f}",
                 )
             )
-        print_table(("students", "s", "ms a PDF", "processor ms a PDF", "peak MB"), rows)
+        print_table(
+            ("students", "s", "ms a PDF", "processor ms a PDF", "peak MB", "of a process beside it"), rows
+        )
         if shutil.which("pdflatex"):
             each = by_latex(name, out / "latex", polygons)
-            total = sum(float(row[1]) for row in rows) / (2 * done)
+            total = wall / (2 * students)
             rows = [("pdflatex, one after another", f"{each * 1e3:.0f}", f"{each / total:.0f}")]
             print_table(("the same content by", "ms a PDF", "× as long"), rows)
 

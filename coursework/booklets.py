@@ -24,10 +24,14 @@ Pages = tuple[tuple[int, int], ...]
 
 @dataclass(frozen=True)
 class File:
-    """One file of the result: its path below the output folder, and how to make its bytes, if any."""
+    """One file of the result: its path below the output folder, and how to make its bytes, if any.
+
+    ``anywhere`` says that another process may make it: ``make`` and all that it holds can be pickled.
+    """
 
     path: Path
     make: Callable[[], bytes | None]
+    anywhere: bool = False
 
 
 @dataclass(frozen=True)

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-import os
+import multiprocessing
 import shutil
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import ExitStack
+from functools import partial
 from pathlib import Path
+from typing import Any, TypeAlias
 
 from coursework import booklets
+from coursework.blocks import processors
 from coursework.booklets import File
 from coursework.course import Course
 from coursework.handout import AnswerSheet, Handout
@@ -25,7 +29,12 @@ from coursework.rendering import Renderer
 from coursework.submissions import COLUMNS
 
 FORMATS = ("pdf", "ipynb", "html", "tex")
+WORTH_PROCESSES = 150  #: files; fewer are made before a process has started
+_CHUNK = 16  #: files that a process makes in one go, a student's among them together
 KEY_COLUMNS = ("student", "exercise", "seed", "part", "value", "unit", "tolerance")
+
+
+Made: TypeAlias = str | bytes | None
 
 
 def _text(make: Callable[[], str]) -> Callable[[], bytes]:
@@ -78,30 +87,26 @@ def _sheets(
     name = variant.exercise.name
     for_student = Path("handouts") / name / f"{issue.stem}.{lang}"
     for_staff = Path("instructor") / name / f"{issue.stem}.{lang}"
+    handout = partial(variant.handout, issue.student)
+    solution = partial(variant.answer_sheet, issue.student, polygons=polygons)
 
-    def handout():
-        return variant.handout(issue.student)
-
-    def solution():
-        return variant.answer_sheet(issue.student, polygons=polygons)
-
-    def study():
-        return renderer.study(variant.study_sheet(issue.student))
+    def file(path: Path, ending: str, render: Callable[[Any], Made], sheet: Callable[[], Any]) -> File:
+        return File(_with(path, ending), partial(_rendered, render, sheet), anywhere=True)
 
     if "pdf" in formats:
-        yield File(_with(for_student, ".pdf"), lambda: renderer.pdf(handout()))
+        yield file(for_student, ".pdf", renderer.pdf, handout)
     if "html" in formats:
-        yield File(_with(for_student, ".html"), _text(lambda: renderer.html(handout())))
-    if "ipynb" in formats:
-        yield File(
-            _with(for_student, ".ipynb"), _text(study if practice else lambda: renderer.notebook(handout()))
-        )
+        yield file(for_student, ".html", renderer.html, handout)
+    if "ipynb" in formats and practice:
+        yield file(for_student, ".ipynb", renderer.study, partial(variant.study_sheet, issue.student))
+    elif "ipynb" in formats:
+        yield file(for_student, ".ipynb", renderer.notebook, handout)
     if "tex" in formats:
         yield from _tex(renderer, for_student, ".tex", "figure", handout)
     if course.has_solutions and "pdf" in formats:
-        yield File(_with(for_staff, ".solution.pdf"), lambda: renderer.pdf(solution()))
+        yield file(for_staff, ".solution.pdf", renderer.pdf, solution)
     if course.has_solutions and "html" in formats:
-        yield File(_with(for_staff, ".solution.html"), _text(lambda: renderer.html(solution())))
+        yield file(for_staff, ".solution.html", renderer.html, solution)
     if course.has_solutions and "tex" in formats:
         drawn = polygons and variant.exercise.solution.polygons is not None
         yield from _tex(renderer, for_staff, ".solution.tex", "solution-figure", solution, polygons=drawn)
@@ -119,10 +124,16 @@ def _tex(
     """A source and its drawings beside it; one dot in their names, as every LaTeX reads it."""
     stem = path.name.replace(".", "-")
     figure, pages = f"{stem}-{what}.pdf", f"{stem}-polygons.pdf"
-    yield File(_with(path, ending), _text(lambda: renderer.tex(sheet(), figure, pages)))
-    yield File(path.with_name(figure), lambda: renderer.figure_pdf(sheet()))
+    source = partial(renderer.tex, figure=figure, polygons=pages)
+    yield File(_with(path, ending), partial(_rendered, source, sheet), anywhere=True)
+    yield File(path.with_name(figure), partial(_rendered, renderer.figure_pdf, sheet), anywhere=True)
     if polygons:
-        yield File(path.with_name(pages), lambda: renderer.polygons_pdf(sheet()))
+        yield File(path.with_name(pages), partial(_rendered, renderer.polygons_pdf, sheet), anywhere=True)
+
+
+def _rendered(render: Callable[[Any], Made], sheet: Callable[[], Any]) -> bytes | None:
+    made = render(sheet())
+    return made.encode("utf-8") if isinstance(made, str) else made
 
 
 def _with(path: Path, ending: str) -> Path:
@@ -158,22 +169,36 @@ def write(out: Path, wanted: Sequence[File], progress: Callable[[Path], None] = 
         raise ValueError("two files of a build have the same path")
     for folder in {out / f.path.parent for f in wanted}:
         folder.mkdir(parents=True, exist_ok=True)
+    elsewhere = [file for file in wanted if file.anywhere]
+    if len(elsewhere) < WORTH_PROCESSES or processors() < 2:
+        elsewhere = []
+    here = [file for file in wanted if not (elsewhere and file.anywhere)]
+    with ExitStack() as pools:
+        # What threads share they wait for: the interpreter, and what the typesetter remembers. New processes, not
+        # forked ones: the typesetter must not be carried over.
+        if elsewhere:
+            spawn = multiprocessing.get_context("spawn")
+            pool = pools.enter_context(ProcessPoolExecutor(processors(), mp_context=spawn))
+        threads = pools.enter_context(ThreadPoolExecutor(processors()))
+        chunks = [elsewhere[start : start + _CHUNK] for start in range(0, len(elsewhere), _CHUNK)]
+        tasks = [(pool.submit(_write_all, out, chunk), chunk) for chunk in chunks]
+        tasks += [(threads.submit(_write_all, out, [file]), [file]) for file in here]
+        try:
+            for task, chunk in tasks:
+                task.result()
+                for file in chunk:
+                    progress(file.path)
+        except BaseException:
+            for task, _ in tasks:
+                task.cancel()
+            raise
 
-    def one(file: File) -> None:
+
+def _write_all(out: Path, files: Sequence[File]) -> None:
+    for file in files:
         data = file.make()
         if data is not None:
             write_whole(out / file.path, data)
-        progress(file.path)
-
-    # Threads, not processes: the typesetter releases the lock, and must not be forked.
-    with ThreadPoolExecutor(max_workers=os.cpu_count() or 1) as pool:
-        tasks = [pool.submit(one, file) for file in wanted]
-        try:
-            for task in tasks:
-                task.result()
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
 
 
 def write_whole(path: Path, data: bytes) -> None:

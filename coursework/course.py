@@ -63,6 +63,10 @@ class Course:
     def __repr__(self) -> str:
         return f"<course {self.root.name}: {len(self.names)} exercises>"
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """In another process the course is opened there."""
+        return open_course, (str(self.root),)
+
     @property
     def label(self) -> str:
         """What messages call it."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -42,6 +43,10 @@ class CourseExercise:
 
     def __repr__(self) -> str:
         return f"<exercise {self.name}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """In another process it is the exercise of the course that is opened there."""
+        return operator.getitem, (self.course, self.name)
 
     @property
     def version(self) -> int:

@@ -57,6 +57,11 @@ class Key:
         )
         return {name: self._bounded(name, float(np.ravel(width)[0])) for name, width in found.items()}
 
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """What is known without the solution's mistakes, by name of the property."""
+        return {"reference": self.reference, "envelope": self.envelope}
+
     def half_width(self, part: Part) -> float:
         """The largest accepted distance from the reference, in the part's unit; 0 for what is judged exactly."""
         if not part.has_margin:

@@ -47,6 +47,12 @@ class Variant:
     def __repr__(self) -> str:
         return f"<variant {self.exercise.name} {self.seed}>"
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """In another process it is made anew of the exercise there; what its key has computed goes along."""
+        chosen = None if self.chosen is None else tuple(part.id for part in self.chosen)
+        numbers = self.key.numbers if "key" in self.__dict__ else None
+        return _made_anew, (self.exercise, self.seed, dict(self.given), self.lang, chosen, numbers)
+
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         """The parts that this variant asks."""
@@ -257,6 +263,21 @@ class Variant:
         from coursework.sheets import answer_sheet
 
         return answer_sheet(self, student, polygons=polygons)
+
+
+def _made_anew(
+    exercise: CourseExercise,
+    seed: int,
+    given: Mapping[str, Any],
+    lang: str,
+    chosen: Sequence[str] | None,
+    numbers: Mapping[str, Any] | None,
+) -> Variant:
+    parts = {part.id: part for part in exercise.spec.parts}
+    variant = Variant(exercise, seed, given, lang, None if chosen is None else [parts[i] for i in chosen])
+    if numbers is not None:
+        variant.key.__dict__.update(numbers)
+    return variant
 
 
 def _rounded(value: Any, lang: str) -> Any:

@@ -253,7 +253,15 @@ def to_notebook_markdown(markdown: str, lang: str) -> str:
 
 def to_text(markdown: str, lang: str, width: int = 88) -> str:
     """Markdown as plain text for a terminal, its lines at most ``width`` wide where words allow."""
+    if formula := _ONE_FORMULA.fullmatch(markdown):
+        line = _on_a_line(formula[1], lang)
+        if len(line) <= width:
+            return line
     return _text(tree(markdown), lang, width).strip("\n")
+
+
+def _on_a_line(tex: str, lang: str) -> str:
+    return to_line(tex.strip(), lang).replace("\n", "; ")
 
 
 def _text(node: SyntaxTreeNode, lang: str, width: int) -> str:
@@ -274,7 +282,7 @@ def _text(node: SyntaxTreeNode, lang: str, width: int) -> str:
         case "fence" | "code_block":
             return textwrap.indent(node.content, "    ") + "\n"
         case "math_inline":
-            return to_line(node.content.strip(), lang).replace("\n", "; ")
+            return _on_a_line(node.content, lang)
         case "math_inline_double" | "math_block" | "math_block_label":
             return textwrap.indent(to_line(node.content.strip(), lang), "    ") + "\n\n"
         case "bullet_list" | "ordered_list":

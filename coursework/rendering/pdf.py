@@ -27,14 +27,17 @@ _OUTPUT = {"format": "pdf", "pdf_standards": ["a-2a", "ua-1"], "timestamp": 0}
 
 def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = "a4") -> str:
     """The Typst source of one document that holds these sheets, each from an odd page on."""
-    names = views.context(sheets[0])
-    bodies = []
-    for sheet in sheets:
-        env = environment_of(tuple(folders), views.handout_of(sheet).lang)
-        body = render(env, views.TEMPLATES[type(sheet)] + ".typ.j2", views.context(sheet))
-        bodies.append(Markup(body))
-    page = names | {"bodies": bodies, "paper": paper}
-    return render(environment_of(tuple(folders), names["lang"]), "_page.typ.j2", page)
+    contexts = [views.context(sheet) for sheet in sheets]
+    bodies = [
+        Markup(
+            render(
+                environment_of(tuple(folders), names["lang"]), f"{views.TEMPLATES[type(sheet)]}.typ.j2", names
+            )
+        )
+        for sheet, names in zip(sheets, contexts, strict=True)
+    ]
+    page = contexts[0] | {"bodies": bodies, "paper": paper}
+    return render(environment_of(tuple(folders), page["lang"]), "_page.typ.j2", page)
 
 
 _DEFINITIONS_END = "\n//=\n"

@@ -296,6 +296,7 @@ def _row(lang: str, *cells: tuple[str, float]) -> str:
     return f"{_ROW}mm" if flat else "auto"
 
 
+@lru_cache(maxsize=2048)
 def _surely_fits(markdown: str, wide: float, lang: str) -> bool:
     """Whether a cell holds a text on one line: its room less its sides, its letters measured with some to spare."""
     said = re.sub("[_^\N{COMBINING RIGHT ARROW ABOVE}]", "", to_text(markdown, lang, sys.maxsize))
