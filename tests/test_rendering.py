@@ -280,6 +280,20 @@ def test_any_text_prints_as_itself_in_typst():
     assert svg == typst.compile(shown.encode(), format="svg")
 
 
+@pytest.mark.parametrize(
+    ("markdown", "text"),
+    [
+        (r"$\num{-1.5}\ \mathrm{rad/s^{2}}$", "−1,5\u202frad\\/s²"),
+        (r"$\num{66.7}^{\circ}$", "66,7°"),
+        (r"$\num{7}$", "7"),
+    ],
+)
+def test_a_number_with_its_unit_is_text_in_a_table_and_anything_else_a_formula(markdown, text):
+    assert markup.typst_value(markdown, "fr") == text
+    for other in (r"$r_2 = \num{7}$", r"$\num{7} + \num{8}$", r"$\num{7}$ fois", "oscille"):
+        assert markup.typst_value(other, "fr") == markup.to_typst_markup(other, "fr")
+
+
 def test_raw_html_is_text():
     assert "<script" not in to_html("a <script>alert(1)</script> b", "en")
     assert "&lt;script" in to_html("a <script>alert(1)</script> b", "en")

@@ -117,6 +117,7 @@ def _complaints() -> Iterator[None]:
 def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
     filters = {
         "markup": lambda text: markup.to_typst_markup(text, lang),
+        "value": lambda text: markup.typst_value(text, lang),
         "math": lambda tex: markup.typst_formula(tex, lang),
         "display": lambda tex: markup.typst_formula(tex, lang, display=True),
         "raw_math": lambda tex: to_typst(tex, lang),

@@ -262,8 +262,10 @@ def margin_words(answer: Answer, lang: str) -> str:
     return answer.question.tolerance or said["together" if answer.question.judge else "exact"]
 
 
-#: What a table's row on one line takes, and the sides of a cell, mm; and parts of a formula that are taller.
-_ROW, _SIDES, _TALL = 7.0, 4.5, re.compile(r"\\(?:frac|sqrt|begin|sum|int)|\\\\")
+#: What a table's row on one line takes, with an arrow over a letter and without, mm; and the sides of a cell.
+_ROW, _ROW_WITH_ARROW, _SIDES = 6.2, 7.0, 4.5
+_TALL = re.compile(r"\\(?:frac|sqrt|begin|sum|int)|\\\\")  #: what is taller yet
+_ARROW = re.compile(r"\\(?:vec|overrightarrow)")
 
 
 def summary_row(answer: Answer, lang: str) -> str:
@@ -292,8 +294,9 @@ def polygon_row(row: Row, lang: str) -> str:
 def _row(lang: str, *cells: tuple[str, float]) -> str:
     """The height of a row of cells, each of Markdown and so many mm wide: where all are surely on one line it is
     told, since the typesetter would set the row twice to find it."""
-    flat = all(not _TALL.search(text) and _surely_fits(text, wide, lang) for text, wide in cells)
-    return f"{_ROW}mm" if flat else "auto"
+    if any(_TALL.search(text) or not _surely_fits(text, wide, lang) for text, wide in cells):
+        return "auto"
+    return f"{_ROW_WITH_ARROW if any(_ARROW.search(text) for text, _ in cells) else _ROW}mm"
 
 
 @lru_cache(maxsize=2048)
