@@ -30,7 +30,14 @@ from coursework.rendering.formulas import (
     to_notebook,
     to_typst,
 )
-from coursework.rendering.markup import to_html, to_notebook_markdown, to_text, to_typst_markup, typst_text
+from coursework.rendering.markup import (
+    to_html,
+    to_notebook_markdown,
+    to_text,
+    to_typst_markup,
+    typst_text,
+    typst_value,
+)
 from coursework.rendering.typography import typeset
 from coursework.rendering.views import points_text, tolerances, verdict_word
 from coursework.statement import Section
@@ -289,9 +296,9 @@ def test_any_text_prints_as_itself_in_typst():
     ],
 )
 def test_a_number_with_its_unit_is_text_in_a_table_and_anything_else_a_formula(markdown, text):
-    assert markup.typst_value(markdown, "fr") == text
+    assert typst_value(markdown, "fr") == text
     for other in (r"$r_2 = \num{7}$", r"$\num{7} + \num{8}$", r"$\num{7}$ fois", "oscille"):
-        assert markup.typst_value(other, "fr") == markup.to_typst_markup(other, "fr")
+        assert typst_value(other, "fr") == to_typst_markup(other, "fr")
 
 
 def test_raw_html_is_text():
