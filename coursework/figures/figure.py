@@ -26,6 +26,7 @@ from coursework.figures.writing import (
 _PAPER_MM = (110.0, 75.0)  #: what a drawing takes at most unless told
 _MARGIN = 1.0  #: white round the drawing, mm
 _TRIES = 40
+_WORTH_GROWING = 1.05  #: a drawing that could be so much larger is laid out once more
 
 
 class LabelBox(NamedTuple):
@@ -140,16 +141,20 @@ class Figure:
             return self._laid_out(self.fixed_scale)
         low, high = self._extent
         size = high - low
-        symbols = complex(14, 12)  # a first guess of the paper that symbols and labels take
-        scale = float("inf")
+        # The paper that symbols and labels take: guessed, then as if each label had its best place, then as laid out.
+        scale = self._fitting(size, complex(14, 12))
+        paper = self._drawn(scale)[0]
+        low, high = _bounds(paper.ink, [z for wish in paper.wishes for z in wish.hoped()])
+        symbols = high - low - scale * size
+        scale = 0.985 * self._fitting(size, symbols)
         for _ in range(_TRIES):
-            scale = min(0.985 * scale, self._fitting(size, symbols))
+            scale = 0.985 * min(scale, self._fitting(size, symbols))
             layout = self._laid_out(scale)
             symbols = layout.high - layout.low - scale * size
             if self._fits(layout):
                 wider = self._fitting(size, symbols)
                 # Now that the labels have shown how much paper they take, grow once into what is left.
-                grown = self._laid_out(wider) if wider > 1.03 * scale else layout
+                grown = self._laid_out(wider) if wider > _WORTH_GROWING * scale else layout
                 return grown if self._fits(grown) else layout
         raise WrongValue(f"a paper box of {self.paper_mm} mm is too small for this figure's labels")
 
@@ -164,7 +169,8 @@ class Figure:
             raise WrongValue(f"a paper box of {self.paper_mm} mm is too small for this figure's labels")
         return min(scales)
 
-    def _laid_out(self, scale: float) -> _Layout:
+    def _drawn(self, scale: float) -> tuple[Paper, list[int], list[int]]:
+        """Ink and wishes for labels at a scale; and the element, by its place, that each comes from."""
         low, high = self._extent
         bars = [bar for element in self.elements for bar in element.bars()]
         paper = Paper(scale, bars, (low + high) / 2)
@@ -174,17 +180,16 @@ class Figure:
             element.draw(paper)
             drew += [number] * (len(paper.ink) - len(drew))
             wished += [number] * (len(paper.wishes) - len(wished))
+        return paper, drew, wished
+
+    def _laid_out(self, scale: float) -> _Layout:
+        paper, drew, wished = self._drawn(scale)
         labels, order = place(paper.wishes, paper.ink)
         named = [wished[k] for k in order]
         led = [(label.leader, k) for label, k in zip(labels, named, strict=True) if label.leader]
         ink = (*paper.ink, *(Path(leader, THIN, layer=MARKS) for leader, _ in led))
         drew += [k for _, k in led]
-        half = [complex(item.width, item.width) / 2 for item in ink]
-        edges = [z + d for item, h in zip(ink, half, strict=True) for z in item.outline() for d in (h, -h)]
-        first, last = _corners([*edges, *(z for label in labels for z in label.corners)])
-        margin = complex(_MARGIN, _MARGIN)
-        # The frame lies on tenths of a mm too, so that rounded points stay rounded in the file.
-        corners = _tenths(first - margin), _tenths(last + margin)
+        corners = _bounds(ink, [z for label in labels for z in label.corners])
         return _Layout(scale, ink, labels, *corners, tuple(drew), tuple(named))
 
     def fitted(self, width: float, height: float) -> Figure:
@@ -308,6 +313,19 @@ class Beginning:
 
     def _repr_svg_(self) -> str:
         return self.outlined_svg()
+
+
+def _bounds(ink: Sequence[Ink], points: Sequence[complex]) -> tuple[complex, complex]:
+    """Corners of the frame round ink and points, with its margin, on tenths of a mm, so that rounded points stay
+    rounded in the file."""
+    corners = list(points)
+    for item in ink:
+        half = complex(item.width, item.width) / 2
+        low, high = _corners(item.outline())
+        corners += [low - half, high + half]
+    low, high = _corners(corners)
+    margin = complex(_MARGIN, _MARGIN)
+    return _tenths(low - margin), _tenths(high + margin)
 
 
 def _corners(points: Sequence[complex]) -> tuple[complex, complex]:

@@ -98,6 +98,12 @@ class Wish:
         """Where the label may go, the best place first."""
         return _places(self.along is not None, self.rank == ANGLES)
 
+    def hoped(self) -> tuple[complex, complex]:
+        """Corners of its box at the best place, whatever lies there."""
+        half = complex(*read(self.label).box) / 2
+        center = self.center(self.places()[0], half)
+        return center - half, center + half
+
     def center(self, place: Place, half: complex) -> complex:
         """Centre of a box of these half-sides at a place."""
         way, foot = self.toward * place.way, self.anchor
