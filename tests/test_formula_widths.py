@@ -89,3 +89,24 @@ def test_rows_whose_height_is_told_hold_their_cells_on_one_line(lang):
         if width > room * MM or height > (tall - 1.2) * MM
     ]
     assert faults == []
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_data_stand_beside_the_widest_figure(lang):
+    """A line of data that is not to be broken leaves the figure its room."""
+    lines = {}
+    for name in COURSE.names:
+        for variant in COURSE[name].variants(range(3), lang):
+            sheet = variant.handout()
+            names = views.context(sheet)
+            if not names["beside"]:
+                continue
+            for given in sheet.given:
+                told = (
+                    f"${views.given_formula(given)}$" if given.is_number else views.given_words(given, lang)
+                )
+                if given.is_number or names["data_width"] == "auto":
+                    lines[f"[{to_typst_markup(told, lang)}]"] = (name, given.symbol)
+    assert len(lines) > 100
+    room = (views.ROOM_DATA - 0.9 * 3.7) * MM
+    assert [line for line, (wide, _) in zip(lines.values(), sizes(lines), strict=True) if wide > room] == []

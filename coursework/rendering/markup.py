@@ -164,7 +164,7 @@ def _typst_table(node: SyntaxTreeNode, lang: str) -> str:
     cells = [["[" + "".join(_typst(c, lang) for c in cell.children) + "]" for cell in row] for row in rows]
     head, *body = (", ".join(row) for row in cells)
     lines = "".join(f"  {row},\n" for row in body)
-    return f"#data-table(({', '.join(sides)},),\n  table.header({head}),\n{lines})\n\n"
+    return f"#data-table(({', '.join(sides)},),\n  ({head},),\n{lines})\n\n"
 
 
 # -- HTML -------------------------------------------------------------------------------------------

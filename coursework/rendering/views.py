@@ -31,6 +31,7 @@ Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 
 #: Room that a figure has on paper, width and height in mm: beside the data, and with the data below it.
 ROOM_BESIDE, ROOM_ALONE = (112.0, 62.0), (165.0, 72.0)
+ROOM_DATA = 46.0  #: width of the data beside it, whose longer lines are broken
 ROOM_STEP = (53.0, 200.0)  #: of a step of a construction, three of which stand side by side
 _BESIDE = 9  #: data at most that stand beside the figure
 
@@ -54,6 +55,7 @@ def context(sheet: Sheet) -> dict[str, object]:
         "figure": figure_of(sheet),
         "beside": _data_beside(sheet),
         "room": room(sheet),
+        "data_width": _data_width(handout),
         "step_room": ROOM_STEP,
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
         "variant": f"{handout.exercise} · {handout.seed} · v{handout.version}",
@@ -80,6 +82,12 @@ def _shown(sheet: Sheet) -> Figure | None:
 def _data_beside(sheet: Sheet) -> bool:
     """Whether the data stand beside the figure; a longer list stands below it."""
     return _shown(sheet) is not None and 0 < len(handout_of(sheet).given) <= _BESIDE
+
+
+def _data_width(handout: Handout) -> str:
+    """Of the data beside a figure: what they take where each surely is on one line, else all the room they have."""
+    told = (given_words(one, handout.lang) for one in handout.given if not one.is_number)
+    return "auto" if all(_surely_fits(text, ROOM_DATA, handout.lang) for text in told) else f"{ROOM_DATA}mm"
 
 
 def polygon_drawings(sheet: Sheet) -> tuple[Figure | Beginning, ...]:
