@@ -504,3 +504,5 @@ def check_rendering(exercise: CourseExercise, count: int, report: Report) -> Non
                 renderer.html(sheet),
             ):
                 report.counts["sheets rendered"] += bool(made)
+    if exercise.film and count:
+        exercise.variant(0).animation(count=8).frames  # noqa: B018  a film that cannot be shown says so here

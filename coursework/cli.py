@@ -546,7 +546,7 @@ def accuracy(
 @click.option(
     "--polygons/--no-polygons",
     default=True,
-    help="Velocity and acceleration polygons in the worked solutions; without them a build takes two thirds of the time.",
+    help="Velocity and acceleration polygons in the worked solutions; without them a build takes half to two thirds of the time.",
 )
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."

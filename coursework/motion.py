@@ -22,6 +22,7 @@ import numpy as np
 
 from coursework.degrees import wrap
 from coursework.errors import BadCourse, CannotAssemble, CourseworkError, Undefined, WrongValue, unknown
+from coursework.figures.figure import Figure
 from coursework.figures.moving import Arrow, Drawing, Key, Spot, drawing, extent
 from coursework.graph import Graph
 from coursework.language import localise, significant, unit_text, words
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 EFFECTS = tuple(LEVELS)
 UNIT = {"velocity": "mm/s", "acceleration": "mm/s^2", "coriolis": "mm/s^2"}
 SECONDS = 6.0  #: how long a turn of the driver, or a swing, lasts on the screen
+MOST_TURNS = 20  #: of its driver, in a film
 _LONGEST = 0.3  #: of the longest vector, over the size of the mechanism
 
 
@@ -173,11 +175,15 @@ class Animation:
 
     def _reel(self, film: Film) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
         """The same for a film: from 0, by equal steps and a last one that may be shorter."""
-        turns = float(self._stated("figure", film.turns, self.variant.given))
-        if not 0 < turns < math.inf:
-            raise BadCourse(
-                f"{self.variant.exercise.name}: a film shows some turns of its driver; found {turns}"
-            )
+        place = f"solutions/{self.variant.exercise.name}.py: FILM"
+        if film.speed not in self.variant.given:
+            given = ", ".join(self.variant.given)
+            raise BadCourse(f"{place}: speed={film.speed!r} is no given quantity; there are {given}")
+        turns = self._stated("figure", film.turns, self.variant.given)
+        if not isinstance(turns, (int, float)) or not 0 < turns <= MOST_TURNS:
+            raise BadCourse(f"{place}: turns gives a number above 0, at most {MOST_TURNS}; found {turns!r}")
+        if not isinstance(figure := self._stated("figure", film.figure, self._with_driver_at(0.0)), Figure):
+            raise BadCourse(f"{place}: figure gives a Figure(…); found {figure!r}")
         steps = math.ceil(self.count * turns - 1e-9)
         angles = self._sign * np.array([*(360.0 / self.count * np.arange(steps)), 360.0 * turns])
         angles = angles[:: self._sign] + 0.0  # no negative zero

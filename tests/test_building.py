@@ -6,7 +6,7 @@ import pytest
 
 import coursework
 from coursework import building, issuing
-from coursework.errors import BadStatement
+from coursework.errors import BadCourse, BadStatement
 from coursework.issuing import Student
 from coursework.rendering import Renderer
 
@@ -67,3 +67,13 @@ def test_a_sheet_that_a_process_cannot_make_ends_the_build_with_its_fault(tmp_pa
     with pytest.raises(BadStatement, match="nonsense"):
         building.write_tree(tmp_path / "out", list(building.files(COURSE, issues, ("pdf",))))
     assert not list((tmp_path / "out").rglob("*.pdf"))
+
+
+def test_a_course_that_cannot_be_opened_by_a_process_is_told_as_such(small_course, tmp_path, monkeypatch):
+    course = coursework.open_course(small_course)
+    issues = issuing.issue(course, ["crank_pin"], first_seed=0, count=2, langs=["fr"])
+    wanted = list(building.files(course, issues, ("html",)))
+    small_course.rename(tmp_path / "moved")
+    monkeypatch.setattr(building, "WORTH_PROCESSES", 1)
+    with pytest.raises(BadCourse, match="no course at"):
+        building.write(tmp_path / "out", wanted)

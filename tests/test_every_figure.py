@@ -85,6 +85,9 @@ def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(na
         found[variant.seed] = [fault for figure in figures for fault in faults(figure)]
         # What fits its room is printed at its own size, so its letters are as large as they are drawn.
         assert all(np.less_equal(figure.size_mm, room).all() for figure in figures)
+        # A figure free to grow fills its room in one direction, but for what labels take when they change sides.
+        free = [f for f in figures if f.fixed_scale is None and not f.bounded]
+        assert all(np.divide(figure.size_mm, room).max() > 0.8 for figure in free)
     assert not {seed: bad for seed, bad in found.items() if bad}
 
 

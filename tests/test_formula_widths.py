@@ -59,6 +59,7 @@ def test_formulas_that_are_taken_to_fit_do(lang):
 @pytest.mark.parametrize("lang", ["fr", "en"])
 def test_rows_whose_height_is_told_hold_their_cells_on_one_line(lang):
     told, count = {}, 0
+    columns = [views.SUMMARY_MM[name] for name in ("quantity", "answer", "margin")]
 
     def note(row, height, *cells):
         for markdown, wide in cells if height != "auto" else ():
@@ -72,11 +73,11 @@ def test_rows_whose_height_is_told_hold_their_cells_on_one_line(lang):
                 named = f"${asked.symbol}$" if asked.symbol else views.quantity_words(asked, lang)
                 margin = views.margin_words(answer, lang)
                 height = views.summary_row(answer, lang)
-                note((name, asked.id), height, (named, 24), (answer.text, 84), (margin, 36))
+                note((name, asked.id), height, *zip((named, answer.text, margin), columns, strict=True))
                 count += 1
             for row in (row for polygon in sheet.polygons for row in polygon.rows):
-                cells = ((row.name, 24), (row.direction, 22), (row.length, 59), (row.segment, 31))
-                cells = [(f"${tex}$", wide) for tex, wide in cells if tex]
+                cells = ((getattr(row, name), wide) for name, wide in views.POLYGON_MM.items())
+                cells = [(f"${tex}$", wide) for tex, wide in list(cells)[:4] if tex]
                 note((name, row.name), views.polygon_row(row, lang), *cells)
                 count += 1
     assert count > 1500
@@ -110,3 +111,15 @@ def test_data_stand_beside_the_widest_figure(lang):
     assert len(lines) > 100
     room = (views.ROOM_DATA - 0.9 * 3.7) * MM
     assert [line for line, (wide, _) in zip(lines.values(), sizes(lines), strict=True) if wide > room] == []
+
+
+@pytest.mark.parametrize(
+    "tall",
+    [
+        r"$\dfrac{a}{b}$", r"$\tfrac{a}{b}$", r"$\frac{a}{b}$", r"$\sqrt{a}$", r"$\prod_i a_i$", "$$x$$", "a\n\nb", "- a\n- b",
+        "a\\\nb", "# a", "- a", "1. a", "> a", r"$\begin{matrix} a \\ b \end{matrix}$",
+    ],
+)  # fmt: skip
+def test_a_cell_that_may_be_taller_than_a_line_makes_its_row_as_high_as_it_needs(tall):
+    assert views._row("en", ("$r_A$", 24), ("12 mm", 84)) != "auto"
+    assert views._row("en", ("$r_A$", 24), (tall, 84)) == "auto"

@@ -520,8 +520,26 @@ def test_a_film_without_words_in_a_language_is_a_failure(small_course, lang):
 @pytest.mark.parametrize("turns", ["0.0", "-1.0", "float('nan')", "float('inf')"])
 def test_a_film_of_no_turns_is_refused(small_course, turns):
     exercise = coursework.open_course(filmed(small_course, turns))["crank_pin"]
-    with pytest.raises(BadCourse, match="a film shows some turns"):
+    with pytest.raises(BadCourse, match=r"crank_pin.py: FILM: turns gives a number above 0"):
         exercise.variant(0).animation().svg()
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "told"),
+    [
+        ('speed="omega"', 'speed="omga"', "speed='omga' is no given quantity"),
+        ("FILM = Film(_turning", "FILM = Film(lambda: None", "figure gives a Figure"),
+        ("2.3", "'2.3'", "turns gives a number"),
+        ("2.3", "1e9", "turns gives a number above 0, at most"),
+    ],
+)
+def test_a_film_that_cannot_be_shown_is_told_by_check(small_course, right, wrong, told):
+    source = filmed(small_course) / "solutions" / "crank_pin.py"
+    text = source.read_text("utf-8")
+    assert right in text
+    source.write_text(text.replace(right, wrong), "utf-8")
+    found = check(coursework.open_course(small_course)["crank_pin"], 1, rendered=1).failures
+    assert any(told in fault and "crank_pin.py: FILM" in fault for fault in found), found
 
 
 def test_a_film_that_is_none_is_refused(small_course):

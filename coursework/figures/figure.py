@@ -26,7 +26,7 @@ from coursework.figures.writing import (
 _PAPER_MM = (110.0, 75.0)  #: what a drawing takes at most unless told
 _MARGIN = 1.0  #: white round the drawing, mm
 _TRIES = 40
-_WORTH_GROWING = 1.05  #: a drawing that could be so much larger is laid out once more
+_GROWTHS, _WORTH_GROWING = 4, 1.05  #: so often a drawing is laid out once more that could be so much larger
 
 
 class LabelBox(NamedTuple):
@@ -146,17 +146,29 @@ class Figure:
         paper = self._drawn(scale)[0]
         low, high = _bounds(paper.ink, [z for wish in paper.wishes for z in wish.hoped()])
         symbols = high - low - scale * size
-        scale = 0.985 * self._fitting(size, symbols)
+        scale, refused = 0.985 * self._fitting(size, symbols), float("inf")
         for _ in range(_TRIES):
             scale = 0.985 * min(scale, self._fitting(size, symbols))
             layout = self._laid_out(scale)
             symbols = layout.high - layout.low - scale * size
             if self._fits(layout):
-                wider = self._fitting(size, symbols)
-                # Now that the labels have shown how much paper they take, grow once into what is left.
-                grown = self._laid_out(wider) if wider > _WORTH_GROWING * scale else layout
-                return grown if self._fits(grown) else layout
+                return self._grown(layout, size, refused)
+            refused = scale
         raise WrongValue(f"a paper box of {self.paper_mm} mm is too small for this figure's labels")
+
+    def _grown(self, layout: _Layout, size: complex, refused: float) -> _Layout:
+        """A layout that fits, grown into what its labels have shown to be left, below a scale that was refused."""
+        for _ in range(_GROWTHS):
+            symbols = layout.high - layout.low - layout.scale * size
+            wider = min(self._fitting(size, symbols), (layout.scale + refused) / 2)
+            if wider <= _WORTH_GROWING * layout.scale:
+                break
+            grown = self._laid_out(wider)
+            if self._fits(grown):
+                layout = grown
+            else:
+                refused = wider
+        return layout
 
     def _fits(self, layout: _Layout) -> bool:
         paper = layout.high - layout.low

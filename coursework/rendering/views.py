@@ -11,7 +11,7 @@ from typing import TypeAlias
 
 from coursework.constructions import Row
 from coursework.figures import Beginning, Figure
-from coursework.figures.text import SIZE, Run
+from coursework.figures.text import GREEK, SIZE, Run
 from coursework.handout import (
     Answer,
     AnswerSheet,
@@ -57,6 +57,8 @@ def context(sheet: Sheet) -> dict[str, object]:
         "room": room(sheet),
         "data_width": _data_width(handout),
         "step_room": ROOM_STEP,
+        "summary_mm": SUMMARY_MM,
+        "polygon_mm": POLYGON_MM,
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
         "variant": f"{handout.exercise} · {handout.seed} · v{handout.version}",
         "tolerances": tolerances(handout.questions, handout.lang),
@@ -266,45 +268,54 @@ def margin_words(answer: Answer, lang: str) -> str:
     """How far from the reference an answer may be, in the summary's few words."""
     said = words(lang)["solution"]
     if answer.margin:
-        return f"± {answer.margin}"
+        return f"±\N{NO-BREAK SPACE}{answer.margin}"
     return answer.question.tolerance or said["together" if answer.question.judge else "exact"]
 
 
-#: What a table's row on one line takes, with an arrow over a letter and without, mm; and the sides of a cell.
+#: What a table's row on one line takes, without an arrow over a letter and with one, mm; and the sides of a cell.
 _ROW, _ROW_WITH_ARROW, _SIDES = 6.2, 7.0, 4.5
-_TALL = re.compile(r"\\(?:frac|sqrt|begin|sum|int)|\\\\")  #: what is taller yet
 _ARROW = re.compile(r"\\(?:vec|overrightarrow)")
+_MACRO = re.compile(r"\\(?:[A-Za-z]+|.)", re.DOTALL)
+#: Macros that make a formula no taller than a line of text with its scripts; any other may.
+_LOW = frozenset(
+    rf"\{name}"
+    for name in (
+        *GREEK, "num", "mathrm", "text", "dot", "ddot", "vec", "overrightarrow", "left", "right", "times", "cdot", "pm",
+        "circ", "parallel", "perp", "infty", "prime", "sin", "cos", "tan", "phi", "epsilon", "mkern", ",", " ", ";", ":",
+    )
+)  # fmt: skip
+#: Blocks of Markdown, which are not lines of text.
+_BLOCK = re.compile(r"\s*(?:[#>*+|-]\s|\d+[.)]\s)|.*(?:\n|\$\$)", re.DOTALL)
+
+#: Widths of the columns of a solution's summary and of a polygon's table, mm; what is left is the answer's, or the length's.
+SUMMARY_MM = {"number": 10, "quantity": 24, "answer": 84, "margin": 36, "points": 16}
+POLYGON_MM = {"name": 24, "direction": 22, "length": 59, "segment": 31, "paper": 14, "value": 20}
 
 
 def summary_row(answer: Answer, lang: str) -> str:
     """The height of a row of a solution's summary."""
-    named = f"${answer.question.symbol}$" if answer.question.symbol else quantity_words(answer.question, lang)
-    return _row(lang, (named, 24.0), (answer.text, 84.0), (margin_words(answer, lang), 36.0))
+    question, wide = answer.question, SUMMARY_MM
+    named = f"${question.symbol}$" if question.symbol else quantity_words(question, lang)
+    margin = margin_words(answer, lang)
+    return _row(lang, (named, wide["quantity"]), (answer.text, wide["answer"]), (margin, wide["margin"]))
 
 
 def polygon_row(row: Row, lang: str) -> str:
     """The height of a row of a polygon's table."""
-    return _row(
-        lang,
-        *(
-            (f"${tex}$", wide)
-            for tex, wide in (
-                (row.name, 24.0),
-                (row.direction, 22.0),
-                (row.length, 59.0),
-                (row.segment, 31.0),
-            )
-            if tex
-        ),
-    )
+    cells = {name: getattr(row, name) for name in ("name", "direction", "length", "segment")}
+    return _row(lang, *((f"${tex}$", POLYGON_MM[name]) for name, tex in cells.items() if tex))
 
 
 def _row(lang: str, *cells: tuple[str, float]) -> str:
     """The height of a row of cells, each of Markdown and so many mm wide: where all are surely on one line it is
     told, since the typesetter would set the row twice to find it."""
-    if any(_TALL.search(text) or not _surely_fits(text, wide, lang) for text, wide in cells):
+    if not all(_is_low(text) and _surely_fits(text, wide, lang) for text, wide in cells):
         return "auto"
     return f"{_ROW_WITH_ARROW if any(_ARROW.search(text) for text, _ in cells) else _ROW}mm"
+
+
+def _is_low(markdown: str) -> bool:
+    return not _BLOCK.match(markdown) and _LOW.issuperset(_MACRO.findall(markdown))
 
 
 @lru_cache(maxsize=2048)
