@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import pickle
 import shutil
-import signal
-import sys
-import threading
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
-from contextlib import ExitStack, contextmanager
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -20,7 +15,6 @@ from coursework import booklets
 from coursework.blocks import processors
 from coursework.booklets import File
 from coursework.course import Course
-from coursework.errors import CourseworkError
 from coursework.handout import AnswerSheet, Handout
 from coursework.issuing import (
     Issue,
@@ -31,13 +25,13 @@ from coursework.issuing import (
     key_content,
     key_rows,
 )
+from coursework.processes import processes, workers
 from coursework.rendering import Renderer
 from coursework.submissions import COLUMNS
 
 FORMATS = ("pdf", "ipynb", "html", "tex")
 WORTH_PROCESSES = 150  #: files; fewer are made before a process has started
 _CHUNK = 8  #: files that a process is sent at once
-_MOST_PROCESSES = 61  #: that some systems can wait for
 KEY_COLUMNS = ("student", "exercise", "seed", "part", "value", "unit", "tolerance")
 
 
@@ -177,53 +171,26 @@ def write(out: Path, wanted: Sequence[File], progress: Callable[[Path], None] = 
     for folder in {out / f.path.parent for f in wanted}:
         folder.mkdir(parents=True, exist_ok=True)
     elsewhere = [file for file in wanted if file.anywhere]
-    if len(elsewhere) < WORTH_PROCESSES or processors() < 2 or not _main_can_be_imported():
+    count = workers(len(elsewhere))
+    if len(elsewhere) < WORTH_PROCESSES or count < 2:
         elsewhere = []
     here = [file for file in wanted if not (elsewhere and file.anywhere)]
     with ExitStack() as pools:
         threads = pools.enter_context(ThreadPoolExecutor(processors()))
         tasks = [(threads.submit(_write_all, out, [file]), [file]) for file in here]
-        # What threads share they wait for: the interpreter, and what the typesetter remembers. New processes, not
-        # forked ones: the typesetter must not be carried over.
+        # What threads share they wait for: the interpreter, and what the typesetter remembers.
         if elsewhere:
-            chunks = [elsewhere[start : start + _CHUNK] for start in range(0, len(elsewhere), _CHUNK)]
-            count = min(processors(), len(chunks), _MOST_PROCESSES)
-            spawn = multiprocessing.get_context("spawn")
-            pool = pools.enter_context(ProcessPoolExecutor(count, mp_context=spawn))
-            with _interrupts_ignored():
-                tasks += [(pool.submit(_write_sent, out, pickle.dumps(chunk)), chunk) for chunk in chunks]
+            submit = pools.enter_context(processes(count))
+            chunks = (elsewhere[start : start + _CHUNK] for start in range(0, len(elsewhere), _CHUNK))
+            tasks += [(submit(_write_sent, out, pickle.dumps(chunk)), chunk) for chunk in chunks]
         try:
             for task, chunk in tasks:
                 task.result()
                 for file in chunk:
                     progress(file.path)
-        except BrokenProcessPool as broken:
-            raise CourseworkError(
-                "a process that made sheets ended by itself: too little memory, or a script that builds outside "
-                "of 'if __name__ == \"__main__\":'; close what takes memory, or put that line before the build"
-            ) from broken
         finally:
             for task, _ in tasks:
                 task.cancel()
-
-
-def _main_can_be_imported() -> bool:
-    """Whether a new process can import this one's main script; one from standard input is no file."""
-    path = getattr(sys.modules["__main__"], "__file__", None)
-    return path is None or Path(path).exists()
-
-
-@contextmanager
-def _interrupts_ignored() -> Iterator[None]:
-    """Processes started meanwhile leave Ctrl-C to this one, which ends them."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
 
 
 def _write_sent(out: Path, files: bytes) -> None:

@@ -6,16 +6,13 @@ Used by ``coursework check`` on any course folder, and by this project's own tes
 from __future__ import annotations
 
 import math
-import multiprocessing
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from typing import Any
 
 import numpy as np
 
 from coursework import draws
-from coursework.blocks import processors
 from coursework.check_report import KEPT_DIGITS, RESIDUAL, Report
 from coursework.comparing import distance
 from coursework.course import Course, open_course
@@ -28,6 +25,7 @@ from coursework.key import Key, envelopes, exists
 from coursework.language import languages, plain, significant
 from coursework.loop_checks import check_loops
 from coursework.model import Part
+from coursework.processes import processes, workers
 from coursework.rounding import student_who_rounds
 from coursework.sheets import prompt
 from coursework.variant import Variant
@@ -64,14 +62,13 @@ def check_all(
     course: Course, names: Sequence[str], variants: int, progress: Callable[[], None] = lambda: None
 ) -> list[Report]:
     """A report an exercise, in this order, made by as many processes as there are processors."""
-    workers = min(processors(), len(names))
-    if workers < 2 or variants < _WORTH_PROCESSES:
+    count = workers(len(names))
+    if count < 2 or variants < _WORTH_PROCESSES:
         return [_told(_check_one(str(course.root), name, variants), progress) for name in names]
-    # New processes, not forked ones: the typesetter must not be carried over.
-    with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+    with processes(count) as submit:
         # The longest first, so that no process waits for another at the end.
         longest = sorted(names, key=lambda name: -_length(course, name))
-        tasks = {name: pool.submit(_check_one, str(course.root), name, variants) for name in longest}
+        tasks = {name: submit(_check_one, str(course.root), name, variants) for name in longest}
         for task in tasks.values():
             task.add_done_callback(lambda _: progress())
         return [tasks[name].result() for name in names]

@@ -6,15 +6,12 @@ what their variants share is computed once; many of them by several processes.
 
 from __future__ import annotations
 
-import multiprocessing
 import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from coursework.blocks import processors
 from coursework.course import Course, open_course
 from coursework.errors import CourseworkError, nearest
 from coursework.issued import Issued
@@ -22,6 +19,7 @@ from coursework.key import keys_of
 from coursework.marking import Mark, mark
 from coursework.model import Part
 from coursework.plainly import plainly_right
+from coursework.processes import processes, workers
 from coursework.submissions import Rejected, Row
 from coursework.telling import right_feedback
 from coursework.variant import Variant
@@ -223,17 +221,16 @@ def _marked_chunks(
     course: Course, chunks: Iterator[list[_Job]], answers: int, printed: bool
 ) -> Iterator[list[list[tuple] | str]]:
     """Each chunk marked, in order; by processes where there is much to do."""
-    workers = processors()
-    if answers < WORTH_PROCESSES or workers < 2:
+    count = workers(answers)
+    if answers < WORTH_PROCESSES or count < 2:
         for chunk in chunks:
             yield _mark_chunk(course, chunk, printed)
         return
-    # New processes, not forked ones: the typesetter must not be carried over.
-    with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+    with processes(count) as submit:
         waiting: list[Any] = []
         for chunk in chunks:
-            waiting.append(pool.submit(_mark_elsewhere, str(course.root), chunk, printed))
-            if len(waiting) >= 3 * workers:
+            waiting.append(submit(_mark_elsewhere, str(course.root), chunk, printed))
+            if len(waiting) >= 3 * count:
                 yield waiting.pop(0).result()
         for task in waiting:
             yield task.result()

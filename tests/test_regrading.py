@@ -218,7 +218,7 @@ def test_many_answers_are_marked_by_processes_as_by_one(small_course, issued, tm
     grade(small_course, issued, "--out", tmp_path / "one")
     monkeypatch.setattr(gradebook, "WORTH_PROCESSES", 0)
     monkeypatch.setattr(gradebook, "CHUNK", 1)
-    monkeypatch.setattr(gradebook, "processors", lambda: 2)
+    monkeypatch.setattr(gradebook, "workers", lambda tasks: 2)
     grade(small_course, issued, "--out", tmp_path / "many")
     for name in ("marks.csv", "summary.csv", "rejected.csv"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "many" / name).read_bytes()

@@ -32,11 +32,8 @@ def pieces(
     """Each piece of a paper-mm drawing and each label as SVG; ``corner`` is the frame's top left, which becomes
     (0, 0), y down."""
 
-    def place(z: complex) -> complex:
-        return complex(z.real - corner.real, corner.imag - z.imag)
-
-    lines = [item.svg(place) for item in ink]
-    middles = [baseline(label.text, place(label.center)) for label in labels]
+    lines = [item.svg(lambda z: _from(corner, z)) for item in ink]
+    middles = [baseline(label.text, _from(corner, label.center)) for label in labels]
     texts = [
         lettering(label.text, at) + accents(label.text, at) for label, at in zip(labels, middles, strict=True)
     ]
@@ -45,9 +42,13 @@ def pieces(
 
 def letters(label: Label, corner: complex) -> Letters:
     """A label's letters and their place, from the frame's top left ``corner``."""
-    center = complex(label.center.real - corner.real, corner.imag - label.center.imag)
-    at = baseline(label.text, center)
+    at = baseline(label.text, _from(corner, label.center))
     return Letters(at.real, at.imag, label.text.runs)
+
+
+def _from(corner: complex, z: complex) -> complex:
+    """A point of the paper from the frame's top left corner, y down."""
+    return complex(z.real - corner.real, corner.imag - z.imag)
 
 
 def baseline(text: Text, center: complex) -> complex:
