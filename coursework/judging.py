@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import inspect
 import itertools
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from coursework.errors import BadCourse, CannotAssemble, Undefined
@@ -61,13 +62,19 @@ def judged(
 
 def _needs(variant: Variant, name: str) -> list[str]:
     """The quantities that a judge takes."""
-    first, *needs = inspect.signature(variant.exercise.solution.judge(name)).parameters
+    first, *needs = _parameters(variant.exercise.solution.judge(name))
     if first != "answers":
         raise BadCourse(
             f"solutions/{variant.exercise.name}.py: judge {name!r}: its first parameter must be 'answers'; "
             f"found {first!r}"
         )
     return needs
+
+
+@lru_cache(maxsize=256)
+def _parameters(function: Callable[..., Any]) -> tuple[str, ...]:
+    """Their names; Python takes longer to tell them than most judges to judge."""
+    return tuple(inspect.signature(function).parameters)
 
 
 class Verdict(NamedTuple):

@@ -34,23 +34,31 @@ def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
     Not for parts that are judged together and whose quantities the mistake is not about: they follow from
     what is wrong before them.
     """
-    values = key.wrong[mistake]
     together = dict(_judged_wrong(key, mistake))
+    for part, wrong in _reached(key, mistake):
+        if not part.judge:
+            yield part, _seen(key, part, wrong)
+        elif part.id in together:
+            yield part, "hidden" if together[part.id].share == 1 else "shown"
+
+
+def _reached(key: Key, mistake: str) -> Iterator[tuple[Part, Any]]:
+    """The parts that a mistake reaches, each with the value that it gives."""
+    values = key.wrong[mistake]
     for part in key.variant.parts:
         wrong = values.get(part.quantity)
-        if wrong is None or not exists(wrong):
-            continue
-        if part.judge:
-            if part.id in together:
-                yield part, "hidden" if together[part.id].share == 1 else "shown"
-            continue
-        along, width = key.reference.get(part.along), key.envelope.get(part.quantity, 0.0)
-        reference = key.reference[part.quantity]
-        if part.kind == "equation":
-            gap = _equation_gap(part, wrong, reference)
-        else:
-            gap = distance(part, wrong, reference, along, width)
-        yield part, "shown" if gap > SHOWN else "hidden" if gap <= HIDDEN else "murky"
+        if wrong is not None and exists(wrong):
+            yield part, wrong
+
+
+def _seen(key: Key, part: Part, wrong: Any) -> str:
+    along, width = key.reference.get(part.along), key.envelope.get(part.quantity, 0.0)
+    reference = key.reference[part.quantity]
+    if part.kind == "equation":
+        gap = _equation_gap(part, wrong, reference)
+    else:
+        gap = distance(part, wrong, reference, along, width)
+    return "shown" if gap > SHOWN else "hidden" if gap <= HIDDEN else "murky"
 
 
 def judged_wrong(key: Key, mistake: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
@@ -98,8 +106,9 @@ def flaws(key: Key) -> Iterator[str]:
             yield f"{ILL}: {part.id}"
     for name, mistake in key.solution.mistakes.items():
         if not mistake.approximation:
-            for part, seen in visibility(key, name):
-                if seen == "murky":
+            # What is judged together is right or wrong, never murky.
+            for part, wrong in _reached(key, name):
+                if not part.judge and _seen(key, part, wrong) == "murky":
                     yield f"{MURKY}: {name} on {part.id}"
 
 

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -24,6 +25,9 @@ _SWEEPS = 3  #: over all sites, at most
 _STARTS = 4  #: pictures begun, of which the best is kept
 _SHORT, _LONG, _GEAR = 17.0, 36.0, 13.0  #: of a bar between two joints; the last, of a cam or a wheel
 _PINS_APART, _CLEAR = 15.0, 7.0  #: between two pins; between a pin and another body's bar
+
+
+_Once: TypeAlias = list[tuple[np.ndarray, ...]]
 
 
 @dataclass(frozen=True)
@@ -75,8 +79,22 @@ def sites(graph: JointGraph) -> list[int]:
 def places(graph: JointGraph) -> tuple[complex, ...]:
     """A place for each joint of the graph, mm on paper, y up."""
     picture = _Picture(graph)
-    found = min((picture.settled(start) for start in picture.starts()), key=picture.cost_of)
+    pictures = picture.settled(picture.starts())
+    found = pictures[int(np.argmin(picture.cost(pictures)))]
     return tuple(complex(found[site]) for site in picture.site)
+
+
+class _Terms(NamedTuple):
+    """What the cost of a picture is summed over, as index arrays and what goes with them: each once, or not at all."""
+
+    sites: _Once  #: two sites
+    apart: _Once  #: two lines that share no site
+    near: _Once  #: a site and a line that does not end in it
+    loose: _Once  #: a line with a loose end, and another line
+    meeting: _Once  #: two lines, the site that they share, and the weight of their angle
+    inside: _Once  #: a site, and the corners of a plate
+    bars: _Once  #: the ends of a bar, its least and its greatest length, and the weight of what is above
+    faced: _Once  #: the site of a contact, and one of each body's
 
 
 class _Picture:
@@ -158,61 +176,72 @@ class _Picture:
         inside = [(s, *three) for _, three in self._plates for s in range(self.count) if s not in three]
         self._inside = _columns(inside, 4)
         self._bars = _columns([s[:2] for s in self._shortest], 2)
-        self._from = np.array([s[2] for s in self._shortest])
-        self._to = np.array([s[3] for s in self._shortest])
+        least, most = (np.array([s[k] for s in self._shortest]) for k in (2, 3))
+        self._lengths = least, most, np.where(most == _GEAR, 0.2, 0.02)
         self._faced = _columns(self._contacts, 3)
         grounded = {self.site[k] for k, j in enumerate(self.graph.joints) if FRAME in j.bodies}
         self._grounded = np.array([s in grounded for s in range(self.count)])
+        self._terms: dict[int | None, _Terms] = {}
 
     # ---------------------------------------------------------------- cost
 
-    def cost_of(self, found: np.ndarray) -> float:
-        return float(self.cost(found[None, :])[0])
-
     def cost(self, z: np.ndarray, moved: int | None = None) -> np.ndarray:
         """How ill each picture (row of sites) reads; with ``moved``, only what that site changes."""
-        touches = np.ones(self.count, bool) if moved is None else np.arange(self.count) == moved
-        lines = touches[self._p] | touches[self._q]
+        of = self._changed(moved)
         start, end = self._ends(z)
         total = 0.12 * np.where(self._grounded, z.imag, 0.25 * abs(z.imag - self.box[1] * 0.6)).sum(axis=1)
-        for s, t in _those(self._sites, touches, touches):
+        for s, t in of.sites:
             total += (_short(abs(z[:, s] - z[:, t]), _PINS_APART) ** 2 * 0.5).sum(axis=1)
-        for e, f in _those(self._apart, lines, lines):
+        for e, f in of.apart:
             total += 9.0 * _cross(start[:, e], end[:, e], start[:, f], end[:, f]).sum(axis=1)
-        for s, e in _those(self._near, touches, lines):
+        for s, e in of.near:
             gap = _distance(z[:, s], start[:, e], end[:, e])
             total += (0.35 * _short(gap, _CLEAR) ** 2).sum(axis=1)
-        for k, e in _those(self._loose, lines, lines):
+        for k, e in of.loose:
             gap = _distance(end[:, k], start[:, e], end[:, e])
             total += (0.3 * _short(gap, 5.0) ** 2).sum(axis=1)
-        total += self._angles(start, end, lines)
-        for s, p, q, r in _those(self._inside, touches, touches, touches, touches):
+        for e, f, s, weight in of.meeting:
+            total += (self._angle(start, end, e, f, s) * weight).sum(axis=1)
+        for s, p, q, r in of.inside:
             total += 12.0 * _within(z[:, s], z[:, p], z[:, q], z[:, r]).sum(axis=1)
-        keep = touches[self._bars[:, 0]] | touches[self._bars[:, 1]]
-        length = abs(z[:, self._bars[keep, 0]] - z[:, self._bars[keep, 1]])
-        total += (_short(length, self._from[keep]) ** 2 * 0.15).sum(axis=1)
-        over = _short(self._to[keep], length) ** 2 * np.where(self._to[keep] == _GEAR, 0.2, 0.02)
-        total += (over + 0.02 * length).sum(axis=1)
-        for c, p, q in _those(self._faced, touches, touches, touches):
-            total += 8.0 * _short(_cosine(z[:, p] - z[:, c], z[:, q] - z[:, c]), -0.75, below=False).sum(
-                axis=1
-            )
+        for p, q, least, most, weight in of.bars:
+            length = abs(z[:, p] - z[:, q])
+            total += (_short(length, least) ** 2 * 0.15).sum(axis=1)
+            total += (_short(most, length) ** 2 * weight + 0.02 * length).sum(axis=1)
+        for c, p, q in of.faced:
+            cosine = _cosine(z[:, p] - z[:, c], z[:, q] - z[:, c])
+            total += 8.0 * _short(cosine, -0.75, below=False).sum(axis=1)
         return np.round(total, 6)
+
+    def _changed(self, moved: int | None) -> _Terms:
+        """What a site that moves changes; all there is for None."""
+        if moved not in self._terms:
+            sites = np.ones(self.count, bool) if moved is None else np.arange(self.count) == moved
+            lines = sites[self._p] | sites[self._q]
+            self._terms[moved] = _Terms(
+                sites=_those(self._sites, sites, sites),
+                apart=_those(self._apart, lines, lines),
+                near=_those(self._near, sites, lines),
+                loose=_those(self._loose, lines, lines),
+                meeting=_those(self._meeting, lines, lines, also=(self._weight,)),
+                inside=_those(self._inside, sites, sites, sites, sites),
+                bars=_those(self._bars, sites, sites, also=self._lengths),
+                faced=_those(self._faced, sites, sites, sites),
+            )
+        return self._terms[moved]
 
     def _ends(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         p, q = z[:, self._p], z[:, self._q]
         way = (q - p) / np.maximum(abs(q - p), 1e-9)
         return p + self._a, q + self._b + self._beyond * way
 
-    def _angles(self, start: np.ndarray, end: np.ndarray, lines: np.ndarray) -> np.ndarray:
+    def _angle(
+        self, start: np.ndarray, end: np.ndarray, e: np.ndarray, f: np.ndarray, s: np.ndarray
+    ) -> np.ndarray:
         """Lines that leave one site: not too near to each other, nor in one line."""
-        keep = lines[self._meeting[:, 0]] | lines[self._meeting[:, 1]]
-        e, f, s = self._meeting[keep].T
-        one, other = (self._leaving(start, end, line, s) for line in (e, f))
-        cosine = _cosine(one, other)
+        cosine = _cosine(self._leaving(start, end, e, s), self._leaving(start, end, f, s))
         sharp = 14.0 * _short(cosine, 0.85, below=False) + 3.0 * _short(cosine, 0.5, below=False)
-        flat = 6.0 * _short(-cosine, 0.95, below=False)
-        return ((sharp + flat) * self._weight[keep]).sum(axis=1)
+        return sharp + 6.0 * _short(-cosine, 0.95, below=False)
 
     def _leaving(self, start: np.ndarray, end: np.ndarray, line: np.ndarray, site: np.ndarray) -> np.ndarray:
         way = end[:, line] - start[:, line]
@@ -220,7 +249,7 @@ class _Picture:
 
     # ---------------------------------------------------------------- search
 
-    def starts(self) -> list[np.ndarray]:
+    def starts(self) -> np.ndarray:
         """Grounded sites in a row below, the others above them, farther the more bodies lie between."""
         depth = self._depths()
         found = []
@@ -235,7 +264,7 @@ class _Picture:
                     across = self.box[0] * (k + 0.5 + 0.11 * level) / (len(row) + 0.3 * level)
                     z[s] = complex(round(across), round(min(self.box[1], 18.0 * level)))
             found.append(z)
-        return found
+        return np.array(found)
 
     def _depths(self) -> list[int]:
         depth = [0 if self._grounded[s] else -1 for s in range(self.count)]
@@ -251,7 +280,7 @@ class _Picture:
         return depth
 
     def settled(self, z: np.ndarray) -> np.ndarray:
-        """Every site moved in turn to its best place: over the whole sheet first, then round about."""
+        """Every site of each picture moved in turn to its best place: over the whole sheet first, then round about."""
         wide, high = self.box
         sheet = np.array([
             complex(x + (_SPACING // 2) * (y // _SPACING % 2), y)
@@ -259,39 +288,36 @@ class _Picture:
             for x in range(0, wide + 1, _SPACING)
         ])  # fmt: skip
         about = np.array([complex(x, y) for x in (-5, -2, -1, 0, 1, 2, 5) for y in (-5, -2, -1, 0, 1, 2, 5)])
+        z = self._swept(z, lambda here: np.hstack([np.broadcast_to(sheet, (len(here), len(sheet))), here]))
+        return self._swept(z, lambda here: here + about)
+
+    def _swept(self, z: np.ndarray, tried: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        """Sites moved in turn, over and over until none moves. What is tried is told of a column of places."""
+        z, moving = z.copy(), np.arange(len(z))
         for _ in range(_SWEEPS):
-            z, changed = self._swept(z, lambda here: np.append(sheet, here))
-            if not changed:
-                break
-        for _ in range(_SWEEPS):
-            z, changed = self._swept(z, lambda here: here + about)
-            if not changed:
+            before = z[moving]
+            for site in range(self.count):
+                candidates = tried(z[moving, site, None])
+                pictures = np.repeat(z[moving, None, :], candidates.shape[1], axis=1)
+                pictures[:, :, site] = candidates
+                cost = self.cost(pictures.reshape(-1, self.count), site).reshape(candidates.shape)
+                z[moving, site] = np.take_along_axis(candidates, cost.argmin(axis=1)[:, None], axis=1)[:, 0]
+            moving = moving[(z[moving] != before).any(axis=1)]
+            if not len(moving):
                 break
         return z
-
-    def _swept(self, z: np.ndarray, tried: Callable[[complex], np.ndarray]) -> tuple[np.ndarray, bool]:
-        changed = False
-        for site in range(self.count):
-            candidates = tried(z[site])
-            pictures = np.repeat(z[None, :], len(candidates), axis=0)
-            pictures[:, site] = candidates
-            best = candidates[int(np.argmin(self.cost(pictures, site)))]
-            changed |= bool(best != z[site])
-            z = z.copy()
-            z[site] = best
-        return z, changed
 
 
 def _columns(rows: Sequence[Sequence[int]], width: int) -> np.ndarray:
     return np.array(rows, int).reshape(-1, width)
 
 
-def _those(rows: np.ndarray, *touched: np.ndarray) -> list[tuple[np.ndarray, ...]]:
-    """The columns of the rows of which some entry is touched, once; nothing if there is none."""
+def _those(rows: np.ndarray, *touched: np.ndarray, also: Sequence[np.ndarray] = ()) -> _Once:
+    """The columns of the rows of which some entry is touched, and what goes with them; nothing if there is none."""
     keep = np.zeros(len(rows), bool)
     for column, mask in enumerate(touched):
         keep |= mask[rows[:, column]]
-    return [tuple(rows[keep].T)] if keep.any() else []
+    return [(*rows[keep].T, *(values[keep] for values in also))] if keep.any() else []
 
 
 def _short(value: np.ndarray, least: np.ndarray | float, *, below: bool = True) -> np.ndarray:
