@@ -73,15 +73,19 @@ class BadInput(CourseworkError, ValueError):
     """A file given by the user cannot be read as what it should be."""
 
 
+def closest(name: str, known: Iterable[str]) -> str | None:
+    """The known name that may have been meant, if one is near."""
+    known = list(known)
+    folded = {k.casefold(): k for k in known}
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    return near[0] if near else folded.get(name.casefold())
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """``"; did you mean 'x'?"``, or the whole list when nothing is near."""
     known = list(known)
-    close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    if not close:
-        folded = {k.casefold(): k for k in known}
-        close = [folded[name.casefold()]] if name.casefold() in folded else []
-    if close:
-        return f"; did you mean {close[0]!r}?"
+    if (near := closest(name, known)) is not None:
+        return f"; did you mean {near!r}?"
     return f"; there is: {', '.join(sorted(known))}" if known else "; there is none"
 
 

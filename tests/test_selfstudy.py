@@ -12,8 +12,9 @@ import pytest
 
 import coursework
 from coursework.cli import run
-from coursework.errors import BadCourse, BadInput, CourseworkError, UnknownName, WrongValue
+from coursework.errors import BadCourse, BadInput, CourseworkError, Starved, UnknownName, WrongValue
 from coursework.figures.plot import Axis, Plot, Spot
+from coursework.language import words
 from coursework.selfstudy import hints, predictions
 from coursework.worth import worthy
 
@@ -161,6 +162,60 @@ def test_a_students_copy_says_that_its_solutions_are_missing(small_course, monke
 def test_a_notebook_of_another_version_is_refused(here):
     with pytest.raises(BadInput, match=r"version 99.*coursework notebook slotted_mechanism"):
         coursework.study("slotted_mechanism", version=99)
+
+
+MISTYPED = {
+    "question": (lambda s: s.check({"theta44": "1"}), UnknownName, "theta4"),
+    "no name": (lambda s: s.check({3: "1"}), UnknownName, "omega4"),
+    "no dictionary": (lambda s: s.check(["1"]), BadInput, "study.check"),
+    "a text": (lambda s: s.predict("theta4"), BadInput, "study.predict"),
+    "prediction": (lambda s: s.predict({"theta5": "1"}), UnknownName, "theta4"),
+    "hint": (lambda s: s.hint("tehta4"), UnknownName, "theta4"),
+    "hint of a list": (lambda s: s.hint(["theta4"]), UnknownName, "theta4"),
+    "step": (lambda s: s.hint("theta4", "two"), BadInput, "two"),
+    "reveal": (lambda s: s.reveal("thta4"), UnknownName, "theta4"),
+    "curve": (lambda s: s.plot("omega44"), UnknownName, "omega4"),
+    "curves": (lambda s: s.plot(["rA"]), UnknownName, "rA"),
+    "effect": (lambda s: s.motion("speed"), UnknownName, "velocity"),
+    "fresh": (lambda s: s.fresh("2"), BadInput, "'2'"),
+}
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+@pytest.mark.parametrize("mistyped", MISTYPED)
+def test_what_is_mistyped_is_said_in_the_language_of_the_notebook(mistyped, lang, here):
+    call, kind, would_do = MISTYPED[mistyped]
+    with pytest.raises(kind) as refused:
+        call(coursework.study("slotted_mechanism", lang=lang))
+    (line,) = refused.value._render_traceback_()
+    assert would_do in line
+    sentences = words(lang)["study"]["refused"].values()
+    assert any(max(re.split(r"\{\w+\}", sentence), key=len) in line for sentence in sentences)
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_a_notebook_that_cannot_begin_says_so_in_its_language(lang, here):
+    said = words(lang)["study"]["refused"]
+    for told, start in (
+        ({"exercise": "sloted_mechanism"}, said["exercise"]),
+        ({"exercise": "slotted_mechanism", "version": 99}, said["version"]),
+        ({"exercise": "slotted_mechanism", "course": "nowhere"}, said["course"]),
+    ):
+        with pytest.raises(CourseworkError, match=re.escape(start.partition("{")[0])):
+            coursework.study(**told, lang=lang)
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_more_fresh_variants_than_there_are_is_said_in_the_language_of_the_notebook(lang, small_course, here):
+    source = small_course / "exercises" / "crank_pin.py"
+    few = source.read_text("utf-8").replace("drawn(50, 200, step=5", "drawn(50, 55, step=5")
+    few = few.replace("drawn(-175, 180, step=5", "drawn(-160, 160, step=40").replace(
+        "drawn(2, 20", "drawn(2, 3"
+    )
+    source.write_text(few, "utf-8")
+    with pytest.raises(Starved) as refused:
+        coursework.study("crank_pin", lang=lang, course=small_course).fresh(100)
+    assert str(refused.value) == words(lang)["study"]["refused"]["starved"].format(number=100)
 
 
 # -------------------------------------------------------------------- feedback

@@ -12,10 +12,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from coursework.errors import unknown
 from coursework.language import words
 from coursework.rendering.formula_tree import tokens
 from coursework.rendering.views import chain_on_lines, given_formula, given_words
+from coursework.selfstudy.refusals import expect
 from coursework.worked import formula_latex, number_latex
 
 if TYPE_CHECKING:
@@ -38,8 +38,7 @@ def quantity_of(variant: Variant, name: str) -> str:
     """
     by_part = {p.id: p.quantity for p in variant.parts}
     names = {**{q: q for q in variant.walk if q not in variant.given}, **by_part}
-    if name not in names:
-        raise unknown("question", name, names, variant.exercise.name)
+    expect(variant.lang, "question", name, names)
     return names[name]
 
 

@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from coursework.course import Course, open_course
-from coursework.errors import BadCourse, BadInput, NoSolution, unknown
+from coursework.errors import BadCourse, NoSolution, Starved, WrongValue
 from coursework.figures.plot import Axis, Plot, Spot
 from coursework.language import unit_text, words
 from coursework.marking import Mark, read
+from coursework.motion import EFFECTS
 from coursework.rendering.shown import Picture, Shown
 from coursework.rendering.views import points_number
-from coursework.selfstudy import hints, predictions
+from coursework.selfstudy import hints, predictions, refusals
 from coursework.selfstudy.kept import Kept, is_blank
 from coursework.selfstudy.predictions import Prediction
 from coursework.selfstudy.sheet import fresh_variants
@@ -61,17 +62,19 @@ def study(
     UnknownName
         No such exercise or language.
     """
-    one = _found(course)[exercise]
+    words(lang)  # an unknown language is told before anything is said in it
+    opened = _found(course, lang)
+    refusals.expect(lang, "exercise", exercise, opened.names)
+    one = opened[exercise]
     if version is not None and version != one.version:
-        raise BadInput(
-            f"this notebook is of version {version} of {exercise}; the installed course has version {one.version}: "
-            f"make the notebook again with 'coursework notebook {exercise} --seed {seed} --lang {lang} --out DIR'"
-        )
+        again = f"coursework notebook {exercise} --seed {seed} --lang {lang} --out DIR"
+        told = {"exercise": exercise, "version": version, "installed": one.version, "command": again}
+        raise refusals.refused(lang, "version", **told)
     kept = Kept(Path(folder) / f"{exercise}.study.json", exercise)
     return StudySession(one.variant(seed, lang), kept)
 
 
-def _found(course: str | Path | None) -> Course:
+def _found(course: str | Path | None, lang: str) -> Course:
     """A course by its folder, or by its name, beside or above the place where we are."""
     if course is None:
         return open_course()
@@ -82,10 +85,7 @@ def _found(course: str | Path | None) -> Course:
         for folder in (place / course, place):
             if folder.name == Path(course).name and (folder / "exercises").is_dir():
                 return open_course(folder)
-    raise BadCourse(
-        f"no course {str(course)!r} beside or above {here}; put its folder beside the notebook, "
-        'or say where it is: course="…/folder"'
-    )
+    raise BadCourse(words(lang)["study"]["refused"]["course"].format(name=course, here=here))
 
 
 class StudySession:
@@ -144,13 +144,20 @@ class StudySession:
 
         Raises
         ------
-        UnknownName, WrongValue
-            An effect that is none, or of which there is nothing to show.
+        UnknownName
+            An effect that is none.
+        BadInput
+            An effect of which there is nothing to show.
         """
+        for effect in effects:
+            refusals.expect(self.variant.lang, "effect", effect, EFFECTS)
         try:
             moving = self.variant.animation(effects)
         except BadCourse:
             return self._shown(self._missing() or self._said["no_motion"])
+        except WrongValue:
+            shown = ", ".join(self.variant.animation(()).available)
+            raise refusals.refused(self.variant.lang, "no_effect", names=shown) from None
         if not effects:
             usual = [e for e in ("position", "velocity") if e in moving.available]
             moving = self.variant.animation(usual)
@@ -175,11 +182,12 @@ class StudySession:
         ------
         UnknownName
             Something that is not to be predicted here.
+        BadInput
+            No dictionary.
         """
         asked = self._asked
-        for name in predicted:
-            if name not in asked:
-                raise unknown("prediction", name, asked, self.variant.exercise.name)
+        for name in refusals.by_name(self.variant.lang, f"{self._name}.predict", predicted):
+            refusals.expect(self.variant.lang, "prediction", name, asked)
         self._kept.add(self.variant.seed, "predictions", dict(predicted))
         now = self.predictions
         made = [n for n in predicted if not is_blank(now.get(n))]
@@ -222,11 +230,13 @@ class StudySession:
         ------
         UnknownName
             An answer to a question that this variant does not ask.
+        BadInput
+            No dictionary.
         """
-        given = {n: a for n, a in (answers or {}).items() if n != "student"}
+        told = refusals.by_name(self.variant.lang, f"{self._name}.check", {} if answers is None else answers)
+        given = {n: a for n, a in told.items() if n != "student"}
         for name in given:
-            if name not in self.variant.part_ids:
-                raise unknown("question", name, self.variant.part_ids, self.variant.exercise.name)
+            refusals.expect(self.variant.lang, "question", name, self.variant.part_ids)
         copied = self._same_as_another(given)
         if not copied:
             self._kept.add(self.variant.seed, "answers", given)
@@ -288,6 +298,8 @@ class StudySession:
         ------
         UnknownName
             No such question, and no such quantity on the way to one.
+        BadInput
+            A step that is no whole number.
         """
         if missing := self._missing():
             return self._shown(missing)
@@ -298,6 +310,8 @@ class StudySession:
         texts = hints.steps(self.variant, question, self._right, lambda n: self._call("hint", n))
         if not texts:
             return self._shown(self._said["hint"]["none"].format(call=self._call("reveal", question)))
+        if step is not None and (isinstance(step, bool) or not isinstance(step, int)):
+            raise refusals.refused(self.variant.lang, "step", found=repr(step))
         last = step if step is not None else self._hints.get(question, 0) + 1
         last = min(max(last, 1), len(texts))
         self._hints[question] = last
@@ -343,8 +357,7 @@ class StudySession:
         if not parts:
             return self._shown(self._said["no_plot"])
         for name in names:
-            if name not in parts:
-                raise unknown("moving quantity", name, parts, self.variant.exercise.name)
+            refusals.expect(self.variant.lang, "curve", name, parts)
         first = [p.quantity for p in predictions.over_the_cycle(self.variant)]
         usual = sorted(parts, key=lambda i: parts[i].quantity not in first)[:PANELS]
         chosen = [parts[n] for n in (names or sorted(usual, key=list(parts).index))]
@@ -401,12 +414,14 @@ class StudySession:
             The exercise has no more variants.
         """
         if number is not None and (isinstance(number, bool) or not isinstance(number, int) or number < 1):
-            raise BadInput(f"fresh variants are counted from 1 on; found {number!r}")
+            raise refusals.refused(self.variant.lang, "fresh", found=repr(number))
         begun = {seed for seed in self._kept.seeds if self._kept.of(seed, "answers")}
         # One of so many is not begun.
-        variants = fresh_variants(
-            self.variant.exercise, self._base, number or len(begun) + 2, self.variant.lang
-        )
+        count = number or len(begun) + 2
+        try:
+            variants = fresh_variants(self.variant.exercise, self._base, count, self.variant.lang)
+        except Starved:
+            raise Starved(self._said["refused"]["starved"].format(number=count)) from None
         left = [v for v in variants if v.seed not in begun and v.seed != self.variant.seed]
         variant = left[0] if number is None else variants[-1]
         return StudySession(variant, self._kept, self._base)
@@ -428,15 +443,19 @@ class StudySession:
 
     def _call(self, method: str, name: str) -> str:
         """How the notebook calls a method, as code in Markdown."""
-        session = "study" if self.variant.seed == self._base else "again"
-        return f'`{session}.{method}("{name}")`'
+        return f'`{self._name}.{method}("{name}")`'
+
+    @property
+    def _name(self) -> str:
+        """What the notebook calls this session."""
+        return "study" if self.variant.seed == self._base else "again"
 
     def _missing(self) -> str:
         """What to say where the course folder has no solution of this exercise; empty when it has one."""
         try:
             self.variant.exercise.solution  # noqa: B018
-        except NoSolution as fault:
-            return self._said["no_solutions"].format(fault=fault)
+        except NoSolution:
+            return self._said["no_solutions"]
         return ""
 
     @property
