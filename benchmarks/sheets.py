@@ -1,6 +1,7 @@
 """A class's sheets: a thousand students, each with a sheet and its worked solution as PDF.
 
 python benchmarks/sheets.py [EXERCISE] [STUDENTS] [--no-polygons]
+python benchmarks/sheets.py every [STUDENTS] [--no-polygons]
 """
 
 from __future__ import annotations
@@ -52,6 +53,21 @@ def by_latex(name: str, folder: Path, polygons: bool) -> float:
     return (time.perf_counter() - start) / len(sources)
 
 
+def every(students: int, polygons: bool) -> None:
+    """Each exercise of the course in turn."""
+    rows = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in coursework.open_course().names:
+            out = Path(folder) / name
+            wall, _ = build(name, students, ("pdf",), out, polygons)
+            size = sum(path.stat().st_size for path in out.rglob("*.pdf")) / (2 * students)
+            rows.append((name, f"{wall:.1f}", f"{1e3 * wall / (2 * students):.1f}", f"{size / 1e3:.0f}"))
+            shutil.rmtree(out)
+    print_table(("exercise", f"s for {students} students", "ms a PDF", "kB a PDF"), rows)
+    walls = sorted(float(row[1]) for row in rows)
+    print(f"half of them in {walls[len(walls) // 2]:.0f} s or less; all of them in {sum(walls) / 60:.0f} min")
+
+
 def main() -> None:
     told = [argument for argument in sys.argv[1:] if argument != "--no-polygons"]
     polygons = "--no-polygons" not in sys.argv
@@ -59,6 +75,9 @@ def main() -> None:
     students = int(told[1]) if len(told) > 1 else 1000
     drawn = "with its polygons" if polygons else "without polygons"
     print(f"{machine()}; {name}, a sheet and a worked solution {drawn} for each student\n")
+    if name == "every":
+        every(students, polygons)
+        return
     rows = []
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder)

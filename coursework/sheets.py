@@ -240,10 +240,7 @@ def _step(
     words = section.text if section else ""
     part = next((p for p in variant.parts if p.quantity == name and p.kind == "choice"), None)
     if part is not None:
-        # A case has no symbol that would say which question it answers.
-        number = 1 + [p.id for p in variant.parts].index(part.id)
-        asks = f"{engine_words(variant.lang)['sheet']['question']['one']} {number}."
-        words = f"*{asks[:1].upper()}{asks[1:]}* {words} **{variant.text.label(part.id, str(found))}**."
+        words = _words_of_case(variant, part, str(found), words)
     try:
         formula = formula_in_symbols(function, symbols)
         substitution = formula_latex(function, numbers) if formula and value else ""
@@ -266,6 +263,17 @@ def _step(
         remarks=remarks,
         asked=any(p.quantity == name for p in variant.parts),
     )
+
+
+def _words_of_case(variant: Variant, part: Part, case: str, reason: str) -> str:
+    """The question, which no symbol tells, and the case: at the end of the reason's last sentence, or after it."""
+    said = engine_words(variant.lang)
+    number = 1 + [p.id for p in variant.parts].index(part.id)
+    asks = f"{said['sheet']['question']['one']} {number}."
+    is_whole = not reason or reason.rstrip()[-1] in ".!?"
+    answers = f"{said['solution']['case']}{said['sheet']['colon']}" if is_whole else ""
+    words = (f"*{asks[:1].upper()}{asks[1:]}*", reason, answers, f"**{variant.text.label(part.id, case)}**.")
+    return " ".join(filter(None, words))
 
 
 def _value_latex(variant: Variant, name: str, value: Any) -> str:
