@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import groupby
 
 from coursework.errors import unknown
 from coursework.figures import Beginning, Element, Figure, line, point, scale_bar, vector
@@ -159,19 +160,44 @@ class Construction:
 
     def _told(self, stage: Stage) -> str:
         """A stage in words."""
-        said = self._said
-        first, last = stage.sides[0], stage.sides[-1]
-        text = said[stage.kind].format(
-            vectors=", ".join(f"${s.name}$" for s in stage.sides),
-            points=", ".join(f"${p}$" for p in stage.points),
-            through=f"${stage.through}$",
-            direction=f"${last.direction}$",
-            vector=f"${last.name}$",
-            first=f"${first.name}$",
-        )
+        text = " ".join(self._sentences(stage))
         if stage is not self.polygon.stages[0]:
             return text
-        return f"{said['pole'].format(f'${self.polygon.pole}$')} {text}"
+        return f"{self._said['pole'].format(f'${self.polygon.pole}$')} {text}"
+
+    def _sentences(self, stage: Stage) -> Iterator[str]:
+        said = self._said
+        if stage.kind == "known":
+            # A vector between two points of which its end is found first is laid off backwards.
+            found = list(zip(stage.sides, stage.points, strict=True))
+            for backwards, run in groupby(found, lambda one: one[1] == one[0].start):
+                sides, points = zip(*run, strict=True)
+                if not backwards:
+                    yield said["known"].format(
+                        vectors=self._listed(s.name for s in sides), points=self._listed(points)
+                    )
+                for side in sides if backwards else ():
+                    yield said["ending"].format(
+                        vector=f"${side.name}$", end=f"${side.end}$", point=f"${side.start}$"
+                    )
+        elif stage.kind == "result":
+            for side in stage.sides:
+                yield said["result"].format(
+                    start=f"${side.start}$", end=f"${side.end}$", vector=f"${side.name}$"
+                )
+        else:
+            first, last = stage.sides[0], stage.sides[-1]
+            yield said[stage.kind].format(
+                points=self._listed(stage.points) if stage.points else "",
+                through=f"${stage.through}$",
+                direction=f"${last.direction}$",
+                vector=f"${last.name}$",
+                first=f"${first.name}$",
+            )
+
+    def _listed(self, names: Iterable[str]) -> str:
+        *before, last = (f"${name}$" for name in names)
+        return f"{', '.join(before)}{self._said['and']}{last}" if before else last
 
     def svg(self) -> str:
         """The whole polygon as SVG, at true size."""

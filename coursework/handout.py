@@ -68,6 +68,14 @@ class Handout:
 
 
 @dataclass(frozen=True)
+class Remark:
+    """A known mistake that lurks at a step."""
+
+    words: str  #: Markdown
+    wrong: str = ""  #: what it gives in place of the right value, as Markdown; empty where that is no number and no case
+
+
+@dataclass(frozen=True)
 class Step:
     """One quantity of the worked solution: formula, numbers put in, value."""
 
@@ -77,7 +85,7 @@ class Step:
     substitution: str  #: the same with this variant's numbers; empty if none
     value: str  #: LaTeX of the value with its unit, ``\num{319.8}\ \mathrm{mm}``
     words: str  #: Markdown from the solution's text, before the formula
-    remarks: tuple[str, ...]  #: Markdown, the known mistakes that lurk here
+    remarks: tuple[Remark, ...]  #: those that are mistakes in this variant
     asked: bool
 
 

@@ -24,7 +24,7 @@ from coursework.issued import ISSUED_FORMAT
 from coursework.language import languages
 from coursework.submissions import delimiter_of
 from coursework.variant import Variant
-from coursework.worth import worthy
+from coursework.worth import try_judges, worthy
 
 _STUDENT_COLUMNS = ("student", "name", "étudiant", "etudiant", "élève", "eleve", "nom")
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
@@ -179,6 +179,8 @@ def issue(
                 have = ", ".join(exercise.languages) or "none"
                 raise BadInput(f"{name} has no text in {lang!r}; it has {have}")
         variants = distinct_variants(exercise, first_seed, len(students), langs[0], parts=asked[name])
+        if course.has_solutions and variants:
+            try_judges(variants[0].key)
         for student, stem, variant in zip(students, stems, variants, strict=True):
             own = (student.lang,) if student.lang else tuple(langs)
             stem = stem or f"{variant.seed:05d}"

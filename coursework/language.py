@@ -7,11 +7,12 @@ when its file does.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import resources
+from typing import Any
 
-from coursework.errors import unknown
+from coursework.errors import BadCourse, unknown
 
 NARROW_SPACE = "\N{NARROW NO-BREAK SPACE}"
 MINUS = "\N{MINUS SIGN}"
@@ -26,10 +27,37 @@ def languages() -> tuple[str, ...]:
 
 @cache
 def words(lang: str) -> Mapping[str, object]:
-    """The engine's words in one language, as nested tables of texts."""
+    """The engine's words in one language, as nested tables of texts.
+
+    Raises
+    ------
+    UnknownName
+        No such language.
+    BadCourse
+        Its file lacks texts that English has.
+    """
     if lang not in languages():
         raise unknown("language", lang, languages())
+    found = _read(lang)
+    if missing := sorted({*names_of(_read("en"))} - {*names_of(found)}):
+        raise BadCourse(
+            f"coursework/words/{lang}.toml lacks {', '.join(missing[:5])}{', …' if len(missing) > 5 else ''}: "
+            "copy from coursework/words/en.toml and translate"
+        )
+    return found
+
+
+def _read(lang: str) -> dict[str, Any]:
     return tomllib.loads((resources.files("coursework") / "words" / f"{lang}.toml").read_text("utf-8"))
+
+
+def names_of(table: Mapping[str, Any], above: str = "") -> Iterator[str]:
+    """The names of a table's texts, ``study.refused.near`` for one in a table in a table."""
+    for name, text in table.items():
+        if isinstance(text, dict):
+            yield from names_of(text, f"{above}{name}.")
+        else:
+            yield above + name
 
 
 def localise(number: str, lang: str) -> str:
@@ -51,9 +79,23 @@ def plain(value: float) -> str:
     return "0" if text == "-0" else text
 
 
+_EXACT = 1e-9  #: of a number that is printed as it is, and no rounded one
+
+
+def is_whole(text: str) -> bool:
+    """Whether a text ends with a sentence, or is empty; else something is to follow: ``Here the guide``."""
+    end = text.rstrip(' \n*_)»”"')
+    return not end or end[-1] in ".!?…"
+
+
 def significant(value: float, digits: int = 4) -> str:
-    """A number rounded to significant digits, as a text with a point; for templates only."""
+    """A number rounded to significant digits, as a text with a point; for templates only.
+
+    Zeros at its end say that it is rounded there: ``197.10`` for 197.104, ``138`` for 138.
+    """
     text = f"{float(value):.{digits}g}"
+    if abs(float(text) - value) > _EXACT * abs(value):
+        text = f"{float(value):#.{digits}g}".removesuffix(".")
     if "e" in text:
         mantissa, exponent = text.split("e")
         if -4 <= int(exponent) < 10:

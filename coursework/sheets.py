@@ -10,10 +10,10 @@ import numpy as np
 
 from coursework.constructions import Construction
 from coursework.equation_latex import latex_of_equation
-from coursework.errors import BadCourse, BadStatement, BrokenFunction
-from coursework.graph import Graph
-from coursework.handout import Answer, AnswerSheet, Given, Handout, Question, Step
-from coursework.language import localise, plain, significant, unit_text
+from coursework.errors import BadCourse, BadStatement, BrokenFunction, CourseworkError
+from coursework.graph import Graph, plain_scalar
+from coursework.handout import Answer, AnswerSheet, Given, Handout, Question, Remark, Step
+from coursework.language import is_whole, localise, plain, significant, unit_text
 from coursework.language import words as engine_words
 from coursework.model import Part
 from coursework.polygons import Polygon
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 PRINTED_DIGITS = 5  #: significant digits of a value in a worked solution
 _WITHOUT_SYMBOL = ("choice", "equation")
+_SAME = 1e-9  #: of a value, by which two ways to compute it may differ
 
 
 def handout(variant: Variant) -> Handout:
@@ -128,7 +129,9 @@ def tolerance_words(part: Part, lang: str) -> str:
         return fixed
     if not part.atol:
         return table["percent"].format(percent)
-    return table["either"].format(f"{percent} %", f"{absolute} {unit_text(part.unit, lang)}".strip())
+    return table["either"].format(
+        table["share"].format(percent), f"{absolute} {unit_text(part.unit, lang)}".strip()
+    )
 
 
 def _call(function: Any, values: Mapping[str, Any], helpers: tuple = ()) -> Any:
@@ -223,24 +226,27 @@ def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step
         for n, v in values.items()
         if isinstance(v, (int, float, complex))
     }
+    remarks = _remarks(variant, values, text)
     return tuple(
-        _step(variant, name, value, text, symbols, numbers)
+        _step(variant, name, value, text, symbols, numbers, remarks.get(name, ()))
         for name, value in values.items()
         if name not in variant.given
     )
 
 
 def _step(
-    variant: Variant, name: str, found: Any, text: Any, symbols: tuple[tuple[str, str], ...], numbers: Shown
+    variant: Variant,
+    name: str,
+    found: Any,
+    text: Any,
+    symbols: tuple[tuple[str, str], ...],
+    numbers: Shown,
+    remarks: Sequence[Remark],
 ) -> Step:
     exercise = variant.exercise
     function = exercise.solution.graph.node(name).function
     section = text.sections.get(name)
     value = _value_latex(variant, name, found)
-    words = section.text if section else ""
-    part = next((p for p in variant.parts if p.quantity == name and p.kind == "choice"), None)
-    if part is not None:
-        words = _words_of_case(variant, part, str(found), words)
     try:
         formula = formula_in_symbols(function, symbols)
         substitution = formula_latex(function, numbers) if formula and value else ""
@@ -248,31 +254,77 @@ def _step(
         raise BadCourse(
             f"solutions/{exercise.name}.py: the formula of {name} names {fault}, which is not among its quantities"
         ) from fault
-    remarks = tuple(
-        text.section(f"mistake {m}").text
-        for m, mistake in exercise.solution.mistakes.items()
-        if mistake.targets[0] == name
-    )
+    symbol = _symbol(variant, name)
     return Step(
         name=name,
-        symbol=_symbol(variant, name),
-        formula=formula if formula != value else "",
+        symbol=symbol,
+        formula=formula if formula not in (value, symbol) else "",
         substitution=substitution if substitution not in (formula, value) else "",
         value=value,
-        words=words,
-        remarks=remarks,
+        words=_words_of(variant, name, found, section.text if section else ""),
+        remarks=tuple(remarks),
         asked=any(p.quantity == name for p in variant.parts),
     )
 
 
-def _words_of_case(variant: Variant, part: Part, case: str, reason: str) -> str:
-    """The question, which no symbol tells, and the case: at the end of the reason's last sentence, or after it."""
-    said = engine_words(variant.lang)
-    number = 1 + [p.id for p in variant.parts].index(part.id)
+def _remarks(variant: Variant, values: Mapping[str, Any], text: Any) -> dict[str, list[Remark]]:
+    """The known mistakes by the step that they stand at: the first of their targets that they change.
+
+    One that is about what is given stands at the first step that it changes. One that changes nothing in this
+    variant is none, and is left out.
+    """
+    solution, exercise_units = variant.exercise.solution, variant.exercise.units
+    found: dict[str, list[Remark]] = {}
+    for name, mistake in solution.mistakes.items():
+        steps = [q for q in values if q not in variant.given]
+        about = [q for q in steps if q in mistake.targets]
+        reached = about or [q for q in steps if q in solution.reached(name)]
+        for quantity in reached:
+            try:
+                graph = solution.mistaken(name)
+                wrong = graph.evaluate((quantity,), variant.used, variant.effects)[quantity]
+            except CourseworkError:
+                continue
+            if not _agrees(wrong, values[quantity], exercise_units.get(quantity, "1")):
+                told = Remark(text.section(f"mistake {name}").text, _wrong_text(variant, quantity, wrong))
+                found.setdefault(quantity, []).append(told)
+                break
+    return found
+
+
+def _agrees(wrong: Any, right: Any, unit: str) -> bool:
+    """Whether a mistake gives the right value; directions are the same after a full turn."""
+    if isinstance(right, (str, tuple)) or isinstance(wrong, (str, tuple)):
+        return bool(wrong == right)
+    gap = np.abs(np.subtract(wrong, right))
+    if unit == "deg":
+        gap = np.minimum(gap % 360.0, -gap % 360.0)
+    return bool(np.all(gap <= _SAME * np.max(np.abs(right))))
+
+
+def _wrong_text(variant: Variant, name: str, wrong: Any) -> str:
+    part = next((p for p in variant.parts if p.quantity == name), None)
+    if part is not None and part.kind == "choice":
+        return engine_words(variant.lang)["solution"]["quoted"].format(
+            variant.text.label(part.id, str(wrong))
+        )
+    if isinstance(wrong, (str, tuple)) or np.ndim(wrong) or not np.isfinite(wrong):
+        return ""
+    return f"${_value_latex(variant, name, plain_scalar(wrong))}$"
+
+
+def _words_of(variant: Variant, name: str, found: Any, reason: str) -> str:
+    """The words of a step: which question it answers; of a choice, the case after its reason."""
+    number = next((n for n, p in enumerate(variant.parts, start=1) if p.quantity == name), 0)
+    if not number:
+        return reason
+    said, part = engine_words(variant.lang), variant.parts[number - 1]
     asks = f"{said['sheet']['question']['one']} {number}."
-    is_whole = not reason or reason.rstrip()[-1] in ".!?"
-    answers = f"{said['solution']['case']}{said['sheet']['colon']}" if is_whole else ""
-    words = (f"*{asks[:1].upper()}{asks[1:]}*", reason, answers, f"**{variant.text.label(part.id, case)}**.")
+    words = [f"*{asks[:1].upper()}{asks[1:]}*", reason]
+    if part.kind == "choice":
+        # At the end of the reason's last sentence, or after it.
+        words += [f"{said['solution']['case']}{said['sheet']['colon']}"] if is_whole(reason) else []
+        words += [f"**{variant.text.label(part.id, str(found))}**."]
     return " ".join(filter(None, words))
 
 

@@ -112,6 +112,21 @@ def flaws(key: Key) -> Iterator[str]:
                     yield f"{MURKY}: {name} on {part.id}"
 
 
+def try_judges(key: Key) -> None:
+    """Lets every judge judge the right answers and the known mistakes: a broken one is found before sheets are issued.
+
+    Raises
+    ------
+    BadCourse
+        As :func:`coursework.judging.judged`.
+    """
+    quantity_of = {part.id: part.quantity for part in key.variant.parts}
+    for name, ids in judges_of(key.variant):
+        judged(key.variant, name, {i: key.reference[quantity_of[i]] for i in ids})
+    for mistake in key.solution.mistakes:
+        dict(_judged_wrong(key, mistake))
+
+
 def worthy(
     exercise: CourseExercise, variants: Sequence[Variant], refused: Counter[str] | None = None
 ) -> list[Variant]:

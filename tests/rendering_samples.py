@@ -14,6 +14,7 @@ from coursework.handout import (
     Given,
     Handout,
     Question,
+    Remark,
     Step,
 )
 
@@ -191,7 +192,7 @@ def answer_sheet(lang: str, *, student: str = "") -> AnswerSheet:
         ),
         Step(
             "theta4", r"\theta_4", r"\operatorname{atan2}(y_A, x_A)", "", r"\num{104.64}^\circ", text["words"][1],
-            (text["remark"],), True,
+            (Remark(text["remark"], r"$\num{-75.4}^{\circ}$"),), True,
         ),
         Step(
             "omega4", r"\omega_4",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import coursework
-from coursework import checks
+from coursework import checks, issuing
 from coursework.errors import BadCourse, UnknownName
 
 EXERCISE = """
@@ -193,7 +193,10 @@ def test_a_judge_that_cannot_judge_is_the_authors_fault_and_says_so(course, old,
     for folder in ("exercises", "solutions"):
         path = course / folder / "sums.py"
         path.write_text(path.read_text("utf-8").replace(old, new), "utf-8")
-    variant = coursework.open_course(course)["sums"].variant(3, "en")
+    opened = coursework.open_course(course)
+    with pytest.raises((BadCourse, UnknownName), match=message):
+        issuing.issue(opened, ["sums"], first_seed=0, count=2, langs=["en"])
+    variant = opened["sums"].variant(3, "en")
     total = variant.given["sum"]
     with pytest.raises((BadCourse, UnknownName), match=message):
         [variant.grade(answers) for answers in ({"x": total, "y": total}, {"x": total, "y": 0})]

@@ -9,6 +9,7 @@ import shutil
 import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import reduce
 from importlib import resources
 
 import nbformat
@@ -16,9 +17,11 @@ import pytest
 import typst
 from rendering_samples import ANSWER_DIGITS, answer_sheet, feedback_sheet, handout, many_given
 
+from coursework import language
 from coursework.builtin import builtin_root
 from coursework.errors import BadCourse, BadStatement
 from coursework.handout import Given
+from coursework.language import words
 from coursework.rendering import Renderer
 from coursework.rendering.formula_tree import GRIDS, MACROS
 from coursework.rendering.formulas import (
@@ -234,6 +237,18 @@ def test_both_languages_have_the_same_words():
     }
     french, english = (keys({k: v for k, v in t.items() if k != "units"}) for t in tables.values())
     assert french == english
+    for name in english:
+        texts = [reduce(lambda table, key: table[key], name.split("."), table) for table in tables.values()]
+        blanks = [set(re.findall(r"\{\w*\}", text)) for text in texts if isinstance(text, str)]
+        assert blanks[1:] == blanks[:-1], f"{name}: {texts}"
+
+
+def test_a_language_whose_file_lacks_a_text_says_which(monkeypatch):
+    whole = language._read("en")
+    lacking = {**whole, "study": {k: v for k, v in whole["study"].items() if k != "refused"}}
+    monkeypatch.setattr(language, "_read", lambda lang: lacking if lang == "fr" else whole)
+    with pytest.raises(BadCourse, match=r"fr\.toml lacks study\.refused\.course, .*en\.toml"):
+        words.__wrapped__("fr")
 
 
 def test_french_puts_narrow_spaces_where_french_does():

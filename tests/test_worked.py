@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from coursework import sheets
 from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.solution import formula
 from coursework.worked import formula_latex, number_latex
@@ -84,7 +86,10 @@ def test_a_formula_and_its_substitution(function, symbols, numbers):
 
 
 def test_numbers_are_rounded_for_print_alone():
-    assert number_latex(319.8037021, "mm") == r"\num{319.8}"
+    assert number_latex(319.8137021, "mm") == r"\num{319.81}"
+    assert number_latex(319.8037021, "mm") == r"\num{319.80}"  # a zero says that it is rounded there
+    assert number_latex(319.8, "mm") == r"\num{319.8}"
+    assert number_latex(0.1 + 0.2, "mm") == r"\num{0.3}"
     assert number_latex(-0.0000123456, "mm") == r"\num{-1.2346e-5}"
     assert number_latex(104.63880, "deg") == r"\num{104.64}^{\circ}"
     assert number_latex(1 - 2j, "mm") == r"\left(\num{1} - \num{2}\,i\right)"
@@ -107,3 +112,65 @@ def difference(whole, sum_of_two):
 def test_a_symbol_that_is_a_sum_stands_in_brackets():
     shown = {"whole": ("L", False), "sum_of_two": ("s + l", False)}
     assert formula_latex(difference, shown) == r"L - \left(s + l\right)"
+
+
+def test_each_asked_step_says_which_question_it_answers(course):
+    for name in course.names:
+        for lang in ("fr", "en"):
+            variant = course[name].variant(2, lang)
+            first = {part.quantity: number for number, part in reversed([*enumerate(variant.parts, start=1)])}
+            for step in variant.answer_sheet(polygons=False).steps:
+                said = f"*Question {first[step.name]}.*" if step.asked else ""
+                assert step.words.startswith(said), f"{name}: {step.name}: {step.words[:40]}"
+                assert bool(said) == ("*Question " in step.words), f"{name}: {step.name}"
+
+
+@pytest.mark.parametrize(
+    ("reason", "lang", "said"),
+    [
+        ("", "en", "*Question 3.* Answer: **oscillates**."),
+        ("It cannot turn.", "en", "*Question 3.* It cannot turn. Answer: **oscillates**."),
+        ("It cannot *turn.*", "en", "*Question 3.* It cannot *turn.* Answer: **oscillates**."),
+        ("Here the guide", "en", "*Question 3.* Here the guide **oscillates**."),
+        (
+            "Il ne peut tourner.",
+            "fr",
+            "*Question 3.* Il ne peut tourner. Réponse\N{NARROW NO-BREAK SPACE}: **oscille**.",
+        ),
+        ("Ici, le guide", "fr", "*Question 3.* Ici, le guide **oscille**."),
+    ],
+)
+def test_a_case_ends_its_reason_or_follows_it(course, reason, lang, said):
+    variant = course["slotted_mechanism"].variant(1, lang)
+    assert variant.walk["guide"] == "oscillates"
+    assert sheets._words_of(variant, "guide", "oscillates", reason) == said
+
+
+def test_a_remark_bears_the_wrong_value_and_stands_where_it_is_one(course):
+    for name in course.names:
+        variant = course[name].variant(3, "en")
+        texts = variant.solution_text
+        solution = variant.exercise.solution
+        texts_of = {m: texts.section(f"mistake {m}").text for m in solution.mistakes}
+        for step in variant.answer_sheet(polygons=False).steps:
+            for remark in step.remarks:
+                graphs = [solution.mistaken(m) for m, text in texts_of.items() if text == remark.words]
+                found = [g.evaluate((step.name,), variant.used, variant.effects)[step.name] for g in graphs]
+                assert any(not np.array_equal(wrong, variant.walk[step.name]) for wrong in found), (
+                    f"{name}: {remark}"
+                )
+                assert step.value not in remark.wrong or not step.value, f"{name}: {remark}"
+
+
+def test_what_is_no_mistake_in_a_variant_is_not_told(course):
+    """The arctangent of a quotient is right in two quadrants of four."""
+    exercise = course["slotted_mechanism"]
+    told = set()
+    for seed in range(1, 13):
+        variant = exercise.variant(seed, "en")
+        text = variant.solution_text.section("mistake arctan_no_quadrant").text
+        (step,) = (s for s in variant.answer_sheet(polygons=False).steps if s.name == "theta4")
+        is_told = text in [remark.words for remark in step.remarks]
+        assert is_told == (abs(variant.walk["theta4"]) > 90), seed
+        told.add(is_told)
+    assert told == {True, False}

@@ -33,6 +33,8 @@ Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 ROOM_BESIDE, ROOM_ALONE = (112.0, 62.0), (165.0, 72.0)
 ROOM_DATA = 46.0  #: width of the data beside it, whose longer lines are broken
 ROOM_STEP = (53.0, 200.0)  #: of a step of a construction, three of which stand side by side
+_TALL_BY_PAPER = 48.0  #: height that a figure has where there is paper to draw on as well
+_GUIDE_TOGETHER = 16  #: rows at most of a marking guide that no page's end may cut
 _BESIDE = 9  #: data at most that stand beside the figure
 
 #: The template of each type of sheet.
@@ -58,6 +60,7 @@ def context(sheet: Sheet) -> dict[str, object]:
         "data_width": _data_width(handout),
         "step_room": ROOM_STEP,
         "summary_mm": SUMMARY_MM,
+        "guide_together": _GUIDE_TOGETHER,
         "polygon_mm": POLYGON_MM,
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
         "variant": f"{handout.exercise} · {handout.seed} · v{handout.version}",
@@ -73,7 +76,11 @@ def figure_of(sheet: Sheet) -> Figure | None:
 
 def room(sheet: Sheet) -> tuple[float, float]:
     """Width and height in mm that a sheet leaves its figure."""
-    return ROOM_BESIDE if _data_beside(sheet) else ROOM_ALONE
+    wide, tall = ROOM_BESIDE if _data_beside(sheet) else ROOM_ALONE
+    # Paper to draw on stands below the figure, on the same page if it may.
+    return wide, min(tall, _TALL_BY_PAPER) if handout_of(sheet).drawing_mm and isinstance(
+        sheet, Handout
+    ) else tall
 
 
 def _shown(sheet: Sheet) -> Figure | None:
@@ -267,9 +274,10 @@ def quantity_words(question: Question, lang: str) -> str:
 def margin_words(answer: Answer, lang: str) -> str:
     """How far from the reference an answer may be, in the summary's few words."""
     said = words(lang)["solution"]
-    if answer.margin:
-        return f"±\N{NO-BREAK SPACE}{answer.margin}"
-    return answer.question.tolerance or said["together" if answer.question.judge else "exact"]
+    margin = f"±\N{NO-BREAK SPACE}{answer.margin}" if answer.margin else answer.question.tolerance
+    if not margin:
+        return said["together" if answer.question.judge else "exact"]
+    return said["margins"].get(answer.question.kind, "{0}").format(margin)
 
 
 #: What a table's row on one line takes, without an arrow over a letter and with one, mm; and the sides of a cell.
