@@ -128,13 +128,14 @@ def height_of_the_line_tells(unequal_halves, r1, r2):
 def figure(arm, P, C, r1, r2, r4, theta2, omega2):
     O4, O2 = 0j, 1j * r1
     along = arm / abs(arm)
+    end = along * max(1.12 * (r1 + r2), 1.1 * r4)
     turning = _clearest(0, 270, theta2, 0.5 * theta2, angle(C - O2), angle(arm))
     half_turn = 20 if omega2 > 0 else -20
     return Figure(
         circle(O2, r2, dashed=True),
         rotation_arrow(O2, 1.15 * r2, turning - half_turn, turning + half_turn, label=r"\omega_2"),
         rail(C - 0.5 * r4, C + 0.5 * r4),
-        slot_link(O4, along * max(1.12 * (r1 + r2), 1.1 * r4)),
+        slot_link(O4, end),
         line(O4, O2, dashed=True, label="r_1"),
         link(O2, arm, label="r_2"),
         link(P, C, label="r_5"),
@@ -142,10 +143,12 @@ def figure(arm, P, C, r1, r2, r4, theta2, omega2):
         line(O2, O2 + 0.6 * r2, dashed=True),
         angle_mark(O2, 0, theta2, r"\theta_2"),
         slider(arm, angle(arm), label="A"),
-        note(C + 0.5 * r4, "y=h"),
+        note(end + 0.06 * (r4 + r2) * along, "4"),
+        note(C + 0.5 * r4, r"y\,=\,h"),
         slider(C, 0, label="C"),
         ground_pivot(O4, "O_4"),
         ground_pivot(O2, "O_2"),
+        pin(arm),
         pin(P, "P"),
         pin(C),
     )

@@ -48,7 +48,7 @@ EXERCISE = Exercise(
         "Nc": "N_c",
         "m_useful": "m_u",
         "m_internal": "m_i",
-        "axis_dir": r"\vec{u}",
+        "axis_dir": r"\vec{e}",
         "axis_point": "P",
     },
 )

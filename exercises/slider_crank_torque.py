@@ -126,9 +126,17 @@ def inertia_of_the_crank_tells(answers, scene):
     return _told_apart(answers, _answers(scene._replace(on_crank=0)))
 
 
+def _clear_of(G, r2):
+    """A radius for the arc of theta2 that does not pass by G."""
+    usual = 0.4 * r2
+    if abs(abs(G) - usual) > 0.15 * r2:
+        return usual
+    return 0.2 * r2 if abs(G) > usual else 0.6 * r2
+
+
 def figure(rod, r2, e, theta2, omega2, s3, F):
     O, A = 0j, polar(r2, theta2)
-    B, half_rail = A + rod, 0.5 * r2
+    B, G, half_rail = A + rod, A + s3 * rod, 0.5 * r2
     behind, pull = theta2 + 180, 0.65 * r2
     turn = 35 if omega2 > 0 else -35
     to_B, aside = B + 0.4 * r2, B.real + 1.2 * r2
@@ -146,8 +154,8 @@ def figure(rod, r2, e, theta2, omega2, s3, F):
         ground_pivot(O, "O"),
         pin(A, "A"),
         pin(B, "B"),
-        point(A + s3 * rod, "G"),
-        angle_mark(O, 0, theta2, r"\theta_2"),
+        point(G, "G"),
+        angle_mark(O, 0, theta2, r"\theta_2", radius=_clear_of(G, r2)),
         rotation_arrow(O, 0.6 * r2, behind - turn, behind + turn, label=r"\omega_2"),
     )
 

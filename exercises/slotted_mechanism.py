@@ -1,7 +1,7 @@
 """Slotted mechanism: where is the block on its guide, and how does the guide turn? (chapter 3, exercise 1)."""
 
 from coursework.degrees import angle, cos, polar, sin
-from coursework.figures import Figure, angle_mark, ground_pivot, line, link, note, slider, slot_link
+from coursework.figures import Figure, angle_mark, ground_pivot, line, link, note, pin, slider, slot_link
 from coursework.model import Driver, Exercise, Part, drawn, fixed, loop_equations
 
 
@@ -51,6 +51,7 @@ def figure(arm, r1, theta1, r2, theta2):
         line(O4, O2, dashed=True, label="r_1"),
         link(O2, arm, label="r_2"),
         slider(arm, angle(arm), label="A"),
+        pin(arm),
         ground_pivot(O4, "O_4"),
         ground_pivot(O2, "O_2"),
         line(O2, O2 + 0.6 * r2, dashed=True),

@@ -198,7 +198,7 @@ def figure(frame, crank, motion, theta2, r3, r6, beta, d3):
         pin(F, "F"),
         pin(G, "G"),
         angle_mark(O, 0, theta2, r"\theta_2"),
-        angle_mark(A, angle(AB), angle(AB) + beta, r"\beta"),
+        angle_mark(A, angle(AB), angle(AB) + beta, r"\beta", radius=0.7 * min(r3, r6)),
     )
 
 

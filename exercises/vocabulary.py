@@ -15,6 +15,7 @@ from coursework.statement import constants
 from coursework.structure.growing import Choices
 
 THEMES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
+OF_THE_FIGURE = frozenset(q for theme in THEMES.values() for q in theme.get("of_the_figure", ()))
 
 
 def _cases():
@@ -41,8 +42,19 @@ def _when(question):
     return lambda deck: question in asked(deck)
 
 
-def figure():
-    """A four-bar linkage on the left, a slotted guide on the right."""
+def speaks_of_figure(deck):
+    """Whether a question of the variant does."""
+    return not OF_THE_FIGURE.isdisjoint(asked(deck))
+
+
+def tells(deck):
+    return {"speaks_of_figure": speaks_of_figure(deck)}
+
+
+def figure(deck):
+    """A four-bar linkage on the left, a slotted guide on the right; none where no question needs it."""
+    if not speaks_of_figure(deck):
+        return None
     O, A, B, C = 0, 22 + 38j, 118 + 76j, 100
     D, E, F = 220, 220 + 62j, 256 + 78j
     return Figure(
@@ -79,4 +91,5 @@ EXERCISE = Exercise(
         for question in BANK
     ),
     figure=figure,
+    tells=tells,
 )

@@ -1,13 +1,16 @@
 """Joints in a row: their free motions add up, so the ranks are those of the added motions."""
 
+from functools import lru_cache
+
 import numpy as np
 
+from coursework.language import significant
 from coursework.solids import FREEDOMS, aligned, each_distinct, joint_of
 from coursework.solution import mistake
 
 from ._solids import _direction, _each, _freest, _in_parallel, _point, _series_of
 
-STRUCTURES = ("joints",)
+STRUCTURES = ("joints", "free_motions")
 
 
 def _pair(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
@@ -26,9 +29,60 @@ def _combined(joints):
     return _series_of(joints)
 
 
-def Nc(_combined):
+def free_motions(_combined):
+    """One by one, at A1: a line of the table each, and how it adds up from those before, where it does."""
+    if not isinstance(_combined, np.ndarray):
+        return _lines(_combined.joints)
+    found = np.empty(_combined.shape, dtype=object)
+    found.flat = [_lines(whole.joints) for whole in _combined.flat]
+    return found
+
+
+@lru_cache(maxsize=4096)
+def _lines(joints):
+    of_joint, twists = [], []
+    for number, joint in enumerate(joints, start=1):
+        for twist in joint.twists((0.0, 0.0, 0.0), 1.0):
+            of_joint.append(number)
+            twists.append(np.array(twist))
+    first, sums = [], []  # the independent ones among those before
+    for twist in twists:
+        before = np.array([twists[k] for k in first]).reshape(-1, 6).T
+        shares, *_ = np.linalg.lstsq(before, twist, rcond=None)
+        if np.allclose(before @ shares, twist, rtol=0, atol=1e-9 * abs(twist).max()):
+            sums.append(_sum({k + 1: share for k, share in zip(first, shares, strict=True)}))
+        else:
+            first.append(len(sums))
+            sums.append("")
+    return tuple(
+        {"number": k, "joint": j, "rotation": _triple(t[:3]), "velocity": _triple(t[3:]), "sum": told}
+        for k, (j, t, told) in enumerate(zip(of_joint, twists, sums, strict=True), start=1)
+    )
+
+
+def _number(value):
+    return rf"\num{{{significant(round(float(value), 9) + 0.0)}}}"
+
+
+def _triple(vector):
+    inner = r";\ ".join(map(_number, vector))
+    return rf"\left({inner}\right)"
+
+
+def _sum(shares):
+    """LaTeX of a sum of motions, each by its number."""
+    told = ""
+    for number, share in shares.items():
+        if abs(share) > 1e-9:
+            size = "" if abs(abs(share) - 1) < 1e-9 else _number(abs(share)) + r"\,"
+            sign = (" - " if told else "-") if share < 0 else " + " if told else ""
+            told += f"{sign}{size}t_{number}"
+    return told
+
+
+def Nc(free_motions):
     """The freedoms, joint by joint."""
-    return _each(lambda one: one.Nc, _combined)
+    return _each(len, free_motions)
 
 
 def m(Nc):

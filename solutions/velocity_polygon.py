@@ -11,6 +11,8 @@ from ._drawn import _Asked, _Read, _verdicts
 from ._drawn_velocity import *
 from ._polygons import _crank_v, _two_bars_v, _velocities
 
+SYMBOLS = {"turn_3": r"\varepsilon_3", "turn_4": r"\varepsilon_4"}
+
 
 def _bars(r1, r2, r3, r4, theta2, mode):
     """Vectors OA, AB and CB, and the rates of AB and CB over that of OA, by the numeric core."""
@@ -34,16 +36,26 @@ def v_B(kv, pv_b):
     return kv * pv_b
 
 
-@formula(r"\pm \frac{<kv> \times <ab>}{<r3>}")
-def omega3(kv, ab, r3, _bars, omega2):
+def turn_3(_bars, omega2):
+    """Of the coupler: +1 anticlockwise."""
     *_, ratio, _ = _bars
-    return np.sign(ratio * omega2) * kv * ab / r3
+    return np.sign(ratio * omega2)
 
 
-@formula(r"\pm \frac{<kv> \times <pv_b>}{<r4>}")
-def omega4(kv, pv_b, r4, _bars, omega2):
+@formula(r"<turn_3> \times \frac{<kv> \times <ab>}{<r3>}")
+def omega3(turn_3, kv, ab, r3):
+    return turn_3 * kv * ab / r3
+
+
+def turn_4(_bars, omega2):
+    """Of the rocker: +1 anticlockwise."""
     *_, ratio = _bars
-    return np.sign(ratio * omega2) * kv * pv_b / r4
+    return np.sign(ratio * omega2)
+
+
+@formula(r"<turn_4> \times \frac{<kv> \times <pv_b>}{<r4>}")
+def omega4(turn_4, kv, pv_b, r4):
+    return turn_4 * kv * pv_b / r4
 
 
 @mistake("known_BA")

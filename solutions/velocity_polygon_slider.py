@@ -1,5 +1,7 @@
 """Velocity polygon of a slider-crank: solution. A, whose velocity is known, and B, which the guide keeps on its line."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from coursework.degrees import polar
@@ -10,6 +12,8 @@ from coursework.solution import formula, judge, mistake
 from ._drawn import _Asked, _Read, _verdicts
 from ._drawn_velocity import *
 from ._polygons import _crank_v, _slider_v, _velocities
+
+SYMBOLS = {"way_B": r"\varepsilon_B", "turn_3": r"\varepsilon_3"}
 
 
 def _bars(r2, r3, theta2):
@@ -31,16 +35,26 @@ def _lines(_bars):
     return 1j * rod, 1 + 0j
 
 
-@formula(r"\pm <kv> \times <pv_b>")
-def r1_dot(kv, pv_b, _images):
+def way_B(_images):
+    """Of the piston: +1 to the right."""
     _, v_B = _images
-    return np.sign(v_B.real) * kv * pv_b
+    return np.sign(v_B.real)
 
 
-@formula(r"\pm \frac{<kv> \times <ab>}{<r3>}")
-def omega3(kv, ab, r3, _bars, omega2):
+@formula(r"<way_B> \times <kv> \times <pv_b>")
+def r1_dot(way_B, kv, pv_b):
+    return way_B * kv * pv_b
+
+
+def turn_3(_bars, omega2):
+    """Of the rod: +1 anticlockwise."""
     *_, ratio = _bars
-    return np.sign(ratio * omega2) * kv * ab / r3
+    return np.sign(ratio * omega2)
+
+
+@formula(r"<turn_3> \times \frac{<kv> \times <ab>}{<r3>}")
+def omega3(turn_3, kv, ab, r3):
+    return turn_3 * kv * ab / r3
 
 
 @mistake("known_BA")
@@ -58,9 +72,14 @@ def scale_forgotten(pv_b, r1_dot):
     return np.sign(r1_dot) * pv_b
 
 
-@mistake("r1_dot", "omega3", share=0.5)
-def value_sense(r1_dot, omega3):
-    return -r1_dot, -omega3
+@mistake("r1_dot", share=0.5)
+def piston_sense(r1_dot):
+    return -r1_dot
+
+
+@mistake("omega3", share=0.5)
+def value_sense(omega3):
+    return -omega3
 
 
 @mistake("omega3")
@@ -91,7 +110,16 @@ def drawing(answers, r2, r3, theta2, omega2):
         sides={("p_v", "a"): "a", ("a", "b"): "ba", ("p_v", "b"): "vb"},
         hung=frozenset({"ba_on_p"}),
     )
-    return _verdicts(answers, _polygon(bars, omega2), asked)
+    said = _verdicts(answers, _polygon(bars, omega2), asked)
+    if "r1_dot" in said:
+        said["r1_dot"] = _of_the_piston(said["r1_dot"])
+    return said
+
+
+def _of_the_piston(verdict):
+    """The piston does not turn: a wrong sense has its own words."""
+    names = ["piston_sense" if n == "value_sense" else n for n in (verdict.mistake, *verdict.also)]
+    return replace(verdict, mistake=names[0], also=tuple(names[1:]))
 
 
 def _polygon(bars, omega2, scale=None):
