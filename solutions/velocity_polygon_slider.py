@@ -58,9 +58,14 @@ def scale_forgotten(pv_b, r1_dot):
     return np.sign(r1_dot) * pv_b
 
 
-@mistake("r1_dot", "omega3", share=0.5)
-def value_sense(r1_dot, omega3):
-    return -r1_dot, -omega3
+@mistake("r1_dot", share=0.5)
+def V_B_sense(r1_dot):
+    return -r1_dot
+
+
+@mistake("omega3", share=0.5)
+def value_sense(omega3):
+    return -omega3
 
 
 @mistake("omega3")
@@ -85,7 +90,7 @@ def drawing(answers, r2, r3, theta2, omega2):
         points={"p": "p_v", "a": "a", "b": "b"},
         lengths={"ab": ("a", "b"), "pv_b": ("p_v", "b")},
         reads={
-            "r1_dot": _Read("p_v", "b", lambda v: v.real, 1.0),
+            "r1_dot": _Read("p_v", "b", lambda v: v.real, 1.0, sense="V_B_sense"),
             "omega3": _Read("a", "b", lambda v: (v / (1j * rod)).real, 1 / r3, of_rod),
         },
         sides={("p_v", "a"): "a", ("a", "b"): "ba", ("p_v", "b"): "vb"},
