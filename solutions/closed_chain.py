@@ -45,14 +45,16 @@ def motions(_solids):
 
 @lru_cache(maxsize=4096)
 def _twists(chain):
-    found, met, between = [], [], []
+    found, met, between, total, total_inside = [], [], [], 0, 0
     for joint in chain.joints:
         twists = joint.twists((0.0, 0.0, 0.0), 1.0)
-        more = _rank([*met, *twists]) - _rank(met)
         met += twists
+        more = _rank(met) - total
+        total += more
         inside = 0 not in joint.between
-        more_inside = _rank([*between, *twists]) - _rank(between) if inside else 0
         between += twists if inside else []
+        more_inside = _rank(between) - total_inside if inside else 0
+        total_inside += more_inside
         found.append(
             {
                 "twists": [_printed(twist) for twist in twists],
