@@ -6,11 +6,18 @@ from coursework.solids import joint_of
 from coursework.solution import mistake
 
 from ._counts import *
-from ._solids import _chain, _chain_of
+from ._solids import _chain, _chain_of, _each
+
+STRUCTURES = ("joints", "motions")  #: ``motions``, of each chain its own, tell where its rank comes from
 
 
 def _solids(joints):
     return _chain_of(joints)
+
+
+def rc(_solids, motions):
+    """The rank of the loop equations, after the motions that are told in words."""
+    return _each(lambda one: one.rc, _solids)
 
 
 def rs(n, m):

@@ -12,10 +12,18 @@ from coursework.solution import Judged
 _BOX_MM = (130.0, 80.0)  #: in which the reference drawing fits
 
 
+_NOTHING_MM = 1e-9 * max(_BOX_MM)  #: what rounding leaves of a coordinate that is zero
+
+
 def _paper(image, scale):
     """An image point as coordinates on paper, mm from the pole, shape (..., 2)."""
-    on_paper = np.asarray(image / scale, dtype=complex)
-    return np.stack([on_paper.real, on_paper.imag], axis=-1)
+    return _coordinates(np.asarray(image / scale, dtype=complex))
+
+
+def _coordinates(on_paper):
+    """Of complex points on paper, along a last axis."""
+    found = np.stack([on_paper.real, on_paper.imag], axis=-1)
+    return np.where(abs(found) < _NOTHING_MM, 0.0, found)
 
 
 def _scale_for(*images):
@@ -44,6 +52,7 @@ class _Read(NamedTuple):
     wrong: Mapping = MappingProxyType(
         {}
     )  #: by mistake: the ends of the vector that is taken instead, and its gain
+    sense: str = "value_sense"  #: the mistake of its sign
 
 
 class _Asked(NamedTuple):
@@ -177,14 +186,14 @@ def _of_value(found, read, drawing, answers, asked):
         return Judged(follows=bool(at_fault) or wrong_length)
     names = list(_wrong_ways(found, read, [right, *own], drawing))
     first = names[0] if names else ""
-    return Judged(0.5 if first == "value_sense" else 0.0, first, also=tuple(names[1:]))
+    return Judged(0.5 if first == read.sense else 0.0, first, also=tuple(names[1:]))
 
 
 def _wrong_ways(found, read, values, drawing):
     """The mistakes that explain a value, from the right drawing or the student's own."""
     near = 2 * drawing.tolerance * drawing.scale * read.gain
     if any(abs(found + value) <= near for value in values):
-        yield "value_sense"
+        yield read.sense
     if any(abs(found * drawing.scale - value) <= near for value in values):
         yield "scale_forgotten"
     for name, (start, end, gain) in read.wrong.items():
@@ -207,8 +216,7 @@ def _met(through, along, other, other_along):
     """Where two lines meet on paper; directions as complex numbers."""
     z, w = (q[..., 0] + 1j * q[..., 1] for q in (through, other))
     slope = (np.conj(along) * other_along).imag
-    found = z + along * (np.conj(w - z) * other_along).imag / slope
-    return np.stack([found.real, found.imag], axis=-1)
+    return _coordinates(z + along * (np.conj(w - z) * other_along).imag / slope)
 
 
 def _off_both(b, lines, end):

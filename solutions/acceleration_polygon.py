@@ -12,6 +12,9 @@ from ._drawn import _Asked, _met, _paper, _Read, _turned, _verdicts
 from ._drawn_acceleration import *
 from ._polygons import _accelerations, _crank_a, _two_bars_a
 
+UNITS = {"mb_t": "mm"}
+SYMBOLS = {"sense3": "s_3", "sense4": "s_4", "mb_t": "b'' b"}
+
 
 def _bars(r1, r2, r3, r4, theta2, mode):
     """Vectors OA, AB and CB; rates of AB and CB over that of OA; their accelerations over its square."""
@@ -62,7 +65,8 @@ def bb_t(_images, ka):
     return abs(of_B - of_n) / ka
 
 
-def _rocker_part(_images, ka):
+def mb_t(_images, ka):
+    """From b'' to b, measured on the drawing."""
     *_, of_m, of_B = _images
     return abs(of_B - of_m) / ka
 
@@ -71,16 +75,26 @@ def a_B(ka, pa_b):
     return ka * pa_b
 
 
-@formula(r"\pm \frac{<ka> \times <bb_t>}{<r3>}")
-def alpha3(ka, bb_t, r3, _bars):
+def sense3(_bars):
+    """In which the vector b'b, put at B, turns AB: 1 anticlockwise."""
     *_, gain, _ = _bars
-    return np.sign(gain) * ka * bb_t / r3
+    return np.sign(gain)
 
 
-def alpha4(ka, r4, _rocker_part, _bars):
-    """The same with the length from b'' to b and the rocker."""
+@formula(r"<sense3> \times \frac{<ka> \times <bb_t>}{<r3>}")
+def alpha3(sense3, ka, bb_t, r3):
+    return sense3 * ka * bb_t / r3
+
+
+def sense4(_bars):
+    """The same of the vector b''b and CB."""
     *_, gain = _bars
-    return np.sign(gain) * ka * _rocker_part / r4
+    return np.sign(gain)
+
+
+@formula(r"<sense4> \times \frac{<ka> \times <mb_t>}{<r4>}")
+def alpha4(sense4, ka, mb_t, r4):
+    return sense4 * ka * mb_t / r4
 
 
 @mistake("known_BA_n", "known_B_n")

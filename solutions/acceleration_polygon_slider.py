@@ -12,6 +12,8 @@ from ._drawn import _Asked, _met, _Read, _verdicts
 from ._drawn_acceleration import *
 from ._polygons import _accelerations, _crank_a, _slider_a
 
+SYMBOLS = {"side_B": "s_B", "sense3": "s_3"}
+
 
 def _bars(r2, r3, theta2):
     """Vectors OA and AB; rate of AB over that of OA; its acceleration over the square."""
@@ -54,15 +56,25 @@ def bb_t(_images, ka):
     return abs(of_B - of_n) / ka
 
 
-@formula(r"\pm <ka> \times <pa_b>")
-def r1_ddot(ka, pa_b, _images):
-    return np.sign(_images[-1].real) * ka * pa_b
+def side_B(_images):
+    """Of b, seen from the pole: 1 on the right, -1 on the left."""
+    return np.sign(_images[-1].real)
 
 
-@formula(r"\pm \frac{<ka> \times <bb_t>}{<r3>}")
-def alpha3(ka, bb_t, r3, _bars):
+@formula(r"<side_B> \times <ka> \times <pa_b>")
+def r1_ddot(side_B, ka, pa_b):
+    return side_B * ka * pa_b
+
+
+def sense3(_bars):
+    """In which the vector b'b, put at B, turns AB: 1 anticlockwise."""
     *_, gain = _bars
-    return np.sign(gain) * ka * bb_t / r3
+    return np.sign(gain)
+
+
+@formula(r"<sense3> \times \frac{<ka> \times <bb_t>}{<r3>}")
+def alpha3(sense3, ka, bb_t, r3):
+    return sense3 * ka * bb_t / r3
 
 
 @mistake("known_BA_n")
@@ -108,9 +120,14 @@ def scale_forgotten(pa_b, r1_ddot):
     return np.sign(r1_ddot) * pa_b
 
 
-@mistake("r1_ddot", "alpha3", share=0.5)
-def value_sense(r1_ddot, alpha3):
-    return -r1_ddot, -alpha3
+@mistake("r1_ddot", share=0.5)
+def a_B_sense(r1_ddot):
+    return -r1_ddot
+
+
+@mistake("alpha3", share=0.5)
+def value_sense(alpha3):
+    return -alpha3
 
 
 @mistake("alpha3")
@@ -129,7 +146,7 @@ def drawing(answers, r2, r3, theta2, omega2):
         points={"p": "p_a", "a": "a", "n": "b'", "b": "b"},
         lengths={"bb_t": ("b'", "b"), "pa_b": ("p_a", "b")},
         reads={
-            "r1_ddot": _Read("p_a", "b", lambda v: v.real, 1.0),
+            "r1_ddot": _Read("p_a", "b", lambda v: v.real, 1.0, sense="a_B_sense"),
             "alpha3": _Read("b'", "b", lambda v: (v / (1j * rod)).real, 1 / r3, of_rod),
         },
         sides={("p_a", "a"): "a", ("a", "b'"): "n", ("b'", "b"): "bt", ("p_a", "b"): "pb"},

@@ -1,11 +1,14 @@
 """Closed chain: the rank of the loop equations at the given position, and what follows by counting."""
 
+from functools import lru_cache
+
+import numpy as np
+
 from coursework.solids import aligned, each_distinct
+from coursework.structure.columns import each
 
 from ._chains import *
 from ._solids import _each
-
-STRUCTURES = ("joints",)
 
 SYMBOLS = {"input_body": "b_e", "output_body": "b_s"}
 
@@ -32,6 +35,59 @@ def joints(
         joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
         x2, y2, z2, x3, y3, z3, x4, y4, z4,
     )  # fmt: skip
+
+
+def motions(_solids):
+    """Of each joint: its free twists at the origin, as they are printed; how many the ones of the joints before it
+    do not give, counted all around the loop, and between the bodies of the input and of the output."""
+    return each(_twists, _solids)
+
+
+@lru_cache(maxsize=4096)
+def _twists(chain):
+    found, met, between, total, total_inside = [], [], [], 0, 0
+    for joint in chain.joints:
+        twists = joint.twists((0.0, 0.0, 0.0), 1.0)
+        met += twists
+        more = _rank(met) - total
+        total += more
+        inside = 0 not in joint.between
+        between += twists if inside else []
+        more_inside = _rank(between) - total_inside if inside else 0
+        total_inside += more_inside
+        found.append(
+            {
+                "twists": [_printed(twist) for twist in twists],
+                "count": len(twists),
+                "more": more,
+                "inside": inside,
+                "more_inside": more_inside,
+            }
+        )
+    return tuple(found)
+
+
+def _rank(twists):
+    """Velocities are in mm where lengths are some tens of them."""
+    return int(np.linalg.matrix_rank(np.array(twists) / [1, 1, 1, 20, 20, 20])) if twists else 0
+
+
+def _printed(twist):
+    """Rotation and velocity of a twist, LaTeX; a translation either way is one freedom."""
+    rotation, velocity = twist[:3], twist[3:]
+    if not any(rotation) and sum(velocity) < 0:
+        velocity = [-component for component in velocity]
+    return rf"\left({_vector(rotation)};\ {_vector(velocity)}\right)"
+
+
+def _vector(components):
+    text = ""
+    for value, name in zip(components, "xyz", strict=True):
+        if value:
+            size = "" if abs(value) == 1 else rf"\num{{{abs(value):g}}}\,"
+            sign = (" - " if value < 0 else " + ") if text else "-" if value < 0 else ""
+            text += rf"{sign}{size}\vec {name}"
+    return text or r"\vec 0"
 
 
 def input_body():

@@ -2,14 +2,14 @@
 
 import numpy as np
 
+from coursework.errors import WrongValue
 from coursework.solids import aligned, each_distinct
 from coursework.solution import mistake
+from coursework.structure.columns import each
 
 from ..exercises._complex import DIRECTIONS, LAYOUTS, points_of
 from ._chains import *
-from ._solids import _each
-
-STRUCTURES = ("joints",)
+from ._solids import _each, _planar_chain
 
 SYMBOLS = {"input_body": "b_e", "output_body": "b_s"}
 
@@ -34,6 +34,21 @@ def joints(
         layout, joint_1, joint_2, joint_3, joint_4, joint_5, joint_6, joint_7, joint_8,
         xA, yA, xB, yB, xC, xD, yD, xE, yE,
     )  # fmt: skip
+
+
+def motions(_solids):
+    """In the plane, then out of it: freedoms of the joints, and the rank of the loop equations. Nothing for joints
+    that keep the two together."""
+    return each(_apart, _solids)
+
+
+def _apart(chain):
+    plane = _planar_chain(chain.joints)
+    try:
+        freedoms, rank = plane.Nc, plane.rc
+    except WrongValue:
+        return ()
+    return {"freedoms": freedoms, "rank": rank}, {"freedoms": chain.Nc - freedoms, "rank": chain.rc - rank}
 
 
 def input_body():

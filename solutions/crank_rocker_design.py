@@ -21,6 +21,8 @@ UNITS = {
     "far": "mm",
     "swing": "deg",
     "transmission": "deg",
+    "mu_1": "deg",
+    "mu_2": "deg",
 }
 SYMBOLS = {
     "phi": r"\varphi",
@@ -29,6 +31,8 @@ SYMBOLS = {
     "far": "OB_2",
     "swing": r"\psi",
     "transmission": r"\mu_{\min}",
+    "mu_1": r"\mu_1",
+    "mu_2": r"\mu_2",
 }
 
 
@@ -66,8 +70,13 @@ def _lengths(r4, psi, phi, beta):
 
 def _least_transmission(r1, r2, r3, r4):
     """The smaller of the transmission angle's smallest value and its supplement's, degrees."""
-    smallest, largest = (acos((r3**2 + r4**2 - (r1 + side * r2) ** 2) / (2 * r3 * r4)) for side in (-1, 1))
+    smallest, largest = _transmission(r1, r2, r3, r4)
     return np.minimum(smallest, 180 - largest)
+
+
+def _transmission(r1, r2, r3, r4):
+    """The transmission angle with the crank along the frame, towards C and away from it, degrees."""
+    return tuple(acos((r3**2 + r4**2 - (r1 + side * r2) ** 2) / (2 * r3 * r4)) for side in (-1, 1))
 
 
 @formula(r"<chord> \times \frac{\sin\left(<beta> + <phi>\right)}{\sin <phi>}")
@@ -84,8 +93,33 @@ def r2(far, near):
     return (far - near) / 2
 
 
-def r3(far, near):
+def r3(far, near, _checked):
     return (far + near) / 2
+
+
+def _checked(mu_1, mu_2):
+    """The demands on the linkage, shown beside the last of its lengths."""
+
+
+@formula(
+    r"\arccos \left(\frac{<r3>^2 + <r4>^2 - \left(<r1> - <r2>\right)^2}{2 \times <r3> \times <r4>}\right)"
+)
+def mu_1(_extremes):
+    """The least transmission angle: the crank lies along the frame, towards C."""
+    return _extremes[0]
+
+
+@formula(
+    r"\arccos \left(\frac{<r3>^2 + <r4>^2 - \left(<r1> + <r2>\right)^2}{2 \times <r3> \times <r4>}\right)"
+)
+def mu_2(_extremes):
+    """The greatest: the crank points away from C."""
+    return _extremes[1]
+
+
+def _extremes(r4, psi, phi, beta):
+    """Both of them, from what the lengths follow from: a wrong length leaves the right ones as they are."""
+    return _transmission(*_lengths(r4, psi, phi, beta), r4)
 
 
 @formula(

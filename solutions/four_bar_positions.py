@@ -15,8 +15,16 @@ from coursework.kinematics.four_bar import FourBar
 from coursework.solution import Moving, formula, mistake, stable
 from coursework.structure import grashof
 
-UNITS = {"theta3": "deg", "theta4": "deg", "phi": "deg", "psi": "deg", "AC": "mm"}
-SYMBOLS = {"phi": r"\varphi", "psi": r"\psi", "AC": "AC"}
+UNITS = {
+    "theta3": "deg",
+    "theta4": "deg",
+    "phi": "deg",
+    "psi": "deg",
+    "AC": "mm",
+    "s_plus_l": "mm",
+    "p_plus_q": "mm",
+}
+SYMBOLS = {"phi": r"\varphi", "psi": r"\psi", "AC": "AC", "s_plus_l": "s + l", "p_plus_q": "p + q"}
 LOOPS = {
     "loop_1": (
         Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("r4", "theta4", -1),
@@ -33,7 +41,23 @@ def _crossed(r1, r2, r3, r4, theta2):
     return FourBar(r1, r2, r3, r4, "crossed").at(Degrees(theta2))
 
 
-def linkage_type(r1, r2, r3, r4):
+@formula(
+    r"\operatorname{min}\left(<r1>;\ <r2>;\ <r3>;\ <r4>\right) + \operatorname{max}\left(<r1>;\ <r2>;\ <r3>;\ <r4>\right)"
+)
+def s_plus_l(r1, r2, r3, r4):
+    """Of the shortest and the longest bar."""
+    return grashof.shortest(r1, r2, r3, r4) + grashof.longest(r1, r2, r3, r4)
+
+
+def p_plus_q(r1, r2, r3, r4, s_plus_l):
+    return r1 + r2 + r3 + r4 - s_plus_l
+
+
+def _compared(s_plus_l, p_plus_q):
+    """The two sums, shown before what they tell; the type itself compares the printed lengths, exactly."""
+
+
+def linkage_type(r1, r2, r3, r4, _compared):
     """Can it close at all; does s + l reach p + q; and if not, which bar is the shortest?"""
     return grashof.linkage_type(r1, r2, r3, r4)
 

@@ -1,7 +1,5 @@
 """Velocity polygon of a slider-crank: solution. A, whose velocity is known, and B, which the guide keeps on its line."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from coursework.degrees import polar
@@ -73,7 +71,7 @@ def scale_forgotten(pv_b, r1_dot):
 
 
 @mistake("r1_dot", share=0.5)
-def piston_sense(r1_dot):
+def V_B_sense(r1_dot):
     return -r1_dot
 
 
@@ -104,22 +102,13 @@ def drawing(answers, r2, r3, theta2, omega2):
         points={"p": "p_v", "a": "a", "b": "b"},
         lengths={"ab": ("a", "b"), "pv_b": ("p_v", "b")},
         reads={
-            "r1_dot": _Read("p_v", "b", lambda v: v.real, 1.0),
+            "r1_dot": _Read("p_v", "b", lambda v: v.real, 1.0, sense="V_B_sense"),
             "omega3": _Read("a", "b", lambda v: (v / (1j * rod)).real, 1 / r3, of_rod),
         },
         sides={("p_v", "a"): "a", ("a", "b"): "ba", ("p_v", "b"): "vb"},
         hung=frozenset({"ba_on_p"}),
     )
-    said = _verdicts(answers, _polygon(bars, omega2), asked)
-    if "r1_dot" in said:
-        said["r1_dot"] = _of_the_piston(said["r1_dot"])
-    return said
-
-
-def _of_the_piston(verdict):
-    """The piston does not turn: a wrong sense has its own words."""
-    names = ["piston_sense" if n == "value_sense" else n for n in (verdict.mistake, *verdict.also)]
-    return replace(verdict, mistake=names[0], also=tuple(names[1:]))
+    return _verdicts(answers, _polygon(bars, omega2), asked)
 
 
 def _polygon(bars, omega2, scale=None):
