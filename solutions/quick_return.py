@@ -16,7 +16,7 @@ from coursework.kinematics.chains import Vector
 from coursework.kinematics.cycle import turning_points
 from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.kinematics.margins import grashof_margins
-from coursework.solution import Moving, formula, mistake
+from coursework.solution import Moving, formula, mistake, stable
 
 from ._polygons import (
     _accelerations,
@@ -37,6 +37,11 @@ UNITS = {
     "DOB": "deg",
     "AOB": "deg",
     "phi": "deg",
+    "B_turn": "1",
+    "A_turn": "1",
+    "theta2_turns": "deg",
+    "DOB_far": "deg",
+    "DOB_near": "deg",
     "yB": "mm",
     "alpha4": "rad/s^2",
     "alpha5": "rad/s^2",
@@ -46,6 +51,10 @@ SYMBOLS = {
     "DOB": r"\angle DOB",
     "AOB": r"\angle AOB",
     "phi": r"\varphi",
+    "B_turn": r"\varepsilon_B",
+    "A_turn": r"\varepsilon_A",
+    "DOB_far": r"\angle DOB_{+}",
+    "DOB_near": r"\angle DOB_{-}",
     "yB": "y_B",
     "theta2_turns": r"\theta_{2,\mathrm{ext}}",
     "xC_max": r"x_{C,\mathrm{max}}",
@@ -114,22 +123,32 @@ def _to_the(side, theta, turn):
     return wrap(theta + side_of(side) * turn)
 
 
-@formula(r"<theta1> \pm <DOB>")
-def phi(theta1, DOB, B_side):
+def B_turn(B_side):
+    """+1 when B lies left of the line O -> D, -1 when right."""
+    return side_of(B_side)
+
+
+@formula(r"<theta1> + <B_turn> \times <DOB>")
+def phi(theta1, B_turn, DOB):
     """Direction of OB."""
-    return _to_the(B_side, theta1, DOB)
+    return wrap(theta1 + B_turn * DOB)
 
 
-@formula(r"<phi> \pm <AOB>")
-def theta2(phi, AOB, A_side):
+def A_turn(A_side):
+    """+1 when A lies left of the line O -> B, -1 when right."""
+    return side_of(A_side)
+
+
+@formula(r"<phi> + <A_turn> \times <AOB>")
+def theta2(phi, A_turn, AOB):
     """Direction of OA."""
-    return _to_the(A_side, phi, AOB)
+    return wrap(phi + A_turn * AOB)
 
 
-@formula(r"<theta2> \mp \left(180^{\circ} - <angle_OAB>\right)")
-def theta3(theta2, angle_OAB, A_side):
+@formula(r"<theta2> - <A_turn> \times \left(180^{\circ} - <angle_OAB>\right)")
+def theta3(theta2, A_turn, angle_OAB):
     """At A the path O-A-B turns by the supplement of its angle, back towards OB."""
-    return _to_the(A_side, theta2, angle_OAB - 180)
+    return wrap(theta2 + A_turn * (angle_OAB - 180))
 
 
 @formula(
@@ -284,7 +303,26 @@ def _closes_all_turn(linkage, r5, h):
     return crank, r5 - np.where(np.isnan(rise), 0.0, rise).max(axis=1)
 
 
-def theta2_turns(r1, theta1, r2, r3, r4, r5, h, mode):
+def _corner_at_O(r1, r4, length):
+    """The angle at O of a triangle of the frame, the rocker and this distance OB; NaN where none closes."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cosine = np.asarray((r1**2 + length**2 - r4**2) / (2 * r1 * np.asarray(length, dtype=float)))
+        return np.degrees(np.arccos(cosine))[()]
+
+
+@formula(r"\arccos \left(\frac{<r1>^2 + (<r3> + <r2>)^2 - <r4>^2}{2 \times <r1> \times (<r3> + <r2>)}\right)")
+def DOB_far(r1, r2, r3, r4):
+    """Angle at O of triangle ODB where crank and coupler are stretched in line."""
+    return _corner_at_O(r1, r4, r3 + r2)
+
+
+@formula(r"\arccos \left(\frac{<r1>^2 + (<r3> - <r2>)^2 - <r4>^2}{2 \times <r1> \times (<r3> - <r2>)}\right)")
+def DOB_near(r1, r2, r3, r4):
+    """The same where the coupler is folded back over the crank."""
+    return _corner_at_O(r1, r4, r3 - r2)
+
+
+def _all_turns(r1, theta1, r2, r3, r4, r5, h, mode):
     """Crank angles at which C turns back, over a whole turn; the last axis runs over them, then NaN."""
     alone = isinstance(r1 + theta1 + r2 + r3 + r4 + r5 + h, float) and np.ndim(mode) == 0
     given = np.broadcast_arrays(r1, np.radians(theta1), r2, r3, r4, side_of(mode), r5, h)
@@ -300,6 +338,13 @@ def theta2_turns(r1, theta1, r2, r3, r4, r5, h, mode):
     angles = turning_points(_advance_of_C, [*linkage, r5, h])
     angles[~((crank > 0) & (rod > 0))] = np.nan
     return wrap(np.degrees(angles)).reshape(*shape, angles.shape[1])
+
+
+@stable(_all_turns)
+def theta2_turns(theta1, B_turn, DOB_far, DOB_near):
+    """Where the rod never lines up with the rocker: along OB stretched, away from it folded."""
+    turns = [theta1 + B_turn * DOB_far, theta1 + B_turn * DOB_near + 180]
+    return wrap(np.stack(np.broadcast_arrays(*turns), axis=-1))
 
 
 def _last_axis(value):
@@ -331,7 +376,7 @@ def stroke(xC_max, xC_min):
     return xC_max - xC_min
 
 
-def alpha(theta2_turns):
+def _longer_arc(theta2_turns):
     """The longer of the two arcs of crank between the two positions where C turns back."""
     two = np.isfinite(theta2_turns).sum(axis=-1) == 2
     if np.ndim(two) == 0 and not two:
@@ -342,6 +387,13 @@ def alpha(theta2_turns):
         )
     arc = abs(wrap(theta2_turns[..., 0] - theta2_turns[..., 1]))
     return np.where(two, 360 - arc, np.nan)
+
+
+@formula(r"180^{\circ} + \left|<DOB_far> - <DOB_near>\right|")
+@stable(_longer_arc)
+def alpha(DOB_far, DOB_near):
+    """From one direction of OB to the other, and half a turn."""
+    return 180 + abs(DOB_far - DOB_near)
 
 
 @formula(r"\left|\frac{<r2> \times <omega2>}{<v_C>}\right|")
