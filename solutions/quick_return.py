@@ -10,7 +10,7 @@ from math import pi
 
 import numpy as np
 
-from coursework.degrees import atan2, cos, polar, sin, sqrt, wrap
+from coursework.degrees import acos, atan2, cos, polar, sin, sqrt, wrap
 from coursework.errors import CannotAssemble, Undefined
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.cycle import turning_points
@@ -40,6 +40,10 @@ UNITS = {
     "B_turn": "1",
     "A_turn": "1",
     "theta2_turns": "deg",
+    "theta4_far": "deg",
+    "theta4_near": "deg",
+    "xC_far": "mm",
+    "xC_near": "mm",
     "DOB_far": "deg",
     "DOB_near": "deg",
     "yB": "mm",
@@ -53,6 +57,10 @@ SYMBOLS = {
     "phi": r"\varphi",
     "B_turn": r"\varepsilon_B",
     "A_turn": r"\varepsilon_A",
+    "theta4_far": r"\theta_{4+}",
+    "theta4_near": r"\theta_{4-}",
+    "xC_far": r"x_{C+}",
+    "xC_near": r"x_{C-}",
     "DOB_far": r"\angle DOB_{+}",
     "DOB_near": r"\angle DOB_{-}",
     "yB": "y_B",
@@ -303,23 +311,21 @@ def _closes_all_turn(linkage, r5, h):
     return crank, r5 - np.where(np.isnan(rise), 0.0, rise).max(axis=1)
 
 
-def _corner_at_O(r1, r4, length):
-    """The angle at O of a triangle of the frame, the rocker and this distance OB; NaN where none closes."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        cosine = np.asarray((r1**2 + length**2 - r4**2) / (2 * r1 * np.asarray(length, dtype=float)))
-        return np.degrees(np.arccos(cosine))[()]
+def _corner(near, other, opposite):
+    """The angle of a triangle between two sides, by the law of cosines."""
+    return acos((near**2 + other**2 - opposite**2) / (2 * near * other))
 
 
 @formula(r"\arccos \left(\frac{<r1>^2 + (<r3> + <r2>)^2 - <r4>^2}{2 \times <r1> \times (<r3> + <r2>)}\right)")
 def DOB_far(r1, r2, r3, r4):
     """Angle at O of triangle ODB where crank and coupler are stretched in line."""
-    return _corner_at_O(r1, r4, r3 + r2)
+    return _corner(r1, r3 + r2, r4)
 
 
 @formula(r"\arccos \left(\frac{<r1>^2 + (<r3> - <r2>)^2 - <r4>^2}{2 \times <r1> \times (<r3> - <r2>)}\right)")
 def DOB_near(r1, r2, r3, r4):
     """The same where the coupler is folded back over the crank."""
-    return _corner_at_O(r1, r4, r3 - r2)
+    return _corner(r1, r3 - r2, r4)
 
 
 def _all_turns(r1, theta1, r2, r3, r4, r5, h, mode):
@@ -358,18 +364,68 @@ def _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
     return rrp(_last_axis(polar(r1, theta1)) + rocker, _last_axis(r5), _last_axis(h)).real
 
 
-def xC_max(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
+@formula(
+    r"<theta1> + 180^{\circ} - <B_turn> \times "
+    r"\arccos \left(\frac{<r1>^2 + <r4>^2 - (<r3> + <r2>)^2}{2 \times <r1> \times <r4>}\right)"
+)
+def theta4_far(r1, theta1, r2, r3, r4, B_turn):
+    """Direction of DB where crank and coupler are stretched in line."""
+    return wrap(theta1 + 180 - B_turn * _corner(r1, r4, r3 + r2))
+
+
+@formula(
+    r"<theta1> + 180^{\circ} - <B_turn> \times "
+    r"\arccos \left(\frac{<r1>^2 + <r4>^2 - (<r3> - <r2>)^2}{2 \times <r1> \times <r4>}\right)"
+)
+def theta4_near(r1, theta1, r2, r3, r4, B_turn):
+    """The same where the coupler is folded back over the crank."""
+    return wrap(theta1 + 180 - B_turn * _corner(r1, r4, r3 - r2))
+
+
+def _piston_at(r1, theta1, r4, r5, h, direction):
+    """xC for a direction of the rocker."""
+    rise = h - r1 * sin(theta1) - r4 * sin(direction)
+    return r1 * cos(theta1) + r4 * cos(direction) + sqrt((r5 - rise) * (r5 + rise))
+
+
+@formula(
+    r"<r1> \cos <theta1> + <r4> \cos <theta4_far>"
+    r" + \sqrt{<r5>^2 - \left(<h> - <r1> \sin <theta1> - <r4> \sin <theta4_far>\right)^2}"
+)
+def xC_far(r1, theta1, r4, r5, h, theta4_far):
+    return _piston_at(r1, theta1, r4, r5, h, theta4_far)
+
+
+@formula(
+    r"<r1> \cos <theta1> + <r4> \cos <theta4_near>"
+    r" + \sqrt{<r5>^2 - \left(<h> - <r1> \sin <theta1> - <r4> \sin <theta4_near>\right)^2}"
+)
+def xC_near(r1, theta1, r4, r5, h, theta4_near):
+    return _piston_at(r1, theta1, r4, r5, h, theta4_near)
+
+
+def _farthest(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
     """The farthest of the positions where C turns back."""
     found = _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns)
     highest = np.where(np.isnan(found), -np.inf, found).max(axis=-1)
     return np.where(np.isfinite(highest), highest, np.nan)
 
 
-def xC_min(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
+def _nearest(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
     """The nearest of the positions where C turns back."""
     found = _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns)
     lowest = np.where(np.isnan(found), np.inf, found).min(axis=-1)
     return np.where(np.isfinite(lowest), lowest, np.nan)
+
+
+@stable(_farthest)
+def xC_max(xC_far, xC_near):
+    return np.maximum(xC_far, xC_near)
+
+
+@stable(_nearest)
+def xC_min(xC_far, xC_near):
+    return np.minimum(xC_far, xC_near)
 
 
 def stroke(xC_max, xC_min):
