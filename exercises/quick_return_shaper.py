@@ -89,17 +89,19 @@ def figure(arm, P, C, r1, r2, r4, theta2, omega2):
     turning = _clearest(0, 90, 270, theta2, 0.5 * theta2, angle(arm - O2))
     half_turn = 20 if omega2 > 0 else -20
     half_rail = 0.3 * r2 + 0.05 * r4
+    length = 1.06 * max(r1 + r2, r4)
     return Figure(
         circle(O2, r2, dashed=True),
         rotation_arrow(O2, 1.25 * r2, turning - half_turn, turning + half_turn, label=r"\omega_2"),
         rail(C - half_rail, C + half_rail),
-        slot_link(O4, along * max(1.06 * (r1 + r2), 1.06 * r4)),
+        slot_link(O4, along * length),
         line(O4, O2, dashed=True, label="r_1"),
         link(O2, arm, label="r_2"),
         link(P, C, label="r_5"),
         centre_line(O4, max(C.real, 0.0) + 0.3 * r4, label="x"),
-        line(O2, O2 + 0.7 * r2, dashed=True),
-        angle_mark(O2, 0, theta2, r"\theta_2"),
+        line(O2, O2 + 1.9 * r2, dashed=True),
+        line(arm, O2 + polar(1.9 * r2, theta2), dashed=True),
+        angle_mark(O2, 0, theta2, r"\theta_2", radius=1.6 * r2),
         slider(arm, angle(arm), label="A"),
         note(C + half_rail, "y=h"),
         slider(C, 0, label="C"),

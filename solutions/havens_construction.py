@@ -102,19 +102,28 @@ def rA(d, r2, r3, _pose):
     return _pose[2]
 
 
-@formula(r"\pm \frac{<kv> \times V_{4/0}(A_1)}{<rA>}")
-def omega4(_images, _pose, rA):
-    """The length is that on paper."""
-    return (_images[1] / (1j * _pose[1])).real / rA
+def l4(_images, _pose, kv):
+    """The arrow of the guide's point on paper, positive 90 degrees anticlockwise from O4A1."""
+    return (_images[1] / (1j * _pose[1])).real / kv
 
 
-@formula(r"\pm \frac{<kv> \times V_{3/0}(I)}{<r3>}")
-def omega3(_images, _pose, r3):
-    return (_images[5] / (1j * _pose[0])).real / r3
+@formula(r"\frac{<kv> \times <l4>}{<rA>}")
+def omega4(kv, l4, rA):
+    return kv * l4 / rA
 
 
-UNITS = {"rA": "mm"}
-SYMBOLS = {"rA": "r_A"}
+def l3(_images, _pose, kv):
+    """The arrow of I on paper, positive 90 degrees anticlockwise from O1I."""
+    return (_images[5] / (1j * _pose[0])).real / kv
+
+
+@formula(r"\frac{<kv> \times <l3>}{<r3>}")
+def omega3(kv, l3, r3):
+    return kv * l3 / r3
+
+
+UNITS = {"rA": "mm", "l4": "mm", "l3": "mm"}
+SYMBOLS = {"rA": "r_A", "l4": r"\ell_4", "l3": r"\ell_3"}
 
 
 @judge

@@ -10,13 +10,13 @@ from math import pi
 
 import numpy as np
 
-from coursework.degrees import atan2, cos, polar, sin, sqrt, wrap
+from coursework.degrees import acos, atan2, cos, polar, sin, sqrt, wrap
 from coursework.errors import CannotAssemble, Undefined
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.cycle import turning_points
 from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.kinematics.margins import grashof_margins
-from coursework.solution import Moving, formula, mistake
+from coursework.solution import Moving, formula, mistake, stable
 
 from ._polygons import (
     _accelerations,
@@ -37,6 +37,15 @@ UNITS = {
     "DOB": "deg",
     "AOB": "deg",
     "phi": "deg",
+    "B_turn": "1",
+    "A_turn": "1",
+    "theta2_turns": "deg",
+    "theta4_far": "deg",
+    "theta4_near": "deg",
+    "xC_far": "mm",
+    "xC_near": "mm",
+    "DOB_far": "deg",
+    "DOB_near": "deg",
     "yB": "mm",
     "alpha4": "rad/s^2",
     "alpha5": "rad/s^2",
@@ -46,6 +55,14 @@ SYMBOLS = {
     "DOB": r"\angle DOB",
     "AOB": r"\angle AOB",
     "phi": r"\varphi",
+    "B_turn": r"\varepsilon_B",
+    "A_turn": r"\varepsilon_A",
+    "theta4_far": r"\theta_{4+}",
+    "theta4_near": r"\theta_{4-}",
+    "xC_far": r"x_{C+}",
+    "xC_near": r"x_{C-}",
+    "DOB_far": r"\angle DOB_{+}",
+    "DOB_near": r"\angle DOB_{-}",
     "yB": "y_B",
     "theta2_turns": r"\theta_{2,\mathrm{ext}}",
     "xC_max": r"x_{C,\mathrm{max}}",
@@ -114,22 +131,32 @@ def _to_the(side, theta, turn):
     return wrap(theta + side_of(side) * turn)
 
 
-@formula(r"<theta1> \pm <DOB>")
-def phi(theta1, DOB, B_side):
+def B_turn(B_side):
+    """+1 when B lies left of the line O -> D, -1 when right."""
+    return side_of(B_side)
+
+
+@formula(r"<theta1> + <B_turn> \times <DOB>")
+def phi(theta1, B_turn, DOB):
     """Direction of OB."""
-    return _to_the(B_side, theta1, DOB)
+    return wrap(theta1 + B_turn * DOB)
 
 
-@formula(r"<phi> \pm <AOB>")
-def theta2(phi, AOB, A_side):
+def A_turn(A_side):
+    """+1 when A lies left of the line O -> B, -1 when right."""
+    return side_of(A_side)
+
+
+@formula(r"<phi> + <A_turn> \times <AOB>")
+def theta2(phi, A_turn, AOB):
     """Direction of OA."""
-    return _to_the(A_side, phi, AOB)
+    return wrap(phi + A_turn * AOB)
 
 
-@formula(r"<theta2> \mp \left(180^{\circ} - <angle_OAB>\right)")
-def theta3(theta2, angle_OAB, A_side):
+@formula(r"<theta2> - <A_turn> \times \left(180^{\circ} - <angle_OAB>\right)")
+def theta3(theta2, A_turn, angle_OAB):
     """At A the path O-A-B turns by the supplement of its angle, back towards OB."""
-    return _to_the(A_side, theta2, angle_OAB - 180)
+    return wrap(theta2 + A_turn * (angle_OAB - 180))
 
 
 @formula(
@@ -284,7 +311,24 @@ def _closes_all_turn(linkage, r5, h):
     return crank, r5 - np.where(np.isnan(rise), 0.0, rise).max(axis=1)
 
 
-def theta2_turns(r1, theta1, r2, r3, r4, r5, h, mode):
+def _corner(near, other, opposite):
+    """The angle of a triangle between two sides, by the law of cosines."""
+    return acos((near**2 + other**2 - opposite**2) / (2 * near * other))
+
+
+@formula(r"\arccos \left(\frac{<r1>^2 + (<r3> + <r2>)^2 - <r4>^2}{2 \times <r1> \times (<r3> + <r2>)}\right)")
+def DOB_far(r1, r2, r3, r4):
+    """Angle at O of triangle ODB where crank and coupler are stretched in line."""
+    return _corner(r1, r3 + r2, r4)
+
+
+@formula(r"\arccos \left(\frac{<r1>^2 + (<r3> - <r2>)^2 - <r4>^2}{2 \times <r1> \times (<r3> - <r2>)}\right)")
+def DOB_near(r1, r2, r3, r4):
+    """The same where the coupler is folded back over the crank."""
+    return _corner(r1, r3 - r2, r4)
+
+
+def _all_turns(r1, theta1, r2, r3, r4, r5, h, mode):
     """Crank angles at which C turns back, over a whole turn; the last axis runs over them, then NaN."""
     alone = isinstance(r1 + theta1 + r2 + r3 + r4 + r5 + h, float) and np.ndim(mode) == 0
     given = np.broadcast_arrays(r1, np.radians(theta1), r2, r3, r4, side_of(mode), r5, h)
@@ -302,6 +346,13 @@ def theta2_turns(r1, theta1, r2, r3, r4, r5, h, mode):
     return wrap(np.degrees(angles)).reshape(*shape, angles.shape[1])
 
 
+@stable(_all_turns)
+def theta2_turns(theta1, B_turn, DOB_far, DOB_near):
+    """Where the rod never lines up with the rocker: along OB stretched, away from it folded."""
+    turns = [theta1 + B_turn * DOB_far, theta1 + B_turn * DOB_near + 180]
+    return wrap(np.stack(np.broadcast_arrays(*turns), axis=-1))
+
+
 def _last_axis(value):
     return np.asarray(value)[..., None]
 
@@ -313,25 +364,75 @@ def _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
     return rrp(_last_axis(polar(r1, theta1)) + rocker, _last_axis(r5), _last_axis(h)).real
 
 
-def xC_max(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
+@formula(
+    r"<theta1> + 180^{\circ} - <B_turn> \times "
+    r"\arccos \left(\frac{<r1>^2 + <r4>^2 - (<r3> + <r2>)^2}{2 \times <r1> \times <r4>}\right)"
+)
+def theta4_far(r1, theta1, r2, r3, r4, B_turn):
+    """Direction of DB where crank and coupler are stretched in line."""
+    return wrap(theta1 + 180 - B_turn * _corner(r1, r4, r3 + r2))
+
+
+@formula(
+    r"<theta1> + 180^{\circ} - <B_turn> \times "
+    r"\arccos \left(\frac{<r1>^2 + <r4>^2 - (<r3> - <r2>)^2}{2 \times <r1> \times <r4>}\right)"
+)
+def theta4_near(r1, theta1, r2, r3, r4, B_turn):
+    """The same where the coupler is folded back over the crank."""
+    return wrap(theta1 + 180 - B_turn * _corner(r1, r4, r3 - r2))
+
+
+def _piston_at(r1, theta1, r4, r5, h, direction):
+    """xC for a direction of the rocker."""
+    rise = h - r1 * sin(theta1) - r4 * sin(direction)
+    return r1 * cos(theta1) + r4 * cos(direction) + sqrt((r5 - rise) * (r5 + rise))
+
+
+@formula(
+    r"<r1> \cos <theta1> + <r4> \cos <theta4_far>"
+    r" + \sqrt{<r5>^2 - \left(<h> - <r1> \sin <theta1> - <r4> \sin <theta4_far>\right)^2}"
+)
+def xC_far(r1, theta1, r4, r5, h, theta4_far):
+    return _piston_at(r1, theta1, r4, r5, h, theta4_far)
+
+
+@formula(
+    r"<r1> \cos <theta1> + <r4> \cos <theta4_near>"
+    r" + \sqrt{<r5>^2 - \left(<h> - <r1> \sin <theta1> - <r4> \sin <theta4_near>\right)^2}"
+)
+def xC_near(r1, theta1, r4, r5, h, theta4_near):
+    return _piston_at(r1, theta1, r4, r5, h, theta4_near)
+
+
+def _farthest(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
     """The farthest of the positions where C turns back."""
     found = _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns)
     highest = np.where(np.isnan(found), -np.inf, found).max(axis=-1)
     return np.where(np.isfinite(highest), highest, np.nan)
 
 
-def xC_min(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
+def _nearest(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
     """The nearest of the positions where C turns back."""
     found = _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns)
     lowest = np.where(np.isnan(found), np.inf, found).min(axis=-1)
     return np.where(np.isfinite(lowest), lowest, np.nan)
 
 
+@stable(_farthest)
+def xC_max(xC_far, xC_near):
+    return np.maximum(xC_far, xC_near)
+
+
+@stable(_nearest)
+def xC_min(xC_far, xC_near):
+    return np.minimum(xC_far, xC_near)
+
+
 def stroke(xC_max, xC_min):
     return xC_max - xC_min
 
 
-def alpha(theta2_turns):
+def _longer_arc(theta2_turns):
     """The longer of the two arcs of crank between the two positions where C turns back."""
     two = np.isfinite(theta2_turns).sum(axis=-1) == 2
     if np.ndim(two) == 0 and not two:
@@ -342,6 +443,13 @@ def alpha(theta2_turns):
         )
     arc = abs(wrap(theta2_turns[..., 0] - theta2_turns[..., 1]))
     return np.where(two, 360 - arc, np.nan)
+
+
+@formula(r"180^{\circ} + \left|<DOB_far> - <DOB_near>\right|")
+@stable(_longer_arc)
+def alpha(DOB_far, DOB_near):
+    """From one direction of OB to the other, and half a turn."""
+    return 180 + abs(DOB_far - DOB_near)
 
 
 @formula(r"\left|\frac{<r2> \times <omega2>}{<v_C>}\right|")

@@ -14,8 +14,8 @@ from coursework.solution import Judged, formula, judge, mistake
 from ._in_line import _in_line
 from ._slow_arc import *
 
-UNITS = {"phi": "deg", "lean": "deg"}
-SYMBOLS = {"phi": r"\varphi", "lean": r"\left|\theta_3\right|_{\max}"}
+UNITS = {"phi": "deg", "side": "1", "lean": "deg"}
+SYMBOLS = {"phi": r"\varphi", "side": r"\varepsilon", "lean": r"\left|\theta_3\right|_{\max}"}
 
 
 @formula(r"\tan \frac{<phi>}{2}")
@@ -29,10 +29,14 @@ def r2(stroke, t):
     return stroke / 4 * (sqrt(4 + 5 * t**2) - t)
 
 
-@formula(r"\pm \frac{<stroke>^2 - 4 \times <r2>^2}{2 \times <stroke> \times <t>}")
-def e(stroke, r2, t, mode):
-    """Positive when the piston goes slowly towards O, the crank turning anticlockwise."""
-    return np.where(mode == "inward", 1.0, -1.0)[()] * (stroke**2 - 4 * r2**2) / (2 * stroke * t)
+def side(mode):
+    """Sign of e: positive when the piston goes slowly towards O, the crank turning anticlockwise."""
+    return np.where(mode == "inward", 1.0, -1.0)[()]
+
+
+@formula(r"<side> \times \frac{<stroke>^2 - 4 \times <r2>^2}{2 \times <stroke> \times <t>}")
+def e(side, stroke, r2, t):
+    return side * (stroke**2 - 4 * r2**2) / (2 * stroke * t)
 
 
 @formula(r"\frac{1}{2} \times \sqrt{<stroke>^2 + \frac{2 \times <stroke> \times \left|<e>\right|}{<t>}}")

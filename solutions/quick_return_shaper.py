@@ -172,15 +172,15 @@ def figure(r1, r2, r4, r5, h, omega2, sigma):
         link(P2, C2),
         link(O2, A1),
         link(O2, A2),
-        rotation_arrow(O2, 0.5 * r2, start, end, label=r"\alpha"),
+        rotation_arrow(O2, 1.3 * r2, start, end, label=r"\alpha"),
         ground_pivot(O4, "O_4"),
         ground_pivot(O2, "O_2"),
-        pin(A1, "A_1"),
-        pin(A2, "A_2"),
-        pin(P1, "P_1"),
-        pin(P2, "P_2"),
-        point(C1, "C_1"),
-        point(C2, "C_2"),
+        pin(A1, "A'"),
+        pin(A2, "A''"),
+        pin(P1, "P'"),
+        pin(P2, "P''"),
+        point(C1, "C'"),
+        point(C2, "C''"),
     )
 
 
