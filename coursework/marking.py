@@ -106,7 +106,7 @@ def read(variant: Variant, part: Part, answer: Any) -> Reading:
     """Read an answer as the part's kind asks; a vector has as many coordinates as its reference."""
     match part.kind:
         case "number" | "angle":
-            return read_number(answer, part.unit)
+            return read_number(answer, part.unit, thousands=part.kind == "number")
         case "integer":
             return read_integer(answer)
         case "choice":
@@ -304,6 +304,14 @@ def _mark_part(
     if reading.status != "read":
         return made(reading.status, 0.0, "", lambda: say_not_read(variant, part, reading))
     index, gap = nearest
+    explained = {} if gap <= 1 else dict(_explanations(key, part, reading, judged_by, before))
+    matches = tuple(explained)
+    likely = {m for m in matches if _is_likely(m, key, judged_by, before)}
+    matches = tuple(sorted(matches, key=lambda m: m not in likely))
+    verdict = matches[0] if likely else "wrong"
+    if gap > 1:
+        # What is told is told of the reading that it explains, else of the text as it stands.
+        index = explained[verdict] if likely else 0
     read_as = reading.read_as[index]
     if part.kind == "choice":
         read_as = plain_line(variant.label(part.id, str(reading.values[index])), variant.lang)
@@ -315,10 +323,6 @@ def _mark_part(
         if part.asks_unit and not reading.unit_given:
             return made("missing_unit", 0.0, read_as, lambda: told("missing_unit"))
         return made("correct", 1.0, read_as, lambda: told("correct"))
-    matches = tuple(_explanations(key, part, reading, judged_by, before))
-    likely = {m for m in matches if _is_likely(m, key, judged_by, before)}
-    matches = tuple(sorted(matches, key=lambda m: m not in likely))
-    verdict = matches[0] if likely else "wrong"
     kind, _, name = verdict.partition(":")
     if kind == "mistake":
         share = key.solution.mistakes[name].share
@@ -355,8 +359,10 @@ def _is_likely(match: str, key: Key, part: Part, before: _Before) -> bool:
     )
 
 
-def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before) -> Iterator[str]:
-    """Every verdict that explains a wrong answer, the one to give first."""
+def _explanations(
+    key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before
+) -> Iterator[tuple[str, int]]:
+    """Every verdict that explains a wrong answer, the one to give first; each with the reading that it explains."""
     quantity = judged_by.quantity
     width = key.envelope.get(quantity, 0.0)
     reference = key.reference[quantity]
@@ -366,23 +372,29 @@ def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, befor
         if (
             expected is not None
             and distance(part, expected, reference, None, width) > 2
-            and _fits(part, reading, expected, None, width)
+            and (place := _fitting(part, reading, expected, None, width)) is not None
         ):
-            yield "follow_through"
+            yield "follow_through", place
     for name, value in key.wrong_ways(quantity):
         along = key.reference.get(judged_by.along)
         if judged_by.along:
             along = key.wrong[name].get(judged_by.along, along)
-        if _fits(part, reading, value, along, width):
-            yield f"mistake:{name}"
+        if (place := _fitting(part, reading, value, along, width)) is not None:
+            yield f"mistake:{name}", place
     seen = set()
     for kind, value in key.slips(judged_by):
         # A slip scales what rounding may have moved.
         own = width * abs(value / reference) if reference and part.kind == "number" else width
-        if kind not in seen and _fits(part, reading, value, None, own):
+        if kind not in seen and (place := _fitting(part, reading, value, None, own)) is not None:
             seen.add(kind)
-            yield f"slip:{kind}"
+            yield f"slip:{kind}", place
 
 
 def _fits(part: Part, reading: Reading, value: Any, along: Any, width: float) -> bool:
-    return any(distance(part, v, value, along, width) <= 1 for v in reading.values)
+    return _fitting(part, reading, value, along, width) is not None
+
+
+def _fitting(part: Part, reading: Reading, value: Any, along: Any, width: float) -> int | None:
+    """The first reading that is this value, if any is."""
+    places = range(len(reading.values))
+    return next((i for i in places if distance(part, reading.values[i], value, along, width) <= 1), None)

@@ -154,6 +154,36 @@ def test_both_readings_of_an_ambiguous_group_are_tried(course):
     assert small.grade({"rA": "1,234"})["rA"].read_as == "1.234"
 
 
+def test_a_wrong_angle_is_not_right_as_so_many_thousand_degrees(course):
+    """113466° is 66° modulo a turn; 113,466 is 113,466 and wrong."""
+    variant = course["slotted_mechanism"].variant(1, "fr")
+    for thousandths in range(10_000, 360_000, 37):
+        value = thousandths / 1000
+        if distance(Part("x", kind="angle", atol=3.0), value, variant.solution()["theta4"]) > 1:
+            mark = variant.grade({"theta4": f"{value:.3f}".replace(".", ",")})["theta4"]
+            assert mark.verdict != "correct", value
+            assert mark.read_as.startswith(f"{value:.3f}")
+
+
+def test_a_wrong_number_is_quoted_as_it_is_written_unless_its_thousands_are_meant(slotted):
+    for answer, read in (("246,729", "246.729"), ("500,123", "500.123"), ("1,234", "1.234")):
+        assert slotted.grade({"rA": answer})["rA"].read_as == read
+    # 319 800 for 319.8 is a slip of the unit, of which the thousands tell.
+    assert slotted.grade({"rA": "319,800 m"})["rA"].verdict == "slip:unit"
+    large = slotted.solution()["a_centripetal"] * 10
+    mark = slotted.grade({"a_centripetal": f"{large:,.0f}"})["a_centripetal"]
+    assert (mark.verdict, mark.read_as) == ("slip:unit", f"{large:.0f}")
+
+
+@pytest.mark.parametrize("wrap", [np.float64, np.array, lambda x: np.array([x]), lambda x: [x]])
+def test_what_a_cell_computes_is_marked_and_quoted_as_a_number(slotted, wrap):
+    assert verdict(slotted, "rA", wrap(319.8)) == "correct"
+    mark = slotted.grade({"rA": wrap(238.4)})["rA"]
+    assert (mark.verdict, mark.answer) == ("wrong", "238.4")
+    assert "238,4" in mark.feedback
+    assert "np" not in mark.feedback
+
+
 def test_a_students_copy_cannot_mark(course, tmp_path):
     import shutil
 

@@ -201,7 +201,7 @@ def test_nothing_but_spaces_is_missing(blank):
         ("1,2,3", "not_a_number"), ("1,23,456", "not_a_number"), ("1.2.3", "not_a_number"), ("1 3/2",
         "not_a_number"), ("1 0/2", "not_a_number"), ("1 1/2/3", "not_a_number"),
         ("rA = 3 = 4", "not_a_number"), ("104°75'", "not_a_number"), ("__import__('os')", "not_a_number"),
-        (True, "not_a_number"), (False, "not_a_number"), ([1], "not_a_number"), ({}, "not_a_number"),
+        (True, "not_a_number"), (False, "not_a_number"), ([1, 2], "not_a_number"), ([], "not_a_number"), ({}, "not_a_number"),
         (float("nan"), "not_finite"), (float("inf"), "not_finite"), (10**400, "not_finite"),
     ],
 )  # fmt: skip
@@ -230,6 +230,39 @@ def test_a_unit_of_another_dimension_is_a_wrong_unit(text, unit, found):
 def test_numbers_of_json_are_taken_as_they_are():
     assert read_number(319.8, "mm").values == (319.8,)
     assert read_number(3, "mm") == Reading("3", "read", (3.0,), ("3",))
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        np.float64(238.4367), np.array(238.4367), np.array([238.4367]), np.array([[238.4367]]), [238.4367],
+        (238.4367,), [np.float64(238.4367)], [np.array([238.4367])], "np.float64(238.4367)", "array([238.4367])",
+        "np.array(238.4367)", "[238.4367]",
+    ],
+)  # fmt: skip
+def test_what_a_cell_computes_is_taken_as_the_number_that_it_holds(answer):
+    reading = read_number(answer, "mm")
+    assert (reading.status, reading.values, reading.read_as) == ("read", (238.4367,), ("238.4367",))
+
+
+def test_an_array_is_read_as_its_items_are():
+    assert read_point(np.array([12.3, 4.5]), "mm", 2).values == ((12.3, 4.5),)
+    assert read_point(np.array([[12.3, 4.5]]), "mm", 2).values == ((12.3, 4.5),)
+    assert read_integer(np.int64(3)).values == (3,)
+    assert read_integer(np.array([3])).values == (3,)
+    assert read_choice(np.array(["b"]), CHOICES).values == ("double_crank",)
+    assert read_number(np.array([1.0, 2.0]), "mm").code == "not_a_number"
+    assert read_number(np.array([True]), "mm").code == "not_a_number"
+    assert read_number(np.zeros(10_000), "mm").code == "not_a_number"
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [("113,466", (113.466,)), ("1,234°", (1.234,)), ("1,234 rad", (pytest.approx(math.degrees(1.234)),)),
+     ("-1,234", (-1.234,)), ("1 234", (1234,)), ("1,234.5", (1234.5,))],
+)  # fmt: skip
+def test_a_comma_parts_no_thousands_of_a_direction(text, values):
+    assert read_number(text, "deg", thousands=False).values == values
 
 
 def test_an_unknown_canonical_unit_is_the_callers_error():
