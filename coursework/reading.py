@@ -11,7 +11,7 @@ import math
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from numbers import Real
@@ -446,9 +446,18 @@ def _plain_value(text: object) -> float:
     return math.inf
 
 
+_COUNTED = re.compile(
+    r"(?<=[0-9])\s*(?:ddl|dof|degrés? de libertés?|degrees? of freedom)[\s.]*$", re.I
+)  #: what a whole number may be of
+
+
 def read_integer(text: object) -> Reading:
-    """A whole number, without unit: ``3``, ``3,0``, ``γ = 3``; the values are ints."""
-    reading = read_number(text, "1")
+    """A whole number, without unit: ``3``, ``3,0``, ``γ = 3``, ``1 ddl``; the values are ints."""
+    text = _bare(text)
+    counted = _COUNTED.sub("", text) if isinstance(text, str) and len(text) < MAX_LENGTH else text
+    reading = read_number(counted, "1")
+    if counted != text:
+        reading = replace(reading, text=text)
     if reading.status != "read":
         return reading
     pairs = [p for p in zip(reading.values, reading.read_as, strict=True) if p[0].is_integer()]
@@ -550,19 +559,26 @@ def read_point(text: object, unit: str, count: int) -> Reading:
 _POSITION = re.compile(r"[(\[]?\s*([a-z]|[0-9]{1,2})\s*(?:[)\].:]\s*(?P<label>.*))?")
 
 
+_SIGN = re.compile(r"(^|[=<>(+])\s*[-‐‑‒–−]\s*(?=[0-9])")
+_ANY_MINUS = re.compile("[-‐‑‒–−]")
+
+
 @lru_cache(maxsize=4096)
 def _folded(text: str) -> str:
-    """A label without case, accents, markup and punctuation."""
+    """A label without case, accents, markup and punctuation; a formula without spaces, its signs kept."""
+    text = _SIGN.sub(r"\1−", text.strip("$ "))
+    if "=" in text:
+        text = re.sub(r"[\s_*·{}\\]", "", _ANY_MINUS.sub("−", text))
     text = re.sub(r"\\(?:mathrm|text|mathit|vec|overrightarrow)(?![A-Za-z])|\\[,;! ]", " ", text)
     text = unicodedata.normalize("NFKD", text).casefold()
-    text = "".join(" " if c in "-_‐‑–−'’/" else c for c in text if not unicodedata.combining(c))
-    return " ".join(re.sub(r"[^\w\s+<>=%°.,]", " ", text).split()).strip(" .,")
+    text = "".join(" " if c in "-_‐‑–'’/" else c for c in text if not unicodedata.combining(c))
+    return " ".join(re.sub(r"[^\w\s+−<>=%°.,]", " ", text).split()).strip(" .,")
 
 
 _AFTER_HEAD = re.compile(r"\s*(?:[(,;]|:\s).*", re.DOTALL)
 
 
-def _head(label: str) -> str:
+def head(label: str) -> str:
     """A label as people shorten it: ``isostatic`` of "isostatic, all actions can be computed"."""
     return _AFTER_HEAD.sub("", label.replace("\u202f", " "))
 
@@ -574,7 +590,23 @@ def _by_label(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
         return []
     keys = [key for key in choices if _folded(key) == folded]
     keys = keys or [key for key, labels in choices.items() if folded in map(_folded, labels)]
-    return keys or [k for k, labels in choices.items() if any(folded == _folded(_head(s)) for s in labels)]
+    return keys or [k for k, labels in choices.items() if any(folded == _folded(head(s)) for s in labels)]
+
+
+def _by_value(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices of whose formula this is the right-hand side: ``-1`` where ``w = -1`` is offered."""
+    if not (value := _folded(f"= {text}").removeprefix("=")):
+        return []
+    return [
+        key
+        for key, labels in choices.items()
+        if any(_folded(s).rpartition("=")[1:] == ("=", value) for s in labels)
+    ]
+
+
+_BEFORE = re.compile(
+    r"\s*(?:(?:c['’]est|il|elle|it is|it|un|une|des|le|la|les|an|a|the)\s+|l['’]\s*)(?=\S)", re.I
+)  #: what people put before a label, and no label needs
 
 
 def _by_position(text: str, choices: Mapping[str, Sequence[str]]) -> tuple[list[str], str]:
@@ -588,8 +620,10 @@ def _by_position(text: str, choices: Mapping[str, Sequence[str]]) -> tuple[list[
 
 def _choice(text: str, choices: Mapping[str, Sequence[str]]) -> Reading:
     keys = _by_label(text, choices)
+    keys = keys or (_by_label(_BEFORE.sub("", text, count=1), choices) if _BEFORE.match(text) else [])
     if not keys:
         keys, label = _by_position(text, choices)
+        keys = list(dict.fromkeys((*keys, *_by_value(text, choices))))
         if label and (named := _by_label(label, choices)) != keys:
             raise _Stop("two_values" if named else "not_a_choice", text)
     if len(keys) != 1:

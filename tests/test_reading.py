@@ -415,6 +415,9 @@ def test_many_answers_in_an_unknown_unit_are_the_callers_error():
         ("2+1", 3),
         ("1,234", 1234),
         ("1 234", 1234),
+        ("1 ddl", 1),
+        ("2 degrés de liberté", 2),
+        ("3 dof", 3),
         (3, 3),
         (3.0, 3),
     ],
@@ -550,6 +553,54 @@ def test_a_choice_is_known_by_what_stands_before_its_explanation(text, key):
         "twice": ("II, deux fois",),
     }
     assert read_choice(text, choices).values == (key,)
+
+
+FORMULAS = {
+    "one": ("$w = 1$",), "minus_one": ("$w = -1$",), "zero": ("$w = 0$",), "two": ("$w = 2$",),
+    "six": ("$h = N_s - 6$",), "rank": ("$h = N_s - r_s$",), "turn": ("une rotation", "rotation"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        *[(s, "minus_one") for s in ("w = − 1", "w = -1", "w=-1", "w = −1", "$w = -1$", "-1", "− 1", "W=-1")],
+        *[(s, "one") for s in ("w = 1", "w=1", "w =1", "1", "a)")],
+        *[(s, "zero") for s in ("0", "w=0")],
+        *[(s, "rank") for s in ("h=N_s-r_s", "h = N_s − r_s", "h = Ns - rs", "N_s - r_s")],
+        ("h=N_s-6", "six"),
+        *[(s, "turn") for s in ("la rotation", "c'est une rotation", "a rotation", "Rotation")],
+    ],
+)
+def test_a_formula_offered_is_read_with_its_signs_whatever_its_spaces(text, key):
+    assert read_choice(text, FORMULAS).values == (key,)
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("w = -2", "not_a_choice"),
+        ("-0,5", "not_a_choice"),
+        ("2", "two_values"),
+        ("h = N_s + 6", "not_a_choice"),
+    ],
+)
+def test_a_sign_or_a_place_never_makes_another_formula(text, code):
+    assert read_choice(text, FORMULAS).code == code
+
+
+def test_no_two_cases_of_the_course_have_one_label():
+    import coursework
+
+    course = coursework.open_course()
+    for name in course.names:
+        for lang in ("fr", "en"):
+            for variant in course[name].variants(range(3), lang):
+                for part in (p for p in variant.parts if p.kind == "choice"):
+                    known = variant.labels(part)
+                    for key, labels in known.items():
+                        for label in (key, *labels):
+                            assert read_choice(label, known).values == (key,), (name, part.id, label)
 
 
 def test_a_head_of_two_choices_chooses_neither():
