@@ -38,6 +38,11 @@ class Equation:
             right = np.broadcast_to(value_or_nan(self.right, values), (count,))
             return left - right, np.abs(left) + np.abs(right)
 
+    def with_numbers(self, values: Mapping[str, float]) -> Equation:
+        """The equation with numbers in place of some of its symbols."""
+        left, right = (Expression(self.text, _with_numbers(s.root, values)) for s in (self.left, self.right))
+        return Equation(self.text, left, right)
+
     def in_degrees(self) -> Equation | None:
         """The equation with numbers that stand beside angles taken as degrees: ``sin(theta2 + 90)``.
 
@@ -59,6 +64,12 @@ def _in_degrees(node: Operation) -> Operation:
         )
         args = (replace(args[0], args=tuple(terms)),)
     return replace(node, args=args) if args != node.args else node
+
+
+def _with_numbers(node: Operation, values: Mapping[str, float]) -> Operation:
+    if node.kind == "variable" and node.name in values:
+        return Operation("number", repr(values[node.name]))
+    return replace(node, args=tuple(_with_numbers(arg, values) for arg in node.args))
 
 
 def parse_equation(text: str, variables: Iterable[str]) -> Equation:

@@ -58,6 +58,7 @@ class Graded(NamedTuple):
     seed: int
     lines: Mapping[str, Line]
     answered: tuple[str, ...]
+    record: Mapping[str, Any]  #: what was issued, in the language of the sheet that came back
 
     @property
     def points(self) -> float:
@@ -76,6 +77,7 @@ class Sheets:
     rejected: list[Rejected] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     rows_in: int = 0
+    langs: dict[tuple[str, str, int], str] = field(default_factory=dict)  #: of the sheets that tell theirs
 
     @property
     def answers(self) -> int:
@@ -160,6 +162,8 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
             found.rejected.append(Rejected(row.source, reason, _as_texts(row)))
         else:
             sheet[row.part] = row
+            if row.lang and place not in found.langs and row.lang in course[place[1]].languages:
+                found.langs[place] = row.lang
     found.sheets = {place: sheet for place, sheet in found.sheets.items() if sheet}
     return found
 
@@ -198,10 +202,13 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
     places = list(sheets.sheets)
     chunks = [places[i : i + CHUNK] for i in range(0, len(places), CHUNK)]
 
+    def record(place: tuple[str, str, int]) -> Mapping[str, Any]:
+        issued_as = issued.records[place[1:]]
+        return {**issued_as, "lang": sheets.langs[place]} if place in sheets.langs else issued_as
+
     def jobs(chunk: Sequence[tuple[str, str, int]]) -> list[_Job]:
         return [
-            _Job(issued.records[place[1:]], {p: row.answer for p, row in sheets.sheets[place].items()})
-            for place in chunk
+            _Job(record(place), {p: row.answer for p, row in sheets.sheets[place].items()}) for place in chunk
         ]
 
     for chunk, results in zip(
@@ -214,7 +221,7 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
                 sheets.rejected += [Rejected(row.source, reason, _as_texts(row)) for row in rows.values()]
             else:
                 lines = map(Line._make, result)
-                yield Graded(*place, {line.part: line for line in lines}, tuple(rows))
+                yield Graded(*place, {line.part: line for line in lines}, tuple(rows), record(place))
 
 
 def _marked_chunks(

@@ -65,7 +65,7 @@ def grade_files(
         marks = stack.enter_context(_Table(out / "marks.csv", gradebook.MARKS_COLUMNS))
         changes = stack.enter_context(_Table(out / "changes.csv", CHANGES_COLUMNS)) if before.exists else None
         for done, graded in enumerate(gradebook.marked(course, issued, sheets, printed=feedback), start=1):
-            graded = by_hand.apply(graded, _lang(issued, graded))
+            graded = by_hand.apply(graded, str(graded.record.get("lang", "fr")))
             book.add(graded)
             for row in gradebook.marks_rows(graded):
                 marks.write(row)
@@ -127,13 +127,9 @@ class _Table:
         self._kept = True
 
 
-def _lang(issued: Issued, graded: Graded) -> str:
-    return str(issued.records[graded.exercise, graded.seed].get("lang", "fr"))
-
-
-def feedback_sheet(course: Course, issued: Issued, graded: Graded) -> FeedbackSheet:
+def feedback_sheet(course: Course, graded: Graded) -> FeedbackSheet:
     """A student's marks on one exercise, ready to print."""
-    variant = course[graded.exercise].from_record(issued.records[graded.exercise, graded.seed])
+    variant = course[graded.exercise].from_record(graded.record)
     handout = variant.handout(graded.student)
     lines = []
     for question in handout.questions:
@@ -159,7 +155,7 @@ def _write_feedback(
     def maker(student: str, sheets: list[Graded]) -> Callable[[], bytes | None]:
         def make() -> bytes | None:
             try:
-                return course.renderer.booklet_pdf([feedback_sheet(course, book.issued, g) for g in sheets])
+                return course.renderer.booklet_pdf([feedback_sheet(course, g) for g in sheets])
             except CourseworkError as fault:
                 book.warnings.append(f"no feedback sheet for {student}: {fault}")
                 return None

@@ -8,9 +8,10 @@ exercise at once (:class:`Batch`), which costs a hundredth each.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from coursework.graph import plain_scalar
 from coursework.model import Part
 from coursework.rounding import envelope
 from coursework.rules import ILL_DEGREES, ILL_SHARE, Rules
+from coursework.units import convert
 
 if TYPE_CHECKING:
     from coursework.exercise import CourseExercise
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
 
 #: Factors by which a unit is mistaken for another.
 _UNIT_FACTORS = (1e3, 1e-3, 10.0, 0.1)
+_LENGTH = re.compile(r"(?<![^\W\d_])m?m(?![^\W\d_])")
 _TURN_A_MINUTE = 60 / (2 * math.pi)
 
 
@@ -145,7 +148,8 @@ class Key:
             if part.unit == "rad/s":
                 yield "turns_a_minute", reference * _TURN_A_MINUTE
                 yield "turns_a_minute", reference / _TURN_A_MINUTE
-            for factor in _UNIT_FACTORS:
+            metres = _metres_for_millimetres(part.unit)
+            for factor in dict.fromkeys((*_UNIT_FACTORS, metres, 1 / metres)):
                 yield "unit", reference * factor
         for value in self._other_values(part.quantity):
             yield "other_case", value
@@ -163,6 +167,13 @@ class Key:
                     value = self.solution.graph.evaluate((quantity,), given, self.variant.effects)[quantity]
                     found.setdefault(quantity, []).append(plain_scalar(value))
         return found
+
+
+@lru_cache(maxsize=256)
+def _metres_for_millimetres(unit: str) -> float:
+    """By how much a value in a unit grows when its metres are taken for millimetres: 10⁶ for an area."""
+    millimetres, metres = (_LENGTH.sub(length, unit) for length in ("mm", "m"))
+    return float(convert(1.0, metres, millimetres))
 
 
 def ill_limit(part: Part, reference: Any) -> float:

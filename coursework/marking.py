@@ -10,13 +10,16 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from coursework.comparing import distance
-from coursework.errors import WrongValue, unknown
-from coursework.judging import Verdict, best_judged
+from coursework.equations import Equation, parse_equation
+from coursework.equivalence import same_equation
+from coursework.errors import CourseworkError, WrongValue, unknown
+from coursework.judging import Verdict, best_judged, judged
 from coursework.key import Key
 from coursework.language import words
 from coursework.loop_marking import loop_verdicts
@@ -29,7 +32,18 @@ from coursework.reading import (
     read_number,
     read_point,
 )
-from coursework.telling import Said, amount, echo, either_symbol, part_name, plain_line, say, say_not_read
+from coursework.telling import (
+    Said,
+    amount,
+    echo,
+    either_symbol,
+    part_name,
+    plain_line,
+    questions,
+    quoted,
+    say,
+    say_not_read,
+)
 
 if TYPE_CHECKING:
     from coursework.variant import Variant
@@ -106,7 +120,7 @@ def read(variant: Variant, part: Part, answer: Any) -> Reading:
     """Read an answer as the part's kind asks; a vector has as many coordinates as its reference."""
     match part.kind:
         case "number" | "angle":
-            return read_number(answer, part.unit)
+            return read_number(answer, part.unit, thousands=part.kind == "number")
         case "integer":
             return read_integer(answer)
         case "choice":
@@ -143,7 +157,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
     before = _Before({}, set(), set(), [])
-    marks = {}
+    marks, no_scale = {}, set()
     for i, part in asked.items():
         if i in known:
             before.own[part.quantity] = float(known[i])
@@ -153,8 +167,13 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             together |= best_judged(variant, part.judge, readings, before.own, before.wrong)
         if i in together:
             nearest = together[i].reading, math.inf
-            told = next((asked[j] for j in marks if _is_told_with(asked[j], part, together)), None)
-            marks[i] = _mark_judged(variant, key, part, reading, together[i], told)
+            tellers = (p for j, p in asked.items() if j in marks and j not in no_scale)
+            told = next((p for p in tellers if _is_told_with(p, part, together)), None)
+            marks[i] = _mark_judged(variant, key, part, reading, together[i], told, readings)
+            if _is_scale(part) and reading.values[nearest[0]] <= 0:
+                no_scale.add(i)
+                read_as = echo(marks[i].read_as, variant.lang)
+                marks[i] = replace(marks[i], _tell=partial(say, variant, part, "scale", read=read_as))
         else:
             nearest = _nearest(part, reading, key, judged_by)
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
@@ -241,13 +260,23 @@ def _is_told_with(earlier: Part, part: Part, together: Mapping[str, Verdict]) ->
 
 
 def _mark_judged(
-    variant: Variant, key: Key, part: Part, reading: Reading, found: Verdict, told_with: Part | None
+    variant: Variant,
+    key: Key,
+    part: Part,
+    reading: Reading,
+    found: Verdict,
+    told_with: Part | None,
+    readings: Mapping[str, Reading],
 ) -> Mark:
     """The mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
     read_as, verdict = reading.read_as[found.reading], found.said
     made = partial(_made, variant, part, reading)
     if verdict is None:
-        alone = partial(say, variant, part, "incomplete", read=echo(read_as, variant.lang))
+
+        def alone() -> Said:
+            missing = _missed(variant, part, readings)
+            return say(variant, part, "incomplete", read=echo(read_as, variant.lang), missing=missing)
+
         return made("wrong", 0.0, read_as, alone)
     share = min(1.0, max(0.0, float(verdict.share)))
 
@@ -285,6 +314,25 @@ def _mark_judged(
     return made("wrong", share, read_as, lambda: told(_WRONG.get(part.kind, "wrong")))
 
 
+def _is_scale(part: Part) -> bool:
+    """Whether a part asks for the scale of a drawing: so much for a millimetre of paper."""
+    return bool(part.judge) and part.kind == "number" and part.unit.endswith("/mm")
+
+
+def _missed(variant: Variant, part: Part, readings: Mapping[str, Reading]) -> str:
+    """What an answer waits for to be judged, by questions: any of those that would do alone, else all of its group."""
+    group = [p.id for p in variant.parts if p.judge == part.judge]
+    read = {i: readings[i].values[0] for i in group if readings[i].status == "read"}
+    unread = [i for i in group if i not in read]
+    enough = []
+    for i in unread:
+        with suppress(CourseworkError):
+            right = variant.key.reference[next(p.quantity for p in variant.parts if p.id == i)]
+            if part.id in judged(variant, part.judge, {**read, i: right}):
+                enough.append(i)
+    return questions(variant, enough, "or") if enough else questions(variant, unread, "and")
+
+
 def _mistakes_that_fit(key: Key, part: Part, reading: Reading) -> list[str]:
     """The named mistakes that give an answer, in the solution's order."""
     ways = key.wrong_ways(part.quantity)
@@ -304,21 +352,28 @@ def _mark_part(
     if reading.status != "read":
         return made(reading.status, 0.0, "", lambda: say_not_read(variant, part, reading))
     index, gap = nearest
+    explained = {} if gap <= 1 else dict(_explanations(key, part, reading, judged_by, before))
+    matches = tuple(explained)
+    likely = {m for m in matches if _is_likely(m, key, judged_by, before)}
+    matches = tuple(sorted(matches, key=lambda m: m not in likely))
+    verdict = matches[0] if likely else "wrong"
+    if gap > 1:
+        # What is told is told of the reading that it explains, else of the text as it stands.
+        index = explained[verdict] if likely else 0
     read_as = reading.read_as[index]
     if part.kind == "choice":
         read_as = plain_line(variant.label(part.id, str(reading.values[index])), variant.lang)
 
     def told(sentence: str, **pieces: str) -> Said:
-        return say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
+        read = echo(read_as, variant.lang)
+        if part.kind == "choice":
+            read = quoted(read, variant.lang)
+        return say(variant, part, sentence, read=read, **pieces)
 
     if gap <= 1:
         if part.asks_unit and not reading.unit_given:
             return made("missing_unit", 0.0, read_as, lambda: told("missing_unit"))
         return made("correct", 1.0, read_as, lambda: told("correct"))
-    matches = tuple(_explanations(key, part, reading, judged_by, before))
-    likely = {m for m in matches if _is_likely(m, key, judged_by, before)}
-    matches = tuple(sorted(matches, key=lambda m: m not in likely))
-    verdict = matches[0] if likely else "wrong"
     kind, _, name = verdict.partition(":")
     if kind == "mistake":
         share = key.solution.mistakes[name].share
@@ -355,8 +410,10 @@ def _is_likely(match: str, key: Key, part: Part, before: _Before) -> bool:
     )
 
 
-def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before) -> Iterator[str]:
-    """Every verdict that explains a wrong answer, the one to give first."""
+def _explanations(
+    key: Key, part: Part, reading: Reading, judged_by: Part, before: _Before
+) -> Iterator[tuple[str, int]]:
+    """Every verdict that explains a wrong answer, the one to give first; each with the reading that it explains."""
     quantity = judged_by.quantity
     width = key.envelope.get(quantity, 0.0)
     reference = key.reference[quantity]
@@ -366,23 +423,43 @@ def _explanations(key: Key, part: Part, reading: Reading, judged_by: Part, befor
         if (
             expected is not None
             and distance(part, expected, reference, None, width) > 2
-            and _fits(part, reading, expected, None, width)
+            and (place := _fitting(part, reading, expected, None, width)) is not None
         ):
-            yield "follow_through"
+            yield "follow_through", place
     for name, value in key.wrong_ways(quantity):
         along = key.reference.get(judged_by.along)
         if judged_by.along:
             along = key.wrong[name].get(judged_by.along, along)
-        if _fits(part, reading, value, along, width):
-            yield f"mistake:{name}"
+        if (place := _fitting(part, reading, value, along, width)) is not None:
+            yield f"mistake:{name}", place
+    if part.kind == "equation" and _holds_with_numbers(key.variant, part, reading.values[0], reference):
+        yield "slip:numbers", 0
     seen = set()
     for kind, value in key.slips(judged_by):
         # A slip scales what rounding may have moved.
         own = width * abs(value / reference) if reference and part.kind == "number" else width
-        if kind not in seen and _fits(part, reading, value, None, own):
+        if kind not in seen and (place := _fitting(part, reading, value, None, own)) is not None:
             seen.add(kind)
-            yield f"slip:{kind}"
+            yield f"slip:{kind}", place
+
+
+def _holds_with_numbers(variant: Variant, part: Part, equation: Equation, reference: str) -> bool:
+    """Whether an equation is the reference with this variant's numbers in place of some symbols."""
+    numbers = {
+        n: v
+        for n, v in variant.used.items()
+        if not isinstance(v, str) and variant.exercise.units.get(n) != "deg"
+    }
+    asked = parse_equation(reference, part.variables)
+    put_in = {n: float(numbers[n]) for n in asked.variables - equation.variables if n in numbers}
+    return bool(put_in) and same_equation(equation, asked.with_numbers(put_in), parameters=part.parameters)
 
 
 def _fits(part: Part, reading: Reading, value: Any, along: Any, width: float) -> bool:
-    return any(distance(part, v, value, along, width) <= 1 for v in reading.values)
+    return _fitting(part, reading, value, along, width) is not None
+
+
+def _fitting(part: Part, reading: Reading, value: Any, along: Any, width: float) -> int | None:
+    """The first reading that is this value, if any is."""
+    places = range(len(reading.values))
+    return next((i for i in places if distance(part, reading.values[i], value, along, width) <= 1), None)

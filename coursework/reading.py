@@ -11,7 +11,7 @@ import math
 import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import lru_cache
 from numbers import Real
@@ -70,12 +70,27 @@ def _amount(value: float, digits: str, unit: str = "", *, assumed: str = "") -> 
     return _Amount(value, f"{digits} {unit or assumed}".strip(), unit)
 
 
+def _bare(answer: object) -> object:
+    """What a cell's value holds: an array, or a list of one, is its number; a number of NumPy is Python's."""
+    for _ in range(_MAX_NESTING):
+        if isinstance(answer, (np.ndarray, np.generic)) and answer.size <= _MAX_ITEMS:
+            answer = answer.tolist()
+        if not isinstance(answer, (list, tuple)) or len(answer) != 1:
+            break
+        (answer,) = answer
+    return answer
+
+
+_MAX_ITEMS, _MAX_NESTING = 100, 4  #: of an array that is looked into
+
+
 _POWER = re.compile(r"\^\(([+-]?[0-9]+)\)")
 _RAISED = str.maketrans("0123456789+-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻")
 
 
 def _reading(answer: object, read: Callable[[str], Reading]) -> Reading:
     """Common to all kinds: what is missing, what is too long, what stops on the way."""
+    answer = _bare(answer)
     if answer is None:
         return Reading("", "missing")
     text = answer if isinstance(answer, str) else str(answer)
@@ -136,6 +151,7 @@ _NOT_FINITE = re.compile(r"[+-]?\s*(?:nan|inf(?:inity|ini)?|∞)(?![^\W\d_])", r
 _TWO_VALUES = re.compile(
     r"±|\+/-|\+-|\.\.|…|;|<|>|≤|≥|(?<![^\W\d_])(?:à|to|ou|or|et|and|entre|between)(?![^\W\d_])", re.I
 )
+_PRINTED = re.compile(r"^(?:(?:np|numpy)\.)?(?:float64|float32|int64|int32|array)\(\[?([^(),\[\]]*)\]?\)")
 _RANGE = re.compile(r"([0-9]+(?:[.,][0-9]+)?)\s*-\s*([0-9]+(?:[.,][0-9]+)?)(?![0-9.,]*\s*[*/^(])")
 _UNIT_START = re.compile(r"(?<![^\W\d_])[^\W\d_]|[°%]|(?<![0-9.,])1\s*/")
 _MAX_PIECES = 8  #: names in the unit behind a formula
@@ -188,7 +204,7 @@ def _float(digits: str) -> float:
     return value
 
 
-def _literal(text: str, target: Unit) -> list[_Amount] | None:
+def _literal(text: str, target: Unit, thousands: bool = True) -> list[_Amount] | None:
     """A number written in digits with its unit, or ``None`` when the text is something else."""
     found = _LITERAL.fullmatch(text)
     if found is None:
@@ -200,7 +216,8 @@ def _literal(text: str, target: Unit) -> list[_Amount] | None:
         if exponent is None or not _WORD.match(rest):
             return None
         raise _Stop("unknown_unit", rest)
-    texts = _decimal_texts(found["number"]) if exponent is None else _decimal_texts(found["number"])[:1]
+    texts = _decimal_texts(found["number"])
+    texts = texts if thousands and exponent is None else texts[:1]
     sign = "-" if found["sign"] == "-" else ""
     amounts = []
     for digits in texts:
@@ -307,14 +324,14 @@ def _named_unit_unknown(text: str) -> _Stop | None:
     return None
 
 
-def _amounts(text: str, target: Unit) -> list[_Amount]:
+def _amounts(text: str, target: Unit, thousands: bool = True) -> list[_Amount]:
     """All honest readings of one number, the likelier first."""
-    text = _without_name(text)
+    text = _PRINTED.sub(r"\1", _without_name(text))
     if not text:
         raise _Stop("not_a_number", text)
     if _NOT_FINITE.match(text):
         raise _Stop("not_finite", text)
-    amounts = _sexagesimal(text, target) or _mixed(text, target) or _literal(text, target)
+    amounts = _sexagesimal(text, target) or _mixed(text, target) or _literal(text, target, thousands)
     if amounts is not None:
         return amounts
     _refuse_ranges(text)
@@ -358,7 +375,7 @@ def _plain_reading(text: str, value: float, digits: str) -> Reading:
 
 
 def _from_real(answer: Real) -> Reading:
-    text = repr(answer) if isinstance(answer, float) else str(answer)
+    text = repr(float(answer)) if isinstance(answer, float) else str(answer)
     try:
         value = float(answer)
     except OverflowError:
@@ -373,11 +390,12 @@ def _target(unit: str) -> Unit:
     return parse_unit(unit)
 
 
-def read_number(text: object, unit: str) -> Reading:
+def read_number(text: object, unit: str, *, thousands: bool = True) -> Reading:
     """A number, with or without its unit, in the canonical ``unit``.
 
     Without a unit it is in ``unit``; where ``unit`` is ``deg`` and the formula speaks of radians (``π/3``),
-    radians are tried first. An int or float is taken as it is.
+    radians are tried first. An int or float is taken as it is. Unless ``thousands``, the comma of ``1,234`` is
+    decimal and nothing else: a direction has no thousands of degrees, and modulo a turn any number may be near.
 
     Raises
     ------
@@ -389,10 +407,10 @@ def read_number(text: object, unit: str) -> Reading:
         value = float(digits)
         if value - value == 0:
             return _plain_reading(text, value, digits)
-    target = _target(unit)
+    target, text = _target(unit), _bare(text)
     if isinstance(text, Real) and not isinstance(text, bool):
         return _from_real(text)
-    return _reading(text, lambda plain: _from_amounts(text, _amounts(plain, target)))
+    return _reading(text, lambda plain: _from_amounts(text, _amounts(plain, target, thousands)))
 
 
 def read_numbers(texts: Sequence[object], unit: str) -> tuple[np.ndarray, np.ndarray]:
@@ -428,9 +446,18 @@ def _plain_value(text: object) -> float:
     return math.inf
 
 
+_COUNTED = re.compile(
+    r"(?<=[0-9])\s*(?:ddl|dof|degrés? de libertés?|degrees? of freedom)[\s.]*$", re.I
+)  #: what a whole number may be of
+
+
 def read_integer(text: object) -> Reading:
-    """A whole number, without unit: ``3``, ``3,0``, ``γ = 3``; the values are ints."""
-    reading = read_number(text, "1")
+    """A whole number, without unit: ``3``, ``3,0``, ``γ = 3``, ``1 ddl``; the values are ints."""
+    text = _bare(text)
+    counted = _COUNTED.sub("", text) if isinstance(text, str) and len(text) < MAX_LENGTH else text
+    reading = read_number(counted, "1")
+    if counted != text:
+        reading = replace(reading, text=text)
     if reading.status != "read":
         return reading
     pairs = [p for p in zip(reading.values, reading.read_as, strict=True) if p[0].is_integer()]
@@ -519,7 +546,7 @@ def read_point(text: object, unit: str, count: int) -> Reading:
     ``(12,3 ; 4,5) mm``, ``12.3, 4.5``, ``[1, 0, 1]``, ``(1 0 1)``, ``x = 1; y = 2``, or a list. A unit
     behind the brackets or behind the last coordinate serves for all.
     """
-    target = _target(unit)
+    target, text = _target(unit), _bare(text)
     if isinstance(text, (list, tuple)):
         text = "[" + " ; ".join(str(item) for item in text[: count + 1]) + "]"
     elif isinstance(text, Real) and not isinstance(text, bool):
@@ -532,19 +559,26 @@ def read_point(text: object, unit: str, count: int) -> Reading:
 _POSITION = re.compile(r"[(\[]?\s*([a-z]|[0-9]{1,2})\s*(?:[)\].:]\s*(?P<label>.*))?")
 
 
+_SIGN = re.compile(r"(^|[=<>(+])\s*[-‐‑‒–−]\s*(?=[0-9])")
+_ANY_MINUS = re.compile("[-‐‑‒–−]")
+
+
 @lru_cache(maxsize=4096)
 def _folded(text: str) -> str:
-    """A label without case, accents, markup and punctuation."""
+    """A label without case, accents, markup and punctuation; a formula without spaces, its signs kept."""
+    text = _SIGN.sub(r"\1−", text.strip("$ "))
+    if "=" in text:
+        text = re.sub(r"[\s_*·{}\\]", "", _ANY_MINUS.sub("−", text))
     text = re.sub(r"\\(?:mathrm|text|mathit|vec|overrightarrow)(?![A-Za-z])|\\[,;! ]", " ", text)
     text = unicodedata.normalize("NFKD", text).casefold()
-    text = "".join(" " if c in "-_‐‑–−'’/" else c for c in text if not unicodedata.combining(c))
-    return " ".join(re.sub(r"[^\w\s+<>=%°.,]", " ", text).split()).strip(" .,")
+    text = "".join(" " if c in "-_‐‑–'’/" else c for c in text if not unicodedata.combining(c))
+    return " ".join(re.sub(r"[^\w\s+−<>=%°.,]", " ", text).split()).strip(" .,")
 
 
 _AFTER_HEAD = re.compile(r"\s*(?:[(,;]|:\s).*", re.DOTALL)
 
 
-def _head(label: str) -> str:
+def head(label: str) -> str:
     """A label as people shorten it: ``isostatic`` of "isostatic, all actions can be computed"."""
     return _AFTER_HEAD.sub("", label.replace("\u202f", " "))
 
@@ -556,7 +590,23 @@ def _by_label(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
         return []
     keys = [key for key in choices if _folded(key) == folded]
     keys = keys or [key for key, labels in choices.items() if folded in map(_folded, labels)]
-    return keys or [k for k, labels in choices.items() if any(folded == _folded(_head(s)) for s in labels)]
+    return keys or [k for k, labels in choices.items() if any(folded == _folded(head(s)) for s in labels)]
+
+
+def _by_value(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices of whose formula this is the right-hand side: ``-1`` where ``w = -1`` is offered."""
+    if not (value := _folded(f"= {text}").removeprefix("=")):
+        return []
+    return [
+        key
+        for key, labels in choices.items()
+        if any(_folded(s).rpartition("=")[1:] == ("=", value) for s in labels)
+    ]
+
+
+_BEFORE = re.compile(
+    r"\s*(?:(?:c['’]est|il|elle|it is|it|un|une|des|le|la|les|an|a|the)\s+|l['’]\s*)(?=\S)", re.I
+)  #: what people put before a label, and no label needs
 
 
 def _by_position(text: str, choices: Mapping[str, Sequence[str]]) -> tuple[list[str], str]:
@@ -570,8 +620,10 @@ def _by_position(text: str, choices: Mapping[str, Sequence[str]]) -> tuple[list[
 
 def _choice(text: str, choices: Mapping[str, Sequence[str]]) -> Reading:
     keys = _by_label(text, choices)
+    keys = keys or (_by_label(_BEFORE.sub("", text, count=1), choices) if _BEFORE.match(text) else [])
     if not keys:
         keys, label = _by_position(text, choices)
+        keys = list(dict.fromkeys((*keys, *_by_value(text, choices))))
         if label and (named := _by_label(label, choices)) != keys:
             raise _Stop("two_values" if named else "not_a_choice", text)
     if len(keys) != 1:
@@ -584,6 +636,7 @@ def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
 
     ``choices`` maps each key to its labels, in the order in which they are printed.
     """
+    text = _bare(text)
     if isinstance(text, Real) and not isinstance(text, (bool, float)):
         text = str(text)
     if not (text is None or isinstance(text, str)):
@@ -596,6 +649,7 @@ def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
 
 def read_equation(text: object, variables: Iterable[str]) -> Reading:
     """An equation over the given variables; the value is an :class:`~coursework.equations.Equation`."""
+    text = _bare(text)
     if isinstance(text, Real) and not isinstance(text, bool):
         text = str(text)
 

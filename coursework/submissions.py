@@ -30,6 +30,7 @@ class Row(NamedTuple):
     answer: Any  #: a text, a number, or None
     source: str  #: file and place, for reports
     warning: str = ""
+    lang: str = ""  #: of the sheet that it was written on, where that is told
 
 
 @dataclass(frozen=True)
@@ -287,7 +288,8 @@ def _sheet_rows(
             row = {**names, "part": part, "answer": _text_of(answer)[:200]}
             yield Rejected(where, "an answer is a text or a number", row)
             continue
-        yield Row(**names, part=part, answer=answer, source=where, warning=warning)
+        lang = _name(about.get("lang"))
+        yield Row(**names, part=part, answer=answer, source=where, warning=warning, lang=lang)
 
 
 def _as_answer(answer: Any) -> Any:

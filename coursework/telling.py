@@ -5,6 +5,7 @@ The reference value is never told.
 
 from __future__ import annotations
 
+import difflib
 import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from coursework.language import localise, significant, unit_text, with_unit, words
 from coursework.model import Part
-from coursework.reading import Reading
+from coursework.reading import Reading, head, read_choice
 
 if TYPE_CHECKING:
     from coursework.exercise import CourseExercise
@@ -100,21 +101,73 @@ def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
     table = words(variant.lang)["marking"]
     unit = unit_text(part.unit, variant.lang)
     found = (reading.found or reading.text)[:ECHO]
+    pieces = {"name": _opening(variant, part), "found": _harmless(found), "unit": unit or "1"}
+    unitless = "wrong_unit_integer" if part.kind == "integer" else "wrong_unit_ratio"
     if reading.status == "unreadable":
         kinds = table["unreadable"]
         in_equation = part.kind == "equation"
         code = "not_a_number" if reading.code == "unknown_symbol" and not in_equation else reading.code
+        if part.kind == "choice" and code in _OF_CHOICES:
+            code = _OF_CHOICES[code]
+            pieces["offered"] = _offered(variant, part, found)
         sentence = kinds.get(code, kinds["otherwise"])
+        if code == "unknown_unit" and not unit:
+            sentence = table[unitless]
     elif reading.status == "wrong_unit":
-        sentence = table["wrong_unit" if unit else "wrong_unit_ratio"]
+        sentence = table["wrong_unit" if unit else unitless]
     else:
         sentence = table["missing"]
-    return Said(sentence, {"name": _opening(variant, part), "found": _harmless(found), "unit": unit or "1"})
+    return Said(sentence, pieces)
+
+
+_OF_CHOICES = {"not_a_choice": "not_a_choice", "two_values": "two_choices"}
+_OFFERED = 200  #: characters of all that is offered
+
+
+def _offered(variant: Variant, part: Part, found: str) -> str:
+    """What may be written for a choice, quoted: every label, or the beginning of each, or those nearest to what
+    was written."""
+    labels = [variant.label(part.id, case) for case in part.choices]
+    heads = [head(label) for label in labels]
+    known = variant.labels(part)
+    distinct = all(
+        read_choice(short, known).values == (case,) for short, case in zip(heads, part.choices, strict=True)
+    )
+    shown = labels
+    if sum(map(len, labels)) > _OFFERED and distinct:
+        shown = heads
+    if sum(map(len, shown)) > _OFFERED:
+        near = difflib.get_close_matches(found.casefold(), [s.casefold() for s in shown], n=2, cutoff=0.0)
+        shown = [s for s in shown if s.casefold() in near]
+    return either([quoted(label, variant.lang) for label in shown], variant.lang)
+
+
+def quoted(text: str, lang: str) -> str:
+    """Words within the quotation marks of a language."""
+    return words(lang)["marking"]["quoted"].format(text)
+
+
+def either(pieces: Sequence[str], lang: str, joint: str = "or") -> str:
+    """``a, b or c``."""
+    *others, last = pieces
+    return f"{', '.join(others)} {words(lang)['marking'][joint]} {last}" if others else last
+
+
+def questions(variant: Variant, parts: Sequence[str], joint: str) -> str:
+    """Parts by the numbers of their questions: ``questions 3, 4 and 6``, ``question 3 or 4``."""
+    numbers = [str(n) for n, asked in enumerate(variant.parts, start=1) if asked.id in parts]
+    is_one = len(numbers) == 1 or joint == "or"
+    said = words(variant.lang)["sheet"]["question"]["one" if is_one else "many"]
+    return f"{said} {either(numbers, variant.lang, joint)}"
+
+
+_LOOSE_UNDERSCORE = re.compile(r"(?<![^\W_])_|_(?![^\W_])")
 
 
 def _harmless(text: str) -> str:
-    """A quotation that no Markdown reader takes for markup."""
-    return "".join(c for c in text if c.isprintable() and c not in "$`*_\\<>[]#|")
+    """A quotation that no Markdown reader takes for markup; an underscore within a name is none."""
+    text = _LOOSE_UNDERSCORE.sub("", text)
+    return "".join(c for c in text if c.isprintable() and c not in "$`*\\<>[]#|")
 
 
 def amount(variant: Variant, name: str, value: float) -> str:

@@ -365,6 +365,25 @@ def test_a_notebook_that_was_nobodys_is_marked_by_the_name_in_it_or_its_files(cl
     assert [s["student"] for s in table(tmp_path / "m" / "summary.csv")] == ["Ann", "returned-1"]
 
 
+def test_who_returns_a_notebook_is_told_in_its_language(cli, tmp_path):
+    out, back = tmp_path / "out", tmp_path / "back"
+    options = ("--variants", 1, "--formats", "ipynb", "--lang", "fr,en", "--out", out)
+    assert cli("build", "slotted_mechanism", *options)[0] == 0
+    back.mkdir()
+    said = {}
+    for lang in ("fr", "en"):
+        (path,) = (out / "handouts" / "slotted_mechanism").glob(f"*.{lang}.ipynb")
+        text = path.read_text("utf-8").replace('\\"rA\\": \\"\\"', '\\"rA\\": \\"beaucoup\\"')
+        (back / f"{lang}.ipynb").write_text(text, "utf-8")
+    # What cannot be read waits for somebody to look at it.
+    assert cli("grade", back, "--issued", out / "issued.json", "--out", tmp_path / "m")[0] == 1
+    for mark in table(tmp_path / "m" / "marks.csv"):
+        if mark["part"] == "rA":
+            said[mark["student"]] = mark["feedback"]
+    assert "ne se lit pas" in said["fr"]
+    assert "cannot be read" in said["en"]
+
+
 def test_without_a_roster_any_name_is_accepted(cli, tmp_path):
     out = tmp_path / "out"
     assert (

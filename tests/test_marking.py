@@ -154,6 +154,36 @@ def test_both_readings_of_an_ambiguous_group_are_tried(course):
     assert small.grade({"rA": "1,234"})["rA"].read_as == "1.234"
 
 
+def test_a_wrong_angle_is_not_right_as_so_many_thousand_degrees(course):
+    """113466° is 66° modulo a turn; 113,466 is 113,466 and wrong."""
+    variant = course["slotted_mechanism"].variant(1, "fr")
+    for thousandths in range(10_000, 360_000, 37):
+        value = thousandths / 1000
+        if distance(Part("x", kind="angle", atol=3.0), value, variant.solution()["theta4"]) > 1:
+            mark = variant.grade({"theta4": f"{value:.3f}".replace(".", ",")})["theta4"]
+            assert mark.verdict != "correct", value
+            assert mark.read_as.startswith(f"{value:.3f}")
+
+
+def test_a_wrong_number_is_quoted_as_it_is_written_unless_its_thousands_are_meant(slotted):
+    for answer, read in (("246,729", "246.729"), ("500,123", "500.123"), ("1,234", "1.234")):
+        assert slotted.grade({"rA": answer})["rA"].read_as == read
+    # 319 800 for 319.8 is a slip of the unit, of which the thousands tell.
+    assert slotted.grade({"rA": "319,800 m"})["rA"].verdict == "slip:unit"
+    large = slotted.solution()["a_centripetal"] * 10
+    mark = slotted.grade({"a_centripetal": f"{large:,.0f}"})["a_centripetal"]
+    assert (mark.verdict, mark.read_as) == ("slip:unit", f"{large:.0f}")
+
+
+@pytest.mark.parametrize("wrap", [np.float64, np.array, lambda x: np.array([x]), lambda x: [x]])
+def test_what_a_cell_computes_is_marked_and_quoted_as_a_number(slotted, wrap):
+    assert verdict(slotted, "rA", wrap(319.8)) == "correct"
+    mark = slotted.grade({"rA": wrap(238.4)})["rA"]
+    assert (mark.verdict, mark.answer) == ("wrong", "238.4")
+    assert "238,4" in mark.feedback
+    assert "np" not in mark.feedback
+
+
 def test_a_students_copy_cannot_mark(course, tmp_path):
     import shutil
 
@@ -234,3 +264,89 @@ def test_two_assemblies_may_be_given_in_the_other_order_consistently(course):
     assert "autre ordre" in marking["theta3_open"].feedback
     mixed = {**swapped, "theta3_open": right["theta3_open"], "theta3_crossed": right["theta3_crossed"]}
     assert sum(variant.grade(mixed)[p].verdict == "correct" for p in mixed) == 2
+
+
+# ------------------------------------------------------------------------- words
+
+
+def told(course, name, seed, lang, **answers):
+    marking = course[name].variant(seed, lang).grade(answers)
+    return {part: marking[part] for part in answers}
+
+
+def test_what_may_be_written_for_a_choice_is_listed(course):
+    exercise = course["slotted_mechanism"]
+    seed = next(s for s in range(20) if "guide" in exercise.variant(s).part_ids)
+    said = told(course, "slotted_mechanism", seed, "fr", guide="peut-être")["guide"]
+    assert said.verdict == "unreadable"
+    assert "« oscille » ou « fait un tour complet »" in " ".join(said.feedback.split())
+    said = told(course, "slotted_mechanism", seed, "en", guide="maybe")["guide"]
+    assert "“oscillates” or “makes a full turn”" in said.feedback
+
+
+def test_long_labels_are_listed_by_what_stands_before_their_explanation(course):
+    said = told(course, "four_bar_positions", 0, "en", linkage_type="a cranky thing")["linkage_type"]
+    assert "“a crank-rocker”" in said.feedback
+    assert "oscillates" not in said.feedback
+    for name in course.names:
+        variant = course[name].variant(0, "fr")
+        for part in (p for p in variant.parts if p.kind == "choice"):
+            assert len(variant.grade({part.id: "qzx"})[part.id].feedback) < 420
+
+
+def test_a_choice_is_quoted_with_quotation_marks(course):
+    right = course["vocabulary"].variant(0).solution()["useful_none"]
+    said = told(course, "vocabulary", 0, "en", useful_none=right)["useful_none"]
+    assert said.feedback.endswith("“m_u = 0” is right.")
+    said = told(course, "vocabulary", 0, "fr", useful_none="m_u=1")["useful_none"]
+    assert "« m_u = 1 »" in " ".join(said.feedback.split())
+
+
+def test_a_name_is_quoted_with_its_underscore(course):
+    said = told(course, "vocabulary", 0, "en", parallel_degree="h = N_s_r")["parallel_degree"]
+    assert "“h = N_s_r”" in said.feedback
+
+
+@pytest.mark.parametrize(
+    ("lang", "words"), [("fr", "un nombre entier, sans unité"), ("en", "a whole number, without")]
+)
+def test_a_whole_number_with_a_unit_is_said_to_have_none(course, lang, words):
+    for answer in ("3 mm", "3 frogs"):
+        assert words in told(course, "mobility", 0, lang, w=answer)["w"].feedback
+    right = course["mobility"].variant(0).solution()["w"]
+    assert told(course, "mobility", 0, lang, w=f"{right} ddl")["w"].verdict == "correct"
+
+
+def test_an_area_in_square_metres_is_a_slip_of_the_unit(course):
+    variant = course["four_bar_positions"].variant(0, "fr")
+    area = variant.solution()["a"] * 1e-6
+    assert variant.grade({"a": f"{area:.6g}".replace(".", ",")})["a"].verdict == "slip:unit"
+    assert variant.grade({"a": f"{area:.6g} m²"})["a"].verdict == "correct"
+
+
+def test_an_equation_with_numbers_put_in_is_said_to_be_that(course):
+    variant = course["ball_reducer"].variant(0, "fr")
+    R, r = (int(variant.given[n]) for n in "Rr")
+    for answer in (f"{R + r}*phi_dot = -{r}*omega", f"(R + {r})*phi_dot = -{r}*omega"):
+        mark = variant.grade({"no_slip_A": answer})["no_slip_A"]
+        assert (mark.verdict, mark.points) == ("slip:numbers", 0)
+        assert "vos nombres" in mark.feedback
+    for answer in (f"{R + r}*phi_dot = {r}*omega", f"{R + r + 1}*phi_dot = -{r}*omega"):
+        assert variant.grade({"no_slip_A": answer})["no_slip_A"].verdict != "slip:numbers"
+    assert variant.grade({"no_slip_A": "(R + r)*phi_dot = -r*omega"})["no_slip_A"].verdict == "correct"
+
+
+@pytest.mark.parametrize(
+    ("lang", "missing", "scale"),
+    [("fr", "il manque encore : question 6 ou 7", "une échelle est positive"),
+     ("en", "still missing: question 6 or 7", "a scale is positive")],
+)  # fmt: skip
+def test_what_a_drawing_lacks_and_a_scale_that_is_none_are_told(course, lang, missing, scale):
+    said = told(course, "velocity_polygon", 1, lang, kv="10", p="(0;0)")["p"]
+    assert said.verdict == "wrong"
+    assert missing in " ".join(said.feedback.split())
+    for answer in ("0", "-10"):
+        assert scale in told(course, "velocity_polygon", 1, lang, kv=answer)["kv"].feedback
+    drawn = told(course, "velocity_polygon", 1, lang, kv="-10", p="(0;0)", a="(1;2)", b="(3;4)")
+    assert scale in drawn["kv"].feedback
+    assert scale not in drawn["p"].feedback

@@ -201,7 +201,7 @@ def test_nothing_but_spaces_is_missing(blank):
         ("1,2,3", "not_a_number"), ("1,23,456", "not_a_number"), ("1.2.3", "not_a_number"), ("1 3/2",
         "not_a_number"), ("1 0/2", "not_a_number"), ("1 1/2/3", "not_a_number"),
         ("rA = 3 = 4", "not_a_number"), ("104°75'", "not_a_number"), ("__import__('os')", "not_a_number"),
-        (True, "not_a_number"), (False, "not_a_number"), ([1], "not_a_number"), ({}, "not_a_number"),
+        (True, "not_a_number"), (False, "not_a_number"), ([1, 2], "not_a_number"), ([], "not_a_number"), ({}, "not_a_number"),
         (float("nan"), "not_finite"), (float("inf"), "not_finite"), (10**400, "not_finite"),
     ],
 )  # fmt: skip
@@ -230,6 +230,39 @@ def test_a_unit_of_another_dimension_is_a_wrong_unit(text, unit, found):
 def test_numbers_of_json_are_taken_as_they_are():
     assert read_number(319.8, "mm").values == (319.8,)
     assert read_number(3, "mm") == Reading("3", "read", (3.0,), ("3",))
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [
+        np.float64(238.4367), np.array(238.4367), np.array([238.4367]), np.array([[238.4367]]), [238.4367],
+        (238.4367,), [np.float64(238.4367)], [np.array([238.4367])], "np.float64(238.4367)", "array([238.4367])",
+        "np.array(238.4367)", "[238.4367]",
+    ],
+)  # fmt: skip
+def test_what_a_cell_computes_is_taken_as_the_number_that_it_holds(answer):
+    reading = read_number(answer, "mm")
+    assert (reading.status, reading.values, reading.read_as) == ("read", (238.4367,), ("238.4367",))
+
+
+def test_an_array_is_read_as_its_items_are():
+    assert read_point(np.array([12.3, 4.5]), "mm", 2).values == ((12.3, 4.5),)
+    assert read_point(np.array([[12.3, 4.5]]), "mm", 2).values == ((12.3, 4.5),)
+    assert read_integer(np.int64(3)).values == (3,)
+    assert read_integer(np.array([3])).values == (3,)
+    assert read_choice(np.array(["b"]), CHOICES).values == ("double_crank",)
+    assert read_number(np.array([1.0, 2.0]), "mm").code == "not_a_number"
+    assert read_number(np.array([True]), "mm").code == "not_a_number"
+    assert read_number(np.zeros(10_000), "mm").code == "not_a_number"
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [("113,466", (113.466,)), ("1,234°", (1.234,)), ("1,234 rad", (pytest.approx(math.degrees(1.234)),)),
+     ("-1,234", (-1.234,)), ("1 234", (1234,)), ("1,234.5", (1234.5,))],
+)  # fmt: skip
+def test_a_comma_parts_no_thousands_of_a_direction(text, values):
+    assert read_number(text, "deg", thousands=False).values == values
 
 
 def test_an_unknown_canonical_unit_is_the_callers_error():
@@ -382,6 +415,9 @@ def test_many_answers_in_an_unknown_unit_are_the_callers_error():
         ("2+1", 3),
         ("1,234", 1234),
         ("1 234", 1234),
+        ("1 ddl", 1),
+        ("2 degrés de liberté", 2),
+        ("3 dof", 3),
         (3, 3),
         (3.0, 3),
     ],
@@ -517,6 +553,54 @@ def test_a_choice_is_known_by_what_stands_before_its_explanation(text, key):
         "twice": ("II, deux fois",),
     }
     assert read_choice(text, choices).values == (key,)
+
+
+FORMULAS = {
+    "one": ("$w = 1$",), "minus_one": ("$w = -1$",), "zero": ("$w = 0$",), "two": ("$w = 2$",),
+    "six": ("$h = N_s - 6$",), "rank": ("$h = N_s - r_s$",), "turn": ("une rotation", "rotation"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        *[(s, "minus_one") for s in ("w = − 1", "w = -1", "w=-1", "w = −1", "$w = -1$", "-1", "− 1", "W=-1")],
+        *[(s, "one") for s in ("w = 1", "w=1", "w =1", "1", "a)")],
+        *[(s, "zero") for s in ("0", "w=0")],
+        *[(s, "rank") for s in ("h=N_s-r_s", "h = N_s − r_s", "h = Ns - rs", "N_s - r_s")],
+        ("h=N_s-6", "six"),
+        *[(s, "turn") for s in ("la rotation", "c'est une rotation", "a rotation", "Rotation")],
+    ],
+)
+def test_a_formula_offered_is_read_with_its_signs_whatever_its_spaces(text, key):
+    assert read_choice(text, FORMULAS).values == (key,)
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("w = -2", "not_a_choice"),
+        ("-0,5", "not_a_choice"),
+        ("2", "two_values"),
+        ("h = N_s + 6", "not_a_choice"),
+    ],
+)
+def test_a_sign_or_a_place_never_makes_another_formula(text, code):
+    assert read_choice(text, FORMULAS).code == code
+
+
+def test_no_two_cases_of_the_course_have_one_label():
+    import coursework
+
+    course = coursework.open_course()
+    for name in course.names:
+        for lang in ("fr", "en"):
+            for variant in course[name].variants(range(3), lang):
+                for part in (p for p in variant.parts if p.kind == "choice"):
+                    known = variant.labels(part)
+                    for key, labels in known.items():
+                        for label in (key, *labels):
+                            assert read_choice(label, known).values == (key,), (name, part.id, label)
 
 
 def test_a_head_of_two_choices_chooses_neither():
