@@ -193,14 +193,14 @@ class Plot:
 
     def _outside(self, spot: Spot, edge: float, is_above: bool) -> list[str]:
         """An arrow at the panel's edge, and the number that it stands for: the point itself is not in sight."""
-        x, down = self._x(spot.x), 1 if is_above else -1
+        x, out = self._x(spot.x), -1 if is_above else 1
         to_left = x > _LEFT + _WIDTH * 0.8
         arrow = (
-            f'<path d="M{number(x)} {number(edge)}l-1.4 {number(2.2 * down)}h2.8z" '
+            f'<path d="M{number(x - 1.4)} {number(edge)}h2.8l-1.4 {number(2.0 * out)}z" '
             f'fill="{RIGHT if spot.right else WRONG}"/>'
         )
         told = spot.y if spot.written is None else spot.written
-        at = complex(x - 2.2 if to_left else x + 2.2, edge + (2.6 if is_above else -0.6))
+        at = complex(x - 2.2 if to_left else x + 2.2, edge + (-0.3 if is_above else 1.9))
         return [arrow, self._number(told, at, "end" if to_left else "start")]
 
     def _number(self, value: float, at: complex, anchor: str) -> str:

@@ -452,7 +452,7 @@ class StudySession:
             curves.append(
                 Axis(self.variant.exercise.symbol(part.quantity), unit_text(part.unit, lang), values)
             )
-            spots.append(self._spots(part, at, own))
+            spots.append(self._spots(part, at, own, values))
         turn = Axis(self.variant.exercise.symbol(driver), "°", angles)
         picture = Plot(turn, curves, lang, at, spots)
         symbols = ", ".join(f"${self.variant.exercise.symbol(p.quantity)}$" for p in chosen)
@@ -476,7 +476,7 @@ class StudySession:
         plain = f"{', '.join(p.id for p in chosen)} / {driver}"
         return self._shown(said, Picture(picture.svg(), plain), *notes, more, self._compared(asked, own))
 
-    def _spots(self, part: Any, at: float, own: Mapping[str, Own]) -> tuple[Spot, ...]:
+    def _spots(self, part: Any, at: float, own: Mapping[str, Own], values: np.ndarray) -> tuple[Spot, ...]:
         """The student's answer as a point, where it can be read; none where it is right, but not of this curve."""
         mine = own.get(part.quantity)
         if mine is not None and not mine.is_usual:
@@ -489,7 +489,9 @@ class StudySession:
             return ()
         value = written = float(reading.values[0]) if mine is None or mine.value is None else mine.value
         if part.kind == "angle":
-            value = (value + 180) % 360 - 180
+            # Of all turns the one beside the curve, so that a point above it is above.
+            middle = (np.nanmin(values) + np.nanmax(values)) / 2
+            value = middle + (value - middle + 180) % 360 - 180
         return (Spot(at, value, mine is not None, written),)
 
     # ----------------------------------------------------------- other variants
