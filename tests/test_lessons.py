@@ -27,6 +27,19 @@ def test_a_lesson_runs_from_top_to_bottom(course, name, lang):
     assert all(output.name == "stdout" for output in printed)
 
 
+def test_the_french_lesson_prints_no_english(course):
+    from nbclient import NotebookClient
+
+    book = nbformat.reads(course.lesson("mechanisms", "fr"), as_version=4)
+    NotebookClient(book, timeout=120, kernel_name="python3").execute()
+    outputs = [o for cell in book.cells for o in cell.get("outputs", ()) if o.output_type == "stream"]
+    printed = "".join(output.text for output in outputs)
+    for english in ("does not close", "theta3_open", "crank-rocker", "double-rocker", "change-point"):
+        assert english not in printed
+    for french in ("mode ouvert", "ne se coupent pas", "manivelle-balancier", "double manivelle"):
+        assert french in printed
+
+
 @pytest.mark.parametrize("name", LESSONS)
 def test_a_lesson_computes_the_same_in_every_language(course, name):
     """The code differs in its words alone: texts and comments."""

@@ -15,7 +15,7 @@ from coursework.cli import run
 from coursework.errors import BadCourse, BadInput, CourseworkError, Starved, UnknownName, WrongValue
 from coursework.figures.plot import Axis, Plot, Spot
 from coursework.language import words
-from coursework.selfstudy import hints, predictions
+from coursework.selfstudy import hints, predictions, wording
 from coursework.worth import worthy
 
 COURSE = coursework.open_course()
@@ -166,7 +166,7 @@ def test_a_notebook_of_another_version_is_refused(here):
 
 MISTYPED = {
     "question": (lambda s: s.check({"theta44": "1"}), UnknownName, "theta4"),
-    "no name": (lambda s: s.check({3: "1"}), UnknownName, "omega4"),
+    "no name": (lambda s: s.check({33: "1"}), UnknownName, "omega4"),
     "no dictionary": (lambda s: s.check(["1"]), BadInput, "study.check"),
     "a text": (lambda s: s.predict("theta4"), BadInput, "study.predict"),
     "prediction": (lambda s: s.predict({"theta5": "1"}), UnknownName, "theta4"),
@@ -309,6 +309,218 @@ def test_fresh_variants_are_worth_issuing_all_different_and_the_same_for_ever(he
             session.fresh(number)
 
 
+BOTH = pytest.mark.parametrize("lang", ["fr", "en"])
+SAID = {lang: words(lang)["study"] for lang in ("fr", "en")}
+
+
+def start_of(sentence: str) -> str:
+    """The longest piece of a sentence that does not depend on what is put in."""
+    return flat(max(re.split(r"\{\w+\}", sentence), key=len)).strip(" .:;`»”“")
+
+
+def flat(shown: object) -> str:
+    """What is shown, on one line, with the spaces and apostrophes of a keyboard."""
+    return " ".join(str(shown).replace("’", "'").split())
+
+
+@BOTH
+def test_values_of_numpy_are_answers_and_predictions(lang, here):
+    session = coursework.study("ball_reducer", lang=lang)
+    for _ in range(2):
+        session.check({"axis_30_dir": np.array([1, 0, 1]), "omega": np.float64(2.5)})
+    assert session.answers == {"axis_30_dir": [1, 0, 1], "omega": 2.5}
+    assert coursework.study("ball_reducer", lang=lang).answers == session.answers
+    session = coursework.study("slotted_mechanism", lang=lang)
+    assert start_of(SAID[lang]["not_understood"]) not in flat(session.predict({"theta4": np.int64(2)}))
+
+
+@BOTH
+def test_answers_that_are_right_in_both_variants_are_no_copy(lang, here):
+    session = coursework.study("slider_extras", seed=1, lang=lang)
+    equation = "r2*cos(theta2) + r3*cos(theta3) = r4*cos(theta4)"
+    session.check({"mobility": "1", "cycles": "2", "loop_1_x": equation})
+    again = session.fresh(1)
+    for told in ({"mobility": "1", "cycles": "2"}, {"mobility": "1", "cycles": "2", "loop_1_x": equation}):
+        assert start_of(SAID[lang]["copied"]) not in flat(again.check(told))
+        assert again.answers == told
+    assert coursework.study("slider_extras", seed=1, lang=lang).fresh(1).answers == told
+
+
+@BOTH
+def test_a_copy_of_variant_zero_is_one_too_and_keeps_what_is_right(lang, here):
+    session = coursework.study("slider_extras", seed=0, lang=lang)
+    right = session.variant.solution()
+    told = {"mobility": "1", **{n: f"{right[n]:.5g}" for n in ("theta3", "omega4")}}
+    session.check(told)
+    again = session.fresh(1)
+    assert start_of(SAID[lang]["copied"].format(seed=0)) in flat(again.check(told))
+    assert again.answers == {"mobility": "1"}
+    assert session.answers == told
+
+
+@BOTH
+def test_what_was_accepted_in_another_way_is_not_contradicted(lang, here):
+    """The second assembly given first: the reference of the first is neither told nor compared."""
+    session = coursework.study("four_bar_positions", seed=1, lang=lang)
+    walk = session.variant.walk
+    session.predict({"theta4_open": "3"})
+    session.check({"theta3_open": f"{walk['theta3_crossed']:.2f}"})
+    last = str(session.hint("theta4_open", 4)).rpartition("4. ")[2]
+    assert f"{walk['theta3_open']:.1f}" not in last.replace(",", ".")
+    assert "θ₃" in last
+    said = str(session.check({"theta4_open": f"{walk['theta4_crossed']:.2f}"}))
+    assert said.count("- ✓ ") == 3
+    assert "- ✗" not in said
+
+
+@BOTH
+def test_a_hint_holds_what_the_student_wrote_not_the_reference(lang, here):
+    session = coursework.study("slotted_mechanism", seed=1, lang=lang)
+    session.check({"theta4": "66"})
+    last = str(session.hint("omega4", 4))
+    assert "66.7" not in last.replace(",", ".")
+    assert "− 66°" in last
+
+
+@BOTH
+def test_a_right_answer_of_another_choice_is_not_marked_on_the_curve(lang, here):
+    session = coursework.study("four_bar_positions", seed=1, lang=lang)
+    names = [p.id for p in predictions.moving(session.variant)]
+    session.check({"theta3_open": f"{session.variant.walk['theta3_crossed']:.3f}"})
+    assert "theta3_open" in names
+    shown = session.plot("theta3_open")
+    assert not any("<circle" in getattr(piece, "svg", "") for piece in shown.pieces)
+    assert start_of(SAID[lang]["beside_curve"]) in flat(shown)
+
+
+@BOTH
+def test_another_scale_of_the_drawing_leaves_symbols_in_the_hints(lang, here):
+    session = coursework.study("velocity_polygon", seed=1, lang=lang)
+    walk = session.variant.walk
+    scale = 2 * walk["kv"]
+    told = {"kv": f"{scale:g}", "p": "0; 0", "a": walk["a"] / 2, "b": walk["b"] / 2, "ab": walk["ab"] / 2}
+    said = str(session.check({**told, "pv_b": walk["pv_b"] / 2}))
+    assert "- ✓ 9." in said
+    last = str(session.hint("v_B", 9))
+    assert not re.search(r"\d", last.rpartition("=")[2].partition("\n")[0])
+
+
+@BOTH
+@pytest.mark.parametrize("question", [5, "5", "question 5", "Q5", "n° 5"])
+def test_a_question_may_be_told_by_its_number(question, lang, here):
+    session = coursework.study("slotted_mechanism", seed=42, lang=lang)
+    assert str(session.hint(question)) == str(
+        coursework.study("slotted_mechanism", seed=42, lang=lang, folder=here / "x").hint("omega4")
+    )
+    assert str(session.reveal(question)) == str(session.reveal("omega4"))
+    assert str(session.plot(question)) == str(session.plot("omega4"))
+    session.check({question: "7"})
+    assert session.answers == {"omega4": "7"}
+    with pytest.raises(UnknownName):
+        session.hint(99)
+
+
+@every_exercise
+def test_the_name_of_a_question_stands_beside_its_number(name, here):
+    variant = COURSE[name].variant(3, "fr")
+    book = json.loads(COURSE.renderer.study(variant.study_sheet()))
+    text = "\n".join("".join(c["source"]) for c in book["cells"] if c["cell_type"] == "markdown")
+    for number, part in enumerate(variant.parts, start=1):
+        assert f"**{number}.** `{part.id}` — " in text
+
+
+@BOTH
+def test_feedback_names_the_question_beside_its_number(lang, here):
+    said = coursework.study("slotted_mechanism", lang=lang).check({"omega4": "1e9"})
+    assert "**5.** `omega4` — " in said.markdown
+
+
+@BOTH
+def test_a_call_without_what_it_needs_says_what_there_is(lang, here):
+    session = coursework.study("slotted_mechanism", lang=lang)
+    for said in (session.reveal(), session.predict(), session.predict({}), session.hint()):
+        assert "theta4" in str(said)
+    session.check(rA="238")
+    session.predict(theta4="1")
+    assert session.answers == {"rA": "238"}
+    assert session.predictions == {"theta4": "1"}
+    with pytest.raises(UnknownName) as refused:
+        session.hints("rA")
+    assert start_of(SAID[lang]["refused"]["method"]) in str(refused.value)
+    assert "hint" in str(refused.value).partition("hints")[2]
+    assert not hasattr(session, "hints")
+
+
+NOT_READ = {
+    "velocity_polygon": {"kv": "12 ± 3 ± 1", "p": "là", "known_A": "je ne sais pas"},
+    "slider_extras": {"mobility": "un peu", "theta3": "50 ou 60", "loop_1_x": "r2 + + = 3 )"},
+}
+
+
+@BOTH
+@pytest.mark.parametrize("name", NOT_READ)
+def test_who_works_alone_is_not_told_that_somebody_will_look(name, lang, here):
+    session = coursework.study(name, seed=1, lang=lang)
+    for part, text in NOT_READ[name].items():
+        said = " ".join(str(session.check({part: text})).split())
+        assert "- ? " in said, said
+        assert "somebody" not in said
+        assert "quelqu" not in said
+    said = flat(session.check(NOT_READ[name]))
+    if name == "velocity_polygon":
+        assert f"length ({flat(session.variant.label('known_A', 'length'))})" in said
+    else:
+        assert start_of(SAID[lang]["not_read"]["equation"].partition("`")[0]) in said
+
+
+@BOTH
+def test_the_answers_cell_of_a_self_study_notebook_is_run(lang, here):
+    variant = COURSE["coriolis"].variant(3, lang)
+    books = [COURSE.renderer.study(variant.study_sheet()), COURSE.renderer.notebook(variant.handout())]
+    texts = [flat(" ".join("".join(c["source"]) for c in json.loads(book)["cells"])) for book in books]
+    helps = (SAID[lang]["answers_help"], words(lang)["notebook"]["answers_help"])
+    for k, text in enumerate(texts):
+        last = [flat(said.strip().rpartition("\n")[2])[:40] in text for said in helps]
+        assert last == [k == 0, k == 1]
+    assert '`"rA": rA`' in texts[0]
+
+
+@BOTH
+def test_what_a_file_holds_beyond_what_is_asked_stays_and_does_no_harm(lang, here):
+    path = here / "slotted_mechanism.study.json"
+    answers = {"rA": "1", "zz": "3", "omega4": {"x": 1}, "guide": [2], "theta4": None}
+    kept = {"variants": {"1": {"answers": answers, "predictions": {"yy": "+", "theta4": [1]}}}}
+    path.write_text(json.dumps(kept), "utf-8")
+    session = coursework.study("slotted_mechanism", seed=1, lang=lang)
+    for said in (session.check({}), session.hint("rA_dot", 4), session.plot(), session.progress()):
+        assert str(said)
+    session.check({"rA": "2"})
+    assert "zz" not in session.answers
+    assert json.loads(path.read_text("utf-8"))["variants"]["1"]["answers"]["zz"] == "3"
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("content", "why"),
+    [
+        ({"exercise": "coriolis", "variants": {"1": {"answers": {"rA": "1"}}}}, "other"),
+        ({"variants": {"-3": {"answers": {"rA": "1"}}}}, "damaged"),
+        ({"variants": {"one": {}}}, "damaged"),
+        ({"variants": {"1": {"answers": "rA"}}}, "damaged"),
+        ([], "damaged"),
+    ],
+)
+def test_a_file_that_cannot_be_of_this_exercise_is_set_aside_and_told(content, why, lang, here):
+    path = here / "slotted_mechanism.study.json"
+    for number in ("", "1"):
+        path.write_text(json.dumps(content), "utf-8")
+        session = coursework.study("slotted_mechanism", seed=1, lang=lang)
+        told = start_of(SAID[lang]["trouble"][why].format(file=path.name))
+        assert told[:40] in str(session.progress()).replace("\n", " ")
+        assert not path.exists()
+        assert json.loads((here / f"slotted_mechanism.study.damaged{number}.json").read_text()) == content
+
+
 # ----------------------------------------------------------------------- hints
 
 
@@ -402,6 +614,84 @@ def test_predictions_are_compared_with_what_comes_out(here):
         assert predictions.compared(variant, one, "eh?").right is None, key
 
 
+READ = {
+    wording.sign: {
+        "+": ["+", "positif", "Positive", "plus", "+ 3", "> 0", "POSITIF."],
+        "-": ["-", "−", "négatif", "negative", "negatif", "moins", "minus", "< 0"],
+        "": ["+/-", "+ ou -", "positif ou négatif", "eh?", "0", "non positif"],
+    },
+    wording.comparison: {
+        ">": [">", "plus grand", "plus grande que r1", "larger", "larger than r1", "> r1", "greater", "Plus Grand"],
+        "<": ["<", "plus petit", "smaller", "plus petit que $r_1$", "less than r1", "inférieur à r1"],
+        "=": ["=", "égal", "equal to r1"],
+        "": ["<>", "plus grand ou plus petit", "12", "eh?"],
+    },
+    wording.quadrant: {
+        4: ["4", "IV", "iv", "4e", "4ème", "4th", "quatrième", "fourth", "Q4", "quadrant 4", "le 4e quadrant", "4.0"],
+        1: ["1", "I", "1er", "premier", "first", "the first quadrant", "1st", "un", "one"],
+        None: ["5", "0", "V", "1 ou 2", "eh?", "45°"],
+    },
+    wording.count: {
+        2: ["2", "2 fois", "deux", "deux fois", "2.0", "2,0", "two", "twice", "two times", "2 times"],
+        0: ["0", "jamais", "never", "zéro", "aucune"],
+        1: ["une fois", "once", "1 fois"],
+        None: ["2,5", "-1", "eh?", "plusieurs"],
+    },
+    wording.truth: {
+        True: ["oui", "yes", "Vrai", "True", True],
+        False: ["non", "no", "Faux", "false", False],
+        None: ["eh?", "oui et non", "1"],
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("reader", READ, ids=lambda reader: reader.__name__)
+def test_predictions_are_read_in_the_words_of_their_questions(reader):
+    for meant, texts in READ[reader].items():
+        for text in texts:
+            assert reader(text) == meant, text
+
+
+@BOTH
+@pytest.mark.parametrize(
+    "text", ["90 degrés", "90 degrees", "90°", "90", "environ 90", "vers 90°", "1,5708 rad", 90.0]
+)
+def test_the_place_of_a_peak_is_read_with_its_unit(text, lang):
+    variant = COURSE["slotted_mechanism"].variant(1, lang)
+    (one,) = [p for p in predictions.over_the_cycle(variant) if p.kind == "highest"]
+    assert predictions.compared(variant, one, text).right is True
+
+
+@BOTH
+def test_a_prediction_that_cannot_be_read_is_told_at_once(lang, here):
+    session = coursework.study("slotted_mechanism", seed=1, lang=lang)
+    told = start_of(SAID[lang]["not_understood"])
+    said = flat(session.predict({"theta4": "eh?", "omega4": "+/-", "rA": ">"}))
+    assert said.count(told) == 2
+    assert "1 / 2 / 3 / 4" in said
+    assert told not in flat(
+        session.predict({"theta4": "IV", "omega4": words(lang)["study"]["reads"]["negative"][0]})
+    )
+
+
+@every_exercise
+def test_the_choices_of_a_prediction_are_named_in_the_language_of_the_notebook(name):
+    variant = COURSE[name].variant(4, "fr")
+    for one in predictions.before_answers(variant):
+        shown = predictions.options(variant, one)
+        for case in one.choices:
+            label = variant.label(one.id, case)
+            plain = re.sub(r"[$\\].*", "", label).replace("'", "’").split(":")[0].strip()
+            assert plain in shown.replace("'", "’").replace("\u202f", " "), (label, shown)
+
+
+@every_exercise
+def test_nothing_is_compared_with_a_direction(name):
+    variant = COURSE[name].variant(4, "fr")
+    for one in predictions.before_answers(variant):
+        assert one.kind != "compare" or COURSE[name].spec.given[one.other].unit != "deg"
+
+
 def test_a_curve_that_vanishes_at_the_ends_of_the_turn_vanishes_there_once():
     turn = np.radians(np.linspace(0, 360, 721))
     counts = [predictions.zeros(f(k * turn)) for f in (np.sin, np.cos) for k in (1, 2)]
@@ -465,6 +755,38 @@ def test_lessons_compare_predictions_with_what_came_out():
     ]
 
 
+AGREE = [
+    ("non", False, True), ("oui", False, False), ("Vrai", True, True), ("True", True, True), (True, True, True),
+    ("eh?", False, False), ("2,3", 2.3, True), ("140 mm", 140.0, True), ("0,14 m", 140.0, True), ("deux", 2, True),
+    ("2 fois", 2, True), ("0", 0, True), (0.01, 0, True), (1, 0, False), ("5°", 0, True), ("360°", 0, True),
+    ("20°", 0, False), (np.float64(2.2), 2.3, True), ("II", "II", True), ("ii", "II", True), ("I", "II", False),
+    (2, 2.5, False), ("+/-", 1, False),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("guess", "value", "agrees"), AGREE)
+def test_a_lesson_reads_predictions_as_they_are_written(guess, value, agrees):
+    for lang in ("fr", "en"):
+        assert str(coursework.compare({"a": guess}, {"a": value}, lang)).startswith(
+            "- ✓" if agrees else "- ✗"
+        )
+
+
+def test_an_angle_is_near_whole_turns_apart_where_it_is_named_as_one():
+    for guess in (5, 360, "-4", "355"):
+        assert str(coursework.compare({"a": guess}, {"a": 0}, "fr", angles=("a",))).startswith("- ✓")
+        assert str(coursework.compare({"a": guess}, {"a": 0}, "fr")).startswith("- ✗")
+    assert str(coursework.compare({"a": 20}, {"a": 0}, "fr", angles=("a",))).startswith("- ✗")
+
+
+@BOTH
+def test_a_lesson_says_which_name_nothing_has_come_out_of(lang):
+    said = str(coursework.compare({"facteru": 2, "other": None}, {"facteur": 2}, lang))
+    assert said.splitlines()[1].startswith("- ? facteru")
+    assert said.replace("\n", " ").count("facteur") == 2
+    assert "other" not in said
+
+
 # ----------------------------------------------------------------------- plots
 
 
@@ -502,6 +824,29 @@ def test_a_right_point_lies_on_its_curve_and_is_told_from_a_wrong_one():
     first = points_of(Plot(plot.horizontal, plot.panels[:1], "en", 4, spots[:1]).svg())[0]
     assert [cx, cy] == pytest.approx(first[4].tolist(), abs=0.011)
     assert svg.count('stroke="#b3261e"') == 1
+
+
+def test_a_point_far_off_its_curve_is_an_arrow_at_the_edge_with_its_number():
+    x = np.linspace(0, 10, 11)
+    for y, is_far in ((60.0, False), (900.0, True), (-900.0, True)):
+        plot = Plot(Axis("x", "", x), [Axis("y", "mm", x**2)], "en", 4, [[Spot(4, y, False, 246.7)]])
+        cross, arrow = (s in plot.svg() for s in ('stroke="#b3261e"', 'z" fill="#b3261e"'))
+        assert (plot.has_outside, cross, arrow) == ((is_far,), not is_far, is_far)
+    far, near = (
+        Plot(plot.horizontal, plot.panels, "en", 4, [[Spot(4, 900.0, False, w)]]) for w in (1.0, 246.7)
+    )
+    assert far.svg() != near.svg()
+
+
+@BOTH
+def test_a_wrong_angle_is_not_drawn_as_if_it_were_nearly_right(lang, here):
+    session = coursework.study("slotted_mechanism", seed=1, lang=lang)
+    session.check({"theta4": "246,7"})
+    shown = session.plot("theta4")
+    assert start_of(SAID[lang]["outside"]) in flat(shown)
+    (svg,) = (piece.svg for piece in shown.pieces if hasattr(piece, "svg"))
+    # 246.7° is above the curve, which reaches 114°.
+    assert re.search(r'h2.8l-1.4 -2z" fill="#b3261e"', svg)
 
 
 def test_a_plot_says_what_it_cannot_draw():

@@ -23,11 +23,15 @@ LINE, RIGHT, WRONG, GRID = "#1b3a57", "#1b7a4b", "#b3261e", "#d5d9de"
 
 @dataclass(frozen=True)
 class Spot:
-    """A point beside a curve: somebody's answer. ``right`` None when nobody has judged it."""
+    """A point beside a curve: somebody's answer. ``right`` None when nobody has judged it.
+
+    ``written``: the number to be told where the point is outside its panel; ``y`` unless told.
+    """
 
     x: float
     y: float
     right: bool | None = None
+    written: float | None = None
 
 
 @dataclass(frozen=True)
@@ -107,6 +111,20 @@ class Plot:
         count = len(self.panels)
         return _LEFT + _WIDTH + _RIGHT, _TOP + count * _HEIGHT + (count - 1) * _GAP + _BOTTOM
 
+    @property
+    def has_outside(self) -> tuple[bool, ...]:
+        """By panel, whether a point is so far from the curve that an arrow at the edge stands for it."""
+        return tuple(
+            any(not low <= s.y <= high for s in spots)
+            for (low, high), spots in zip(
+                map(self._shown_of, range(len(self.panels))), self.spots, strict=True
+            )
+        )
+
+    def _shown_of(self, place: int) -> tuple[float, float]:
+        values = np.asarray(self.panels[place].values, dtype=float)
+        return _range(values, [s.y for s in self.spots[place]])
+
     @cached_property
     def _reach(self) -> tuple[float, float]:
         x = np.asarray(self.horizontal.values, dtype=float)
@@ -137,7 +155,7 @@ class Plot:
         panel, spots = self.panels[place], self.spots[place]
         top = _TOP + place * (_HEIGHT + _GAP)
         values = np.asarray(panel.values, dtype=float)
-        low, high = _range(values, [s.y for s in spots])
+        low, high = self._shown_of(place)
 
         def y(value: float) -> float:
             inside = min(max(value, low), high)
@@ -166,8 +184,24 @@ class Plot:
         out.append(
             f'<path d="{curve}" fill="none" stroke="{LINE}" stroke-width="0.5" stroke-linejoin="round"/>'
         )
-        out += [_dot(self._x(s.x), y(s.y), s.right) for s in spots]
+        for s in spots:
+            if low <= s.y <= high:
+                out.append(_dot(self._x(s.x), y(s.y), s.right))
+            else:
+                out += self._outside(s, y(s.y), s.y > high)
         return out
+
+    def _outside(self, spot: Spot, edge: float, is_above: bool) -> list[str]:
+        """An arrow at the panel's edge, and the number that it stands for: the point itself is not in sight."""
+        x, out = self._x(spot.x), -1 if is_above else 1
+        to_left = x > _LEFT + _WIDTH * 0.8
+        arrow = (
+            f'<path d="M{number(x - 1.4)} {number(edge)}h2.8l-1.4 {number(2.0 * out)}z" '
+            f'fill="{RIGHT if spot.right else WRONG}"/>'
+        )
+        told = spot.y if spot.written is None else spot.written
+        at = complex(x - 2.2 if to_left else x + 2.2, edge + (-0.3 if is_above else 1.9))
+        return [arrow, self._number(told, at, "end" if to_left else "start")]
 
     def _number(self, value: float, at: complex, anchor: str) -> str:
         return _letters(read(localise(significant(value, 6), self.lang)), at, anchor, _SMALL)

@@ -7,10 +7,11 @@ gives and for what the student has found; the rest stays a symbol, to be found f
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 from coursework.language import words
 from coursework.rendering.formula_tree import tokens
@@ -45,19 +46,20 @@ def quantity_of(variant: Variant, name: str) -> str:
 def steps(
     variant: Variant,
     name: str,
-    found: Collection[str] = (),
+    found: Mapping[str, float] = MappingProxyType({}),
     call: Callable[[str], str] = '`hint("{}")`'.format,
 ) -> tuple[str, ...]:
     """The hints for a part or a step on the way, from the vaguest on, as Markdown.
 
-    ``found`` names the quantities that the student has right; ``call`` says how to ask for the hints of another.
+    ``found`` holds the quantities that the student has right, as the student has them; ``call`` says how to ask
+    for the hints of another.
     """
     quantity = quantity_of(variant, name)
     all_steps = (
         _depends(variant, quantity, call),
         _words(variant, quantity),
-        _formula(variant, quantity, ()),
-        _formula(variant, quantity, {*variant.given, *found} - {quantity}),
+        _formula(variant, quantity, {}),
+        _formula(variant, quantity, {n: v for n, v in {**found, **variant.given}.items() if n != quantity}),
     )
     return tuple(step for k, step in enumerate(all_steps) if step and step not in all_steps[:k])
 
@@ -151,13 +153,13 @@ def variables(path: Path, changed: int) -> Mapping[str, frozenset[str]]:
     return found
 
 
-def _formula(variant: Variant, quantity: str, known: Collection[str]) -> str:
+def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
     """The formula, numbers put in for what is known; empty where words say it or it would be the value."""
     values = variant.walk
     shown = {n: (_symbol(variant, n), False) for n in values}
     shown |= {
-        n: (number_latex(values[n], variant.exercise.units.get(n, "1"), _DIGITS), True)
-        for n in known
+        n: (number_latex(value, variant.exercise.units.get(n, "1"), _DIGITS), True)
+        for n, value in known.items()
         if isinstance(values.get(n), (int, float, complex))
     }
     function = variant.exercise.solution.graph.node(quantity).function

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,7 @@ class Kept:
     """Answers and predictions by seed, in ``EXERCISE.study.json``.
 
     A blank never takes the place of what was written before. ``trouble`` says why nothing is written, or why an
-    older file was set aside; it is empty when all is well.
+    older file was set aside; it is empty when all is well. What a file holds beyond what is asked stays in it.
     """
 
     def __init__(self, path: Path, exercise: str):
@@ -25,18 +27,25 @@ class Kept:
         try:
             content = json.loads(self.path.read_text("utf-8"))
             variants = {
-                str(int(seed)): {kind: dict(texts) for kind, texts in kinds.items()}
+                _seed(seed): {kind: dict(texts) for kind, texts in kinds.items()}
                 for seed, kinds in content["variants"].items()
             }
-        except (OSError, ValueError, TypeError, KeyError, AttributeError):
-            aside = self.path.with_suffix(".damaged.json")
-            self.trouble = "damaged"
-            try:
-                self.path.replace(aside)
-            except OSError:
-                self.trouble = "unwritable"
+        except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
+            self._set_aside("damaged")
+            return
+        if content.get("exercise", self._content["exercise"]) != self._content["exercise"]:
+            self._set_aside("other")
             return
         self._content["variants"] = variants
+
+    def _set_aside(self, why: str) -> None:
+        """The file under a name that no older one has."""
+        names = (self.path.with_suffix(f".damaged{n or ''}.json") for n in itertools.count())
+        self.trouble = why
+        try:
+            self.path.replace(next(name for name in names if not name.exists()))
+        except OSError:
+            self.trouble = "unwritable"
 
     @property
     def seeds(self) -> tuple[int, ...]:
@@ -64,6 +73,13 @@ class Kept:
             part.replace(self.path)
         except OSError:
             self.trouble = "unwritable"
+
+
+def _seed(text: str) -> str:
+    """A seed as it is written; anything else is none."""
+    if not re.fullmatch(r"0|[1-9][0-9]{0,99}", text):
+        raise ValueError(text)
+    return text
 
 
 def is_blank(text: Any) -> bool:

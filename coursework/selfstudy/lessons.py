@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -11,13 +11,34 @@ from coursework.figures.plot import Axis, Plot
 from coursework.language import localise, significant, words
 from coursework.rendering.shown import Picture, Shown
 from coursework.selfstudy.kept import is_blank
+from coursework.selfstudy.refusals import would_do
+from coursework.selfstudy.wording import folded, numbers, truth, unwrapped
+
+_NEAR = 0.1
+_NEAR_ANGLE = 10.0  #: degrees
+_NEAR_ZERO = 0.02  #: where a tenth would be nothing
 
 
-def compare(predicted: Mapping[str, Any], found: Mapping[str, Any], lang: str = "fr") -> Shown:
+def compare(
+    predicted: Mapping[str, Any],
+    found: Mapping[str, Any],
+    lang: str = "fr",
+    angles: Collection[str] = (),
+) -> Shown:
     """Predictions beside what came out, as a notebook's cell shows them.
 
-    Numbers agree within a tenth; texts and truths when they are the same. A prediction that is None or blank is
-    shown as not made.
+    Numbers agree within a tenth, angles within 10°, whole turns apart or not; texts and truths when they are the
+    same. Numbers may be texts with a comma and a unit, truths yes and no in any language. A prediction that is None
+    or blank is shown as not made, and one under a name that nothing has come out of is told.
+
+    Parameters
+    ----------
+    predicted, found
+        By the same names.
+    lang
+        Language of what is said.
+    angles
+        The names of what is an angle in degrees; a prediction in degrees makes it one.
 
     >>> print(compare({"a": 2, "b": None}, {"a": 2.1, "b": 5}, "en"))
     - ✓ a: predicted 2, found 2.1
@@ -26,20 +47,29 @@ def compare(predicted: Mapping[str, Any], found: Mapping[str, Any], lang: str = 
     said = words(lang)["study"]
     lines = []
     for name, value in found.items():
-        guess = predicted.get(name)
-        mark = "·" if is_blank(guess) else "✓" if _agree(guess, value) else "✗"
+        guess = unwrapped(predicted.get(name))
+        agrees = not is_blank(guess) and _agree(guess, unwrapped(value), name in angles)
+        mark = "·" if is_blank(guess) else "✓" if agrees else "✗"
         line = said["not_predicted"] if is_blank(guess) else said["predicted"]
         lines.append(f"- {mark} {line.format(name=name, said=_told(guess, lang), found=_told(value, lang))}")
+    for name, guess in predicted.items():
+        if name not in found and not is_blank(guess):
+            line = said["refused"]["lesson_name"].format(name=name, said=_told(guess, lang))
+            lines.append(f"- ? {line} {would_do(lang, str(name), list(found))}")
     return Shown(lang, "\n".join(lines))
 
 
-def _agree(guess: Any, value: Any) -> bool:
-    if isinstance(value, (bool, np.bool_, str)) or isinstance(guess, (bool, str)):
-        return str(guess).strip().casefold() == str(value).strip().casefold()
-    try:
-        return abs(float(guess) - float(value)) <= 0.1 * abs(float(value))
-    except (TypeError, ValueError):
-        return False
+def _agree(guess: Any, value: Any, is_angle: bool) -> bool:
+    if isinstance(value, bool):
+        return truth(guess) is value
+    if isinstance(value, str) or isinstance(guess, bool):
+        return folded(guess) == folded(value)
+    guesses, in_degrees = numbers(guess)
+    if not isinstance(value, (int, float)):
+        return folded(guess) == folded(value)
+    if is_angle or in_degrees:
+        return any(abs((g - value + 180.0) % 360.0 - 180.0) <= _NEAR_ANGLE for g in guesses)
+    return any(abs(g - value) <= max(_NEAR * abs(value), _NEAR_ZERO) for g in guesses)
 
 
 def _told(value: Any, lang: str) -> str:

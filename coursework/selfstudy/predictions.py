@@ -7,7 +7,8 @@ that a sign is asked says that signs differ among variants, and nothing of this 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import sys
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -18,6 +19,9 @@ from coursework.errors import CourseworkError
 from coursework.language import plain, with_unit, words
 from coursework.marking import read
 from coursework.model import Part
+from coursework.reading import read_number
+from coursework.rendering.markup import to_text
+from coursework.selfstudy import wording
 from coursework.selfstudy.kept import is_blank
 
 if TYPE_CHECKING:
@@ -86,7 +90,8 @@ def _of_part(exercise: CourseExercise, part: Part) -> Prediction | None:
     others = {
         name: _sample(exercise)[name]
         for name, spec in exercise.spec.given.items()
-        if spec.unit == part.unit and not spec.is_choice and not spec.is_fixed
+        # A direction is known up to whole turns: neither larger nor smaller than anything.
+        if spec.unit == part.unit != "deg" and not spec.is_choice and not spec.is_fixed
     }
     fair = {n: abs(np.mean(values > v) - 0.5) for n, v in others.items() if _differ(values > v, values)}
     return Prediction(part.id, part.quantity, "compare", min(fair, key=fair.__getitem__)) if fair else None
@@ -165,15 +170,32 @@ def _number_of(variant: Variant, prediction: Prediction) -> int:
 
 def options(variant: Variant, prediction: Prediction) -> str:
     """What may be written, as plain text."""
-    said = words(variant.lang)["study"]["options"]
-    return " / ".join(prediction.choices) if prediction.choices else said[prediction.kind]
+    part = next((p for p in variant.parts if p.id == prediction.id), None)
+    if part is not None and prediction.choices:
+        return choices(variant, part)
+    return words(variant.lang)["study"]["options"][prediction.kind]
+
+
+def choices(variant: Variant, part: Part) -> str:
+    """The cases of a choice: what is written, and what it is called."""
+    labels = {c: to_text(variant.label(part.id, c), variant.lang, sys.maxsize) for c in part.choices}
+    return " / ".join(c if c == label else f"{c} ({label})" for c, label in labels.items())
+
+
+def is_understood(variant: Variant, prediction: Prediction, text: Any) -> bool:
+    """Whether a prediction can be read; nothing is computed."""
+    return _READ[prediction.kind](variant, prediction, text) is not None
 
 
 # --------------------------------------------------------------------- compared
 
 
-def compared(variant: Variant, prediction: Prediction, text: Any) -> Compared | None:
+def compared(
+    variant: Variant, prediction: Prediction, text: Any, own: float | None = None
+) -> Compared | None:
     """A prediction beside what comes out; None where nothing was predicted.
+
+    ``own`` is the student's own right value, where it is not the reference's: the prediction was of that.
 
     Raises
     ------
@@ -182,62 +204,81 @@ def compared(variant: Variant, prediction: Prediction, text: Any) -> Compared | 
     """
     if is_blank(text):
         return None
-    found, right = {
-        "sign": _sign,
-        "quadrant": _quadrant,
-        "compare": _compare,
-        "guess": _guess,
-        "zeros": _zeros,
-        "highest": _highest,
-    }[prediction.kind](variant, prediction, str(text).strip())
-    return Compared(prediction, str(text).strip(), found, right)
+    said = _READ[prediction.kind](variant, prediction, text)
+    value = variant.walk[prediction.quantity] if own is None else own
+    found, right = _FOUND[prediction.kind](variant, prediction, value, said)
+    return Compared(prediction, str(text).strip(), found, None if said is None else right)
 
 
-Outcome = tuple[str, bool | None]
-
-
-def _sign(variant: Variant, prediction: Prediction, text: str) -> Outcome:
-    found = "+" if variant.walk[prediction.quantity] > 0 else "−"
-    said = {"+": "+", "-": "−", "−": "−"}.get(text[:1])
-    return found, None if said is None else said == found
-
-
-def _quadrant(variant: Variant, prediction: Prediction, text: str) -> Outcome:
-    found = str(1 + int(variant.walk[prediction.quantity] % 360 // 90))
-    return found, text == found if text in ("1", "2", "3", "4") else None
-
-
-def _compare(variant: Variant, prediction: Prediction, text: str) -> Outcome:
-    value, other = variant.walk[prediction.quantity], variant.given[prediction.other]
-    found = ">" if value > other else "<" if value < other else "="
-    return found, text[:1] == found if text[:1] in ("<", ">", "=") else None
-
-
-def _guess(variant: Variant, prediction: Prediction, text: str) -> Outcome:
+def _read_guess(variant: Variant, prediction: Prediction, text: Any) -> tuple[Any, ...] | None:
     part = next(p for p in variant.parts if p.id == prediction.id)
+    if part.kind == "integer" and (whole := wording.count(text)) is not None:
+        return (whole,)
     reading = read(variant, part, text)
-    value = variant.walk[prediction.quantity]
-    found = variant.label(part.id, str(value)) if part.kind == "choice" else plain(int(value))
-    return found, value in reading.values if reading.status == "read" else None
+    return reading.values if reading.status == "read" else None
 
 
-def _zeros(variant: Variant, prediction: Prediction, text: str) -> Outcome:
+def _read_angle(variant: Variant, prediction: Prediction, text: Any) -> tuple[float, ...] | None:
+    reading = read_number(wording.without_about(text), "deg")
+    return reading.values if reading.status == "read" else None
+
+
+_READ: Mapping[str, Callable[[Variant, Prediction, Any], Any]] = {
+    "sign": lambda variant, prediction, text: wording.sign(text) or None,
+    "quadrant": lambda variant, prediction, text: wording.quadrant(text),
+    "compare": lambda variant, prediction, text: wording.comparison(text) or None,
+    "guess": _read_guess,
+    "zeros": lambda variant, prediction, text: wording.count(text),
+    "highest": _read_angle,
+}
+
+Outcome = tuple[str, bool]
+
+
+def _sign(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+    return ("+" if value > 0 else "−"), said == ("+" if value > 0 else "-")
+
+
+def _quadrant(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+    found = 1 + int(value % 360 // 90)
+    return str(found), said == found
+
+
+def _compare(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+    other = variant.given[prediction.other]
+    found = ">" if value > other else "<" if value < other else "="
+    return found, said == found
+
+
+def _guess(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+    is_choice = bool(prediction.choices)
+    found = variant.label(prediction.id, str(value)) if is_choice else plain(int(value))
+    return found, value in (said or ())
+
+
+def _zeros(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
     _, values = curve(variant, prediction.quantity)
     found = zeros(values)
-    return str(found), int(text) == found if text.isdigit() else None
+    return str(found), said == found
 
 
-def _highest(variant: Variant, prediction: Prediction, text: str) -> Outcome:
+def _highest(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
     angles, values = curve(variant, prediction.quantity)
     best = float(angles[np.nanargmax(values)])
-    shown = with_unit(plain(round(best)), "deg", variant.lang)
-    try:
-        said = float(text.replace("°", "").replace(",", ".").replace("−", "-"))
-    except ValueError:
-        return shown, None
     top, low = np.nanmax(values), np.nanmin(values)
     near = angles[values >= top - 0.01 * (top - low)]
-    return shown, bool((np.abs((near - said + 180) % 360 - 180) <= NEAR).any())
+    right = any((np.abs((near - angle + 180) % 360 - 180) <= NEAR).any() for angle in said or ())
+    return with_unit(plain(round(best)), "deg", variant.lang), right
+
+
+_FOUND: Mapping[str, Callable[[Variant, Prediction, Any, Any], Outcome]] = {
+    "sign": _sign,
+    "quadrant": _quadrant,
+    "compare": _compare,
+    "guess": _guess,
+    "zeros": _zeros,
+    "highest": _highest,
+}
 
 
 def zeros(values: np.ndarray) -> int:

@@ -22,12 +22,26 @@ def expect(lang: str, kind: str, name: object, known: Collection[str]) -> None:
     if isinstance(name, str) and name in known:
         return
     said = words(lang)["study"]["refused"]
-    near = closest(str(name), known)
+    raise UnknownName(f"{said[kind].format(name=name)} {would_do(lang, str(name), known)}")
+
+
+def would_do(lang: str, name: str, known: Collection[str]) -> str:
+    """The nearest known name, or all."""
+    said = words(lang)["study"]["refused"]
+    near = closest(name, known)
     if near is not None:
-        would_do = said["near"].format(name=near)
-    else:
-        would_do = said["known"].format(names=", ".join(known)) if known else said["none"]
-    raise UnknownName(f"{said[kind].format(name=name)} {would_do}")
+        return said["near"].format(name=near)
+    return said["known"].format(names=", ".join(known)) if known else said["none"]
+
+
+class UnknownMethod(UnknownName, AttributeError):
+    """Something that a session cannot do."""
+
+
+def no_method(lang: str, name: str, known: Collection[str]) -> UnknownMethod:
+    """The error for a method that is not there."""
+    said = words(lang)["study"]["refused"]["method"].format(name=name)
+    return UnknownMethod(f"{said} {would_do(lang, name, known)}")
 
 
 def by_name(lang: str, call: str, told: object) -> Mapping[str, Any]:
