@@ -70,7 +70,7 @@ class BadStatement(BadCourse):
 
 
 class BadInput(CourseworkError, ValueError):
-    """A file given by the user cannot be read as what it should be."""
+    """What a user gives, a file or what a call is told, is not what it should be."""
 
 
 def closest(name: str, known: Iterable[str]) -> str | None:

@@ -25,11 +25,6 @@ def least_lean(Q):
     return asin((crank + 2 * offset) / sqrt(1 + 2 * offset / t))
 
 
-def tells(Q):
-    """For the worked solution: the most that the rod of its linkage leans."""
-    return {"lean": rf"\num{{{float(least_lean(Q)):.1f}}}^{{\circ}}"}
-
-
 def figure():
     """The names of what is sought; the same for every variant."""
     O, A, r2, r3, e = 0j, polar(30, 115), 30.0, 85.0, 20.0
@@ -65,7 +60,6 @@ EXERCISE = Exercise(
         Part("r3", unit="mm", points=2, judge="meets_the_demands"),
         Part("e", unit="mm", points=2, judge="meets_the_demands"),
     ),
-    symbols={"stroke": "s", "mode": "C"},
-    tells=tells,
+    symbols={"stroke": "s"},
     figure=figure,
 )

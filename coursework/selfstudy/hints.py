@@ -13,7 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from coursework.language import words
+from coursework.language import is_whole, words
 from coursework.rendering.formula_tree import tokens
 from coursework.rendering.views import chain_on_lines, given_formula, given_words
 from coursework.selfstudy.refusals import expect
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _DIGITS = 6
 _UNFINISHED = re.compile(r"(?:(?<=[.!?])|\A)[^.!?]*[^.!?\s]\s*\Z")
+_LAST_SENTENCE = re.compile(r"(?:(?<=[.!?…])\s|\A)(?:[^.!?…]|[.!?…](?!\s|\Z))*[.!?…]\W*\Z")
 _NUMBER = re.compile(r"\\num\{[^{}]*\}")
 _AROUND = re.compile(r"\^\{\\circ\}|\\left|\\right|\\ |[();\s-]")
 
@@ -125,7 +126,10 @@ def _words(variant: Variant, quantity: str) -> str:
     asked = next((p for p in variant.parts if p.quantity == quantity), None)
     if asked is None or asked.kind != "choice":
         return section.text
-    # The words before a case break off where the answer follows: "Here the guide".
+    # The words before a case break off where the answer follows: "Here the guide". A whole reason tells the answer
+    # in its last sentence.
+    if is_whole(section.text):
+        return _LAST_SENTENCE.sub("", section.text).strip()
     return _UNFINISHED.sub("", section.text).strip() or f"{section.text} …"
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from numbers import Integral
 from typing import Any
 
 from coursework.errors import BadInput, UnknownName, closest
@@ -55,6 +56,19 @@ def by_name(lang: str, call: str, told: object) -> Mapping[str, Any]:
     if not isinstance(told, Mapping):
         raise refused(lang, "mapping", call=call, found=f"{told!r:.60}")
     return told
+
+
+def counted(lang: str, why: str, told: object) -> int:
+    """A whole number from 1 on.
+
+    Raises
+    ------
+    BadInput
+        Anything else.
+    """
+    if isinstance(told, bool) or not isinstance(told, Integral) or told < 1:
+        raise refused(lang, why, found=repr(told))
+    return int(told)
 
 
 def refused(lang: str, why: str, **told: object) -> BadInput:

@@ -72,7 +72,8 @@ def study(
     refusals.expect(lang, "exercise", exercise, opened.names)
     one = opened[exercise]
     if version is not None and version != one.version:
-        again = f"coursework notebook {exercise} --seed {seed} --lang {lang} --out DIR"
+        own = f"--course {course} " if course is not None else ""
+        again = f"coursework {own}notebook {exercise} --seed {seed} --lang {lang} --out DIR"
         told = {"exercise": exercise, "version": version, "installed": one.version, "command": again}
         raise refusals.refused(lang, "version", **told)
     kept = Kept(Path(folder) / f"{exercise}.study.json", exercise)
@@ -161,7 +162,9 @@ class StudySession:
         except BadCourse:
             return self._shown(self._missing() or self._said["no_motion"])
         except WrongValue:
-            shown = ", ".join(self.variant.animation(()).available)
+            if missing := self._missing():
+                return self._shown(missing)
+            shown = ", ".join(("position", *self.variant.animation(()).available))
             raise refusals.refused(self.variant.lang, "no_effect", names=shown) from None
         if not effects:
             usual = [e for e in ("position", "velocity") if e in moving.available]
@@ -385,13 +388,13 @@ class StudySession:
         if question == "":
             return self._shown(self._which("hint", self._said["hint"]["which"]))
         question = self._named(question)
+        if step is not None:
+            step = refusals.counted(self.variant.lang, "step", step)
         # Of what is right in another way the reference is not the student's: it stays a symbol.
         found = {q: own.value for q, own in self._own.items() if own.is_usual and own.value is not None}
         texts = hints.steps(self.variant, question, found, lambda n: self._call("hint", n))
         if not texts:
             return self._shown(self._said["hint"]["none"].format(call=self._call("reveal", question)))
-        if step is not None and (isinstance(step, bool) or not isinstance(step, int)):
-            raise refusals.refused(self.variant.lang, "step", found=repr(step))
         last = step if step is not None else self._hints.get(question, 0) + 1
         last = min(max(last, 1), len(texts))
         self._hints[question] = last
@@ -510,15 +513,16 @@ class StudySession:
         Starved
             The exercise has no more variants.
         """
-        if number is not None and (isinstance(number, bool) or not isinstance(number, int) or number < 1):
-            raise refusals.refused(self.variant.lang, "fresh", found=repr(number))
+        if number is not None:
+            number = refusals.counted(self.variant.lang, "fresh", number)
         begun = {seed for seed in self._kept.seeds if self._kept.of(seed, "answers")}
         # One of so many is not begun.
-        count = number or len(begun) + 2
+        count = number or len(begun - {self._base}) + 1
         try:
             variants = fresh_variants(self.variant.exercise, self._base, count, self.variant.lang)
-        except Starved:
-            raise Starved(self._said["refused"]["starved"].format(number=count)) from None
+        except Starved as fault:
+            why = "starved" if number is not None else "all_begun"
+            raise Starved(self._said["refused"][why].format(number=count)) from fault
         left = [v for v in variants if v.seed not in begun and v.seed != self.variant.seed]
         variant = left[0] if number is None else variants[-1]
         return StudySession(variant, self._kept, self._base)
