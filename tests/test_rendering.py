@@ -247,7 +247,7 @@ def test_a_language_whose_file_lacks_a_text_says_which(monkeypatch):
     whole = language._read("en")
     lacking = {**whole, "study": {k: v for k, v in whole["study"].items() if k != "refused"}}
     monkeypatch.setattr(language, "_read", lambda lang: lacking if lang == "fr" else whole)
-    with pytest.raises(BadCourse, match=r"fr\.toml lacks study\.refused\.course, .*en\.toml"):
+    with pytest.raises(BadCourse, match=r"fr\.toml lacks study\.refused\.all_begun, .*en\.toml"):
         words.__wrapped__("fr")
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import coursework
+from coursework.language import significant
 
 EXERCISE = coursework.open_course()["quick_return_design"]
 
@@ -63,5 +64,5 @@ def test_what_is_told_is_the_motion_of_the_students_own_lengths():
     variant = EXERCISE.variant(1, "en")
     stroke, _, lean = simulated(40, 120, 30)
     feedback = variant.grade({"r2": "4 cm", "r3": 120, "e": 30})["r2"].feedback
-    assert f"{stroke:.4g} mm" in feedback
-    assert f"{lean:.4g}" in feedback
+    assert f"{significant(stroke)} mm" in feedback
+    assert significant(lean) in feedback
