@@ -158,6 +158,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     together = loop_verdicts(variant, readings)
     before = _Before({}, set(), set(), [])
     marks, no_scale = {}, set()
+    waiting: dict[str, dict[str, frozenset[str]]] = {}
     for i, part in asked.items():
         if i in known:
             before.own[part.quantity] = float(known[i])
@@ -169,7 +170,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             nearest = together[i].reading, math.inf
             tellers = (p for j, p in asked.items() if j in marks and j not in no_scale)
             told = next((p for p in tellers if _is_told_with(p, part, together)), None)
-            marks[i] = _mark_judged(variant, key, part, reading, together[i], told, readings)
+            missed = partial(_missed, variant, part, readings, waiting)
+            marks[i] = _mark_judged(variant, key, part, reading, together[i], told, missed)
             if _is_scale(part) and reading.values[nearest[0]] <= 0:
                 no_scale.add(i)
                 read_as = echo(marks[i].read_as, variant.lang)
@@ -266,7 +268,7 @@ def _mark_judged(
     reading: Reading,
     found: Verdict,
     told_with: Part | None,
-    readings: Mapping[str, Reading],
+    missed: Callable[[], str],
 ) -> Mark:
     """The mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
     read_as, verdict = reading.read_as[found.reading], found.said
@@ -274,8 +276,7 @@ def _mark_judged(
     if verdict is None:
 
         def alone() -> Said:
-            missing = _missed(variant, part, readings)
-            return say(variant, part, "incomplete", read=echo(read_as, variant.lang), missing=missing)
+            return say(variant, part, "incomplete", read=echo(read_as, variant.lang), missing=missed())
 
         return made("wrong", 0.0, read_as, alone)
     share = min(1.0, max(0.0, float(verdict.share)))
@@ -319,17 +320,26 @@ def _is_scale(part: Part) -> bool:
     return bool(part.judge) and part.kind == "number" and part.unit.endswith("/mm")
 
 
-def _missed(variant: Variant, part: Part, readings: Mapping[str, Reading]) -> str:
-    """What an answer waits for to be judged, by questions: any of those that would do alone, else all of its group."""
-    group = [p.id for p in variant.parts if p.judge == part.judge]
+def _missed(
+    variant: Variant,
+    part: Part,
+    readings: Mapping[str, Reading],
+    waiting: dict[str, dict[str, frozenset[str]]],
+) -> str:
+    """What an answer waits for to be judged, by questions: any of those that would do alone, else all of its group.
+
+    ``waiting`` remembers by judge what could be judged with each missing answer.
+    """
+    group = {p.id: p.quantity for p in variant.parts if p.judge == part.judge}
     read = {i: readings[i].values[0] for i in group if readings[i].status == "read"}
     unread = [i for i in group if i not in read]
-    enough = []
-    for i in unread:
-        with suppress(CourseworkError):
-            right = variant.key.reference[next(p.quantity for p in variant.parts if p.id == i)]
-            if part.id in judged(variant, part.judge, {**read, i: right}):
-                enough.append(i)
+    if part.judge not in waiting:
+        waiting[part.judge] = {}
+        for i in unread:
+            with suppress(CourseworkError):
+                right = variant.key.reference[group[i]]
+                waiting[part.judge][i] = frozenset(judged(variant, part.judge, {**read, i: right}))
+    enough = [i for i, would_be in waiting[part.judge].items() if part.id in would_be]
     return questions(variant, enough, "or") if enough else questions(variant, unread, "and")
 
 

@@ -72,6 +72,8 @@ def _amount(value: float, digits: str, unit: str = "", *, assumed: str = "") -> 
 
 def _bare(answer: object) -> object:
     """What a cell's value holds: an array, or a list of one, is its number; a number of NumPy is Python's."""
+    if answer.__class__ is str:
+        return answer
     for _ in range(_MAX_NESTING):
         if isinstance(answer, (np.ndarray, np.generic)) and answer.size <= _MAX_ITEMS:
             answer = answer.tolist()
@@ -326,7 +328,8 @@ def _named_unit_unknown(text: str) -> _Stop | None:
 
 def _amounts(text: str, target: Unit, thousands: bool = True) -> list[_Amount]:
     """All honest readings of one number, the likelier first."""
-    text = _PRINTED.sub(r"\1", _without_name(text))
+    text = _without_name(text)
+    text = _PRINTED.sub(r"\1", text) if "(" in text else text
     if not text:
         raise _Stop("not_a_number", text)
     if _NOT_FINITE.match(text):
@@ -456,7 +459,7 @@ def read_integer(text: object) -> Reading:
     text = _bare(text)
     counted = _COUNTED.sub("", text) if isinstance(text, str) and len(text) < MAX_LENGTH else text
     reading = read_number(counted, "1")
-    if counted != text:
+    if counted is not text:
         reading = replace(reading, text=text)
     if reading.status != "read":
         return reading
@@ -556,17 +559,18 @@ def read_point(text: object, unit: str, count: int) -> Reading:
 
 # --- choices ----------------------------------------------------------------------------
 
-_POSITION = re.compile(r"[(\[]?\s*([a-z]|[0-9]{1,2})\s*(?:[)\].:]\s*(?P<label>.*))?")
+_POSITION = re.compile(r"[(\[]?\s*([a-z]|[0-9]{1,2})\s*(?:(?:[)\]:]|\.(?![0-9]))\s*(?P<label>.*))?")
 
 
 _SIGN = re.compile(r"(^|[=<>(+])\s*[-‐‑‒–−]\s*(?=[0-9])")
+_PLUS = re.compile(r"(^|[=<>(])\s*\+\s*(?=[0-9])")
 _ANY_MINUS = re.compile("[-‐‑‒–−]")
 
 
 @lru_cache(maxsize=4096)
 def _folded(text: str) -> str:
     """A label without case, accents, markup and punctuation; a formula without spaces, its signs kept."""
-    text = _SIGN.sub(r"\1−", text.strip("$ "))
+    text = _PLUS.sub(r"\1", _SIGN.sub(r"\1−", text.strip("$ ")))
     if "=" in text:
         text = re.sub(r"[\s_*·{}\\]", "", _ANY_MINUS.sub("−", text))
     text = re.sub(r"\\(?:mathrm|text|mathit|vec|overrightarrow)(?![A-Za-z])|\\[,;! ]", " ", text)
@@ -589,19 +593,36 @@ def _by_label(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     if not folded:
         return []
     keys = [key for key in choices if _folded(key) == folded]
-    keys = keys or [key for key, labels in choices.items() if folded in map(_folded, labels)]
-    return keys or [k for k, labels in choices.items() if any(folded == _folded(head(s)) for s in labels)]
+    keys = keys or [key for key, labels in choices.items() if any(_is_called(text, s) for s in labels)]
+    return keys or [k for k, labels in choices.items() if any(_is_called(text, head(s)) for s in labels)]
+
+
+def _is_called(text: str, label: str) -> bool:
+    """Whether a text is a label; one that is a formula is told from others by its operators too."""
+    if _folded(text) != _folded(label):
+        return False
+    if not (label.startswith("$") and label.endswith("$")):
+        return True
+    return _operators(text) in ("", _operators(label))
+
+
+@lru_cache(maxsize=4096)
+def _operators(formula: str) -> str:
+    """The signs of product and quotient of a formula, in order."""
+    formula = re.sub(r"\\(?:cdot|times)(?![A-Za-z])|[×·⋅]", "*", formula)
+    return re.sub(r"[^*/]", "", formula)
 
 
 def _by_value(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choices of whose formula this is the right-hand side: ``-1`` where ``w = -1`` is offered."""
-    if not (value := _folded(f"= {text}").removeprefix("=")):
-        return []
-    return [
-        key
-        for key, labels in choices.items()
-        if any(_folded(s).rpartition("=")[1:] == ("=", value) for s in labels)
-    ]
+    value = _folded(f"= {text.strip('()[] ')}").removeprefix("=").strip()
+    found = [key for key, labels in choices.items() for s in labels if "=" in s and _value_of(s) == value]
+    return list(dict.fromkeys(found)) if value else []
+
+
+@lru_cache(maxsize=4096)
+def _value_of(label: str) -> str:
+    return _folded(label).rpartition("=")[2].strip()
 
 
 _BEFORE = re.compile(
@@ -618,7 +639,11 @@ def _by_position(text: str, choices: Mapping[str, Sequence[str]]) -> tuple[list[
     return list(choices)[place : place + 1] if place >= 0 else [], found["label"] or ""
 
 
+_WHOLE = re.compile(r"^\s*([0-9]+)[.,]0+\s*$")  #: what a table makes of a whole number
+
+
 def _choice(text: str, choices: Mapping[str, Sequence[str]]) -> Reading:
+    text = _WHOLE.sub(r"\1", text)
     keys = _by_label(text, choices)
     keys = keys or (_by_label(_BEFORE.sub("", text, count=1), choices) if _BEFORE.match(text) else [])
     if not keys:

@@ -5,7 +5,6 @@ The reference value is never told.
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -109,7 +108,7 @@ def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
         code = "not_a_number" if reading.code == "unknown_symbol" and not in_equation else reading.code
         if part.kind == "choice" and code in _OF_CHOICES:
             code = _OF_CHOICES[code]
-            pieces["offered"] = _offered(variant, part, found)
+            pieces["offered"] = _offered(variant, part)
         sentence = kinds.get(code, kinds["otherwise"])
         if code == "unknown_unit" and not unit:
             sentence = table[unitless]
@@ -124,9 +123,8 @@ _OF_CHOICES = {"not_a_choice": "not_a_choice", "two_values": "two_choices"}
 _OFFERED = 200  #: characters of all that is offered
 
 
-def _offered(variant: Variant, part: Part, found: str) -> str:
-    """What may be written for a choice, quoted: every label, or the beginning of each, or those nearest to what
-    was written."""
+def _offered(variant: Variant, part: Part) -> str:
+    """What may be written for a choice, quoted: every label, or the beginning of each, or the key of each."""
     labels = [variant.label(part.id, case) for case in part.choices]
     heads = [head(label) for label in labels]
     known = variant.labels(part)
@@ -137,8 +135,7 @@ def _offered(variant: Variant, part: Part, found: str) -> str:
     if sum(map(len, labels)) > _OFFERED and distinct:
         shown = heads
     if sum(map(len, shown)) > _OFFERED:
-        near = difflib.get_close_matches(found.casefold(), [s.casefold() for s in shown], n=2, cutoff=0.0)
-        shown = [s for s in shown if s.casefold() in near]
+        shown = list(part.choices)
     return either([quoted(label, variant.lang) for label in shown], variant.lang)
 
 

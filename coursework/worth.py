@@ -12,6 +12,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
+import numpy as np
+
 from coursework.comparing import distance
 from coursework.equations import parse_equation
 from coursework.errors import CourseworkError
@@ -113,7 +115,8 @@ def flaws(key: Key) -> Iterator[str]:
 
 
 def try_judges(key: Key) -> None:
-    """Lets every judge judge the right answers and the known mistakes: a broken one is found before sheets are issued.
+    """Lets every judge judge the right answers, some wrong ones, one missing, and the known mistakes: a broken one is
+    found before sheets are issued.
 
     Raises
     ------
@@ -122,7 +125,12 @@ def try_judges(key: Key) -> None:
     """
     quantity_of = {part.id: part.quantity for part in key.variant.parts}
     for name, ids in judges_of(key.variant):
-        judged(key.variant, name, {i: key.reference[quantity_of[i]] for i in ids})
+        right = {i: key.reference[quantity_of[i]] for i in ids}
+        off = {i: value if isinstance(value, str) else 0.85 * np.asarray(value) for i, value in right.items()}
+        judged(key.variant, name, right)
+        for missing in ids:
+            for answers in (right, off):
+                judged(key.variant, name, {i: value for i, value in answers.items() if i != missing})
     for mistake in key.solution.mistakes:
         dict(_judged_wrong(key, mistake))
 

@@ -216,7 +216,7 @@ def _values(answers, pose, right, drawn, said, scale, r3):
         own = (drawn[of] / (1j * across)).real * scale / radius if of in drawn else ideal
         if abs(value - ideal) <= near:
             found[name] = Judged()
-        elif abs(value - own) <= scale / radius + 0.01 * abs(own):
+        elif of in said and abs(value - own) <= scale / radius + 0.01 * abs(own):
             found[name] = Judged(follows=said[of].share != 1 or said[of].follows)
         elif min(abs(value + ideal), abs(value + own)) <= near:
             found[name] = Judged(0.5, "value_sense")

@@ -627,3 +627,20 @@ def test_an_equation_is_read_as_written():
 def test_what_is_no_equation_says_why(text, code):
     reading = read_equation(text, NAMES)
     assert (reading.status, reading.code, reading.text) == ("unreadable", code, str(text))
+
+
+def test_operators_and_places_tell_formulas_apart():
+    ratios = {"speeds": ("$V_e / V_s$",), "inverse": ("$V_s / V_e$",)}
+    assert read_choice("V_e / V_s", ratios).values == ("speeds",)
+    assert read_choice("V_s/V_e", ratios).values == ("inverse",)
+    assert read_choice("V_e*V_s", ratios).status == "unreadable"
+    values = {"clamp": ("$m_u = 1$",), "none": ("$m_u = 0$",), "two": ("$m_u = 2$",)}
+    for text in ("2", "2)", "(2)", "[2]"):
+        assert read_choice(text, values).code == "two_values", text
+    assert read_choice("m_u = +1", values).values == ("clamp",)
+    counts = {"zero": ("0",), "three": ("3",), "one": ("1",)}
+    assert read_choice("1.0", counts).values == ("one",)
+
+
+def test_an_array_of_many_numbers_is_no_whole_number():
+    assert read_integer(np.zeros(200)).status == "unreadable"

@@ -309,6 +309,35 @@ def test_fresh_variants_are_worth_issuing_all_different_and_the_same_for_ever(he
             session.fresh(number)
 
 
+def test_one_fresh_variant_follows_another_without_an_answer(here):
+    session = coursework.study("slotted_mechanism", seed=42, lang="en")
+    seeds = {session.variant.seed}
+    for _ in range(2):
+        session = session.fresh()
+        assert session.variant.seed not in seeds
+        seeds.add(session.variant.seed)
+        session.check({"rA": "1"})
+    again = session.fresh().fresh()
+    assert again.variant.seed not in seeds
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_what_is_offered_as_a_prediction_is_read(lang):
+    offered = words(lang)["study"]["options"]
+    assert [wording.sign(option) for option in offered["sign"].split(" / ")] == ["+", "-"]
+    assert [wording.comparison(option) for option in offered["compare"].split(" / ")] == [">", "<"]
+    assert [wording.quadrant(option) for option in offered["quadrant"].split(" / ")] == [1, 2, 3, 4]
+
+
+def test_a_right_answer_within_a_wide_tolerance_is_the_curves_own(here):
+    session = coursework.study("slider_crank", seed=8, lang="en")
+    value = session.variant.walk["ab_n"] + 0.9 * session.variant.key.half_width(
+        next(p for p in session.variant.parts if p.id == "ab_n")
+    )
+    assert "✓" in str(session.check({"ab_n": f"{value:.4g}"}))
+    assert "another" not in str(session.plot("ab_n"))
+
+
 BOTH = pytest.mark.parametrize("lang", ["fr", "en"])
 SAID = {lang: words(lang)["study"] for lang in ("fr", "en")}
 
@@ -539,12 +568,25 @@ def test_no_hint_holds_a_value_that_is_asked(name):
 
 
 @every_exercise
-def test_every_number_asked_has_a_hint_and_a_revealed_value(name):
-    variant = COURSE[name].variant(2, "fr")
-    for part in variant.parts:
-        assert hints.revealed_text(variant, part.id)
-        if part.kind in ("number", "angle"):
-            assert hints.steps(variant, part.id)
+def test_every_question_has_a_hint_and_a_revealed_value(name):
+    for lang in ("fr", "en"):
+        variant = COURSE[name].variant(2, lang)
+        for part in variant.parts:
+            assert hints.revealed_text(variant, part.id)
+            assert all(text.strip() for text in hints.steps(variant, part.id))
+            assert hints.steps(variant, part.id), part.id
+
+
+@every_exercise
+def test_no_hint_tells_the_case_of_a_choice(name):
+    for seed in range(4):
+        variant = COURSE[name].variant(seed, "en")
+        for part in variant.parts:
+            if part.kind == "choice":
+                label = variant.label(part.id, str(variant.walk[part.quantity]))
+                for text in hints.steps(variant, part.id):
+                    assert f"“{label}”" not in text, f"{part.id}: {text}"
+                    assert f"**{label}**" not in text, f"{part.id}: {text}"
 
 
 def test_numbers_side_by_side_would_be_the_answer_and_are_no_hint():

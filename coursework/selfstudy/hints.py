@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 _DIGITS = 6
 _UNFINISHED = re.compile(r"(?:(?<=[.!?])|\A)[^.!?]*[^.!?\s]\s*\Z")
 _LAST_SENTENCE = re.compile(r"(?:(?<=[.!?…])\s|\A)(?:[^.!?…]|[.!?…](?!\s|\Z))*[.!?…]\W*\Z")
+_COMPUTED = re.compile(r"\{[{%#]")
+_SENTENCE_END = re.compile(r"[.!?…](?=\s|\Z)|\s?:(?=\s|\Z)")
 _NUMBER = re.compile(r"\\num\{[^{}]*\}")
 _AROUND = re.compile(r"\^\{\\circ\}|\\left|\\right|\\ |[();\s-]")
 
@@ -62,7 +64,9 @@ def steps(
         _formula(variant, quantity, {}),
         _formula(variant, quantity, {n: v for n, v in {**found, **variant.given}.items() if n != quantity}),
     )
-    return tuple(step for k, step in enumerate(all_steps) if step and step not in all_steps[:k])
+    found = tuple(step for k, step in enumerate(all_steps) if step and step not in all_steps[:k])
+    last_resort = _against(variant, quantity) or _look_again(variant, quantity)
+    return found or ((last_resort,) if last_resort else ())
 
 
 def needs(variant: Variant, quantity: str) -> tuple[str, ...]:
@@ -121,22 +125,62 @@ def _given(variant: Variant, name: str) -> str:
 def _words(variant: Variant, quantity: str) -> str:
     """The solution's words before its step, where they hold no computed number."""
     section = variant.solution_text.sections.get(quantity)
-    if section is None or not section.text or not _is_free(variant, quantity):
+    if section is None or not section.text:
         return ""
+    is_free, start = _is_free(variant, quantity), _before_numbers(variant, quantity)
     asked = next((p for p in variant.parts if p.quantity == quantity), None)
     if asked is None or asked.kind != "choice":
-        return section.text
+        return start or (section.text if is_free else "")
+    text = section.text if is_free else start
+    if not text:
+        return ""
     # The words before a case break off where the answer follows: "Here the guide". A whole reason tells the answer
     # in its last sentence.
-    if is_whole(section.text):
-        return _LAST_SENTENCE.sub("", section.text).strip()
-    return _UNFINISHED.sub("", section.text).strip() or f"{section.text} …"
+    if not is_whole(text):
+        return _UNFINISHED.sub("", text).strip() or f"{text} …"
+    return _LAST_SENTENCE.sub("", text).strip() if is_free else text
+
+
+def _before_numbers(variant: Variant, section: str) -> str:
+    """The sentences of a section's words that stand before the first computed number."""
+    path = variant.exercise.text_file("solutions", variant.lang)
+    start = beginnings(path, path.stat().st_mtime_ns).get(section, "")
+    ends = [found.end() for found in _SENTENCE_END.finditer(start)]
+    return re.sub(r"\s*:$", ".", start[: ends[-1]].strip()) if ends else ""
+
+
+def _against(variant: Variant, quantity: str) -> str:
+    """Of a choice among three or more, why one that is wrong is none; nothing for anything else."""
+    part = next((p for p in variant.parts if p.quantity == quantity), None)
+    if part is None or part.kind != "choice" or len(part.choices) < 3:
+        return ""
+    step = next(s for s in variant.answer_sheet(polygons=False).steps if s.name == quantity)
+    said = words(variant.lang)["study"]["hint"]["against"]
+    return next((said.format(wrong=r.wrong, why=r.words) for r in step.remarks if r.wrong), "")
+
+
+def _look_again(variant: Variant, quantity: str) -> str:
+    """What is left to say where nothing else is."""
+    part = next((p for p in variant.parts if p.quantity == quantity), None)
+    if part is None:
+        return ""
+    said = words(variant.lang)["study"]["hint"]
+    return said["cases"] if part.kind == "choice" else said["statement"]
 
 
 def _is_free(variant: Variant, section: str) -> bool:
     path = variant.exercise.text_file("solutions", variant.lang)
     used = variables(path, path.stat().st_mtime_ns).get(section)
     return used is not None and used <= variant.printed.keys()
+
+
+@lru_cache(maxsize=256)
+def beginnings(path: Path, changed: int) -> Mapping[str, str]:
+    """What each section of a text says before anything is computed in it."""
+    from coursework.statement import parse
+
+    sections = parse(path.read_text("utf-8"), path.name).sections
+    return {name: _COMPUTED.split(section.text, maxsplit=1)[0] for name, section in sections.items()}
 
 
 @lru_cache(maxsize=256)

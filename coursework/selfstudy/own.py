@@ -41,7 +41,7 @@ def _own(variant: Variant, part: Part, answer: Any) -> Own:
     gaps = {float(v): _gap(part, float(v), float(reference)) for v in reading.values}
     value = min(gaps, key=gaps.__getitem__)
     limit = _NEAR_ANGLE if part.kind == "angle" else _NEAR * abs(reference) + 1e-9
-    return Own(value, gaps[value] <= limit)
+    return Own(value, gaps[value] <= max(limit, variant.key.half_width(part)))
 
 
 def _gap(part: Part, value: float, reference: float) -> float:

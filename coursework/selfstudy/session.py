@@ -289,7 +289,11 @@ class StudySession:
             self._kept.add(self.variant.seed, "answers", given)
             return self._shown(missing, self._trouble)
         now = {**self.answers, **{n: a for n, a in given.items() if not is_blank(a)}}
-        marking = self.variant.grade(now)
+        try:
+            marking = self.variant.grade(now)
+        except Exception:
+            self._kept.add(self.variant.seed, "answers", given)  # nothing is lost by a fault of the course
+            raise
         copied, theirs = self._same_as_another(given, marking)
         self._kept.add(self.variant.seed, "answers", {n: a for n, a in given.items() if n not in theirs})
         lines, unanswered = [], []
@@ -517,7 +521,7 @@ class StudySession:
             number = refusals.counted(self.variant.lang, "fresh", number)
         begun = {seed for seed in self._kept.seeds if self._kept.of(seed, "answers")}
         # One of so many is not begun.
-        count = number or len(begun - {self._base}) + 1
+        count = number or len((begun | {self.variant.seed}) - {self._base}) + 1
         try:
             variants = fresh_variants(self.variant.exercise, self._base, count, self.variant.lang)
         except Starved as fault:

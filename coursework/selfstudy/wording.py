@@ -43,7 +43,7 @@ def _one_of(text: str, kinds: tuple[str, ...]) -> str:
 def sign(text: Any) -> str:
     """``+`` or ``-``; empty where neither is said, or both."""
     said = folded(text)
-    if found := re.fullmatch(r"([+-])\s*[\d.,]*|([<>])\s*0", said):
+    if found := re.fullmatch(r"([+-])\s*(?:[\d.,]*|\([^()]*\))|([<>])\s*0", said):
         return found[1] or {">": "+", "<": "-"}[found[2]]
     return {"positive": "+", "negative": "-"}.get(_one_of(said, ("positive", "negative")), "")
 

@@ -89,3 +89,11 @@ def test_arrows_without_length_earn_nothing():
     assert sum(marking[n].points for n in VECTORS) == 0
     marking = variant.grade({**dict.fromkeys(VECTORS, "0; 0"), "kv": variant.solution()["kv"]})
     assert sum(marking[n].points for n in VECTORS) == 0
+
+
+def test_what_is_read_off_a_vector_that_is_not_drawn_is_judged_all_the_same():
+    for seed in (5, 11, 16, 38):
+        variant = EXERCISE.variant(seed, "fr")
+        omega3 = 0.85 * variant.walk["omega3"]
+        marking = variant.grade({"kv": "20", "omega3": f"{omega3:.4g}"})
+        assert marking["omega3"].points == 0.0
