@@ -14,7 +14,7 @@ from itertools import groupby
 
 from coursework.errors import unknown
 from coursework.figures import Beginning, Element, Figure, line, point, scale_bar, vector
-from coursework.language import languages, localise, significant, unit_text, words
+from coursework.language import languages, listed, localise, significant, unit_text, words
 from coursework.polygons import Polygon, Side, Stage
 
 BOX_MM = (110.0, 90.0)  #: width and height of a whole drawing on paper
@@ -196,8 +196,7 @@ class Construction:
             )
 
     def _listed(self, names: Iterable[str]) -> str:
-        *before, last = (f"${name}$" for name in names)
-        return f"{', '.join(before)}{self._said['and']}{last}" if before else last
+        return listed((f"${name}$" for name in names), self.lang)
 
     def svg(self) -> str:
         """The whole polygon as SVG, at true size."""

@@ -7,7 +7,7 @@ when its file does.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from importlib import resources
 from typing import Any
@@ -80,6 +80,12 @@ def plain(value: float) -> str:
 
 
 _EXACT = 1e-9  #: of a number that is printed as it is, and no rounded one
+
+
+def listed(items: Iterable[str], lang: str, joint: str = "and") -> str:
+    """``a, b and c``; ``joint`` is ``and`` or ``or``."""
+    *first, last = items
+    return f"{', '.join(first)} {words(lang)['marking'][joint]} {last}" if first else last
 
 
 def is_whole(text: str) -> bool:

@@ -17,6 +17,7 @@ from coursework.language import is_whole, localise, plain, significant, unit_tex
 from coursework.language import words as engine_words
 from coursework.model import Part
 from coursework.polygons import Polygon
+from coursework.telling import quoted
 from coursework.worked import Shown, formula_in_symbols, formula_latex, number_latex
 
 if TYPE_CHECKING:
@@ -273,19 +274,17 @@ def _remarks(variant: Variant, values: Mapping[str, Any], text: Any) -> dict[str
     One that is about what is given stands at the first step that it changes. One that changes nothing in this
     variant is none, and is left out.
     """
-    solution, exercise_units = variant.exercise.solution, variant.exercise.units
+    solution, units = variant.exercise.solution, variant.exercise.units
+    steps = [q for q in values if q not in variant.given]
     found: dict[str, list[Remark]] = {}
     for name, mistake in solution.mistakes.items():
-        steps = [q for q in values if q not in variant.given]
-        about = [q for q in steps if q in mistake.targets]
-        reached = about or [q for q in steps if q in solution.reached(name)]
-        for quantity in reached:
+        graph, about = solution.mistaken(name), [q for q in steps if q in mistake.targets]
+        for quantity in about or [q for q in steps if q in solution.reached(name)]:
             try:
-                graph = solution.mistaken(name)
                 wrong = graph.evaluate((quantity,), variant.used, variant.effects)[quantity]
             except CourseworkError:
                 continue
-            if not _agrees(wrong, values[quantity], exercise_units.get(quantity, "1")):
+            if not _agrees(wrong, values[quantity], units.get(quantity, "1")):
                 told = Remark(text.section(f"mistake {name}").text, _wrong_text(variant, quantity, wrong))
                 found.setdefault(quantity, []).append(told)
                 break
@@ -305,9 +304,7 @@ def _agrees(wrong: Any, right: Any, unit: str) -> bool:
 def _wrong_text(variant: Variant, name: str, wrong: Any) -> str:
     part = next((p for p in variant.parts if p.quantity == name), None)
     if part is not None and part.kind == "choice":
-        return engine_words(variant.lang)["solution"]["quoted"].format(
-            variant.text.label(part.id, str(wrong))
-        )
+        return quoted(variant.text.label(part.id, str(wrong)), variant.lang)
     if isinstance(wrong, (str, tuple)) or np.ndim(wrong) or not np.isfinite(wrong):
         return ""
     return f"${_value_latex(variant, name, plain_scalar(wrong))}$"

@@ -14,7 +14,7 @@ from coursework.charts import bars, formula_label, histogram, plain_label
 from coursework.course import Course
 from coursework.errors import CourseworkError
 from coursework.exercise import CourseExercise
-from coursework.language import localise, plain, words
+from coursework.language import listed, localise, plain, words
 from coursework.rendering.markup import drawable, to_text
 from coursework.rendering.typography import typeset
 from coursework.report import Chart, Report, Section, Table
@@ -240,7 +240,7 @@ class _Page:
             return self.said["reading"]["all_full"]
         hardest = sorted(lost, key=lambda p: p.mean)[:3]
         shown = [self._with(p, self._percent(p.mean)) for p in hardest]
-        return self.said["reading"]["hardest"].format(parts=self._listed(shown))
+        return self.said["reading"]["hardest"].format(parts=listed(shown, self.lang))
 
     def _discrimination(self) -> str:
         reading = self.said["reading"]
@@ -257,7 +257,7 @@ class _Page:
         if not weak:
             return f"{reading['none_weak'].format(limit=limit)} {uncertain}"
         shown = [self._with(p, self._decimal(p.discrimination)) for p in weak[:_NAMED]]
-        parts = self._listed(shown)
+        parts = listed(shown, self.lang)
         if len(weak) > _NAMED:
             parts = ", ".join([*shown, reading["more"].format(len(weak) - _NAMED)])
         return f"{reading['weak'].format(limit=limit, parts=parts)} {uncertain}"
@@ -282,10 +282,6 @@ class _Page:
         return self.said["reading"]["look"].format(
             total=told.needs_a_look, unreadable=told.counts["unreadable"], rejected=told.rejected
         )
-
-    def _listed(self, items: Sequence[str]) -> str:
-        *first, last = items
-        return f"{', '.join(first)}{self.said['list_end']}{last}" if first else last
 
     # ------------------------------------------------------------------- names
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from coursework.language import localise, significant, unit_text, with_unit, words
+from coursework.language import listed, localise, significant, unit_text, with_unit, words
 from coursework.model import Part
 from coursework.reading import Reading, head, read_choice
 
@@ -136,7 +136,7 @@ def _offered(variant: Variant, part: Part) -> str:
         shown = heads
     if sum(map(len, shown)) > _OFFERED:
         shown = list(part.choices)
-    return either([quoted(label, variant.lang) for label in shown], variant.lang)
+    return listed((quoted(label, variant.lang) for label in shown), variant.lang, "or")
 
 
 def quoted(text: str, lang: str) -> str:
@@ -144,18 +144,12 @@ def quoted(text: str, lang: str) -> str:
     return words(lang)["marking"]["quoted"].format(text)
 
 
-def either(pieces: Sequence[str], lang: str, joint: str = "or") -> str:
-    """``a, b or c``."""
-    *others, last = pieces
-    return f"{', '.join(others)} {words(lang)['marking'][joint]} {last}" if others else last
-
-
 def questions(variant: Variant, parts: Sequence[str], joint: str) -> str:
     """Parts by the numbers of their questions: ``questions 3, 4 and 6``, ``question 3 or 4``."""
     numbers = [str(n) for n, asked in enumerate(variant.parts, start=1) if asked.id in parts]
     is_one = len(numbers) == 1 or joint == "or"
     said = words(variant.lang)["sheet"]["question"]["one" if is_one else "many"]
-    return f"{said} {either(numbers, variant.lang, joint)}"
+    return f"{said} {listed(numbers, variant.lang, joint)}"
 
 
 _LOOSE_UNDERSCORE = re.compile(r"(?<![^\W_])_|_(?![^\W_])")

@@ -5,6 +5,7 @@ from functools import lru_cache
 import numpy as np
 
 from coursework.errors import WrongValue
+from coursework.language import significant
 from coursework.solids import Chain, PlanarChain, in_parallel, in_series, joints_of
 
 _in_parallel = lru_cache(maxsize=4096)(in_parallel)
@@ -12,6 +13,8 @@ _chain = lru_cache(maxsize=4096)(Chain)
 _planar_chain = lru_cache(maxsize=4096)(PlanarChain)
 _in_series = lru_cache(maxsize=4096)(in_series)
 
+#: Equivalent joints of which a line is known, by any of its points.
+_WITH_LINE = ("revolute", "helical", "cylindrical", "point_contact")
 _NOWHERE = (np.nan, np.nan, np.nan)
 
 
@@ -50,6 +53,28 @@ def _direction(whole):
 def _point(whole):
     """NaN where no point of the equivalent joint counts."""
     return np.array(whole.equivalent.point or _NOWHERE)
+
+
+def _point_of_axis(whole):
+    """A1, the origin, where the axis passes through it."""
+    point, direction = _point(whole), _direction(whole)
+    passes = np.linalg.norm(np.cross(direction, point)) <= 1e-9 * np.linalg.norm(point)
+    return 0 * point if passes and whole.equivalent.name in _WITH_LINE else point
+
+
+def _number(value):
+    return rf"\num{{{significant(round(float(value), 9) + 0.0)}}}"
+
+
+def _sum_of(terms):
+    """LaTeX of a sum of shares of symbols; empty where each share is 0."""
+    told = ""
+    for share, symbol in terms:
+        if abs(share) > 1e-9:
+            size = "" if abs(abs(share) - 1) < 1e-9 else _number(abs(share)) + r"\,"
+            sign = (" - " if told else "-") if share < 0 else " + " if told else ""
+            told += f"{sign}{size}{symbol}"
+    return told
 
 
 def _chain_of(joints):

@@ -8,7 +8,7 @@ from coursework.solids import aligned, each_distinct
 from coursework.structure.columns import each
 
 from ._chains import *
-from ._solids import _each
+from ._solids import _each, _sum_of
 
 SYMBOLS = {"input_body": "b_e", "output_body": "b_s"}
 
@@ -81,13 +81,7 @@ def _printed(twist):
 
 
 def _vector(components):
-    text = ""
-    for value, name in zip(components, "xyz", strict=True):
-        if value:
-            size = "" if abs(value) == 1 else rf"\num{{{abs(value):g}}}\,"
-            sign = (" - " if value < 0 else " + ") if text else "-" if value < 0 else ""
-            text += rf"{sign}{size}\vec {name}"
-    return text or r"\vec 0"
+    return _sum_of(zip(components, (r"\vec x", r"\vec y", r"\vec z"), strict=True)) or r"\vec 0"
 
 
 def input_body():

@@ -5,12 +5,9 @@ import numpy as np
 from coursework.solids import FREEDOMS, aligned, each_distinct, joint_of
 from coursework.solution import mistake
 
-from ._solids import _direction, _each, _parallel_of, _point, _stiffest
+from ._solids import _direction, _each, _parallel_of, _point_of_axis, _stiffest
 
 STRUCTURES = ("joints",)
-
-#: Equivalent joints of which a line is known, by any of its points.
-_WITH_LINE = ("revolute", "helical", "cylindrical", "point_contact")
 
 
 def _pair(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
@@ -55,13 +52,6 @@ def axis_dir(_combined):
 
 def axis_point(_combined):
     return _each(_point_of_axis, _combined)
-
-
-def _point_of_axis(whole):
-    """A1, the origin, where the axis passes through it."""
-    point, direction = _point(whole), _direction(whole)
-    passes = np.linalg.norm(np.cross(direction, point)) <= 1e-9 * np.linalg.norm(point)
-    return 0 * point if passes and whole.equivalent.name in _WITH_LINE else point
 
 
 @mistake("Ns")

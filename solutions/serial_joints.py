@@ -4,16 +4,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from coursework.language import significant
 from coursework.solids import FREEDOMS, aligned, each_distinct, joint_of
 from coursework.solution import mistake
+from coursework.structure.columns import each
 
-from ._solids import _direction, _each, _freest, _in_parallel, _point, _series_of
+from ._solids import _direction, _each, _freest, _in_parallel, _number, _point_of_axis, _series_of, _sum_of
 
 STRUCTURES = ("joints", "free_motions")
-
-#: Equivalent joints of which a line is known, by any of its points.
-_WITH_LINE = ("revolute", "helical", "cylindrical", "point_contact")
 
 
 def _pair(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
@@ -34,11 +31,7 @@ def _combined(joints):
 
 def free_motions(_combined):
     """One by one, at A1: a line of the table each, and how it adds up from those before, where it does."""
-    if not isinstance(_combined, np.ndarray):
-        return _lines(_combined.joints)
-    found = np.empty(_combined.shape, dtype=object)
-    found.flat = [_lines(whole.joints) for whole in _combined.flat]
-    return found
+    return each(lambda whole: _lines(whole.joints), _combined)
 
 
 @lru_cache(maxsize=4096)
@@ -53,7 +46,7 @@ def _lines(joints):
         before = np.array([twists[k] for k in first]).reshape(-1, 6).T
         shares, *_ = np.linalg.lstsq(before, twist, rcond=None)
         if np.allclose(before @ shares, twist, rtol=0, atol=1e-9 * abs(twist).max()):
-            sums.append(_sum({k + 1: share for k, share in zip(first, shares, strict=True)}))
+            sums.append(_sum_of((share, f"t_{k + 1}") for k, share in zip(first, shares, strict=True)))
         else:
             first.append(len(sums))
             sums.append("")
@@ -63,24 +56,9 @@ def _lines(joints):
     )
 
 
-def _number(value):
-    return rf"\num{{{significant(round(float(value), 9) + 0.0)}}}"
-
-
 def _triple(vector):
     inner = r";\ ".join(map(_number, vector))
     return rf"\left({inner}\right)"
-
-
-def _sum(shares):
-    """LaTeX of a sum of motions, each by its number."""
-    told = ""
-    for number, share in shares.items():
-        if abs(share) > 1e-9:
-            size = "" if abs(abs(share) - 1) < 1e-9 else _number(abs(share)) + r"\,"
-            sign = (" - " if told else "-") if share < 0 else " + " if told else ""
-            told += f"{sign}{size}t_{number}"
-    return told
 
 
 def Nc(free_motions):
@@ -116,13 +94,6 @@ def axis_dir(_combined):
 
 def axis_point(_combined):
     return _each(_point_of_axis, _combined)
-
-
-def _point_of_axis(whole):
-    """A1, the origin, where the axis passes through it."""
-    point, direction = _point(whole), _direction(whole)
-    passes = np.linalg.norm(np.cross(direction, point)) <= 1e-9 * np.linalg.norm(point)
-    return 0 * point if passes and whole.equivalent.name in _WITH_LINE else point
 
 
 def _statics(whole):

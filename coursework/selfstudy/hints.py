@@ -21,6 +21,7 @@ from coursework.worked import formula_latex, number_latex
 
 if TYPE_CHECKING:
     from coursework.handout import Step
+    from coursework.model import Part
     from coursework.variant import Variant
 
 _DIGITS = 6
@@ -64,9 +65,15 @@ def steps(
         _formula(variant, quantity, {}),
         _formula(variant, quantity, {n: v for n, v in {**found, **variant.given}.items() if n != quantity}),
     )
-    found = tuple(step for k, step in enumerate(all_steps) if step and step not in all_steps[:k])
-    last_resort = _against(variant, quantity) or _look_again(variant, quantity)
-    return found or ((last_resort,) if last_resort else ())
+    told = tuple(step for k, step in enumerate(all_steps) if step and step not in all_steps[:k])
+    if told or (part := _asked(variant, quantity)) is None:
+        return told
+    return (_against(variant, part) or _look_again(variant, part),)
+
+
+def _asked(variant: Variant, quantity: str) -> Part | None:
+    """The part that asks for a quantity."""
+    return next((p for p in variant.parts if p.quantity == quantity), None)
 
 
 def needs(variant: Variant, quantity: str) -> tuple[str, ...]:
@@ -128,7 +135,7 @@ def _words(variant: Variant, quantity: str) -> str:
     if section is None or not section.text:
         return ""
     is_free, start = _is_free(variant, quantity), _before_numbers(variant, quantity)
-    asked = next((p for p in variant.parts if p.quantity == quantity), None)
+    asked = _asked(variant, quantity)
     if asked is None or asked.kind != "choice":
         return start or (section.text if is_free else "")
     text = section.text if is_free else start
@@ -144,26 +151,22 @@ def _words(variant: Variant, quantity: str) -> str:
 def _before_numbers(variant: Variant, section: str) -> str:
     """The sentences of a section's words that stand before the first computed number."""
     path = variant.exercise.text_file("solutions", variant.lang)
-    start = beginnings(path, path.stat().st_mtime_ns).get(section, "")
+    start = _COMPUTED.split(sections(path, path.stat().st_mtime_ns).get(section, ""), maxsplit=1)[0]
     ends = [found.end() for found in _SENTENCE_END.finditer(start)]
     return re.sub(r"\s*:$", ".", start[: ends[-1]].strip()) if ends else ""
 
 
-def _against(variant: Variant, quantity: str) -> str:
+def _against(variant: Variant, part: Part) -> str:
     """Of a choice among three or more, why one that is wrong is none; nothing for anything else."""
-    part = next((p for p in variant.parts if p.quantity == quantity), None)
-    if part is None or part.kind != "choice" or len(part.choices) < 3:
+    if part.kind != "choice" or len(part.choices) < 3:
         return ""
-    step = next(s for s in variant.answer_sheet(polygons=False).steps if s.name == quantity)
+    step = next(s for s in variant.answer_sheet(polygons=False).steps if s.name == part.quantity)
     said = words(variant.lang)["study"]["hint"]["against"]
     return next((said.format(wrong=r.wrong, why=r.words) for r in step.remarks if r.wrong), "")
 
 
-def _look_again(variant: Variant, quantity: str) -> str:
+def _look_again(variant: Variant, part: Part) -> str:
     """What is left to say where nothing else is."""
-    part = next((p for p in variant.parts if p.quantity == quantity), None)
-    if part is None:
-        return ""
     said = words(variant.lang)["study"]["hint"]
     return said["cases"] if part.kind == "choice" else said["statement"]
 
@@ -175,12 +178,13 @@ def _is_free(variant: Variant, section: str) -> bool:
 
 
 @lru_cache(maxsize=256)
-def beginnings(path: Path, changed: int) -> Mapping[str, str]:
-    """What each section of a text says before anything is computed in it."""
+def sections(path: Path, changed: int) -> Mapping[str, str]:
+    """What each section of a text says, as it is written."""
     from coursework.statement import parse
 
-    sections = parse(path.read_text("utf-8"), path.name).sections
-    return {name: _COMPUTED.split(section.text, maxsplit=1)[0] for name, section in sections.items()}
+    return {
+        name: section.text for name, section in parse(path.read_text("utf-8"), path.name).sections.items()
+    }
 
 
 @lru_cache(maxsize=256)
@@ -189,13 +193,11 @@ def variables(path: Path, changed: int) -> Mapping[str, frozenset[str]]:
     import jinja2
     from jinja2 import meta
 
-    from coursework.statement import parse
-
     env = jinja2.Environment()
     found = {}
-    for name, section in parse(path.read_text("utf-8"), path.name).sections.items():
+    for name, text in sections(path, changed).items():
         try:
-            found[name] = frozenset(meta.find_undeclared_variables(env.parse(section.text)))
+            found[name] = frozenset(meta.find_undeclared_variables(env.parse(text)))
         except jinja2.TemplateSyntaxError:
             continue
     return found
