@@ -2,6 +2,7 @@
 
 from coursework.model import Exercise, Part
 
+from ._in_space import in_perspective
 from ._solids import IN_CHAINS, coordinate, direction, joint_kind, mobility_of_loop, table
 
 
@@ -39,6 +40,17 @@ def tells(
     }
 
 
+def figure(
+    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
+    x2, y2, z2, x3, y3, z3, x4, y4, z4,
+):  # fmt: skip
+    rows = tells(
+        joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
+        x2, y2, z2, x3, y3, z3, x4, y4, z4,
+    )["rows"]  # fmt: skip
+    return in_perspective(rows, bodies=((1, 1, 2), (2, 2, 3), (3, 3, 4), (0, 4, 1)), tall=22)
+
+
 EXERCISE = Exercise(
     given={
         "joint_1": joint_kind(IN_CHAINS),
@@ -67,6 +79,7 @@ EXERCISE = Exercise(
         Part("statics", kind="choice", choices=("isostatic", "hyperstatic"), points=1),
     ),
     tells=tells,
+    figure=figure,
     symbols={
         **{f"joint_{k}": f"L_{k}" for k in (1, 2, 3, 4)},
         **{f"direction_{k}": rf"\vec{{u}}_{k}" for k in (1, 2, 3, 4)},

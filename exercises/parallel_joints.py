@@ -5,6 +5,7 @@ import numpy as np
 from coursework.model import Exercise, Part
 from coursework.solids import EQUIVALENTS, each_distinct
 
+from ._in_space import in_perspective
 from ._solids import WITH_DIRECTION, WITH_LINE, axis_parts, combined, table, two_joints
 
 
@@ -43,6 +44,11 @@ def tells(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
     }
 
 
+def figure(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
+    rows = tells(joint_1, direction_1, joint_2, direction_2, x2, y2, z2)["rows"]
+    return in_perspective(rows)
+
+
 EXERCISE = Exercise(
     given=two_joints(),
     keep=(moves,),
@@ -55,6 +61,7 @@ EXERCISE = Exercise(
         *axis_parts(has_direction, has_line),
     ),
     tells=tells,
+    figure=figure,
     symbols={
         "joint_1": "L_1",
         "joint_2": "L_2",
