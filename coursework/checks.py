@@ -21,7 +21,7 @@ from coursework.exercise import ALL, CourseExercise
 from coursework.graph import plain_scalar
 from coursework.issuing import distinct_variants
 from coursework.judging import judged, judges_of
-from coursework.key import Key, envelopes, exists
+from coursework.key import FOLLOWED, Key, envelopes, exists
 from coursework.language import languages, plain, significant
 from coursework.loop_checks import check_loops
 from coursework.model import Part
@@ -411,31 +411,37 @@ def check_slips(variant: Variant, key: Key, report: Report) -> None:
 
 
 def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
-    """Who errs once and goes on rightly is marked wrong once."""
-    numeric = [p for p in variant.parts if p.kind in ("number", "angle") and not p.judge]
-    for first in numeric[: len(numeric) // 2 or 1]:
-        value = key.reference[first.quantity]
-        wrong = value + 11.0 if first.unit == "deg" else 1.13 * value
+    """Who errs once, much or little, and goes on rightly is marked wrong once."""
+    parts = [p for p in variant.parts if p.kind in FOLLOWED and not p.judge]
+    half = parts[variant.seed % 2 : -1 : 2]  # the other half on the next variant
+    for first, wrong in ((part, value) for part in half for value in _little_and_much(part, key)):
         answers, expected, own = {first.id: wrong}, {}, {first.quantity: wrong}
-        for part in numeric[numeric.index(first) + 1 :]:
+        for part in parts[parts.index(first) + 1 :]:
             follows = key.followed(part, own, (first.quantity,))
             if follows is not None:
                 answers[part.id] = expected[part.id] = own[part.quantity] = follows
         marking = variant.grade(answers)
         for part_id in expected:
-            part, mark = variant.exercise.spec.part(part_id), marking[part_id]
-            width = key.envelope.get(part.quantity, 0.0)
-            gap = distance(part, expected[part_id], key.reference[part.quantity], None, width)
             report.counts["follow-through"] += 1
-            # What moves by less than two half-widths is right, or as good as untouched by the first error.
-            if gap > SHOWN and mark.verdict not in ("correct", "follow_through"):
+            if (mark := marking[part_id]).verdict not in ("correct", "follow_through"):
                 report.fail(
                     f"seed {variant.seed}: {part_id} follows from a wrong {first.id} but marks {mark.verdict}"
                 )
         _check_follows_together(variant, key, first, wrong, report)
 
 
-def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: float, report: Report) -> None:
+def _little_and_much(part: Part, key: Key) -> tuple[Any, ...]:
+    """Wrong answers just beyond what is accepted, and far from it; of cases and counts, another one."""
+    value = key.reference[part.quantity]
+    if part.kind == "choice":
+        return tuple(c for c in part.choices if c != value)[:1]
+    if part.kind == "integer":
+        return (value + 1,)
+    much = value + 11.0 if part.unit == "deg" else 1.13 * value
+    return value + 1.3 * key.half_width(part), much
+
+
+def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: Any, report: Report) -> None:
     """The same for parts that are judged together."""
     parts = {part.id: part for part in variant.parts}
     own = {first.quantity: wrong}

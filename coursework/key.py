@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 #: Factors by which a unit is mistaken for another.
 _UNIT_FACTORS = (1e3, 1e-3, 10.0, 0.1)
+#: Kinds of part that a student goes on from, and that follow from others.
+FOLLOWED = ("number", "angle", "integer", "choice")
 _LENGTH = re.compile(r"(?<![^\W\d_])m?m(?![^\W\d_])")
 _TURN_A_MINUTE = 60 / (2 * math.pi)
 
@@ -112,22 +114,23 @@ class Key:
             if quantity in values:
                 yield name, values[quantity]
 
-    def followed(self, part: Part, own: Mapping[str, float], wrong: Collection[str]) -> Any:
+    def followed(self, part: Part, own: Mapping[str, Any], wrong: Collection[str]) -> Any:
         """What a right method gives from a student's own earlier answers, or None.
 
         ``own`` holds them by quantity, right ones too: a student goes on from what they wrote. None where
         no ``wrong`` one bears on this quantity, and where nothing comes of it: the linkage does not
-        close, the value is not finite, or trivially 0.
+        close, the value is not finite, or trivially 0. A count of 0 is not trivial.
         """
         quantity = part.quantity
-        before = {q: v for q, v in own.items() if q != quantity and (v or q not in wrong)}
+        exact = {p.quantity for p in self.variant.parts if p.kind in ("integer", "choice")}
+        before = {q: v for q, v in own.items() if q != quantity and (v or q in exact or q not in wrong)}
         if not any(quantity in self.solution.depending_on(q) for q in wrong if q in before):
             return None
         with suppress(CourseworkError):
             given = {**self.variant.used, **before}
             found = self.solution.graph.evaluate((quantity,), given, self.variant.effects)
             value = plain_scalar(found[quantity])
-            if isinstance(value, (int, float)) and math.isfinite(value) and value != 0:
+            if isinstance(value, str) or (math.isfinite(value) and (value or quantity in exact)):
                 return value
         return None
 

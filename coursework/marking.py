@@ -20,7 +20,7 @@ from coursework.equations import Equation, parse_equation
 from coursework.equivalence import same_equation
 from coursework.errors import CourseworkError, WrongValue, unknown
 from coursework.judging import Verdict, best_judged, judged
-from coursework.key import Key
+from coursework.key import FOLLOWED, Key
 from coursework.language import words
 from coursework.loop_marking import loop_verdicts
 from coursework.model import Part
@@ -156,12 +156,13 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
-    before = _Before({}, set(), set(), [])
+    before = _Before({}, set(), set(), set(), [])
     marks, no_scale = {}, set()
     waiting: dict[str, dict[str, frozenset[str]]] = {}
     for i, part in asked.items():
         if i in known:
-            before.own[part.quantity] = float(known[i])
+            before.own[part.quantity] = known[i] if part.kind == "choice" else float(known[i])
+            before.right.add(part.quantity)
             continue
         judged_by, reading = asked[target[i]], readings[i]
         if part.judge and i not in together:
@@ -182,7 +183,9 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
         before.shown.update(marks[i].matches)
         if reading.status == "read" and part.kind in ("number", "angle", "integer", "choice"):
             before.read.append((judged_by, reading))
-        if reading.status == "read" and part.kind in ("number", "angle"):
+        if marks[i].verdict == "correct":
+            before.right.add(judged_by.quantity)
+        if reading.status == "read" and part.kind in FOLLOWED:
             before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
                 before.wrong.add(judged_by.quantity)
@@ -237,10 +240,11 @@ def _nearest(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[i
 
 
 class _Before(NamedTuple):
-    """What a student has answered before a part: numbers by quantity, and which of them are wrong."""
+    """What a student has answered before a part: numbers and cases by quantity, and which of them are wrong."""
 
-    own: dict[str, float]
+    own: dict[str, Any]
     wrong: set[str]
+    right: set[str]  #: quantities, of any kind of answer
     shown: set[str]  #: verdicts that explain earlier answers
     read: list[tuple[Part, Reading]]  #: numbers, whole ones too, and choices
 
@@ -407,17 +411,33 @@ _WRONG = {
 def _is_likely(match: str, key: Key, part: Part, before: _Before) -> bool:
     """Whether a verdict may be told of an answer that it explains.
 
-    Among few cases many mistakes lead to the same one: a choice tells nothing of a mistake made elsewhere that
-    an earlier answer, which it would have changed, does not show.
+    Not a mistake made elsewhere, where what it is about has been answered rightly before. Among few cases, besides,
+    many mistakes lead to the same one: a choice tells nothing of a mistake made elsewhere that an earlier answer,
+    which it would have changed, does not show.
     """
-    name = match.partition(":")[2]
-    if part.kind != "choice" or part.quantity in key.solution.mistakes[name].targets:
+    kind, _, name = match.partition(":")
+    if kind != "mistake" or match in before.shown:
         return True
-    return match in before.shown or not any(
+    about = key.solution.mistakes[name].targets
+    if part.quantity in about:
+        return True
+    if part.kind != "choice":
+        return not any(_shows(key, name, quantity) for quantity in before.right.intersection(about))
+    return not any(
         name == other and not _fits(earlier, reading, value, None, 0.0)
         for earlier, reading in before.read
         for other, value in key.wrong_ways(earlier.quantity)
     )
+
+
+def _shows(key: Key, mistake: str, quantity: str) -> bool:
+    """Whether an answer that is right of an asked quantity shows that a mistake about it was not made."""
+    part = next(p for p in key.variant.parts if p.quantity == quantity)
+    value = key.wrong[mistake].get(quantity)
+    if value is None or part.kind == "equation":
+        return False
+    width = key.envelope.get(quantity, 0.0)
+    return bool(distance(part, value, key.reference[quantity], key.reference.get(part.along), width) > 1)
 
 
 def _explanations(
@@ -427,14 +447,9 @@ def _explanations(
     quantity = judged_by.quantity
     width = key.envelope.get(quantity, 0.0)
     reference = key.reference[quantity]
-    if part.kind in ("number", "angle") and before.wrong:
+    if part.kind in FOLLOWED and before.wrong:
         expected = key.followed(judged_by, before.own, before.wrong)
-        # Where the earlier answers hardly change this one, they explain nothing.
-        if (
-            expected is not None
-            and distance(part, expected, reference, None, width) > 2
-            and (place := _fitting(part, reading, expected, None, width)) is not None
-        ):
+        if expected is not None and (place := _fitting(part, reading, expected, None, width)) is not None:
             yield "follow_through", place
     for name, value in key.wrong_ways(quantity):
         along = key.reference.get(judged_by.along)

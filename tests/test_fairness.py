@@ -193,6 +193,78 @@ def test_a_right_method_from_an_earlier_wrong_answer_keeps_its_points(slotted):
     assert "earlier answer" in marking["omega4"].feedback
 
 
+@pytest.mark.parametrize("share", [1.012, 1.015, 1.018, 1.03, 1.3])
+def test_a_small_error_costs_no_more_than_a_large_one(slotted, share):
+    right = slotted.solution()
+    omega4 = right["omega4"] / share
+    wrong = {"rA": right["rA"] * share, "omega4": omega4}
+    follows = {
+        "a_centripetal": -wrong["rA"] * omega4**2,
+        "a_coriolis": 2 * omega4 * right["rA_dot"],
+    }
+    marking = slotted.grade({**wrong, "rA_dot": right["rA_dot"], **follows})
+    assert marking["rA"].verdict == "wrong"
+    assert {marking[i].verdict for i in ("omega4", *follows)} <= {"correct", "follow_through"}
+
+
+def test_what_is_counted_follows_from_an_earlier_count():
+    """m, r_s and h of a chain whose N_c has been miscounted, by the rules of the course."""
+    variant = COURSE["planar_chain"].variant(2)
+    right = variant.solution()
+    m = right["Nc"] + 1 - right["rc"]
+    answers = {"Nc": right["Nc"] + 1, "rc": right["rc"], "m": m, "Ns": right["Ns"], "rs": 9 - m}
+    marking = variant.grade({**answers, "h": right["Ns"] - (9 - m)})
+    assert marking["Nc"].verdict != "correct"
+    assert [marking[i].verdict for i in ("m", "rs", "h")] == ["follow_through"] * 3
+    # From a degree of mobility of 0, too: that is an answer like others.
+    marking = variant.grade({"m": 0, "rs": 9})
+    assert marking["m"].verdict != "correct"
+    assert marking["rs"].verdict == "follow_through"
+
+
+def test_a_case_follows_from_an_earlier_count():
+    variant = next(v for v in issued("closed_chain") if v.solution()["h"] == 0)
+    marking = variant.grade({"h": 1, "statics": "hyperstatic"})
+    assert (marking["h"].verdict, marking["statics"].verdict) == ("wrong", "follow_through")
+    assert variant.grade({"h": 0, "statics": "hyperstatic"})["statics"].points == 0
+
+
+@every_exercise
+def test_no_mistake_is_told_that_an_earlier_right_answer_disproves(name):
+    """The sign of one answer is wrong, all before it is right."""
+    for variant in issued(name, 12):
+        key, right = variant.key, {}
+        for part in variant.parts:
+            reference = key.reference[part.quantity]
+            if part.kind not in ("number", "angle", "integer") or part.judge:
+                continue
+            mark = variant.grade({**right, part.id: -reference})[part.id]
+            kind, _, mistake = mark.verdict.partition(":")
+            right[part.id] = reference
+            if kind == "mistake" and part.quantity not in key.solution.mistakes[mistake].targets:
+                about = [p for p in variant.parts if p.quantity in key.solution.mistakes[mistake].targets]
+                disproved = [
+                    p.id
+                    for p in about
+                    if p.id in right
+                    and (wrong := key.wrong[mistake].get(p.quantity)) is not None
+                    and distance(p, wrong, key.reference[p.quantity], None, key.envelope[p.quantity]) > 1
+                ]
+                assert not disproved, (variant.seed, part.id, mistake)
+
+
+def test_a_sign_is_not_laid_to_an_arctangent_that_was_right():
+    variant = COURSE["slotted_mechanism"].variant(7)
+    right = variant.solution()
+    answers = {i: right[i] for i in ("rA", "theta4", "omega4")}
+    mark = variant.grade({**answers, "rA_dot": -right["rA_dot"]})["rA_dot"]
+    assert mark.verdict == "mistake:rA_dot_sign"
+    mark = variant.grade({**answers, "rA_dot": right["rA_dot"], "a_coriolis": -right["a_coriolis"]})
+    assert mark["a_coriolis"].verdict == "slip:sign"
+    # Alone, the same answer may well come of it.
+    assert "mistake:rA_dot_sign" in variant.grade({"a_coriolis": -right["a_coriolis"]})["a_coriolis"].matches
+
+
 def test_nothing_follows_from_a_right_a_later_or_an_unread_answer(slotted):
     right = slotted.solution()
     follows = right["omega4"] * right["rA"] / 280.0
