@@ -51,6 +51,11 @@ def number_text(number: str, lang: str) -> str:
     return f"{localise(mantissa, lang)}{NARROW_SPACE}×{NARROW_SPACE}10{power}"
 
 
+def after_number(unit: str) -> str:
+    """The unit as it follows a number in running text: degrees touch it, others stand a narrow space off."""
+    return unit if unit in ("", *_UNITS_THAT_TOUCH) else NARROW_SPACE + unit
+
+
 def quantity_formula(symbol: str, value: str, unit: str, *, is_number: bool = True) -> str:
     """LaTeX of ``symbol = value unit``; without a symbol, of the value and its unit."""
     shown = rf"\num{{{value}}}" if is_number else rf"\text{{{value}}}"
