@@ -289,6 +289,7 @@ def test_french_puts_narrow_spaces_where_french_does():
     assert typeset("à 12:30 (a:b)", "fr") == "à 12:30 (a:b)"
     for write in (to_html, to_typst_markup, to_notebook_markdown):
         assert write("$x$ ; **y** : z", "fr").count("\u202f") == 2
+        assert write("`x` : `y`", "fr").count("\u202f") == 1
 
 
 @pytest.mark.parametrize(
@@ -575,6 +576,19 @@ def test_one_cell_of_a_notebook_holds_the_answers_as_a_literal(lang):
     assert isinstance(statement, ast.Assign)
     nobodys = {} if sheet.student else {"student": ""}
     assert ast.literal_eval(statement.value) == nobodys | {question.id: "" for question in sheet.questions}
+
+
+@every_language
+def test_a_notebook_names_each_choice_as_it_is_to_be_written_and_says_cases_as_words(lang):
+    sheet = handout(lang)
+    question = replace(sheet.questions[0], kind="choice", choices=(("one", "$w = 1$"), ("two", "l'autre")))
+    case = Given("mode", r"\text{mode}", "l'autre", "", is_number=False)
+    book = nbformat.reads(RENDERER.notebook(replace(sheet, questions=(question,), given=(case,))), 4)
+    words_of = "\n".join(cells(book, "markdown"))
+    assert "- `one`" in words_of
+    assert "- `two`" in words_of
+    assert "| l’autre |" in words_of
+    assert "one, two" in "\n".join(cells(book, "code"))
 
 
 @every_language

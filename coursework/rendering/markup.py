@@ -240,7 +240,7 @@ def _html_reader(lang: str) -> MarkdownIt:
 _NOTEBOOK_PIECES = re.compile(
     r"(?P<code>```.*?```|`[^`\n]*`)|\$\$(?P<block>.+?)\$\$|(?<!\\)\$(?P<inline>[^$]+?)(?<!\\)\$", re.DOTALL
 )
-_TABLE_RULE = re.compile(r"[|:\- ]+")
+_TABLE_RULE = re.compile(r"[|:\- ]*-[|:\- ]*")
 _MARKDOWN_MARKS = re.compile(r"([\\`*_$\[\]|#~])")
 
 
