@@ -209,6 +209,15 @@ def test_a_handout_holds_no_answer(name, lang):
 
 
 @every_exercise
+def test_a_french_page_parts_no_high_mark_from_its_word(name):
+    variant = keys(name)[0].variant.in_language("fr")
+    for sheet in (variant.handout(), variant.answer_sheet(polygons=False)):
+        page = COURSE.renderer.html(sheet)
+        text = re.sub(r"<style.*?</style>|<[^>]*>", "", page, flags=re.DOTALL)
+        assert not re.findall(r"\S*[ \u00a0][;:!?»](?=\s|$)", text)
+
+
+@every_exercise
 def test_the_textbook_formulas_give_what_the_stable_ones_give(name):
     """On the variants that are handed out; where they differ, it is at places that no student meets."""
     exercise = COURSE[name]

@@ -215,6 +215,35 @@ def test_the_dot_of_a_unit_stands_close_in_every_back_end():
         assert mathless(tex, "fr") == to_line(tex, "fr") == "N·m"
 
 
+@pytest.mark.parametrize("tex", ["a = -b", "(-b)", r"(0;\ -b)", "-b"])
+def test_a_sign_stands_close_to_its_number_and_an_operation_apart(tex):
+    leading = '<mo stretchy="false">−</mo>' if tex == "-b" else '<mo stretchy="false" form="prefix">−</mo>'
+    assert leading in to_mathml(tex, "en")
+    assert '<mo stretchy="false">−</mo>' in to_mathml("a - b", "en")
+
+
+def test_brackets_grow_only_around_what_is_tall():
+    assert 'stretchy="true"' not in to_mathml(r"\left( a + b^2 \right)", "en")
+    assert 'stretchy="true"' in to_mathml(r"\left( a + \frac{b}{c} \right)", "en")
+
+
+def test_a_wide_table_and_a_long_formula_scroll_and_a_keyboard_reaches_them():
+    table = to_html("| a | b |\n|---|---|\n| 1 | 2 |", "fr")
+    assert '<div class="wide-table" tabindex="0" role="region" aria-label="Tableau">' in table
+    assert table.count("<div") == table.count("</div>") == 1
+    assert 'class="long" tabindex="0"' in to_mathml("+".join("abcdefghijklmnop"), "fr")
+    assert "tabindex" not in to_mathml("a + b", "fr")
+
+
+def test_a_choice_that_is_a_formula_is_labelled_in_words():
+    sheet = handout("en")
+    choices = (("one", "$w = 1$"), ("two", "two"))
+    question = replace(sheet.questions[0], kind="choice", choices=choices)
+    page = RENDERER.html(replace(sheet, questions=(question,)))
+    assert page.count('value="one" aria-label="w equals 1"') == 1
+    assert 'value="two"> two' in page
+
+
 def test_a_dot_over_a_letter_leaves_its_subscript_outside():
     assert to_typst(r"\dot\theta_4", "en") == "attach(dot(θ), b: 4)"
 
@@ -258,6 +287,9 @@ def test_french_puts_narrow_spaces_where_french_does():
     assert typeset("l'angle, quoi?", "fr") == "l’angle, quoi\u202f?"
     assert typeset("Is it right? 3 mm", "en") == "Is it right? 3\u00a0mm"
     assert typeset("à 12:30 (a:b)", "fr") == "à 12:30 (a:b)"
+    for write in (to_html, to_typst_markup, to_notebook_markdown):
+        assert write("$x$ ; **y** : z", "fr").count("\u202f") == 2
+        assert write("`x` : `y`", "fr").count("\u202f") == 1
 
 
 @pytest.mark.parametrize(
@@ -544,6 +576,19 @@ def test_one_cell_of_a_notebook_holds_the_answers_as_a_literal(lang):
     assert isinstance(statement, ast.Assign)
     nobodys = {} if sheet.student else {"student": ""}
     assert ast.literal_eval(statement.value) == nobodys | {question.id: "" for question in sheet.questions}
+
+
+@every_language
+def test_a_notebook_names_each_choice_as_it_is_to_be_written_and_says_cases_as_words(lang):
+    sheet = handout(lang)
+    question = replace(sheet.questions[0], kind="choice", choices=(("one", "$w = 1$"), ("two", "l'autre")))
+    case = Given("mode", r"\text{mode}", "l'autre", "", is_number=False)
+    book = nbformat.reads(RENDERER.notebook(replace(sheet, questions=(question,), given=(case,))), 4)
+    words_of = "\n".join(cells(book, "markdown"))
+    assert "- `one`" in words_of
+    assert "- `two`" in words_of
+    assert "| l’autre |" in words_of
+    assert "one, two" in "\n".join(cells(book, "code"))
 
 
 @every_language

@@ -15,6 +15,7 @@ from markupsafe import Markup
 
 from coursework.errors import BadCourse, BadStatement
 from coursework.rendering import views
+from coursework.rendering.formulas import after_number
 
 Writer = Callable[[str, str], str]
 
@@ -70,6 +71,7 @@ def environment(
         polygon_row=lambda row: views.polygon_row(row, lang),
         answer_comment=lambda question: views.answer_comment(question, lang),
         python_name=views.python_name,
+        after_number=after_number,
         fill=lambda pattern, *parts: pattern.format(*parts),
     )
     return env

@@ -51,6 +51,11 @@ def number_text(number: str, lang: str) -> str:
     return f"{localise(mantissa, lang)}{NARROW_SPACE}×{NARROW_SPACE}10{power}"
 
 
+def after_number(unit: str) -> str:
+    """The unit as it follows a number in running text: degrees touch it, others stand a narrow space off."""
+    return unit if unit in ("", *_UNITS_THAT_TOUCH) else NARROW_SPACE + unit
+
+
 def quantity_formula(symbol: str, value: str, unit: str, *, is_number: bool = True) -> str:
     """LaTeX of ``symbol = value unit``; without a symbol, of the value and its unit."""
     shown = rf"\num{{{value}}}" if is_number else rf"\text{{{value}}}"
@@ -182,13 +187,18 @@ def _latex_number(text: str, lang: str) -> str:
 # -- MathML -----------------------------------------------------------------------------------------
 
 
+_TAGS = re.compile(r"<[^>]*>")
+_FITS = 24  #: characters that a line of a telephone holds
+
+
 def to_mathml(tex: str, lang: str, display: bool = False) -> str:
     """The formula as a ``<math>`` element that needs no script and no font of its own."""
     layout = "block" if display else "inline"
     label = escape(spoken(tex, lang))
     body = _mathml_body(tex, lang)
-    # A displayed formula may be wider than a telephone: it scrolls, so a keyboard must reach it.
-    reached = ' tabindex="0"' if display else ""
+    # A displayed formula, or a long one in a text, may be wider than a telephone: it scrolls, so a keyboard must reach it.
+    is_long = len(_TAGS.sub("", body)) > _FITS
+    reached = ' tabindex="0"' if display else ' class="long" tabindex="0"' if is_long else ""
     return f'<math display="{layout}" alttext="{label}"{reached}>{body}</math>'
 
 
@@ -261,12 +271,23 @@ def _thin_space_between(left: Node, right: Node) -> bool:
     return _is_name(right) and is_term(left, "closing")
 
 
+def _is_sign(left: Node | None, right: Node) -> bool:
+    """A plus or a minus after ``=``, ``(`` or a comma is a sign: it stands close to its number."""
+    return (
+        isinstance(right, Symbol)
+        and right.text in f"+±{MINUS}"
+        and isinstance(left, Symbol)
+        and left.kind in ("relation", "opening", "punctuation")
+    )
+
+
 def _mathml_row(items: tuple[Node, ...], lang: str) -> str:
     parts = []
     for at, item in enumerate(items):
         if at and _thin_space_between(items[at - 1], item):
             parts.append('<mspace width="0.167em"></mspace>')
-        parts.append(_mathml(item, lang))
+        before = next((left for left in reversed(items[:at]) if not isinstance(left, Space)), None)
+        parts.append(_operator(item.text, "prefix") if _is_sign(before, item) else _mathml(item, lang))
     return parts[0] if len(parts) == 1 else _tag("mrow", *parts)
 
 
@@ -308,10 +329,25 @@ def _mathml_grid(kind: str, rows: tuple[tuple[Node, ...], ...], lang: str) -> st
     return _fenced(left, table, right) if left else table
 
 
-def _fenced(left: str, body: str, right: str) -> str:
-    opening = _operator(left, "prefix", "true") if left else ""
-    closing = _operator(right, "postfix", "true") if right else ""
+def _fenced(left: str, body: str, right: str, grows: bool = True) -> str:
+    stretchy = str(grows).lower()
+    opening = _operator(left, "prefix", stretchy) if left else ""
+    closing = _operator(right, "postfix", stretchy) if right else ""
     return _tag("mrow", opening, body, closing)
+
+
+def _is_tall(node: Node) -> bool:
+    """Whether brackets around it must grow; a browser leaves gaps beside those that could and do not."""
+    match node:
+        case Fraction() | Root() | Grid():
+            return True
+        case Symbol(_, kind):
+            return kind == "big"
+        case Row(items):
+            return any(map(_is_tall, items))
+        case Styled(_, body) | Accent(_, body) | Fence(_, body, _) | Script(body):
+            return _is_tall(body)
+    return False
 
 
 def _mathml(node: Node, lang: str) -> str:
@@ -356,7 +392,7 @@ def _mathml(node: Node, lang: str) -> str:
         case Script():
             return _mathml_script(node, lang)
         case Fence(left, body, right):
-            return _fenced(left, of(body), right)
+            return _fenced(left, of(body), right, _is_tall(body))
         case Grid(kind, rows):
             return _mathml_grid(kind, rows, lang)
     raise TypeError(node)

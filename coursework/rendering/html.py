@@ -31,6 +31,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "inline": lambda text: markup.html_inline(text, lang),
         "math": lambda tex: to_mathml(tex, lang),
         "display": lambda tex: to_mathml(tex, lang, True),
+        "formula_words": lambda text: escape(markup.formula_words(text, lang)),
         "drawing": _drawing,
     }
     return environment(folders, lang, markup.html_text, filters)

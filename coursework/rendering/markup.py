@@ -18,6 +18,7 @@ from markdown_it.tree import SyntaxTreeNode
 from mdit_py_plugins.dollarmath import dollarmath_plugin
 
 from coursework.errors import BadStatement
+from coursework.language import words
 from coursework.rendering.formulas import spoken, to_line, to_mathml, to_notebook, to_typst
 from coursework.rendering.typography import typeset
 
@@ -195,6 +196,12 @@ def html_inline(markdown: str, lang: str) -> str:
     return shown.removeprefix("<p>").removesuffix("</p>") if one else shown
 
 
+def formula_words(markdown: str, lang: str) -> str:
+    """How a text that is one formula is read aloud; of any other, nothing."""
+    formula = _ONE_FORMULA.fullmatch(markdown)
+    return spoken(formula[1].strip(), lang) if formula else ""
+
+
 @cache
 def _html_reader(lang: str) -> MarkdownIt:
     def formula(display: bool) -> Callable[..., str]:
@@ -220,6 +227,11 @@ def _html_reader(lang: str) -> MarkdownIt:
     reader.add_render_rule("image", image)
     reader.add_render_rule("heading_open", heading)
     reader.add_render_rule("heading_close", heading)
+    # A table wider than a telephone scrolls in a box that a keyboard reaches.
+    name = escape(words(lang)["sheet"]["table"])
+    opening = f'<div class="wide-table" tabindex="0" role="region" aria-label="{name}">\n<table>\n'
+    reader.add_render_rule("table_open", lambda *_: opening)
+    reader.add_render_rule("table_close", lambda *_: "</table>\n</div>\n")
     return reader
 
 
@@ -228,7 +240,7 @@ def _html_reader(lang: str) -> MarkdownIt:
 _NOTEBOOK_PIECES = re.compile(
     r"(?P<code>```.*?```|`[^`\n]*`)|\$\$(?P<block>.+?)\$\$|(?<!\\)\$(?P<inline>[^$]+?)(?<!\\)\$", re.DOTALL
 )
-_TABLE_RULE = re.compile(r"[|:\- ]+")
+_TABLE_RULE = re.compile(r"[|:\- ]*-[|:\- ]*")
 _MARKDOWN_MARKS = re.compile(r"([\\`*_$\[\]|#~])")
 
 

@@ -11,7 +11,9 @@ _UNIT = re.compile(
     r"(?<=\d)[ \u00a0](?=%|(?:[kcmµ]?m|k?g|[kmM]?N|[kMm]?W|[kMm]?J|Hz|m?s|min|h|rad|tr|rev|rpm)"
     r"(?:[²³/·.,;:)\s]|$))"
 )
-_HIGH_MARKS = re.compile(r"(?<=\S)[ \u00a0](?=[;:!?»](?:\W|$))")
+_HIGH_MARKS = re.compile(
+    r"(?<!\s)[ \u00a0](?=[;:!?»](?:\W|$))"
+)  # also at the head, where a formula stands before
 _MISSING_SPACE = re.compile(r"(?<=[\w)\]])(?=[;!?»](?:\s|$))")
 _OPENING_QUOTE = re.compile(r"«[ \u00a0\u202f]?")
 

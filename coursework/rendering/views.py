@@ -342,9 +342,7 @@ def answer_comment(question: Question, lang: str) -> str:
     """What a notebook says beside an answer: its unit, the keys of a choice, or the form it takes."""
     said = words(lang)
     if question.choices:
-        labels = ((key, to_text(label, lang, sys.maxsize)) for key, label in question.choices)
-        keys = ", ".join(f"{key} ({label})" if key != label else key for key, label in labels)
-        note = said["notebook"]["one_of"].format(keys)
+        note = said["notebook"]["one_of"].format(", ".join(key for key, _ in question.choices))
     else:
         unit = said["sheet"]["with_unit"] if question.asks_unit else question.unit
         note = ", ".join(filter(None, (said["hints"].get(question.kind, ""), unit)))
