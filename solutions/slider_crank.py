@@ -1,7 +1,7 @@
 """Slider-crank: solution. The rod's vector is what is left from the crank pin to the piston's line.
 
-Its two projections p and q carry everything: sin theta3 = p / r3, cos theta3 = q / r3. The root q is
-taken from the numeric core, which keeps its digits where the rod is hardly longer than the crank.
+Its two projections p and q carry everything: sin theta3 = p / r3, cos theta3 = q / r3. The root q and the
+accelerations are taken from the numeric core, which keeps their digits where the rod is hardly longer than the crank.
 """
 
 from math import pi
@@ -65,10 +65,15 @@ def r1_dot(r2, omega2, theta2, p, omega3):
     return -r2 * omega2 * sin(theta2) - p * omega3
 
 
+def _motion(r2, r3, e, theta2, omega2, alpha2):
+    return SliderCrank(r2, r3, e).motion(Degrees(theta2), omega2, alpha2)
+
+
 @formula(
     r"\frac{<r2> \times <omega2>^2 \times \sin <theta2> - <r2> \times <alpha2> \times \cos <theta2>"
     r" + <r3> \times <omega3>^2 \times \sin <theta3>}{<r3> \times \cos <theta3>}"
 )
+@stable(lambda _motion: _motion.rod_acceleration)
 def alpha3(r2, omega2, alpha2, theta2, p, q, omega3):
     """No acceleration across the line either."""
     return (r2 * omega2**2 * sin(theta2) - r2 * alpha2 * cos(theta2) + p * omega3**2) / q
@@ -78,6 +83,7 @@ def alpha3(r2, omega2, alpha2, theta2, p, q, omega3):
     r"-<r2> \times <alpha2> \times \sin <theta2> - <r2> \times <omega2>^2 \times \cos <theta2>"
     r" - <r3> \times <alpha3> \times \sin <theta3> - <r3> \times <omega3>^2 \times \cos <theta3>"
 )
+@stable(lambda _motion: _motion.acceleration)
 def r1_ddot(r2, omega2, alpha2, theta2, p, q, omega3, alpha3):
     """Acceleration of the piston, positive to the right."""
     return -r2 * alpha2 * sin(theta2) - r2 * omega2**2 * cos(theta2) - p * alpha3 - q * omega3**2

@@ -121,6 +121,18 @@ def test_the_drawing_is_asked_of_a_crank_at_constant_rate_only():
     }
 
 
+@pytest.mark.parametrize("gap", ["1e-2", "1e-4", "1e-6", "1e-8"])
+def test_accelerations_of_a_rod_as_long_as_its_crank_keep_their_digits(gap):
+    """x = 2 r cos theta there: the rod is the crank's mirror image, and its acceleration that of the crank."""
+    theta = float(90 - mpmath.mpf(gap))
+    found = EXERCISE.solve(r2=70, r3=70, e=0, theta2=theta, omega2=10, alpha2=3, only=("alpha3", "r1_ddot"))
+    with mpmath.workdps(50):
+        at = mpmath.radians(mpmath.mpf(theta))
+        expected = -140 * (3 * mpmath.sin(at) + 100 * mpmath.cos(at))
+    assert found["r1_ddot"] == pytest.approx(float(expected), rel=1e-12)
+    assert found["alpha3"] == pytest.approx(-3, rel=1e-9)
+
+
 def test_centred_and_offset_cranks_are_both_issued():
     offsets = np.array([v.given["e"] / v.given["r2"] for v in EXERCISE.variants(range(400))])
     assert 0.4 < (offsets == 0).mean() < 0.75
