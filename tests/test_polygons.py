@@ -10,17 +10,20 @@ import math
 import re
 import xml.etree.ElementTree as ET
 from functools import cache
+from itertools import accumulate
 
 import numpy as np
 import pytest
-from test_figures import crossed, overlapping
+from test_figures import SVG, crossed, kinds, overlapping
 
 import coursework
 from coursework.cli import DONE, run
 from coursework.constructions import BOX_MM, Construction
 from coursework.errors import BadCourse, NoSolution, UnknownName
+from coursework.figures.text import SIZE, read
 from coursework.language import languages
 from coursework.polygons import Polygon, Side, normal, tangential, turning
+from coursework.rendering.pdf import _letters as letters_to_set
 
 COURSE = coursework.open_course()
 
@@ -256,6 +259,35 @@ def test_no_label_lies_on_a_line_or_on_another(name):
         for figure in (drawn.figure, drawn.steps[-1].figure.whole):
             assert overlapping(figure) == []
             assert crossed(figure) == []
+
+
+def laid(runs):
+    """Where runs start when each goes back by what it says, from the start of the first, mm."""
+    ends = accumulate(width - back for width, back in runs)
+    return [end - width for end, (width, _) in zip(ends, runs, strict=True)]
+
+
+@every_exercise
+def test_labels_stack_index_and_exponent_alike_in_svg_in_outlines_and_in_pdf(name):
+    for drawn in variants(name)[0].polygons():
+        figure = drawn.figure
+        texts = [read(label.label) for label in figure.labels()]
+        shown = ET.fromstring(figure.svg()).findall(f".//{SVG}text")
+        paths = iter(ET.fromstring(figure.outlined_svg()).findall(f"{SVG}g[2]/{SVG}path[@transform]"))
+        for text, element, one in zip(texts, shown, figure.letters(), strict=True):
+            index, exponent, _ = kinds(text)
+            assert None in (index, exponent) or index == exponent
+            widths = [SIZE * run.width for run in text.runs]
+            starts = [SIZE * text.start(k) for k in range(len(text.runs))]
+            backs = [-float(span.get("dx", 0)) for span in element] or [0]
+            assert laid(list(zip(widths, backs, strict=True))) == pytest.approx(starts, abs=0.02)
+            backs = [row[4] for row in letters_to_set(one, 0)[2]]
+            assert laid(list(zip(widths, backs, strict=True))) == pytest.approx(starts, abs=0.02)
+            lefts = []
+            for piece in text.runs:
+                moves = [next(paths).get("transform") for c in piece.text if not c.isspace()]
+                lefts.append(float(re.match(r"translate\((\S+)", moves[0])[1]))
+            assert [x - lefts[0] for x in lefts] == pytest.approx(starts, abs=0.02)
 
 
 @every_exercise
