@@ -23,7 +23,7 @@ _LEADER = 4.5  #: a label farther than this from what it names gets a thin line 
 _AT_ARC = 3.0  #: the same for an angle, from the middle of its arc, mm
 _NEARER = 0.2  #: a label is nearer to its own line than to any other that has a label, by so much, mm
 _ALOOF = 2.0  #: least white between a label with a leader and another line that has a label, mm
-_FAR = 12.5  #: so far a label goes to be told apart better, mm
+_FAR = 9.5  #: so far a label goes to be told apart better, mm
 _STEPS = (0.0, 0.5, 1.0, 1.7, 2.5, 3.5, 5.0, 7.0, 9.5, 12.5, 16.0, 20.0, 26.0, 34.0, 45.0, 60.0)
 INSIDE, NAMES, ANGLES, SIDES = range(4)  #: ranks of labels: those with least choice first
 _FRACTIONS = (0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75)
@@ -335,14 +335,16 @@ class _Rivals:
         self.lines = [line for ends, line in sides.items() if ends not in same]
 
     def mistaken(self, center: complex, half: complex, leader: tuple[complex, complex] | None) -> int:
-        """How a label here may be taken for that of another line: 0 not at all, 1 in spite of its leader, 2 for
-        want of one."""
+        """How a label here may be taken for that of another line: 0 not at all, 1 for that it is near in spite of its
+        leader, 2 in spite of one that crosses, 3 for want of one."""
         if self.own is None or not self.lines:
             return 0
         if leader is None:
             gap = _gap(self.own, center.real, center.imag, half.real, half.imag) + _NEARER
-            return 2 if self._within(gap, center, half) else 0
-        return int(self._within(_ALOOF, center, half) or any(_crosses(line, *leader) for line in self.lines))
+            return 3 if self._within(gap, center, half) else 0
+        if any(_crosses(line, *leader) for line in self.lines):
+            return 2
+        return int(self._within(_ALOOF, center, half))
 
     def _within(self, gap: float, center: complex, half: complex) -> bool:
         """Whether one of the lines is so near to a box."""
@@ -372,7 +374,7 @@ def _choose(wish: Wish, obstacles: Obstacles, rivals: _Rivals) -> Label:
     for in_sight in (True, False):
         found: dict[int, Label] = {}  #: the best places where it may be mistaken, by how
         for place in wish.places():
-            if 1 in found and place.step > _FAR:
+            if place.step > _FAR and (1 in found or 2 in found):
                 break
             if place.step < beyond[place.ray]:
                 continue
@@ -399,9 +401,9 @@ def _choose(wish: Wish, obstacles: Obstacles, rivals: _Rivals) -> Label:
                     found[mistaken] = Label(wish.label, text, center, width, height, leader)
                 if not mistaken:
                     break
-                if mistaken == 2:
-                    # Farther on, it leaves its own line faster than the others; until it has a leader.
-                    beyond[place.ray] = max(beyond[place.ray], _LEADER - wish.start)
+                # Farther on it is no better: a leader crosses the same line, and without one it leaves its own first.
+                if mistaken >= 2:
+                    beyond[place.ray] = _LEADER - wish.start if leader is None else math.inf
         if found:
             return found[min(found)]
     return _outside(wish, text, obstacles)
