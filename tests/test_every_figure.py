@@ -78,8 +78,8 @@ def faults(figure):
 @pytest.mark.parametrize("name", WITH_FIGURE)
 def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(name):
     found = {}
-    room = views.room(COURSE[name].variant(0).handout())
     for variant in COURSE[name].variants(range(VARIANTS)):
+        room = views.room(variant.handout())
         drawn = (variant.figure, solution_figure(variant))
         figures = [figure.fitted(*room) for figure in drawn if figure is not None]
         found[variant.seed] = [fault for figure in figures for fault in faults(figure)]
@@ -89,6 +89,20 @@ def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(na
         free = [f for f in figures if f.fixed_scale is None and not f.bounded]
         assert all(np.divide(figure.size_mm, room).max() > 0.8 for figure in free)
     assert not {seed: bad for seed, bad in found.items() if bad}
+
+
+@pytest.mark.parametrize("paper", ["a4", "letter"])
+@pytest.mark.parametrize(
+    "name", ["quick_return_shaper", "quick_return_whitworth", "mechanical_advantage", "coriolis"]
+)
+def test_a_slender_figure_has_more_height_on_a_sheet_that_stays_one_page(name, paper):
+    variants = [v for v in COURSE[name].variants(range(40)) if v.figure.aspect < 1]
+    for variant in variants[:2]:
+        room = views.room(variant.handout())
+        assert variant.figure.fitted(*room).scale > 1.2 * variant.figure.fitted(*views.ROOM_BESIDE).scale
+        made = COURSE.renderer.on(paper).pdf(variant.handout("Zoé Martin"))
+        assert len(re.findall(rb"/Type ?/Page\b", made)) == 1
+    assert variants
 
 
 @pytest.mark.parametrize("name", WITH_FIGURE)

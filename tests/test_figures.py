@@ -40,6 +40,7 @@ from coursework.figures import (
     trace,
     vector,
 )
+from coursework.figures.text import read
 
 
 def polar(r, degrees):
@@ -469,6 +470,45 @@ def test_symbols_are_italic_with_subscripts_and_words_are_upright():
     assert float(two.get("dy")) > 0
     word = ET.fromstring(Figure(link(0, 90), pin(0, "bielle")).svg()).find(f".//{SVG}text")
     assert (word.text, word.get("font-style")) == ("bielle", None)
+
+
+def kinds(text):
+    """Where the index and the exponent start, and where the label ends, em."""
+    placed = [(run, text.start(k)) for k, run in enumerate(text.runs)]
+    index = [x for run, x in placed if run.rise < 0]
+    exponent = [x for run, x in placed if run.rise > 0 or set(run.text) == {"′"}]
+    return min(index, default=None), min(exponent, default=None), max(x + run.width for run, x in placed)
+
+
+@pytest.mark.parametrize(
+    ("label", "wider"),
+    [
+        (r"\vec{a}^t_{A_2}", "A_2"),
+        (r"\vec a_{A_2}^t", "A_2"),
+        (r"\vec{a}^c_{A_2/A_4}", "A_2/A_4"),
+        ("a_2'", "2"),
+        ("a'_2", "2"),
+        (r"a_i^{(n+1)}", "(n+1)"),
+        (r"a_{\dot{x}}^2", "x"),
+    ],
+)
+def test_an_index_and_an_exponent_stand_one_over_the_other(label, wider):
+    text, base = read(label), read("a").width
+    index, exponent, end = kinds(text)
+    assert index == exponent == pytest.approx(base)
+    assert text.width == pytest.approx(end) == pytest.approx(base + read(f"_{{{wider}}}").width)
+
+
+def test_what_follows_an_index_and_an_exponent_starts_where_the_wider_ends():
+    for label in (r"\omega_2^{nn}b", r"\omega^{nn}_2b", r"\omega_{nn}^2b"):
+        text = read(label)
+        assert text.start(len(text.runs) - 1) == pytest.approx(read(r"\omega_{nn}").width)
+
+
+def test_an_accent_in_an_index_stays_over_its_letter_when_the_exponent_comes_first():
+    text = read(r"q_{\dot{x}}^2")
+    (dot,) = text.accents
+    assert [run.text for run in text.runs[dot.first : dot.last]] == ["x"]
 
 
 def test_a_dotted_symbol_has_its_dot_above_the_letter():

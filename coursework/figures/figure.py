@@ -135,6 +135,13 @@ class Figure:
             raise WrongValue(f"the figure has no extent, so no scale: it is made of {names}")
         return low, high
 
+    @property
+    def aspect(self) -> float:
+        """Width of the mechanism over its height, without symbols and labels; infinite for a level line."""
+        low, high = self._extent
+        size = high - low
+        return size.real / size.imag if size.imag else float("inf")
+
     @cached_property
     def _layout(self) -> _Layout:
         if self.fixed_scale is not None:

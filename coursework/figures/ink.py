@@ -79,7 +79,7 @@ class Disc:
     solid: bool = False
 
     def outline(self) -> tuple[complex, ...]:
-        sides = max(12, min(72, round(4 * self.radius)))
+        sides = max(8, min(72, round(4 * self.radius)))
         return tuple(self.center + self.radius * way for way in _round(sides))
 
     def svg(self, place: Place) -> str:

@@ -1,4 +1,4 @@
-"""Where labels go: near what they name, on no line, on no other label.
+"""Where labels go: near what they name, on no line, on no other label, nearer to their own line than to another.
 
 Every label has a list of candidate places, cheapest first; it takes the first free one.
 Labels are placed in a fixed order, so the same figure always comes out the same.
@@ -7,7 +7,7 @@ Labels are placed in a fixed order, so the same figure always comes out the same
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -21,9 +21,13 @@ _AIRY = 0.8  #: the white a label prefers
 _APART = 0.5  #: least white between two labels, mm
 _LEADER = 4.5  #: a label farther than this from what it names gets a thin line to it, mm
 _AT_ARC = 3.0  #: the same for an angle, from the middle of its arc, mm
+_NEARER = 0.2  #: a label is nearer to its own line than to any other that has a label, by so much, mm
+_ALOOF = 2.0  #: least white between a label with a leader and another line that has a label, mm
+_FAR = 9.5  #: so far a label goes to be told apart better, mm
 _STEPS = (0.0, 0.5, 1.0, 1.7, 2.5, 3.5, 5.0, 7.0, 9.5, 12.5, 16.0, 20.0, 26.0, 34.0, 45.0, 60.0)
 INSIDE, NAMES, ANGLES, SIDES = range(4)  #: ranks of labels: those with least choice first
 _FRACTIONS = (0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75)
+_RAYS = 2 * len(_FRACTIONS) + 16  #: on which places lie, at most
 _MORE = 8.0  #: mm round a place in which lines are looked up with it
 
 
@@ -35,6 +39,7 @@ class Place(NamedTuple):
     fraction: float | None  #: of the segment beside which it lies; none for a place round the anchor
     clear: float  #: white asked for between it and the lines, mm
     number: int  #: the same for the same place with less white
+    ray: int  #: the same for places one behind the other
 
 
 @lru_cache(maxsize=4)
@@ -50,10 +55,14 @@ def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
     late, turning = (3.0 if beside else 0.0), (1.6 if angle else 0.7)
     for sixteenth in range(16):
         away = math.radians(22.5 * min(sixteenth, 16 - sixteenth))
-        for step in _STEPS:
+        # Beside a line, those round its middle are for labels with a leader.
+        for step in _STEPS[5:] if beside else _STEPS:
             costed.append((late + step + turning * away, (turn(22.5 * sixteenth), step, None)))
+    rays: dict[tuple[complex, float | None], int] = {}
+    for _, (way, _, fraction) in costed:
+        rays.setdefault((way, fraction), len(rays))
     tries = [
-        (round(cost + more, 6), number, Place(*place, clear, number))
+        (round(cost + more, 6), number, Place(*place, clear, number, rays[place[0], place[2]]))
         for number, (cost, place) in enumerate(costed)
         for clear, more in ((_AIRY, 0.0), (_CLEAR, 1.2))
     ]
@@ -109,7 +118,8 @@ class Wish:
         way, foot = self.toward * place.way, self.anchor
         if self.along and place.fraction is not None:
             foot = self.along[0] + (self.along[1] - self.along[0]) * place.fraction
-        return foot + way * (self.start + place.step + _support(half, way))
+        # The last two are what ``_support`` says, without a call.
+        return foot + way * (self.start + place.step + half.real * abs(way.real) + half.imag * abs(way.imag))
 
 
 def _support(half: complex, way: complex) -> float:
@@ -120,6 +130,14 @@ def _support(half: complex, way: complex) -> float:
 #: A line with its half-width, mm: the left, low, right and high sides of the least box round it, its middle (across
 #: and up), and from there to its end. A plain tuple, since labels are tried against lines by the thousand.
 Line = tuple[float, float, float, float, float, float, float, float, float]
+
+#: Lines drawn together, after the sides of the least box round them all: most things are off at once.
+Thing = tuple[float, float, float, float, list[Line]]
+
+
+def _thing(lines: list[Line]) -> Thing:
+    left, low, right, high, *_ = zip(*lines, strict=True)
+    return min(left), min(low), max(right), max(high), lines
 
 
 def _line(a: complex, b: complex, half: float) -> Line:
@@ -141,17 +159,51 @@ def _meets(line: Line, across: float, up: float, wide: float, tall: float) -> bo
     return abs(turned) <= (wide + half) * abs(half_up) + (tall + half) * abs(half_across)
 
 
+def _way_out(line: Line, across: float, up: float, wide: float, tall: float, way: complex) -> float:
+    """How far a box that meets a line goes until it does not, in a direction: some axis separates them there."""
+    left, low, right, high, middle_across, middle_up, half_across, half_up, half = line
+    x, y = way.real, way.imag
+    out = math.inf
+    if x:
+        out = (right - across + wide) / x if x > 0 else (left - across - wide) / x
+    if y:
+        more = (high - up + tall) / y if y > 0 else (low - up - tall) / y
+        out = more if more < out else out
+    turning = y * half_across - x * half_up
+    if turning:
+        turned = (middle_across - across) * half_up - (middle_up - up) * half_across
+        reach = (wide + half) * abs(half_up) + (tall + half) * abs(half_across)
+        more = (reach - turned if turning > 0 else -reach - turned) / turning
+        out = more if more < out else out
+    return out
+
+
+def _gap(line: Line, across: float, up: float, wide: float, tall: float) -> float:
+    """White between a box and a line, thin, that does not meet it."""
+    x, y, dx, dy = line[4] - across, line[5] - up, line[6], line[7]
+    square = dx * dx + dy * dy
+    found = math.inf
+    # What is nearest is an end of the line, or a corner of the box.
+    for end in (-1, 1):
+        a, b = max(abs(x + end * dx) - wide, 0.0), max(abs(y + end * dy) - tall, 0.0)
+        found = min(found, a * a + b * b)
+    for a, b in ((x - wide, y - tall), (x - wide, y + tall), (x + wide, y - tall), (x + wide, y + tall)):
+        if abs(a * dx + b * dy) < square:
+            found = min(found, (a * dy - b * dx) ** 2 / square)
+    return math.sqrt(found)
+
+
 class Obstacles:
     """The lines already drawn, with areas that labels avoid, and the labels already placed."""
 
     def __init__(self, ink: Sequence[Ink]) -> None:
-        self._lines: list[Line] = []
+        self._things: list[Thing] = []
         self.areas: list[tuple[complex, ...]] = []
         self.bars: list[tuple[complex, complex]] = []
         for item in ink:
             outline = item.outline()
             sides = list(pairwise(outline))
-            self._lines += [_line(a, b, item.width / 2) for a, b in sides]
+            self._things.append(_thing([_line(a, b, item.width / 2) for a, b in sides]))
             self.areas += [outline] if item.solid else []
             self.bars += sides if item.width >= BAR else []
         self.labels: list[Label] = []
@@ -161,8 +213,8 @@ class Obstacles:
     def _start(self) -> None:
         """Nothing is known yet of the label to place."""
         self._window = (math.inf, math.inf, -math.inf, -math.inf)  #: of the paper where it was tried
-        self._near: list[Line] = []  #: the lines that come into the window
-        self._blocking: list[Line] = []  #: those that it has met, the last one first
+        self._near: list[Thing] = []  #: what comes into the window
+        self._blocking: list[Line] = []  #: the lines that it has met, the last one first
 
     def put(self, label: Label) -> None:
         """A label that is placed, with its leader."""
@@ -170,7 +222,7 @@ class Obstacles:
         reach = complex(label.width, label.height) / 2 + complex(_APART, _APART)
         self._boxes.append((label.center.real, label.center.imag, reach.real, reach.imag))
         if label.leader:
-            self._lines.append(_line(*label.leader, THIN / 2))
+            self._things.append(_thing([_line(*label.leader, THIN / 2)]))
         self._start()
 
     def _look(self, left: float, low: float, right: float, high: float) -> None:
@@ -184,38 +236,51 @@ class Obstacles:
                 max(d, high + _MORE),
             )
             self._window = a, b, c, d
-            self._near = [it for it in self._lines if it[0] <= c and it[2] >= a and it[1] <= d and it[3] >= b]
+            self._near = [
+                it for it in self._things if it[0] <= c and it[2] >= a and it[1] <= d and it[3] >= b
+            ]
 
-    def white(self, center: complex, half: complex, inside: bool = False) -> float:
-        """The white that a box has: the one that labels prefer, the least there may be, or 0 for too little."""
+    def white(self, center: complex, half: complex, way: complex, inside: bool = False) -> float:
+        """The white that a box has: the one that labels prefer, or the least there may be; where there is less, what
+        it has to go that way, at least, until there may be more, with a minus."""
         cx, cy, wide, tall = center.real, center.imag, half.real, half.imag
+        x, y = wide + _CLEAR, tall + _CLEAR
+        left, low, right, high = cx - x, cy - y, cx + x, cy + y
         # What was in the way of the last places is most often in the way of this one.
         for k, line in enumerate(self._blocking):
-            if _meets(line, cx, cy, wide + _CLEAR, tall + _CLEAR):
-                self._blocking.insert(0, self._blocking.pop(k))
-                return 0.0
-        for across, up, width, height in self._boxes:
-            if abs(cx - across) < wide + width and abs(cy - up) < tall + height:
-                return 0.0
-        found, x, y = _AIRY, wide + _AIRY, tall + _AIRY
-        left, low, right, high = cx - x, cy - y, cx + x, cy + y
-        self._look(left, low, right, high)
-        for line in self._near:
             # The first thing that ``_meets`` asks, without a call: most lines are off.
             if line[0] > right or line[2] < left or line[1] > high or line[3] < low:
                 continue
             if _meets(line, cx, cy, x, y):
-                if found == _CLEAR or _meets(line, cx, cy, wide + _CLEAR, tall + _CLEAR):
-                    self._blocking.insert(0, line)
-                    return 0.0
-                found, x, y = _CLEAR, wide + _CLEAR, tall + _CLEAR
-                left, low, right, high = cx - x, cy - y, cx + x, cy + y
+                if k:
+                    self._blocking.insert(0, self._blocking.pop(k))
+                return -_way_out(line, cx, cy, x, y, way)
+        for across, up, width, height in self._boxes:
+            x, y = wide + width, tall + height
+            if abs(cx - across) < x and abs(cy - up) < y:
+                return -_way_out((across, up, across, up, across, up, 0.0, 0.0, 0.0), cx, cy, x, y, way)
+        found, x, y = _AIRY, wide + _AIRY, tall + _AIRY
+        left, low, right, high = cx - x, cy - y, cx + x, cy + y
+        self._look(left, low, right, high)
+        for thing in self._near:
+            if thing[0] > right or thing[2] < left or thing[1] > high or thing[3] < low:
+                continue
+            for line in thing[4]:
+                if line[0] > right or line[2] < left or line[1] > high or line[3] < low:
+                    continue
+                if _meets(line, cx, cy, x, y):
+                    less_x, less_y = wide + _CLEAR, tall + _CLEAR
+                    if found == _CLEAR or _meets(line, cx, cy, less_x, less_y):
+                        self._blocking.insert(0, line)
+                        return -_way_out(line, cx, cy, less_x, less_y, way)
+                    found, x, y = _CLEAR, less_x, less_y
+                    left, low, right, high = cx - x, cy - y, cx + x, cy + y
         return 0.0 if not inside and any(within(center, area) for area in self.areas) else found
 
     @property
     def right(self) -> float:
         """Abscissa of the rightmost line."""
-        return max((line[2] for line in self._lines), default=0.0)
+        return max((it[2] for it in self._things), default=0.0)
 
     def hides(self, anchor: complex, center: complex) -> bool:
         """Whether a bar passes between an anchor and its label."""
@@ -255,30 +320,92 @@ def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[tuple[Label, ...]
     """Places every label, in order of rank then of writing; with each, the place of its wish among them."""
     obstacles = Obstacles(ink)
     order = sorted(range(len(wishes)), key=lambda k: wishes[k].rank)
+    sides = {wish.along: _line(*wish.along, 0.0) for wish in wishes if wish.along}
     for k in order:
-        obstacles.put(_choose(wishes[k], obstacles))
+        obstacles.put(_choose(wishes[k], obstacles, _Rivals(wishes[k], sides)))
     return tuple(obstacles.labels), tuple(order)
 
 
-def _choose(wish: Wish, obstacles: Obstacles) -> Label:
+class _Rivals:
+    """The other lines that have a label: who reads a label takes it for that of the nearest."""
+
+    def __init__(self, wish: Wish, sides: Mapping[tuple[complex, complex], Line]) -> None:
+        same = (wish.along, wish.along[::-1]) if wish.along else sides
+        self.own = sides[wish.along] if wish.along else None
+        self.lines = [line for ends, line in sides.items() if ends not in same]
+
+    def mistaken(self, center: complex, half: complex, leader: tuple[complex, complex] | None) -> int:
+        """How a label here may be taken for that of another line: 0 not at all, 1 for that it is near in spite of its
+        leader, 2 in spite of one that crosses, 3 for want of one."""
+        if self.own is None or not self.lines:
+            return 0
+        if leader is None:
+            gap = _gap(self.own, center.real, center.imag, half.real, half.imag) + _NEARER
+            return 3 if self._within(gap, center, half) else 0
+        if any(_crosses(line, *leader) for line in self.lines):
+            return 2
+        return int(self._within(_ALOOF, center, half))
+
+    def _within(self, gap: float, center: complex, half: complex) -> bool:
+        """Whether one of the lines is so near to a box."""
+        cx, cy, x, y = center.real, center.imag, half.real + gap, half.imag + gap
+        left, low, right, high = cx - x, cy - y, cx + x, cy + y
+        for line in self.lines:
+            if line[0] > right or line[2] < left or line[1] > high or line[3] < low:
+                continue
+            if _meets(line, cx, cy, x, y) and _gap(line, cx, cy, half.real, half.imag) < gap:
+                return True
+        return False
+
+
+def _crosses(line: Line, a: complex, b: complex) -> bool:
+    middle, way = complex(line[4], line[5]), complex(line[6], line[7])
+    return _meet(a, b, middle - way, middle + way)
+
+
+def _choose(wish: Wish, obstacles: Obstacles, rivals: _Rivals) -> Label:
     text = read(wish.label)
     width, height = text.box
     half = complex(width, height) / 2
-    # A label is in sight of what it names; failing that, a leader may pass over a bar.
+    rays: dict[int, tuple[complex, complex]] = {}  #: where each starts, and its way
+    beyond = [0.0] * _RAYS  #: where a label may lie on each ray again, beyond what is in its way
     tried: dict[int, tuple[complex, float]] = {}  #: the centre of each place, and its white
+    # A label is in sight of what it names; failing that, a leader may pass over a bar.
     for in_sight in (True, False):
+        found: dict[int, Label] = {}  #: the best places where it may be mistaken, by how
         for place in wish.places():
+            if place.step > _FAR and (1 in found or 2 in found):
+                break
+            if place.step < beyond[place.ray]:
+                continue
             if place.number not in tried:
-                center = wish.center(place, half)
-                tried[place.number] = center, obstacles.white(center, half, wish.inside)
+                if place.ray not in rays:
+                    way = wish.toward * place.way
+                    rays[place.ray] = wish.center(place, half) - way * place.step, way
+                center, way = rays[place.ray]
+                center += way * place.step
+                white = obstacles.white(center, half, way, wish.inside)
+                tried[place.number] = center, white
+                if white <= 0:
+                    beyond[place.ray] = place.step - white
+                    continue
             center, white = tried[place.number]
-            if white < place.clear:
+            if white != place.clear:
                 continue
             leader = _leader(wish, center, half)
             if (in_sight or leader is None) and obstacles.hides(wish.source, center):
                 continue
             if leader is None or obstacles.leader_free(*leader):
-                return Label(wish.label, text, center, width, height, leader)
+                mistaken = rivals.mistaken(center, half, leader)
+                if mistaken not in found:
+                    found[mistaken] = Label(wish.label, text, center, width, height, leader)
+                if not mistaken:
+                    break
+                # Farther on it is no better: a leader crosses the same line, and without one it leaves its own first.
+                if mistaken >= 2:
+                    beyond[place.ray] = _LEADER - wish.start if leader is None else math.inf
+        if found:
+            return found[min(found)]
     return _outside(wish, text, obstacles)
 
 

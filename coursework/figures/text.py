@@ -7,6 +7,7 @@ Symbols have italic letters and Greek, upright digits; words are upright.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
@@ -56,12 +57,13 @@ _LOW = frozenset("acegmnopqrsuvwxyzαεγηικμνοπρστυχω.,:·−+=×-
 
 @dataclass(frozen=True)
 class Run:
-    """Letters of one style; ``size`` and ``rise`` in em of the label's own size."""
+    """Letters of one style; lengths in em of the label's own size."""
 
     text: str
     italic: bool
     size: float = 1.0
     rise: float = 0.0
+    back: float = 0.0  #: from the end of the run before it to where it starts, to the left
 
     @cached_property
     def width(self) -> float:
@@ -96,7 +98,7 @@ class Text:
 
     @cached_property
     def width(self) -> float:
-        return sum(run.width for run in self.runs)
+        return advance(self.runs)
 
     @cached_property
     def top(self) -> float:
@@ -109,12 +111,18 @@ class Text:
 
     def start(self, index: int) -> float:
         """Abscissa of a run, from the left of the label."""
-        return sum(run.width for run in self.runs[:index])
+        back = self.runs[index].back if index < len(self.runs) else 0.0
+        return round(advance(self.runs[:index]) - back, 6)
 
     @cached_property
     def box(self) -> tuple[float, float]:
         """Width and height of the label's box, mm on paper, with some slack."""
         return self.width * SIZE * _SLACK + 0.2, (self.top - self.bottom) * SIZE
+
+
+def advance(runs: Sequence[Run]) -> float:
+    """How far letters set one after the other come to the right."""
+    return sum(run.width - run.back for run in runs)
 
 
 @lru_cache(maxsize=2048)
@@ -135,10 +143,13 @@ class _Reader:
 
     def __init__(self, label: str) -> None:
         self.label = label
-        self.tokens = re.findall(r"\\[A-Za-z]+|\\.|.", label)[::-1]
+        # A space after a command only ends its name.
+        self.tokens = [a or b for a, b in re.findall(r"(\\[A-Za-z]+)\s*|(\\.|.)", label)][::-1]
         self.runs: list[Run] = []
         self.accents: list[Accent] = []
-        self.barrier = 0  # runs before this one are complete: an accent counts on them
+        self.barrier = 0  # runs before this one are complete: accents, indices and exponents count on them
+        # The index or the exponent that was just read, if there is one: its sign, _ or ^, and its first run.
+        self.script: tuple[str, int] | None = None
 
     def sequence(self, style: Run, stop: str | None) -> None:
         while self.tokens and self.tokens[-1] != stop:
@@ -152,17 +163,51 @@ class _Reader:
         if not self.tokens:
             raise WrongValue(f"label {self.label!r} ends where a symbol is expected")
         token = self.tokens.pop()
+        if token.isspace() and style.italic:
+            return
+        before, self.script = self.script, None
+        if token in ("_", "^", "'"):
+            self.script = self.index_or_exponent(token, style, before)
+            return
         if token == "{":
             self.sequence(style, stop="}")
         elif token == "}":
             raise WrongValue(f"label {self.label!r} has a closing brace without its opening one")
-        elif token in "_^":
-            shift = DROP if token == "_" else RAISE
-            self.atom(replace(style, size=style.size * SMALL, rise=style.rise + shift * style.size))
         elif token.startswith("\\"):
             self.command(token[1:], style)
-        elif not token.isspace() or not style.italic:
-            self.letters(token.replace("'", "′").replace("-", "−" if style.italic else "-"), style)
+        else:
+            self.letters(token.replace("-", "−" if style.italic else "-"), style)
+        self.script = None
+
+    def index_or_exponent(
+        self, token: str, style: Run, before: tuple[str, int] | None
+    ) -> tuple[str, int] | None:
+        """Reads one, or primes, which are an exponent; the other one, if just read, is stacked with it."""
+        first = self.barrier = len(self.runs)
+        if token == "'":
+            self.letters("′", style)
+            while self.tokens and self.tokens[-1] == "'":
+                self.letters("′", style)
+                self.tokens.pop()
+        else:
+            shift = DROP if token == "_" else RAISE
+            self.atom(replace(style, size=style.size * SMALL, rise=style.rise + shift * style.size))
+        kind = "_" if token == "_" else "^"
+        if before is None or before[0] == kind:
+            return kind, first
+        self.stack(before[1], first)
+        return None
+
+    def stack(self, low: int, middle: int) -> None:
+        """The runs from ``middle`` on start where those from ``low`` on do; the narrower come first, so that what
+        follows starts where both have ended."""
+        first, second = self.runs[low:middle], self.runs[middle:]
+        if not first or not second:
+            return
+        if advance(second) < advance(first):
+            self.accents = [_moved(it, low, middle, len(self.runs)) for it in self.accents]
+            first, second = second, first
+        self.runs[low:] = [*first, replace(second[0], back=advance(first)), *second[1:]]
 
     def command(self, name: str, style: Run) -> None:
         if name in _ACCENTS:
@@ -181,7 +226,13 @@ class _Reader:
     def letters(self, text: str, style: Run) -> None:
         style = replace(style, italic=style.italic and text.isalpha())
         last = self.runs[-1] if len(self.runs) > self.barrier else None
-        if last is not None and replace(last, text="") == style:
+        if last is not None and replace(last, text="", back=0.0) == style:
             self.runs[-1] = replace(last, text=last.text + text)
         else:
             self.runs.append(replace(style, text=text))
+
+
+def _moved(accent: Accent, low: int, middle: int, end: int) -> Accent:
+    """An accent once the runs from ``middle`` to the end stand before those from ``low`` to ``middle``."""
+    shift = 0 if accent.first < low else end - middle if accent.first < middle else low - middle
+    return Accent(accent.kind, accent.first + shift, accent.last + shift)

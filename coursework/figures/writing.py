@@ -8,7 +8,7 @@ from typing import NamedTuple, TypeAlias
 
 from coursework.figures.ink import BLACK, Ink, number, pair
 from coursework.figures.placing import Label
-from coursework.figures.text import SIZE, Accent, Run, Text
+from coursework.figures.text import SIZE, Accent, Run, Text, advance
 
 FONT = "Libertinus Serif"
 _FALLBACK = f"{FONT}, Linux Libertine O, Times New Roman, serif"
@@ -94,6 +94,7 @@ def as_text(text: Text, at: complex) -> str:
 def _tspan(run: Run, rise: float) -> str:
     style = ' font-style="italic"' if run.italic else ""
     style += f' font-size="{number(run.size * SIZE)}"' if run.size != 1 else ""
+    style += f' dx="{number(-run.back * SIZE)}"' if run.back else ""
     style += f' dy="{number((rise - run.rise) * SIZE)}"' if run.rise != rise else ""
     return f"<tspan{style}>{escape(run.text)}</tspan>"
 
@@ -131,7 +132,7 @@ def _accent(text: Text, accent: Accent, left: complex) -> str:
     """Dots as discs, bars and arrows as lines."""
     runs = text.runs[accent.first : accent.last]
     start = left.real + SIZE * text.start(accent.first)
-    width = SIZE * sum(run.width for run in runs)
+    width = SIZE * advance(runs)
     # Italic letters lean: what stands above them stands a little to the right.
     lean = 0.08 * SIZE if runs[0].italic else 0.0
     # The head of an arrow hangs below its shaft.
@@ -142,7 +143,8 @@ def _accent(text: Text, accent: Accent, left: complex) -> str:
         radius = number(0.065 * SIZE)
         return "".join(f'<circle cx="{number(middle + s)}" cy="{number(top)}" r="{radius}"/>' for s in shifts)
     # An exponent after the letters takes the room above their end.
-    raised = any(run.rise > 0 for run in text.runs[accent.last : accent.last + 1])
+    after = enumerate(text.runs[accent.last :], accent.last)
+    raised = any(run.rise > 0 and text.start(k) <= text.start(accent.last) for k, run in after)
     start, end = (
         (start - 0.04 * SIZE, start + width - 0.04 * SIZE) if raised else (start + lean, start + width + lean)
     )

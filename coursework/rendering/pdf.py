@@ -141,8 +141,9 @@ def _drawing(figure: Figure | Beginning, alt: str, room: tuple[float, float] | N
 
 def _letters(label: Letters, width: float) -> tuple[object, ...]:
     """A label for the typesetter, mm: the middle of its baseline from the middle of the upper edge, and its runs,
-    each with its size and how far it stands below the baseline."""
+    each with its size, how far it stands below the baseline, and how far it goes back to where it starts."""
     runs = [
-        (run.text, run.italic, round(run.size * SIZE, 2), round(-run.rise * SIZE, 2)) for run in label.runs
+        (run.text, run.italic, *(round(x * SIZE, 2) for x in (run.size, -run.rise, run.back)))
+        for run in label.runs
     ]
     return round(label.x - width / 2, 2), round(label.y, 2), runs

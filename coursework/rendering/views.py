@@ -29,12 +29,15 @@ from coursework.rendering.markup import to_text
 
 Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 
-#: Room that a figure has on paper, width and height in mm: beside the data, and with the data below it.
-ROOM_BESIDE, ROOM_ALONE = (112.0, 62.0), (165.0, 72.0)
+#: Room that a figure has on paper, width and height in mm: beside the data, the same for one that would leave much of
+#: the width, and with the data below it.
+ROOM_BESIDE, ROOM_TALL, ROOM_ALONE = (112.0, 62.0), (112.0, 76.0), (165.0, 72.0)
+_SLENDER = 1.2  #: width over height of a mechanism that leaves about a third of the width beside the data
 ROOM_DATA = 46.0  #: width of the data beside it, whose longer lines are broken
 ROOM_STEP = (53.0, 200.0)  #: of a step of a construction, three of which stand side by side
 _TALL_BY_PAPER = 48.0  #: height that a figure has where there is paper to draw on as well
 _GUIDE_TOGETHER = 16  #: rows at most of a marking guide that no page's end may cut
+_FEW_QUESTIONS = 8  #: so many at most leave a page some height
 _BESIDE = 9  #: data at most that stand beside the figure
 
 #: The template of each type of sheet.
@@ -76,11 +79,20 @@ def figure_of(sheet: Sheet) -> Figure | None:
 
 def room(sheet: Sheet) -> tuple[float, float]:
     """Width and height in mm that a sheet leaves its figure."""
-    wide, tall = ROOM_BESIDE if _data_beside(sheet) else ROOM_ALONE
+    wide, tall = ROOM_ALONE
+    if _data_beside(sheet):
+        wide, tall = ROOM_TALL if _is_slender(sheet) else ROOM_BESIDE
     # Paper to draw on stands below the figure, on the same page if it may.
     return wide, min(tall, _TALL_BY_PAPER) if handout_of(sheet).drawing_mm and isinstance(
         sheet, Handout
     ) else tall
+
+
+def _is_slender(sheet: Sheet) -> bool:
+    """Whether a figure would leave much of its width, on a sheet whose questions leave some of its height."""
+    figure = _shown(sheet)
+    few = len(handout_of(sheet).questions) <= _FEW_QUESTIONS
+    return few and figure is not None and figure.aspect < _SLENDER
 
 
 def _shown(sheet: Sheet) -> Figure | None:
