@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from coursework.course import Course, open_course
-from coursework.errors import CourseworkError, nearest
+from coursework.errors import CourseworkError, NoSolution, nearest
 from coursework.issued import Issued
 from coursework.key import keys_of
 from coursework.marking import Mark, mark
@@ -192,13 +192,14 @@ class _Job(NamedTuple):
 def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True) -> Iterator[Graded]:
     """The sheets marked, in their order; ``printed`` where feedback sheets are to be made of them.
 
-    A sheet that the marking did not foresee costs itself alone: its rows are added to the rejected.
+    A sheet that cannot be marked costs itself alone: its rows are added to the rejected, and the warnings tell it.
 
     Raises
     ------
-    CourseworkError
+    NoSolution
         The course cannot mark.
     """
+    unmarked: Counter[tuple[str, str]] = Counter()
     places = list(sheets.sheets)
     chunks = [places[i : i + CHUNK] for i in range(0, len(places), CHUNK)]
 
@@ -217,11 +218,15 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
         for place, result in zip(chunk, results, strict=True):
             rows = sheets.sheets[place]
             if isinstance(result, str):
+                unmarked[place[1], result] += 1
                 reason = f"cannot be marked, somebody must look at it ({result})"
                 sheets.rejected += [Rejected(row.source, reason, _as_texts(row)) for row in rows.values()]
             else:
                 lines = map(Line._make, result)
                 yield Graded(*place, {line.part: line for line in lines}, tuple(rows), record(place))
+    for (exercise, why), count in unmarked.items():
+        what = "1 sheet" if count == 1 else f"{count} sheets"
+        sheets.warnings.append(f"{what} of {exercise} cannot be marked, see the rejected rows: {why}")
 
 
 def _marked_chunks(
@@ -269,7 +274,8 @@ def _mark_chunk(course: Course, chunk: Sequence[_Job], printed: bool) -> list[li
 def _mark_sheet(
     variant: Variant, answers: Mapping[str, Any], right: Mapping[str, str], printed: bool
 ) -> list[tuple] | str:
-    """A sheet's lines in the order of its parts; those that are plainly ``right`` are not marked anew."""
+    """A sheet's lines in the order of its parts, or why it cannot be marked; those that are plainly ``right`` are not
+    marked anew."""
     try:
         marking = mark(variant, answers, right) if len(right) < len(variant.parts) else {}
         lines = (
@@ -279,10 +285,12 @@ def _mark_sheet(
             for part in variant.parts
         )
         return [tuple(line) for line in lines]  # plain tuples pass between processes at half the price
-    except CourseworkError:
-        raise  # the course cannot mark: no row is at fault
-    except Exception as fault:  # a sheet that the reader did not foresee
-        return f"{type(fault).__name__}: {str(fault)[:80]}"
+    except NoSolution:
+        raise  # no sheet is at fault
+    except CourseworkError as fault:
+        return " ".join(str(fault).split())
+    except Exception as fault:  # what the reader or a judge of the course did not foresee
+        return f"{type(fault).__name__}: {' '.join(str(fault).split())[:80]}"
 
 
 def _right_line(variant: Variant, part: Part, answer: str, read_as: str) -> Line:
