@@ -21,28 +21,17 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import BadInput
+from coursework.gradebook import VERDICTS
 from coursework.submissions import delimiter_of
 
-#: Verdicts without what follows their colon, in the order they are tried.
-FAMILIES = (
-    "correct",
-    "follow_through",
-    "mistake",
-    "slip",
-    "wrong",
-    "wrong_unit",
-    "missing_unit",
-    "unreadable",
-    "missing",
-)
-RIGHT = ("correct", "follow_through")
+RIGHT = ("correct", "follow_through", "accepted")
 RECOGNISED = ("mistake", "slip")
 
 ENOUGH = 10  #: students below which a discrimination is chance
 WEAK = 0.15  #: a discrimination below which a part is worth a look
 BINS = 10  #: of the distribution of points
 
-PART_COLUMNS = ("exercise", "part", "answers", "right", "mean", "discrimination", *FAMILIES)
+PART_COLUMNS = ("exercise", "part", "answers", "right", "mean", "discrimination", *VERDICTS)
 MISTAKE_COLUMNS = ("exercise", "part", "kind", "mistake", "count", "share", "lost", "share_of_lost", "says")
 
 _MARKS = ("student", "exercise", "part", "verdict", "points", "out_of")
@@ -168,8 +157,8 @@ def _no_marks(folder: Path) -> str:
 
 def _check_verdicts(path: Path, verdicts: Mapping[str, int]) -> None:
     for verdict in verdicts:
-        if _family(verdict) not in FAMILIES:
-            raise BadInput(f"{path}: no verdict {verdict[:40]!r}; there is {', '.join(FAMILIES)}")
+        if _family(verdict) not in VERDICTS:
+            raise BadInput(f"{path}: no verdict {verdict[:40]!r}; there is {', '.join(VERDICTS)}")
 
 
 def _family(verdict: str) -> str:
@@ -251,7 +240,7 @@ class PartStatistics:
 
     @property
     def right(self) -> float:
-        """Share of the answers that are right, by themselves or from an earlier wrong one."""
+        """Share of the answers that are right: by themselves, from an earlier wrong one, or accepted by hand."""
         return self.share(*RIGHT)
 
     def row(self) -> dict[str, Any]:
@@ -264,7 +253,7 @@ class PartStatistics:
             "right": round(self.right, 4),
             "mean": round(self.mean, 4),
             "discrimination": None if r is None else round(r, 4),
-            **{f: round(self.share(f), 4) for f in FAMILIES},
+            **{f: round(self.share(f), 4) for f in VERDICTS},
         }
 
 
@@ -368,12 +357,12 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
     ``sheet_order`` gives the part ids of exercises as their sheets print them; parts that it does not
     know follow, in the order they are met.
     """
-    families = np.array([FAMILIES.index(_family(v)) for v in marks.verdicts], dtype=int)
+    families = np.array([VERDICTS.index(_family(v)) for v in marks.verdicts], dtype=int)
     family = families[marks.verdict]
     n = len(marks.parts)
     answers = np.bincount(marks.part, minlength=n)
-    counts = np.bincount(marks.part * len(FAMILIES) + family, minlength=n * len(FAMILIES))
-    counts = counts.reshape(n, len(FAMILIES))
+    counts = np.bincount(marks.part * len(VERDICTS) + family, minlength=n * len(VERDICTS))
+    counts = counts.reshape(n, len(VERDICTS))
     share = marks.points / marks.out_of
     mean = np.bincount(marks.part, share, minlength=n) / np.maximum(answers, 1)
     lost = np.bincount(marks.part, marks.out_of - marks.points, minlength=n)
@@ -391,7 +380,7 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
             *marks.parts[i],
             answers=int(answers[i]),
             students=askers[i],
-            counts=dict(zip(FAMILIES, counts[i].tolist(), strict=True)),
+            counts=dict(zip(VERDICTS, counts[i].tolist(), strict=True)),
             mean=float(mean[i]),
             discrimination=told[i],
             lost=float(lost[i]),
@@ -406,7 +395,7 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
         students=students,
         silent=students - int(np.count_nonzero(with_line)),
         answers=len(marks.student),
-        counts=dict(zip(FAMILIES, counts.sum(axis=0).tolist(), strict=True)),
+        counts=dict(zip(VERDICTS, counts.sum(axis=0).tolist(), strict=True)),
         without_line=marks.without_line,
         rejected=marks.rejected,
         percents=100 * total[has] / marks.issued[has],
