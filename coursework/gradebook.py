@@ -1,6 +1,7 @@
 """Marking a class: rows of answers against what was issued. Pure; :mod:`coursework.grading` writes the files.
 
-Every row in comes out once, as a marked row or as a rejected one. Sheets are marked by the hundred, so that
+Every row in comes out once, as a marked row or as a rejected one, or is counted where it is blank beside another to the
+same part. Sheets are marked by the hundred, so that
 what their variants share is computed once; many of them by several processes.
 """
 
@@ -77,6 +78,7 @@ class Sheets:
     rejected: list[Rejected] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     rows_in: int = 0
+    blanks: int = 0  #: rows without an answer where another row answers to the same part, or is blank too
     langs: dict[tuple[str, str, int], str] = field(default_factory=dict)  #: of the sheets that tell theirs
 
     @property
@@ -157,7 +159,14 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
                 near = nearest(row.part[:60], sorted(asked[key]))
                 reason = f"{row.exercise} has no part {row.part[:60]!r}{near}"
             elif row.part in sheet:
-                reason = f"repeats {sheet[row.part].source}, which is marked"
+                before = sheet[row.part]
+                if _is_blank(row):
+                    found.blanks += 1
+                    continue
+                if _is_blank(before):
+                    found.blanks += 1
+                else:
+                    reason = f"repeats {before.source}, which is marked"
         if reason:
             found.rejected.append(Rejected(row.source, reason, _as_texts(row)))
         else:
@@ -166,6 +175,10 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
                 found.langs[place] = row.lang
     found.sheets = {place: sheet for place, sheet in found.sheets.items() if sheet}
     return found
+
+
+def _is_blank(row: Row) -> bool:
+    return row.answer is None or (isinstance(row.answer, str) and not row.answer.strip())
 
 
 def _as_texts(row: Row) -> dict[str, str]:
@@ -358,6 +371,7 @@ class Gradebook:
 
     issued: Issued
     rows_in: int = 0
+    blanks: int = 0  #: rows without an answer where another row counts
     rejected: list[Rejected] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     students: dict[str, Total] = field(default_factory=dict)

@@ -59,7 +59,7 @@ def grade_files(
             yield from [found] if isinstance(found, Rejected) else read_file(found)
 
     sheets = gradebook.placed(course, issued, rows())
-    book = Gradebook(issued, sheets.rows_in, sheets.rejected, sheets.warnings)
+    book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
     shown: list[Graded] = []
     with ExitStack() as stack:
         marks = stack.enter_context(_Table(out / "marks.csv", gradebook.MARKS_COLUMNS))
