@@ -102,7 +102,7 @@ def _place(issued: Issued, row: Row) -> tuple[str, str, int]:
         raise _Refused(f"no student {row.student!r} on the roster{_near(row.student, issued.students)}")
     if row.exercise not in issued.exercises:
         raise _Refused(f"no exercise {row.exercise!r} was issued{_near(row.exercise, issued.exercises)}")
-    mine = issued.seeds.get((student.casefold(), row.exercise))
+    mine = issued.seeds.get((student, row.exercise))
     if not row.seed and mine is not None:
         return student, row.exercise, mine
     if not re.fullmatch(r"[0-9]{1,30}(\.0)?", row.seed):

@@ -22,6 +22,7 @@ from coursework.errors import BadInput, Starved, unknown
 from coursework.exercise import ALL, USUAL, CourseExercise
 from coursework.issued import ISSUED_FORMAT
 from coursework.language import languages
+from coursework.names import folded
 from coursework.submissions import delimiter_of
 from coursework.variant import Variant
 from coursework.worth import try_judges, worthy
@@ -71,12 +72,12 @@ def read_roster(path: Path) -> list[Student]:
             raise BadInput(
                 f"the roster {path}, line {number}: no language {lang!r}; there is {', '.join(languages())}"
             )
-        if name.casefold() in seen:
+        if folded(name) in seen:
             raise BadInput(
-                f"the roster {path}, line {number}: {name} stands on line {seen[name.casefold()]} already; "
+                f"the roster {path}, line {number}: {name} stands on line {seen[folded(name)]} already; "
                 "tell them apart, by a number for instance"
             )
-        seen[name.casefold()] = number
+        seen[folded(name)] = number
         students.append(Student(name, lang))
     if not students:
         raise BadInput(f"the roster {path} names no student")

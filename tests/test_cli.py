@@ -475,6 +475,8 @@ def test_a_users_mistake_is_one_line_and_status_2(cli, tmp_path, monkeypatch, ar
         ("nome\nAnn\n", "column named student"),
         ("student\n", "names no student"),
         ("student\nAnn\nann\n", "line 2"),
+        ("student\nJosé\nJose\u0301\n", "stands on line 2 already"),
+        ("student\nO'Neil\nO’Neil\n", "stands on line 2 already"),
         ("student,lang\nAnn,xx\n", "no language 'xx'"),
     ],
 )
