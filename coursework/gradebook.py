@@ -60,6 +60,7 @@ class Graded(NamedTuple):
     lines: Mapping[str, Line]
     answered: tuple[str, ...]
     record: Mapping[str, Any]  #: what was issued, in the language of the sheet that came back
+    unanswered: tuple[str, ...] = ()  #: parts accepted by hand that no row answers
 
     @property
     def points(self) -> float:
@@ -327,8 +328,8 @@ REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "
 
 
 def marks_rows(graded: Graded) -> Iterator[dict[str, Any]]:
-    """A sheet's lines of ``marks.csv``: its answers, in the order they came."""
-    for part in graded.answered:
+    """A sheet's lines of ``marks.csv``: its answers, in the order they came, then what was accepted without one."""
+    for part in (*graded.answered, *graded.unanswered):
         line = graded.lines[part]
         yield {
             "student": graded.student,
@@ -393,6 +394,8 @@ class Gradebook:
         for part in graded.answered:
             exercise.add(graded.lines[part])
             exercise.answers += 1
+        for part in graded.unanswered:
+            exercise.add(graded.lines[part])
 
     @property
     def needs_a_look(self) -> int:
