@@ -19,9 +19,10 @@ from coursework.errors import CourseworkError
 from coursework.gradebook import Gradebook, Graded
 from coursework.handout import FeedbackLine, FeedbackSheet
 from coursework.issued import Issued
-from coursework.issuing import file_stems, inert
+from coursework.issuing import file_stems
 from coursework.regrading import CHANGES_COLUMNS, Accepted, Before
 from coursework.submissions import Rejected, Row, find, read_file
+from coursework.tables import inert
 from coursework.telling import localised
 
 #: For so many students at most, feedback sheets are printed unless told.

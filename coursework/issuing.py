@@ -23,7 +23,7 @@ from coursework.exercise import ALL, USUAL, CourseExercise
 from coursework.issued import ISSUED_FORMAT
 from coursework.language import languages
 from coursework.names import folded
-from coursework.submissions import delimiter_of
+from coursework.tables import delimiter_of, inert
 from coursework.variant import Variant
 from coursework.worth import try_judges, worthy
 
@@ -307,12 +307,6 @@ def csv_text(rows: Iterable[Mapping[str, Any]], columns: Sequence[str]) -> str:
     for row in rows:
         writer.writerow({c: inert(row[c]) for c in columns})
     return out.getvalue()
-
-
-def inert(cell: Any) -> Any:
-    """The cell, or its text kept from being run: a formula that calls, pipes or reaches elsewhere."""
-    runs = isinstance(cell, str) and cell.lstrip()[:1] in ("=", "+", "-", "@") and set(cell) & set("(|!")
-    return f"'{cell}" if runs else cell
 
 
 def json_text(content: Any) -> str:

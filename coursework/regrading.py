@@ -12,7 +12,7 @@ from coursework.errors import BadInput
 from coursework.gradebook import Graded, Line
 from coursework.language import words
 from coursework.names import folded
-from coursework.submissions import delimiter_of
+from coursework.tables import as_written, delimiter_of, open_csv
 
 ACCEPTED = "accepted"
 CHANGES_COLUMNS = (
@@ -160,12 +160,16 @@ def _change(row: Mapping[str, Any], before: tuple[str, str], now: tuple[str, str
 
 def _rows(path: Path) -> Iterator[dict[str, str]]:
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
+        with open_csv(path) as file:
             delimiter = delimiter_of(file.readline())
             file.seek(0)
             for row in csv.DictReader(file, delimiter=delimiter):
-                yield {(k or "").strip().casefold(): v.strip() for k, v in row.items() if isinstance(v, str)}
+                yield {
+                    (k or "").strip().casefold(): as_written(v.strip())
+                    for k, v in row.items()
+                    if isinstance(v, str)
+                }
     except OSError as fault:
         raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
-    except (UnicodeDecodeError, csv.Error) as fault:
-        raise BadInput(f"{path} is not CSV in UTF-8: {fault}") from fault
+    except csv.Error as fault:
+        raise BadInput(f"{path} is not CSV: {fault}") from fault

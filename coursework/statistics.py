@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import csv
 import math
-import sys
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from operator import itemgetter
@@ -22,7 +20,7 @@ import numpy as np
 
 from coursework.errors import BadInput
 from coursework.gradebook import VERDICTS
-from coursework.submissions import delimiter_of
+from coursework.tables import delimiter_of, open_csv
 
 RIGHT = ("correct", "follow_through", "accepted")
 RECOGNISED = ("mistake", "slip")
@@ -30,6 +28,7 @@ RECOGNISED = ("mistake", "slip")
 ENOUGH = 10  #: students below which a discrimination is chance
 WEAK = 0.15  #: a discrimination below which a part is worth a look
 BINS = 10  #: of the distribution of points
+MOST_POINTS = 1e9  #: more is no number of points
 
 PART_COLUMNS = ("exercise", "part", "answers", "right", "mean", "discrimination", *VERDICTS)
 MISTAKE_COLUMNS = ("exercise", "part", "kind", "mistake", "count", "share", "lost", "share_of_lost", "says")
@@ -73,11 +72,11 @@ class _Numbered(dict):
 
 
 class _Decimals(dict):
-    """Texts to finite numbers, each read once; a comma is a point, as some spreadsheets save it."""
+    """Texts to numbers that points may be, each read once; a comma is a point, as some spreadsheets save it."""
 
     def __missing__(self, text: str) -> float:
         value = float(text.strip().replace(",", "."))
-        if not math.isfinite(value):
+        if not abs(value) <= MOST_POINTS:
             raise ValueError(text)
         self[text] = value
         return value
@@ -165,22 +164,12 @@ def _family(verdict: str) -> str:
     return verdict.partition(":")[0]
 
 
-@contextmanager
-def _long_cells() -> Iterator[None]:
-    """An answer of any length is a cell."""
-    before = csv.field_size_limit(min(sys.maxsize, 2**31 - 1))
-    try:
-        yield
-    finally:
-        csv.field_size_limit(before)
-
-
 def _lines(
     path: Path, columns: Sequence[str], decimals: _Decimals | None = None
 ) -> Iterator[tuple[Any, ...]]:
     """The named columns of a CSV, line by line; with ``decimals``, the last two of them as floats."""
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file, _long_cells():
+        with open_csv(path) as file:
             delimiter = delimiter_of(file.readline())
             file.seek(0)
             reader = csv.reader(file, delimiter=delimiter)
@@ -195,8 +184,6 @@ def _lines(
                         raise BadInput(_bad_line(path, reader.line_num, cells, columns, fault)) from fault
     except OSError as fault:
         raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
-    except UnicodeDecodeError as fault:
-        raise BadInput(f"{path} is not UTF-8; save it as “CSV UTF-8”") from fault
     except csv.Error as fault:
         raise BadInput(f"{path} is not CSV: {fault}") from fault
 
@@ -216,7 +203,7 @@ def _places(path: Path, header: Sequence[str], columns: Sequence[str]) -> list[i
 def _bad_line(path: Path, line: int, cells: Sequence[str], columns: Sequence[str], fault: Exception) -> str:
     if isinstance(fault, IndexError):
         return f"{path}, line {line}: {len(cells)} cells, too few for {', '.join(columns)}"
-    return f"{path}, line {line}: {' and '.join(columns[-2:])} are numbers; found {','.join(cells)[:60]!r}"
+    return f"{path}, line {line}: {' and '.join(columns[-2:])} are numbers, to {MOST_POINTS:g}; found {','.join(cells)[:60]!r}"
 
 
 # -------------------------------------------------------------------- measuring

@@ -229,6 +229,50 @@ def test_without_a_roster_a_name_is_shown_as_it_came_first(small_course, tmp_pat
     assert [s["student"] for s in table(out / "marks" / "summary.csv")] == ["Zoé"]
 
 
+@pytest.fixture
+def named(small_course, tmp_path):
+    """A sheet for each name of a roster; gives the form to fill and the folder of the build."""
+
+    def make(*names):
+        (tmp_path / "class.csv").write_text("\n".join(["student", *names]), "utf-8")
+        out = tmp_path / "out"
+        made = ["--roster", tmp_path / "class.csv", "--formats", "html", "--out", out]
+        assert course_run(small_course, "build", *made) == 0
+        return out / "answers.csv", out
+
+    return make
+
+
+def test_tables_saved_by_excel_are_read_again(small_course, named, tmp_path):
+    form, out = named("José García", "Zoë")
+    (tmp_path / "answers.csv").write_text(form.read_text("utf-8"), "utf-8")
+    accepted = out / "marks" / "accepted.csv"
+    accepted.parent.mkdir()
+    accepted.write_bytes("student;exercise;part;reason\nJosé García;crank_pin;y;très bien\n".encode("cp1252"))
+    assert grade(small_course, out) == 0
+    marks = out / "marks" / "marks.csv"
+    (line,) = (m for m in table(marks) if m["verdict"] == "accepted")
+    assert (line["student"], line["feedback"].endswith("très bien")) == ("José García", True)
+    marks.write_bytes(marks.read_text("utf-8").encode("cp1252"))
+    assert grade(small_course, out) == 0
+    assert table(out / "marks" / "changes.csv") == []
+
+
+def test_a_name_made_inert_is_the_same_student(small_course, named, tmp_path):
+    """In the form, in the marks that were there before, and where an answer is accepted."""
+    form, out = named("=Evil(1)", "-Bo (2)")
+    assert "'=Evil(1)" in form.read_text("utf-8")
+    (tmp_path / "answers.csv").write_text(form.read_text("utf-8").replace(",x,", ",x,'=2*(3+4)"), "utf-8")
+    (tmp_path / "by_hand.csv").write_text("student,exercise,part\n'=Evil(1),crank_pin,y\n", "utf-8")
+    for _ in range(2):
+        assert grade(small_course, out, "--accepted", tmp_path / "by_hand.csv") == 0
+    assert table(out / "marks" / "rejected.csv") == table(out / "marks" / "changes.csv") == []
+    marks = table(out / "marks" / "marks.csv")
+    assert [m["student"] for m in marks] == ["'=Evil(1)"] * 3 + ["'-Bo (2)"] * 3
+    assert {m["answer"] for m in marks} == {"", "'=2*(3+4)"}
+    assert [m["part"] for m in marks if m["verdict"] == "accepted"] == ["y"]
+
+
 def test_an_interrupted_marking_leaves_the_marks_that_were_there(small_course, issued, monkeypatch):
     grade(small_course, issued)
     before = {p.name: p.read_bytes() for p in (issued / "marks").iterdir()}
