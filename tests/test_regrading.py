@@ -290,6 +290,40 @@ def test_an_interrupted_marking_leaves_the_marks_that_were_there(small_course, i
     assert {p.name: p.read_bytes() for p in (issued / "marks").iterdir()} == before
 
 
+@pytest.mark.parametrize("name", ["marks.csv", "summary.csv", "rejected.csv", "changes.csv"])
+@pytest.mark.parametrize("late", [False, True])
+def test_a_table_that_cannot_be_replaced_costs_no_other(
+    small_course, issued, monkeypatch, capsys, name, late
+):
+    """Whether it is so from the start, or becomes so while the answers are marked."""
+    grade(small_course, issued)
+    grade(small_course, issued, "--accepted", _accepting(issued))
+    from coursework import gradebook
+
+    path = issued / "marks" / name
+    rows = gradebook.summary_rows
+
+    def obstruct(*given):
+        path.unlink()
+        path.mkdir()
+        return rows(*given) if given else None
+
+    monkeypatch.setattr(gradebook, "summary_rows", obstruct if late else rows)
+    if not late:
+        obstruct()
+    before = {p.name: p.read_bytes() for p in (issued / "marks").iterdir() if p.name != name}
+    capsys.readouterr()
+    assert grade(small_course, issued) == 2
+    assert f"{name} cannot be" in capsys.readouterr().err
+    assert {p.name: p.read_bytes() for p in (issued / "marks").iterdir() if p.name != name} == before
+
+
+def _accepting(issued):
+    path = issued.parent / "by_hand.csv"
+    path.write_text("student,exercise,part\nAda,crank_pin,y\n", "utf-8")
+    return path
+
+
 def test_parquet_marks_as_csv_does(small_course, issued, tmp_path):
     import pyarrow
     from pyarrow import parquet
