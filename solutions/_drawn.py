@@ -192,16 +192,17 @@ def _of_value(found, read, drawing, answers, asked):
 def _wrong_ways(found, read, values, drawing):
     """The mistakes that explain a value, from the right drawing or the student's own."""
     near = 2 * drawing.tolerance * drawing.scale * read.gain
-    if any(abs(found + value) <= near for value in values):
+    if any(abs(found + value) <= min(near, _MOST * abs(value)) for value in values):
         yield read.sense
-    if any(abs(found * drawing.scale - value) <= near for value in values):
+    if any(abs(found * drawing.scale - value) <= min(near, _MOST * abs(value)) for value in values):
         yield "scale_forgotten"
     for name, (start, end, gain) in read.wrong.items():
         images = drawing.polygon.points
         lengths = [abs(images[end] - images[start])]
         if start in drawing.points and end in drawing.points:
             lengths.append(abs(drawing.points[end] - drawing.points[start]) * drawing.scale)
-        if any(abs(abs(found) - n * gain) <= 2 * drawing.tolerance * drawing.scale * gain for n in lengths):
+        off = 2 * drawing.tolerance * drawing.scale * gain
+        if any(abs(abs(found) - n * gain) <= min(off, _MOST * n * gain) for n in lengths):
             yield name
 
 
