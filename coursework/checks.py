@@ -34,6 +34,7 @@ from coursework.worth import SHOWN, conditioning, judged_wrong, visibility, wort
 RENDERED = 1  #: variants whose sheets are rendered in every format and language
 NONSENSICAL = 20  #: variants that are answered by nonsense; it is read alike on all
 NONSENSE = ("?", "je ne sais pas", "12 +", "nan", "9**9**9", "1 = 1 = 1", "__import__('os')", "((((")
+EXTREMES = ("0", "1e308", "-1e308", "1e-320")  #: coordinates too
 
 
 def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) -> Report:
@@ -488,6 +489,26 @@ def check_nonsense(variant: Variant, report: Report) -> None:
             report.counts["nonsense"] += 1
             if mark.points and mark.verdict == "correct":
                 report.fail(f"seed {variant.seed}: {nonsense!r} marks correct on {part_id}")
+    for number in EXTREMES:
+        _check_extreme(variant, number, report)
+
+
+def _check_extreme(variant: Variant, number: str, report: Report) -> None:
+    """The same for a sheet of one absurd number, and for one such answer beside right ones to the same judge.
+
+    Where each answer stands for itself, nought may be right.
+    """
+    reference = {part.id: variant.key.reference[part.quantity] for part in variant.parts}
+    answers = {i: "; ".join([number] * np.size(value)) for i, value in reference.items()}
+    marking = variant.grade(answers)
+    report.counts["nonsense"] += len(answers)
+    for _, ids in judges_of(variant):
+        right = {i: _written(reference[i]) for i in ids}
+        for i in ids:
+            if marking[i].verdict == "correct":
+                report.fail(f"seed {variant.seed}: {i} marks correct where each answer is {number}")
+            variant.grade({**right, i: answers[i]})
+            report.counts["nonsense"] += 1
 
 
 # -------------------------------------------------------------------- rendering

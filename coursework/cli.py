@@ -671,7 +671,9 @@ def grade(
     """
     out = out or issued.parent / "marks"
     book = grade_with_bar(_course(context), submissions, issued, out, feedback=feedback, accepted=accepted)
-    click.echo(f"{book.rows_in} rows: {book.marked} marked, {len(book.rejected)} rejected; see {out}")
+    told = f"{book.rows_in} rows: {book.marked} marked, {len(book.rejected)} rejected"
+    told += f", {book.blanks} blank beside another" if book.blanks else ""
+    click.echo(f"{told}; see {out}")
     if book.changes:
         what = (
             "1 mark is not what it was"

@@ -18,6 +18,7 @@ from coursework.graph import plain_scalar
 from coursework.model import Part
 
 SLACK = 1e-12  #: relative, so that an answer on the tolerance's edge is inside it
+_FAR = 1e100  #: a point so far off is not computed with
 
 
 def distance(part: Part, value: Any, reference: Any, along: Any = None, envelope: float = 0.0) -> float:
@@ -66,14 +67,16 @@ def _over(gap: float, half_width: float, scale: float) -> float:
 
 
 def _off_point(part: Part, point: Any, reference: Any, envelope: float) -> float:
-    gap = float(np.linalg.norm(np.asarray(point, dtype=float) - reference))
-    size = float(np.linalg.norm(reference))
+    offset = np.asarray(point, dtype=float) - reference
+    if float(np.max(np.abs(offset))) > _FAR:
+        return math.inf
+    gap, size = float(np.linalg.norm(offset)), float(np.linalg.norm(reference))
     return _over(gap, max(part.half_width(size), envelope), size)
 
 
 def _off_line(part: Part, point: Any, reference: Any, along: Any, envelope: float) -> float:
     offset = np.asarray(point, dtype=float) - reference
-    if float(np.max(np.abs(offset))) > 1e100:
+    if float(np.max(np.abs(offset))) > _FAR:
         return math.inf
     axis = np.asarray(along, dtype=float)
     gap = float(np.linalg.norm(np.cross(offset, axis)) / np.linalg.norm(axis))

@@ -190,7 +190,7 @@ def _hand_in(course: Any, issued: Issued, out: Path) -> None:
     for number, student in enumerate(issued.students):
         habit = HABITS[number % len(HABITS)]
         for name in issued.exercises:
-            seed = issued.seeds[student.casefold(), name]
+            seed = issued.seeds[student, name]
             variant = course[name].from_record(issued.records[name, seed])
             key = variant.key
             answers = {p.id: habit(variant, key, p, place) for place, p in enumerate(variant.parts)}

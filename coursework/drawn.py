@@ -24,6 +24,7 @@ from coursework.polygons import Polygon, Side
 
 TOLERANCE_MM = 1.0  #: by which each drawn point may be off
 LEAST_MM = 20.0  #: of the longest vector, for tolerances of a millimetre; below, directions tell nothing
+MOST_MM = 1e9  #: from any pole; no paper is so wide, and what is drawn farther off is as wrong as there
 
 _SAME_SCALE = 0.05  #: by which two scales may differ and be one, drawn inexactly
 
@@ -99,6 +100,16 @@ class Drawing:
         return "length"
 
 
+def is_scale(polygon: Polygon, scale: float) -> bool:
+    """Whether the polygon can be drawn at a scale: a positive one, at which it is not beyond any paper."""
+    return 0 < scale < float("inf") and polygon.size <= MOST_MM * scale
+
+
+def on_paper(x: float, y: float) -> complex:
+    """A drawn point or arrow, brought back to the widest of papers, so that it can be computed with."""
+    return complex(*(max(-MOST_MM, min(MOST_MM, float(c))) for c in (x, y)))
+
+
 def judge_drawing(
     polygon: Polygon,
     points: Mapping[str, complex],
@@ -122,7 +133,7 @@ def judge_drawing(
     Raises
     ------
     WrongValue
-        The pole is missing, a coordinate is not finite, or the scale is not positive.
+        The pole is missing, a coordinate is not finite, or the scale is none: see :func:`is_scale`.
     UnknownName
         A point that the polygon does not have.
     """
@@ -133,8 +144,11 @@ def judge_drawing(
             raise WrongValue(f"point {name} of a drawing is {z}, not finite")
     if polygon.pole not in points:
         raise WrongValue(f"a drawing is judged from its pole {polygon.pole}, which is not among its points")
-    if scale is not None and not 0 < scale < float("inf"):
-        raise WrongValue(f"a scale of a drawing is positive; found {scale}")
+    if scale is not None and not is_scale(polygon, scale):
+        raise WrongValue(
+            f"a scale of a drawing is positive, and so large that it fits on paper; found {scale}"
+        )
+    points = {name: on_paper(z.real, z.imag) for name, z in points.items()}
     width = 2 * tolerance
     used, fits = _scale(polygon, points, scale, width)
     faults: dict[str, Fault] = {}
@@ -149,7 +163,7 @@ def judge_drawing(
         if fault:
             faults[point] = fault
     legible = polygon.size / used >= LEAST_MM * tolerance
-    return Drawing(polygon, dict(points), used, faults, legible, fits, tolerance, ideal)
+    return Drawing(polygon, points, used, faults, legible, fits, tolerance, ideal)
 
 
 def vector_fault(drawn: complex, right: complex, width: float) -> str:

@@ -1,6 +1,7 @@
 """Marking a class: rows of answers against what was issued. Pure; :mod:`coursework.grading` writes the files.
 
-Every row in comes out once, as a marked row or as a rejected one. Sheets are marked by the hundred, so that
+Every row in comes out once, as a marked row or as a rejected one, or is counted where it is blank beside another to the
+same part. Sheets are marked by the hundred, so that
 what their variants share is computed once; many of them by several processes.
 """
 
@@ -13,7 +14,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from coursework.course import Course, open_course
-from coursework.errors import CourseworkError, nearest
+from coursework.errors import CourseworkError, NoSolution, nearest
 from coursework.issued import Issued
 from coursework.key import keys_of
 from coursework.marking import Mark, mark
@@ -59,6 +60,7 @@ class Graded(NamedTuple):
     lines: Mapping[str, Line]
     answered: tuple[str, ...]
     record: Mapping[str, Any]  #: what was issued, in the language of the sheet that came back
+    unanswered: tuple[str, ...] = ()  #: parts accepted by hand that no row answers
 
     @property
     def points(self) -> float:
@@ -77,6 +79,7 @@ class Sheets:
     rejected: list[Rejected] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     rows_in: int = 0
+    blanks: int = 0  #: rows without an answer where another row answers to the same part, or is blank too
     langs: dict[tuple[str, str, int], str] = field(default_factory=dict)  #: of the sheets that tell theirs
 
     @property
@@ -100,7 +103,7 @@ def _place(issued: Issued, row: Row) -> tuple[str, str, int]:
         raise _Refused(f"no student {row.student!r} on the roster{_near(row.student, issued.students)}")
     if row.exercise not in issued.exercises:
         raise _Refused(f"no exercise {row.exercise!r} was issued{_near(row.exercise, issued.exercises)}")
-    mine = issued.seeds.get((student.casefold(), row.exercise))
+    mine = issued.seeds.get((student, row.exercise))
     if not row.seed and mine is not None:
         return student, row.exercise, mine
     if not re.fullmatch(r"[0-9]{1,30}(\.0)?", row.seed):
@@ -157,7 +160,14 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
                 near = nearest(row.part[:60], sorted(asked[key]))
                 reason = f"{row.exercise} has no part {row.part[:60]!r}{near}"
             elif row.part in sheet:
-                reason = f"repeats {sheet[row.part].source}, which is marked"
+                before = sheet[row.part]
+                if _is_blank(row):
+                    found.blanks += 1
+                    continue
+                if _is_blank(before):
+                    found.blanks += 1
+                else:
+                    reason = f"repeats {before.source}, which is marked"
         if reason:
             found.rejected.append(Rejected(row.source, reason, _as_texts(row)))
         else:
@@ -166,6 +176,10 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
                 found.langs[place] = row.lang
     found.sheets = {place: sheet for place, sheet in found.sheets.items() if sheet}
     return found
+
+
+def _is_blank(row: Row) -> bool:
+    return row.answer is None or (isinstance(row.answer, str) and not row.answer.strip())
 
 
 def _as_texts(row: Row) -> dict[str, str]:
@@ -192,13 +206,14 @@ class _Job(NamedTuple):
 def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True) -> Iterator[Graded]:
     """The sheets marked, in their order; ``printed`` where feedback sheets are to be made of them.
 
-    A sheet that the marking did not foresee costs itself alone: its rows are added to the rejected.
+    A sheet that cannot be marked costs itself alone: its rows are added to the rejected, and the warnings tell it.
 
     Raises
     ------
-    CourseworkError
+    NoSolution
         The course cannot mark.
     """
+    unmarked: Counter[tuple[str, str]] = Counter()
     places = list(sheets.sheets)
     chunks = [places[i : i + CHUNK] for i in range(0, len(places), CHUNK)]
 
@@ -217,11 +232,15 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
         for place, result in zip(chunk, results, strict=True):
             rows = sheets.sheets[place]
             if isinstance(result, str):
+                unmarked[place[1], result] += 1
                 reason = f"cannot be marked, somebody must look at it ({result})"
                 sheets.rejected += [Rejected(row.source, reason, _as_texts(row)) for row in rows.values()]
             else:
                 lines = map(Line._make, result)
                 yield Graded(*place, {line.part: line for line in lines}, tuple(rows), record(place))
+    for (exercise, why), count in unmarked.items():
+        what = "1 sheet" if count == 1 else f"{count} sheets"
+        sheets.warnings.append(f"{what} of {exercise} cannot be marked, see the rejected rows: {why}")
 
 
 def _marked_chunks(
@@ -269,7 +288,8 @@ def _mark_chunk(course: Course, chunk: Sequence[_Job], printed: bool) -> list[li
 def _mark_sheet(
     variant: Variant, answers: Mapping[str, Any], right: Mapping[str, str], printed: bool
 ) -> list[tuple] | str:
-    """A sheet's lines in the order of its parts; those that are plainly ``right`` are not marked anew."""
+    """A sheet's lines in the order of its parts, or why it cannot be marked; those that are plainly ``right`` are not
+    marked anew."""
     try:
         marking = mark(variant, answers, right) if len(right) < len(variant.parts) else {}
         lines = (
@@ -279,10 +299,12 @@ def _mark_sheet(
             for part in variant.parts
         )
         return [tuple(line) for line in lines]  # plain tuples pass between processes at half the price
-    except CourseworkError:
-        raise  # the course cannot mark: no row is at fault
-    except Exception as fault:  # a sheet that the reader did not foresee
-        return f"{type(fault).__name__}: {str(fault)[:80]}"
+    except NoSolution:
+        raise  # no sheet is at fault
+    except CourseworkError as fault:
+        return " ".join(str(fault).split())
+    except Exception as fault:  # what the reader or a judge of the course did not foresee
+        return f"{type(fault).__name__}: {' '.join(str(fault).split())[:80]}"
 
 
 def _right_line(variant: Variant, part: Part, answer: str, read_as: str) -> Line:
@@ -306,8 +328,8 @@ REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "
 
 
 def marks_rows(graded: Graded) -> Iterator[dict[str, Any]]:
-    """A sheet's lines of ``marks.csv``: its answers, in the order they came."""
-    for part in graded.answered:
+    """A sheet's lines of ``marks.csv``: its answers, in the order they came, then what was accepted without one."""
+    for part in (*graded.answered, *graded.unanswered):
         line = graded.lines[part]
         yield {
             "student": graded.student,
@@ -350,6 +372,7 @@ class Gradebook:
 
     issued: Issued
     rows_in: int = 0
+    blanks: int = 0  #: rows without an answer where another row counts
     rejected: list[Rejected] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     students: dict[str, Total] = field(default_factory=dict)
@@ -371,6 +394,8 @@ class Gradebook:
         for part in graded.answered:
             exercise.add(graded.lines[part])
             exercise.answers += 1
+        for part in graded.unanswered:
+            exercise.add(graded.lines[part])
 
     @property
     def needs_a_look(self) -> int:

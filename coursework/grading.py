@@ -1,6 +1,7 @@
 """The job of Monday: files of answers in; marks, summary, rejected rows and feedback sheets out.
 
-The tables appear together, whole, in place of those before, or not at all.
+The tables appear together, whole, in place of those before, or not at all: none takes its place before all are written
+and each is seen to be replaceable.
 """
 
 from __future__ import annotations
@@ -8,20 +9,21 @@ from __future__ import annotations
 import csv
 import shutil
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from coursework import gradebook
 from coursework.building import File, write
 from coursework.course import Course
-from coursework.errors import CourseworkError
+from coursework.errors import BadInput, CourseworkError
 from coursework.gradebook import Gradebook, Graded
 from coursework.handout import FeedbackLine, FeedbackSheet
 from coursework.issued import Issued
-from coursework.issuing import file_stems, inert
+from coursework.issuing import file_stems
 from coursework.regrading import CHANGES_COLUMNS, Accepted, Before
 from coursework.submissions import Rejected, Row, find, read_file
+from coursework.tables import inert
 from coursework.telling import localised
 
 #: For so many students at most, feedback sheets are printed unless told.
@@ -59,11 +61,13 @@ def grade_files(
             yield from [found] if isinstance(found, Rejected) else read_file(found)
 
     sheets = gradebook.placed(course, issued, rows())
-    book = Gradebook(issued, sheets.rows_in, sheets.rejected, sheets.warnings)
+    book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
     shown: list[Graded] = []
-    with ExitStack() as stack:
-        marks = stack.enter_context(_Table(out / "marks.csv", gradebook.MARKS_COLUMNS))
-        changes = stack.enter_context(_Table(out / "changes.csv", CHANGES_COLUMNS)) if before.exists else None
+    with _Tables(out) as tables:
+        marks = tables.open("marks.csv", gradebook.MARKS_COLUMNS)
+        summary = tables.open("summary.csv", gradebook.SUMMARY_COLUMNS)
+        rejected = tables.open("rejected.csv", gradebook.REJECTED_COLUMNS)
+        changes = tables.open("changes.csv", CHANGES_COLUMNS) if before.exists else None
         for done, graded in enumerate(gradebook.marked(course, issued, sheets, printed=feedback), start=1):
             graded = by_hand.apply(graded, str(graded.record.get("lang", "fr")))
             book.add(graded)
@@ -80,51 +84,85 @@ def grade_files(
                 changes.write(change)
             book.changes = changes.rows
         book.warnings += [f"accepted by hand, but never answered: {place}" for place in by_hand.unused]
-        with _Table(out / "summary.csv", gradebook.SUMMARY_COLUMNS) as summary:
-            for row in gradebook.summary_rows(book):
-                summary.write(row)
-            with _Table(out / "rejected.csv", gradebook.REJECTED_COLUMNS) as rejected:
-                for row in gradebook.rejected_rows(book.rejected):
-                    rejected.write(row)
-                marks.keep(), summary.keep(), rejected.keep()
-                if changes is not None:
-                    changes.keep()
+        for row in gradebook.summary_rows(book):
+            summary.write(row)
+        for row in gradebook.rejected_rows(book.rejected):
+            rejected.write(row)
+        tables.keep()
     if feedback:
         _write_feedback(course, book, shown, out / "feedback", progress)
     return book
 
 
 class _Table:
-    """A CSV file that appears when it is kept, and leaves nothing behind when it is not."""
+    """A CSV file being written, beside the one whose place it is to take."""
 
     def __init__(self, path: Path, columns: Sequence[str]) -> None:
-        self._path, self._part = path, path.with_name(path.name + ".part")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        self._file = self._part.open("w", encoding="utf-8", newline="")
-        self._writer = csv.writer(self._file)
+        self.path, self.part = path, path.with_name(path.name + ".part")
+        self.file = self.part.open("w", encoding="utf-8", newline="")
+        self._writer = csv.writer(self.file)
         self._columns = tuple(columns)
         self._writer.writerow(self._columns)
-        self._kept = False
         self.rows = 0
-
-    def __enter__(self) -> _Table:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._file.close()
-        if self._kept:
-            self._part.replace(self._path)
-        else:
-            self._part.unlink(missing_ok=True)
 
     def write(self, row: dict[str, Any]) -> None:
         self._writer.writerow([inert(row[c]) for c in self._columns])
         self.rows += 1
 
+
+class _Tables:
+    """Tables of one folder that take their places together when they are kept, and leave nothing when they are not.
+
+    Raises
+    ------
+    BadInput
+        One of them cannot take its place; told before the first is written, and again before the first is kept.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._tables: list[_Table] = []
+
+    def __enter__(self) -> _Tables:
+        self._folder.mkdir(parents=True, exist_ok=True)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for table in self._tables:
+            with suppress(OSError):  # a full disk has been told already
+                table.file.close()
+            table.part.unlink(missing_ok=True)
+
+    def open(self, name: str, columns: Sequence[str]) -> _Table:
+        path = self._folder / name
+        _check_replaceable(path)
+        self._tables.append(_Table(path, columns))
+        return self._tables[-1]
+
     def keep(self) -> None:
-        """Let the file take its place when all are done."""
-        self._file.flush()
-        self._kept = True
+        """Let the tables take their places: all are whole, and can, before the first does."""
+        for table in self._tables:
+            table.file.close()
+            _check_replaceable(table.path)
+        for table in self._tables:
+            with _told(table.path):
+                table.part.replace(table.path)
+
+
+def _check_replaceable(path: Path) -> None:
+    with _told(path):
+        if path.exists():
+            path.open("ab").close()
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except OSError as fault:
+        raise BadInput(
+            f"{path} cannot be written ({fault.strerror}); close what has it open, move it away, or choose another --out"
+        ) from fault
 
 
 def feedback_sheet(course: Course, graded: Graded) -> FeedbackSheet:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from coursework.errors import BadInput
+from coursework.names import folded
 
 ISSUED_FORMAT = 1
 
@@ -38,10 +39,11 @@ class Issued:
             self.records[key] = record
             if student:
                 self.owner[key] = student
-                self.seeds[student.casefold(), key[0]] = key[1]
+                self.seeds[student, key[0]] = key[1]
         self.exercises = tuple(dict.fromkeys(exercise for exercise, _ in self.records))
         self.students = tuple(dict.fromkeys(self.owner.values()))
-        self._student_named = {s.casefold(): s for s in self.students}
+        self._named = frozenset(self.students)
+        self._known = {folded(s): s for s in self.students}
 
     @staticmethod
     def read(path: Path) -> Issued:
@@ -60,12 +62,13 @@ class Issued:
             raise BadInput(f"{path} is not JSON: {str(fault)[:100]}") from fault
 
     def student(self, name: str) -> str | None:
-        """The student's name as issued; None for a stranger to the roster."""
-        if not self.has_roster:
+        """The student's name as issued, or without a roster as it came first; None for a stranger to the roster."""
+        if name in self._named:
             return name
-        return self._student_named.get(" ".join(name.split()).casefold())
+        if not self.has_roster:
+            return self._known.setdefault(folded(name), name)
+        return self._known.get(folded(name))
 
     def issued_to(self, student: str) -> dict[str, int]:
         """The seeds that a student of the roster was issued, by exercise."""
-        named = student.casefold()
-        return {e: self.seeds[named, e] for e in self.exercises if (named, e) in self.seeds}
+        return {e: self.seeds[student, e] for e in self.exercises if (student, e) in self.seeds}

@@ -22,7 +22,8 @@ from coursework.errors import BadInput, Starved, unknown
 from coursework.exercise import ALL, USUAL, CourseExercise
 from coursework.issued import ISSUED_FORMAT
 from coursework.language import languages
-from coursework.submissions import delimiter_of
+from coursework.names import folded
+from coursework.tables import delimiter_of, inert
 from coursework.variant import Variant
 from coursework.worth import try_judges, worthy
 
@@ -71,12 +72,12 @@ def read_roster(path: Path) -> list[Student]:
             raise BadInput(
                 f"the roster {path}, line {number}: no language {lang!r}; there is {', '.join(languages())}"
             )
-        if name.casefold() in seen:
+        if folded(name) in seen:
             raise BadInput(
-                f"the roster {path}, line {number}: {name} stands on line {seen[name.casefold()]} already; "
+                f"the roster {path}, line {number}: {name} stands on line {seen[folded(name)]} already; "
                 "tell them apart, by a number for instance"
             )
-        seen[name.casefold()] = number
+        seen[folded(name)] = number
         students.append(Student(name, lang))
     if not students:
         raise BadInput(f"the roster {path} names no student")
@@ -306,12 +307,6 @@ def csv_text(rows: Iterable[Mapping[str, Any]], columns: Sequence[str]) -> str:
     for row in rows:
         writer.writerow({c: inert(row[c]) for c in columns})
     return out.getvalue()
-
-
-def inert(cell: Any) -> Any:
-    """The cell, or its text kept from being run: a formula that calls, pipes or reaches elsewhere."""
-    runs = isinstance(cell, str) and cell.lstrip()[:1] in ("=", "+", "-", "@") and set(cell) & set("(|!")
-    return f"'{cell}" if runs else cell
 
 
 def json_text(content: Any) -> str:

@@ -11,6 +11,8 @@ from collections.abc import Callable, Collection, Iterator, Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from coursework.errors import BadCourse, CannotAssemble, Undefined
 from coursework.reading import Reading
 from coursework.solution import Judged
@@ -49,7 +51,8 @@ def judged(
         **solution.graph.evaluate(computed, {**variant.used, **(own or {})}, variant.effects),
     }
     needed = {n: values[n] for n in _needs(variant, name)}
-    found = dict(solution.judge(name)(dict(answers), **needed))
+    with np.errstate(all="ignore"):  # what is computed from an absurd answer is not finite, and not right
+        found = dict(solution.judge(name)(dict(answers), **needed))
     complete = all(part in answers for part in dict(judges_of(variant))[name])
     if complete and (unsaid := sorted(answers.keys() - found.keys())):
         raise BadCourse(f"{source} says nothing of {unsaid[0]!r}")

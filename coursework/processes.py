@@ -35,7 +35,7 @@ def workers(tasks: int) -> int:
 
 @contextmanager
 def processes(count: int) -> Iterator[Submit]:
-    """So many new processes, which end with the context; a fault in it drops the tasks that have not begun.
+    """So many new processes, which end with the context; a fault in it, or Ctrl-C, ends them at once, whatever they do.
 
     New ones, not forked ones: the typesetter must not be carried over. They leave Ctrl-C to this process.
 
@@ -54,6 +54,8 @@ def processes(count: int) -> Iterator[Submit]:
             try:
                 yield submit
             except BaseException:
+                for worker in list((pool._processes or {}).values()):  # public from Python 3.14 on
+                    worker.terminate()
                 pool.shutdown(cancel_futures=True)
                 raise
     except BrokenProcessPool as broken:

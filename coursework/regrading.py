@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from coursework.errors import BadInput
 from coursework.gradebook import Graded, Line
 from coursework.language import words
-from coursework.submissions import delimiter_of
+from coursework.names import folded
+from coursework.tables import as_written, delimiter_of, open_csv
 
 ACCEPTED = "accepted"
 CHANGES_COLUMNS = (
@@ -22,10 +24,16 @@ _PLACE = ("student", "exercise", "seed", "part")
 
 class Accepted:
     """Answers accepted by hand: a CSV with ``student,exercise,seed,part`` and, if wanted, ``points`` and
-    ``reason``. An answer so named has full points, or those that are said."""
+    ``reason``. An answer so named has full points, or those that are said.
+
+    Raises
+    ------
+    BadInput
+        The file cannot be read, a line names no answer, or its points are none.
+    """
 
     def __init__(self, path: Path | None) -> None:
-        self._by_place: dict[tuple[str, str, str, str], Mapping[str, str]] = {}
+        self._by_place: dict[tuple[str, str, str, str], _Acceptance] = {}
         self.path = path
         self.used: set[tuple[str, str, str, str]] = set()
         if path is None:
@@ -37,50 +45,74 @@ class Accepted:
                 raise BadInput(
                     f"{path}, line {number}: {', '.join(missing)} missing; name the answer to accept"
                 )
-            points = row.get("points", "")
-            if points and _points(points) is None:
-                raise BadInput(f"{path}, line {number}: points are a number; found {points!r}")
-            self._by_place[self._key(row["student"], row["exercise"], row.get("seed", ""), row["part"])] = row
+            place = f"{path}, line {number}"
+            named = (row["student"], row["exercise"], row.get("seed", ""), row["part"])
+            points = _points(row.get("points", ""), place)
+            self._by_place[self._key(*named)] = _Acceptance(place, named, points, row.get("reason", ""))
 
     @staticmethod
     def _key(student: str, exercise: str, seed: Any, part: str) -> tuple[str, str, str, str]:
-        return student.casefold(), exercise, str(seed), part
+        return folded(student), exercise, str(seed), part
 
     def apply(self, graded: Graded, lang: str) -> Graded:
-        """The sheet with its accepted answers marked so."""
+        """The sheet with its accepted answers marked so, those too that no row gave.
+
+        Raises
+        ------
+        BadInput
+            An answer is given more points than its part has.
+        """
         if not self._by_place:
             return graded
-        lines = dict(graded.lines)
+        lines, unanswered = dict(graded.lines), []
         for part, line in graded.lines.items():
             for seed in (graded.seed, ""):
                 key = self._key(graded.student, graded.exercise, seed, part)
-                row = self._by_place.get(key)
-                if row is not None:
+                found = self._by_place.get(key)
+                if found is not None:
                     self.used.add(key)
-                    lines[part] = _accepted(line, row, lang)
-        return graded._replace(lines=lines)
+                    lines[part] = _accepted(line, found, lang)
+                    if part not in (*graded.answered, *unanswered):
+                        unanswered.append(part)
+        return graded._replace(lines=lines, unanswered=tuple(unanswered))
 
     @property
     def unused(self) -> list[str]:
         """The answers named that nobody gave."""
-        return [", ".join(filter(None, key)) for key in self._by_place if key not in self.used]
+        return [
+            ", ".join(filter(None, one.named)) for key, one in self._by_place.items() if key not in self.used
+        ]
 
 
-def _accepted(line: Line, row: Mapping[str, str], lang: str) -> Line:
-    points = _points(row.get("points", ""))
-    said = words(lang)["marking"]["accepted"]
-    reason = row.get("reason", "").strip()
-    says = f"{said} {reason}".strip()
-    return line._replace(
-        verdict=ACCEPTED, points=line.out_of if points is None else points, says=says, feedback=says
-    )
+class _Acceptance(NamedTuple):
+    """A line of the file."""
+
+    place: str
+    named: tuple[str, str, str, str]  #: as it is written
+    points: float | None  #: None for all of them
+    reason: str
 
 
-def _points(text: str) -> float | None:
-    try:
-        return float(text.replace(",", ".")) if text.strip() else None
-    except ValueError:
+def _accepted(line: Line, found: _Acceptance, lang: str) -> Line:
+    points = line.out_of if found.points is None else found.points
+    if points > line.out_of:
+        raise BadInput(
+            f"{found.place}: {points:g} points for {line.part}, which has {line.out_of:g}; give that or fewer"
+        )
+    says = f"{words(lang)['marking']['accepted']} {found.reason}".strip()
+    return line._replace(verdict=ACCEPTED, points=points, says=says, feedback=says)
+
+
+def _points(text: str, place: str) -> float | None:
+    if not text:
         return None
+    try:
+        points = float(text.replace(",", "."))
+    except ValueError:
+        points = math.nan
+    if not 0 <= points < math.inf:
+        raise BadInput(f"{place}: points are a number, 0 or more; found {text[:40]!r}")
+    return points
 
 
 class Before:
@@ -88,24 +120,32 @@ class Before:
 
     def __init__(self, path: Path) -> None:
         self._marks: dict[str, tuple[str, str]] = {}
+        self._names: dict[str, str] = {}  #: as they are written
         self.exists = path.exists()
         if self.exists:
             alike: dict[tuple[str, str], tuple[str, str]] = {}
             for row in _rows(path):
                 mark = (row.get("verdict", ""), row.get("points", ""))
-                self._marks["\0".join(row.get(c, "") for c in _PLACE)] = alike.setdefault(mark, mark)
+                self._names.setdefault(folded(row.get("student", "")), row.get("student", ""))
+                self._marks[_place(row)] = alike.setdefault(mark, mark)
 
     def changed(self, row: Mapping[str, Any]) -> dict[str, Any] | None:
         """What changed in a row of the new marks; None when nothing did."""
         now = (row["verdict"], row["points"])
-        before = self._marks.pop("\0".join(str(row[c]) for c in _PLACE), ("", ""))
+        before = self._marks.pop(_place(row), ("", ""))
         return None if before == now else _change(row, before, now)
 
     def gone(self) -> Iterator[dict[str, Any]]:
         """Marks that are no more."""
         for place, before in self._marks.items():
             row = dict(zip(_PLACE, place.split("\0"), strict=True))
-            yield _change({**row, "answer": ""}, before, ("", ""))
+            yield _change({**row, "student": self._names[row["student"]], "answer": ""}, before, ("", ""))
+
+
+def _place(row: Mapping[str, Any]) -> str:
+    """Which answer a row of marks is of; one text, of which a large class has many."""
+    student, *rest = (str(row.get(c, "")) for c in _PLACE)
+    return "\0".join((folded(student), *rest))
 
 
 def _change(row: Mapping[str, Any], before: tuple[str, str], now: tuple[str, str]) -> dict[str, Any]:
@@ -120,12 +160,16 @@ def _change(row: Mapping[str, Any], before: tuple[str, str], now: tuple[str, str
 
 def _rows(path: Path) -> Iterator[dict[str, str]]:
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file:
+        with open_csv(path) as file:
             delimiter = delimiter_of(file.readline())
             file.seek(0)
             for row in csv.DictReader(file, delimiter=delimiter):
-                yield {(k or "").strip().casefold(): (v or "") for k, v in row.items() if isinstance(v, str)}
+                yield {
+                    (k or "").strip().casefold(): as_written(v.strip())
+                    for k, v in row.items()
+                    if isinstance(v, str)
+                }
     except OSError as fault:
         raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
-    except (UnicodeDecodeError, csv.Error) as fault:
-        raise BadInput(f"{path} is not CSV in UTF-8: {fault}") from fault
+    except csv.Error as fault:
+        raise BadInput(f"{path} is not CSV: {fault}") from fault

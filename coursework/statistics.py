@@ -8,10 +8,8 @@ from __future__ import annotations
 
 import csv
 import math
-import sys
 from array import array
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
 from operator import itemgetter
@@ -21,28 +19,18 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import BadInput
-from coursework.submissions import delimiter_of
+from coursework.gradebook import VERDICTS
+from coursework.tables import delimiter_of, open_csv
 
-#: Verdicts without what follows their colon, in the order they are tried.
-FAMILIES = (
-    "correct",
-    "follow_through",
-    "mistake",
-    "slip",
-    "wrong",
-    "wrong_unit",
-    "missing_unit",
-    "unreadable",
-    "missing",
-)
-RIGHT = ("correct", "follow_through")
+RIGHT = ("correct", "follow_through", "accepted")
 RECOGNISED = ("mistake", "slip")
 
 ENOUGH = 10  #: students below which a discrimination is chance
 WEAK = 0.15  #: a discrimination below which a part is worth a look
 BINS = 10  #: of the distribution of points
+MOST_POINTS = 1e9  #: more is no number of points
 
-PART_COLUMNS = ("exercise", "part", "answers", "right", "mean", "discrimination", *FAMILIES)
+PART_COLUMNS = ("exercise", "part", "answers", "right", "mean", "discrimination", *VERDICTS)
 MISTAKE_COLUMNS = ("exercise", "part", "kind", "mistake", "count", "share", "lost", "share_of_lost", "says")
 
 _MARKS = ("student", "exercise", "part", "verdict", "points", "out_of")
@@ -84,11 +72,11 @@ class _Numbered(dict):
 
 
 class _Decimals(dict):
-    """Texts to finite numbers, each read once; a comma is a point, as some spreadsheets save it."""
+    """Texts to numbers that points may be, each read once; a comma is a point, as some spreadsheets save it."""
 
     def __missing__(self, text: str) -> float:
         value = float(text.strip().replace(",", "."))
-        if not math.isfinite(value):
+        if not abs(value) <= MOST_POINTS:
             raise ValueError(text)
         self[text] = value
         return value
@@ -168,22 +156,12 @@ def _no_marks(folder: Path) -> str:
 
 def _check_verdicts(path: Path, verdicts: Mapping[str, int]) -> None:
     for verdict in verdicts:
-        if _family(verdict) not in FAMILIES:
-            raise BadInput(f"{path}: no verdict {verdict[:40]!r}; there is {', '.join(FAMILIES)}")
+        if _family(verdict) not in VERDICTS:
+            raise BadInput(f"{path}: no verdict {verdict[:40]!r}; there is {', '.join(VERDICTS)}")
 
 
 def _family(verdict: str) -> str:
     return verdict.partition(":")[0]
-
-
-@contextmanager
-def _long_cells() -> Iterator[None]:
-    """An answer of any length is a cell."""
-    before = csv.field_size_limit(min(sys.maxsize, 2**31 - 1))
-    try:
-        yield
-    finally:
-        csv.field_size_limit(before)
 
 
 def _lines(
@@ -191,7 +169,7 @@ def _lines(
 ) -> Iterator[tuple[Any, ...]]:
     """The named columns of a CSV, line by line; with ``decimals``, the last two of them as floats."""
     try:
-        with path.open(encoding="utf-8-sig", newline="") as file, _long_cells():
+        with open_csv(path) as file:
             delimiter = delimiter_of(file.readline())
             file.seek(0)
             reader = csv.reader(file, delimiter=delimiter)
@@ -206,8 +184,6 @@ def _lines(
                         raise BadInput(_bad_line(path, reader.line_num, cells, columns, fault)) from fault
     except OSError as fault:
         raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
-    except UnicodeDecodeError as fault:
-        raise BadInput(f"{path} is not UTF-8; save it as “CSV UTF-8”") from fault
     except csv.Error as fault:
         raise BadInput(f"{path} is not CSV: {fault}") from fault
 
@@ -227,7 +203,7 @@ def _places(path: Path, header: Sequence[str], columns: Sequence[str]) -> list[i
 def _bad_line(path: Path, line: int, cells: Sequence[str], columns: Sequence[str], fault: Exception) -> str:
     if isinstance(fault, IndexError):
         return f"{path}, line {line}: {len(cells)} cells, too few for {', '.join(columns)}"
-    return f"{path}, line {line}: {' and '.join(columns[-2:])} are numbers; found {','.join(cells)[:60]!r}"
+    return f"{path}, line {line}: {' and '.join(columns[-2:])} are numbers, to {MOST_POINTS:g}; found {','.join(cells)[:60]!r}"
 
 
 # -------------------------------------------------------------------- measuring
@@ -251,7 +227,7 @@ class PartStatistics:
 
     @property
     def right(self) -> float:
-        """Share of the answers that are right, by themselves or from an earlier wrong one."""
+        """Share of the answers that are right: by themselves, from an earlier wrong one, or accepted by hand."""
         return self.share(*RIGHT)
 
     def row(self) -> dict[str, Any]:
@@ -264,7 +240,7 @@ class PartStatistics:
             "right": round(self.right, 4),
             "mean": round(self.mean, 4),
             "discrimination": None if r is None else round(r, 4),
-            **{f: round(self.share(f), 4) for f in FAMILIES},
+            **{f: round(self.share(f), 4) for f in VERDICTS},
         }
 
 
@@ -368,12 +344,12 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
     ``sheet_order`` gives the part ids of exercises as their sheets print them; parts that it does not
     know follow, in the order they are met.
     """
-    families = np.array([FAMILIES.index(_family(v)) for v in marks.verdicts], dtype=int)
+    families = np.array([VERDICTS.index(_family(v)) for v in marks.verdicts], dtype=int)
     family = families[marks.verdict]
     n = len(marks.parts)
     answers = np.bincount(marks.part, minlength=n)
-    counts = np.bincount(marks.part * len(FAMILIES) + family, minlength=n * len(FAMILIES))
-    counts = counts.reshape(n, len(FAMILIES))
+    counts = np.bincount(marks.part * len(VERDICTS) + family, minlength=n * len(VERDICTS))
+    counts = counts.reshape(n, len(VERDICTS))
     share = marks.points / marks.out_of
     mean = np.bincount(marks.part, share, minlength=n) / np.maximum(answers, 1)
     lost = np.bincount(marks.part, marks.out_of - marks.points, minlength=n)
@@ -391,7 +367,7 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
             *marks.parts[i],
             answers=int(answers[i]),
             students=askers[i],
-            counts=dict(zip(FAMILIES, counts[i].tolist(), strict=True)),
+            counts=dict(zip(VERDICTS, counts[i].tolist(), strict=True)),
             mean=float(mean[i]),
             discrimination=told[i],
             lost=float(lost[i]),
@@ -406,7 +382,7 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
         students=students,
         silent=students - int(np.count_nonzero(with_line)),
         answers=len(marks.student),
-        counts=dict(zip(FAMILIES, counts.sum(axis=0).tolist(), strict=True)),
+        counts=dict(zip(VERDICTS, counts.sum(axis=0).tolist(), strict=True)),
         without_line=marks.without_line,
         rejected=marks.rejected,
         percents=100 * total[has] / marks.issued[has],

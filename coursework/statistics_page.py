@@ -14,6 +14,7 @@ from coursework.charts import bars, formula_label, histogram, plain_label
 from coursework.course import Course
 from coursework.errors import CourseworkError
 from coursework.exercise import CourseExercise
+from coursework.gradebook import VERDICTS
 from coursework.language import listed, localise, plain, words
 from coursework.rendering.markup import drawable, to_text
 from coursework.rendering.typography import typeset
@@ -21,7 +22,6 @@ from coursework.report import Chart, Report, Section, Table
 from coursework.statistics import (
     BINS,
     ENOUGH,
-    FAMILIES,
     MISTAKE_COLUMNS,
     WEAK,
     MistakeStatistics,
@@ -201,7 +201,7 @@ class _Page:
 
     def _verdict_table(self, parts: Sequence[PartStatistics]) -> Table:
         """The verdicts that some answer has; the others have no column."""
-        met = [f for f in FAMILIES if any(p.counts[f] for p in parts)]
+        met = [f for f in VERDICTS if any(p.counts[f] for p in parts)]
         rows = tuple(
             (self._name(p), *(self._hundredths(p.share(f)) if p.counts[f] else "" for f in met))
             for p in parts

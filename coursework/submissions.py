@@ -14,6 +14,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from coursework.tables import as_written, decode, delimiter_of
+
 COLUMNS = ("student", "exercise", "seed", "part", "answer")
 ENDINGS = (".csv", ".json", ".ipynb", ".parquet")
 MAX_LINES = 20  #: of one quoted answer
@@ -40,11 +42,6 @@ class Rejected:
     source: str
     reason: str
     row: dict[str, str] = field(default_factory=dict)
-
-
-def delimiter_of(header: str) -> str:
-    """What parts the cells of a CSV, by its first line: semicolon, comma or tab."""
-    return max((";", ",", "\t"), key=header.count)
 
 
 def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
@@ -97,24 +94,11 @@ def _whole(text: str) -> str:
 # ------------------------------------------------------------------------- text
 
 
-def _decode(data: bytes) -> tuple[str, str]:
-    """The text and a warning; UTF-8 unless it cannot be, then what Windows and Excel write."""
-    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-        try:
-            return data.decode("utf-16"), "the file is UTF-16, not UTF-8"
-        except UnicodeDecodeError:
-            pass
-    try:
-        return data.decode("utf-8-sig"), ""
-    except UnicodeDecodeError:
-        return data.decode("cp1252", "replace"), "the file is not UTF-8; it was read as Windows-1252"
-
-
 def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
     if not data.strip():
         yield Rejected(source, "the file is empty")
         return
-    text, warning = _decode(data)
+    text, warning = decode(data)
     if "\0" in text:
         yield Rejected(source, "the file holds NUL bytes: it is not a CSV of answers")
         return
@@ -153,6 +137,8 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
 
 def _row_of(cells: Sequence[str], columns: Sequence[int], place: str, warning: str) -> Row:
     student, exercise, seed, part, answer = (cells[i] for i in columns)
+    if "'" in (student[:1], answer[:1]):
+        student, answer = as_written(student), as_written(answer)
     return Row(student.strip(), exercise.strip(), seed.strip(), part.strip(), answer, place, warning)
 
 
@@ -228,7 +214,7 @@ def _csv_row(header: list[str], cells: list[str], place: str, warning: str) -> I
 
 
 def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected]:
-    text, warning = _decode(data)
+    text, warning = decode(data)
     try:
         content = _load_json(text)
     except (ValueError, RecursionError) as fault:
@@ -322,7 +308,7 @@ def _short(fault: BaseException) -> str:
 
 
 def _read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
-    text, warning = _decode(data)
+    text, warning = decode(data)
     try:
         notebook = _load_json(text)
     except (ValueError, RecursionError) as fault:

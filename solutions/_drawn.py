@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from coursework.drawn import HUNG, SENSE, ancestors, judge_drawing
+from coursework.drawn import HUNG, SENSE, ancestors, is_scale, judge_drawing
 from coursework.solution import Judged
 
 _BOX_MM = (130.0, 80.0)  #: in which the reference drawing fits
@@ -70,7 +70,7 @@ def _verdicts(answers, polygon, asked):
     """A :class:`Judged` for each answer that can be judged."""
     stated = float(answers[asked.scale]) if asked.scale in answers else None
     points = {asked.points[i]: complex(*answers[i]) for i in asked.points if i in answers}
-    scale = stated if stated is not None and stated > 0 else None
+    scale = stated if stated is not None and is_scale(polygon, stated) else None
     if polygon.pole not in points or len(points) < 2:
         if scale is None:
             return {}
@@ -80,14 +80,14 @@ def _verdicts(answers, polygon, asked):
         return said | _lengths(answers, bare, asked) | _reads(answers, bare, asked)
     drawing = judge_drawing(polygon, points, scale)
     upside_down = False
-    if scale is not None:
+    if scale is not None and is_scale(polygon, 1 / scale):
         other = judge_drawing(polygon, points, 1 / scale)
         upside_down = _fits(other) and not _fits(drawing)
         drawing = other if upside_down else drawing
     if not drawing.is_legible:
         drawn = (*asked.points, *asked.lengths, asked.scale)
         return {i: Judged(0.0, "too_small") for i in drawn if i in answers} | _reads(answers, drawing, asked)
-    said = {asked.scale: _of_scale(stated, upside_down, drawing)} if stated is not None else {}
+    said = {asked.scale: _of_scale(scale, upside_down, drawing)} if stated is not None else {}
     for part, point in asked.points.items():
         if part in answers:
             said[part] = _of_point(point, drawing, asked)
@@ -99,8 +99,8 @@ def _fits(drawing):
     return drawing.fits_stated_scale and drawing.is_right(next(iter(drawing.polygon.hangs)))
 
 
-def _of_scale(stated, upside_down, drawing):
-    if stated <= 0:
+def _of_scale(scale, upside_down, drawing):
+    if scale is None:
         return Judged(0.0)
     if upside_down:
         return Judged(0.5, "scale_upside_down")
@@ -192,16 +192,17 @@ def _of_value(found, read, drawing, answers, asked):
 def _wrong_ways(found, read, values, drawing):
     """The mistakes that explain a value, from the right drawing or the student's own."""
     near = 2 * drawing.tolerance * drawing.scale * read.gain
-    if any(abs(found + value) <= near for value in values):
+    if any(abs(found + value) <= min(near, _MOST * abs(value)) for value in values):
         yield read.sense
-    if any(abs(found * drawing.scale - value) <= near for value in values):
+    if any(abs(found * drawing.scale - value) <= min(near, _MOST * abs(value)) for value in values):
         yield "scale_forgotten"
     for name, (start, end, gain) in read.wrong.items():
         images = drawing.polygon.points
         lengths = [abs(images[end] - images[start])]
         if start in drawing.points and end in drawing.points:
             lengths.append(abs(drawing.points[end] - drawing.points[start]) * drawing.scale)
-        if any(abs(abs(found) - n * gain) <= 2 * drawing.tolerance * drawing.scale * gain for n in lengths):
+        off = 2 * drawing.tolerance * drawing.scale * gain
+        if any(abs(abs(found) - n * gain) <= min(off, _MOST * n * gain) for n in lengths):
             yield name
 
 

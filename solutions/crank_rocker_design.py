@@ -148,8 +148,9 @@ def _judged(r1, r2, r3, r4, psi, alpha, mu_min):
     if not turns:
         return Judged(0.0, "no_full_turn")
     # Angles at C and at O of the triangle O C B with crank and coupler in line.
-    at_C = [acos((r1**2 + r4**2 - (r3 + side * r2) ** 2) / (2 * r1 * r4)) for side in (-1, 1)]
-    at_O = [acos((r1**2 + (r3 + side * r2) ** 2 - r4**2) / (2 * r1 * (r3 + side * r2))) for side in (-1, 1)]
+    in_line = [r3 + side * r2 for side in (-1, 1)]
+    at_C = [_corner(r1, r4, length) for length in in_line]
+    at_O = [_corner(r1, length, r4) for length in in_line]
     found = {
         "swing": float(at_C[1] - at_C[0]),
         "alpha": float(180 + abs(at_O[1] - at_O[0])),
@@ -164,6 +165,11 @@ def _judged(r1, r2, r3, r4, psi, alpha, mu_min):
     # A half for the swing, a half for the ratio; what jams is worth half of that.
     share = 1 - 0.5 * failed["swing_missed"] - 0.5 * failed["ratio_missed"]
     return Judged(share / 2 if failed["transmission_missed"] else share, first, found)
+
+
+def _corner(a, b, opposite):
+    """Between two sides of a triangle; one that is flat but for rounding is flat."""
+    return acos(min(1.0, max(-1.0, (a**2 + b**2 - opposite**2) / (2 * a * b))))
 
 
 @mistake("r1", "r2", "r3")

@@ -3,7 +3,7 @@
 import numpy as np
 
 from coursework.degrees import polar
-from coursework.drawn import LEAST_MM, TOLERANCE_MM, vector_fault
+from coursework.drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_paper, vector_fault
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
 from coursework.solution import Judged, formula, judge, mistake
 
@@ -131,16 +131,20 @@ def drawing(answers, d, r2, r3, b, theta1, omega1):
     """Arrows as components on paper, at any scale, each from the student's own ones before it."""
     pose = _pose(d, r2, r3, b, theta1)
     right = dict(zip(VECTORS, _images(pose, r2, r3, omega1), strict=True))
-    drawn = {name: complex(*answers[name]) for name in VECTORS if name in answers}
+    drawn = {name: on_paper(*answers[name]) for name in VECTORS if name in answers}
     stated = float(answers["kv"]) if "kv" in answers else None
-    if stated is None or stated <= 0:
-        if not abs(drawn.get("v10", 0)):
-            return {"kv": Judged(0.0)} if stated is not None else {}
-        scale = abs(right["v10"]) / abs(drawn["v10"])
-    else:
+    longest = max(map(abs, right.values()))
+    is_scale = stated is not None and stated > 0 and longest <= MOST_MM * stated
+    said = {"kv": Judged(1.0 if is_scale else 0.0)} if stated is not None else {}
+    if is_scale:
         scale = stated
-    said = {"kv": Judged(1.0 if stated > 0 else 0.0)} if stated is not None else {}
-    if max(map(abs, right.values())) / scale < LEAST_MM:
+    elif _WIDTH < abs(drawn.get("v10", 0)) < MOST_MM:
+        scale = abs(right["v10"]) / abs(drawn["v10"])
+    elif stated is not None and "v10" in drawn:
+        scale = _scale_for(*right.values())  # nothing tells it; that of the solution is as good as any
+    else:
+        return said
+    if longest / scale < LEAST_MM:
         return dict.fromkeys(
             ("kv", *drawn) if stated is not None else drawn, Judged(0.0, "too_small")
         ) | _values(answers, pose, right, {}, said, scale, r3)

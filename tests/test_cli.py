@@ -475,6 +475,8 @@ def test_a_users_mistake_is_one_line_and_status_2(cli, tmp_path, monkeypatch, ar
         ("nome\nAnn\n", "column named student"),
         ("student\n", "names no student"),
         ("student\nAnn\nann\n", "line 2"),
+        ("student\nJosé\nJose\u0301\n", "stands on line 2 already"),
+        ("student\nO'Neil\nO’Neil\n", "stands on line 2 already"),
         ("student,lang\nAnn,xx\n", "no language 'xx'"),
     ],
 )
@@ -538,3 +540,22 @@ def test_the_demo_does_the_whole_job(cli, tmp_path):
     ):
         assert full[honest] == "100.0", honest
     assert Path(tmp_path / "demo" / "issued.json").exists()
+
+
+def test_a_blank_row_displaces_no_answer(built, cli, tmp_path):
+    """The form filled for one student, another's answers in a file of their own; then the files in the other order."""
+    rows = filled(built)
+    david = [r for r in rows if r["student"] == "David O'Neil"]
+    form = [r if r not in david else {**r, "answer": " "} for r in rows]
+    for number, (form_is, own) in enumerate((("a.csv", "b.csv"), ("b.csv", "a.csv"))):
+        folder = tmp_path / f"returned{number}"
+        folder.mkdir()
+        write_rows(folder / form_is, form), write_rows(folder / own, david)
+        marks = tmp_path / f"marks{number}"
+        status, said, err = cli(
+            "grade", folder, "--issued", built / "issued.json", "--out", marks, "--no-feedback"
+        )
+        assert (status, err) == (0, "")
+        assert f"{len(rows)} marked, 0 rejected, {len(david)} blank beside another" in said
+        assert {m["verdict"] for m in table(marks / "marks.csv")} == {"correct"}
+        assert [s["percent"] for s in table(marks / "summary.csv")] == ["100.0"] * 3

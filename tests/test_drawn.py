@@ -283,3 +283,13 @@ def test_feedback_names_the_vector_and_gives_no_value():
     told = variant.grade({"kv": variant.key.reference["kv"], "p": "0;0", "a": f"{a[0]};{a[1]}",
                           "b": f"{(a - b)[0]};{(a - b)[1]}"})["b"].feedback  # fmt: skip
     assert "hang on the wrong points" in told
+
+
+@every_polygon
+def test_a_scale_that_makes_any_drawing_small_explains_no_number(name):
+    """At such a scale a millimetre is worth more than any value."""
+    for variant in COURSE[name].variants(range(10)):
+        reads = [p.id for p in variant.parts if p.judge and p.kind == "number" and p.unit != "mm"]
+        scale = next(i for i in reads if i in ("kv", "ka"))
+        marking = variant.grade({**dict.fromkeys(reads, "7.7e7"), scale: "1e6"})
+        assert {marking[i].points for i in reads} == {0}

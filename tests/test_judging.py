@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import csv
+
+import numpy as np
 import pytest
 
 import coursework
 from coursework import checks, issuing
+from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName
 
 EXERCISE = """
@@ -22,6 +26,8 @@ EXERCISE = Exercise(
 )
 """
 SOLUTION = """
+import csv
+
 import numpy as np
 
 from coursework.solution import Judged, judge, mistake
@@ -214,3 +220,66 @@ def test_the_bulk_marker_gives_the_same_marks(course, tmp_path):
     for variant, job, lines in zip(variants, jobs, _mark_chunk(opened, jobs, False), strict=True):
         alone = {p: (m.verdict, m.points) for p, m in variant.grade(job.answers).items()}
         assert {line[0]: (line[3], line[4]) for line in lines} == alone
+
+
+# ------------------------------------------------------------------------- absurd answers
+
+COURSE = coursework.open_course()
+JUDGED = [name for name in COURSE.names if any(part.judge for part in COURSE[name].spec.parts)]
+ABSURD = ("0", "1e308", "-1e308", "1e-320")
+
+
+@pytest.mark.parametrize("name", JUDGED)
+def test_a_judge_answers_for_every_absurd_answer(name):
+    """Each part of a judge alone, beside right answers, and each left out of an absurd sheet."""
+    (variant,) = COURSE[name].variants([3], parts=("all",))
+    right = variant.solution()
+    size = {p.id: np.size(right[p.quantity]) for p in variant.parts if p.judge}
+    shown = {p.id: checks._written(right[p.quantity]) for p in variant.parts if p.judge}
+    for number in ABSURD:
+        absurd = {i: "; ".join([number] * n) for i, n in size.items()}
+        assert "correct" not in {variant.grade(absurd)[i].verdict for i in size}
+        for i in size:
+            for sheet in ({i: absurd[i]}, {**shown, i: absurd[i]}, {j: absurd[j] for j in size if j != i}):
+                marking = variant.grade(sheet)
+                assert all(marking[j].feedback for j in sheet)
+
+
+def test_a_scale_that_no_paper_holds_is_none():
+    (variant,) = COURSE["velocity_polygon_slider"].variants([0])
+    marking = variant.grade({"kv": "1e-320", "p": "10;0", "b": "1;2"})
+    assert marking["kv"].verdict != "correct"
+    assert marking.points == 0
+
+
+def test_an_absurd_sheet_breaks_no_promise_but_a_judge_that_fails_on_it_does(course):
+    path = course / "solutions" / "sums.py"
+    text = path.read_text("utf-8")
+    path.write_text(text.replace("    total = ", '    1 / answers["x"]\n    total = '), "utf-8")
+    report = checks.check(coursework.open_course(course)["sums"], 2, rendered=0)
+    assert any("ZeroDivisionError" in told for told in report.failures)
+
+
+def test_a_sheet_that_a_judge_cannot_judge_costs_itself_alone(course, tmp_path, capsys):
+    """The others are marked, and the instructor is told why."""
+    path = course / "solutions" / "sums.py"
+    text = path.read_text("utf-8")
+    path.write_text(
+        text.replace("    total = ", "    if not answers['x']:\n        return {}\n    total = "), "utf-8"
+    )
+    (tmp_path / "class.csv").write_text("student\nAda\nBo\nCy\n", "utf-8")
+    out = tmp_path / "out"
+    built = ["build", "sums", "--roster", tmp_path / "class.csv", "--formats", "html", "--out", out]
+    assert run(["--course", str(course), *map(str, built)]) == 0
+    rows = ["student,exercise,seed,part,answer", "Ada,sums,,x,10", "Ada,sums,,y,10"]
+    rows += ["Bo,sums,,half,1", "Bo,sums,,x,0", "Bo,sums,,y,0", "Cy,sums,,x,10", "Cy,sums,,y,1"]
+    (tmp_path / "answers.csv").write_text("\n".join(rows), "utf-8")
+    graded = ["grade", tmp_path / "answers.csv", "--issued", out / "issued.json", "--no-feedback"]
+    assert run(["--course", str(course), *map(str, graded)]) == 1
+    said = capsys.readouterr().err
+    assert "1 sheet of sums cannot be marked" in said
+    assert "says nothing of 'x'" in said
+    marks = list(csv.DictReader((out / "marks" / "marks.csv").read_text("utf-8").splitlines()))
+    rejected = list(csv.DictReader((out / "marks" / "rejected.csv").read_text("utf-8").splitlines()))
+    assert [m["student"] for m in marks] == ["Ada", "Ada", "Cy", "Cy"]
+    assert [r["student"] for r in rejected] == ["Bo"] * 3

@@ -152,6 +152,13 @@ def test_an_answer_accepted_by_hand_stays_accepted(small_course, issued, capsys)
     ("text", "told"),
     [
         ("student,exercise,part,points\nAda,crank_pin,y,half\n", "points are a number"),
+        (
+            "student,exercise,part,points\nAda,crank_pin,y,nan\n",
+            "points are a number, 0 or more; found 'nan'",
+        ),
+        ("student,exercise,part,points\nAda,crank_pin,y,inf\n", "points are a number"),
+        ("student,exercise,part,points\nAda,crank_pin,y,-5\n", "line 2: points are a number, 0 or more"),
+        ("student,exercise,part,points\nAda,crank_pin,y,1.5\n", "line 2: 1.5 points for y, which has 1"),
         ("student,exercise,part\nAda,crank_pin,\n", "part missing"),
     ],
 )
@@ -167,7 +174,103 @@ def test_an_acceptance_of_what_nobody_answered_is_a_note(small_course, issued, t
     path = tmp_path / "by_hand.csv"
     path.write_text("student,exercise,part\nDee,crank_pin,y\n", "utf-8")
     grade(small_course, issued, "--accepted", path)
-    assert "never answered: dee, crank_pin, y" in capsys.readouterr().err
+    assert "never answered: Dee, crank_pin, y" in capsys.readouterr().err
+
+
+def test_a_part_accepted_without_an_answer_has_its_line(small_course, issued, capsys):
+    path = issued.parent / "answers.csv"
+    lines = path.read_text("utf-8").splitlines(keepends=True)
+    path.write_text("".join(line for line in lines if ",y," not in line), "utf-8")
+    (issued / "marks").mkdir()
+    (issued / "marks" / "accepted.csv").write_text("student,exercise,part\nBo,crank_pin,y\n", "utf-8")
+    assert grade(small_course, issued) == 0
+    assert "6 rows: 6 marked, 0 rejected" in capsys.readouterr().out
+    marks = table(issued / "marks" / "marks.csv")
+    (line,) = (m for m in marks if m["verdict"] == "accepted")
+    assert (line["student"], line["part"], line["answer"], line["points"]) == ("Bo", "y", "", "1")
+    summary = table(issued / "marks" / "summary.csv")
+    for one in summary:
+        assert float(one["points"]) == sum(
+            float(m["points"]) for m in marks if m["student"] == one["student"]
+        )
+
+
+def test_names_that_look_alike_are_one_in_every_file(small_course, tmp_path):
+    """Roster, answers, acceptance and earlier marks, with accents and apostrophes as different systems write them."""
+    names = ["José García", "Bob O'Neil"]
+    (tmp_path / "class.csv").write_text("\n".join(["student", *names]), "utf-8")
+    out, alike = tmp_path / "out", ["Jose\u0301  GARCI\u0301A", "bob o’neil"]
+    assert course_run(
+        small_course, "build", "--roster", tmp_path / "class.csv", "--formats", "html", "--out", out
+    ) == 0  # fmt: skip
+    rows = [f"{name},crank_pin,,{part},1" for name in alike for part in ("x", "y")]
+    (tmp_path / "answers.csv").write_text("\n".join(["student,exercise,seed,part,answer", *rows]), "utf-8")
+    (tmp_path / "by_hand.csv").write_text("student,exercise,part\nBOB O‘NEIL,crank_pin,x\n", "utf-8")
+    assert grade(small_course, out, "--accepted", tmp_path / "by_hand.csv") == 0
+    marks = out / "marks" / "marks.csv"
+    assert [(m["student"], m["verdict"] == "accepted") for m in table(marks)] == [
+        (names[0], False), (names[0], False), (names[1], True), (names[1], False),
+    ]  # fmt: skip
+    text = marks.read_text("utf-8")
+    marks.write_text(text.replace(names[0], alike[0]).replace(names[1], alike[1]), "utf-8")
+    assert grade(small_course, out, "--accepted", tmp_path / "by_hand.csv") == 0
+    assert table(out / "marks" / "changes.csv") == []
+
+
+def test_without_a_roster_a_name_is_shown_as_it_came_first(small_course, tmp_path):
+    out = tmp_path / "out"
+    assert course_run(small_course, "build", "--formats", "html", "--out", out) == 0
+    (record,) = (i["record"] for i in json.loads((out / "issued.json").read_text("utf-8"))["issued"])
+    rows = [
+        f"{name},crank_pin,{record['seed']},{part},1" for name, part in (("Zoé", "x"), ("ZOE\u0301", "y"))
+    ]
+    (tmp_path / "answers.csv").write_text("\n".join(["student,exercise,seed,part,answer", *rows]), "utf-8")
+    assert grade(small_course, out) == 0
+    assert [s["student"] for s in table(out / "marks" / "summary.csv")] == ["Zoé"]
+
+
+@pytest.fixture
+def named(small_course, tmp_path):
+    """A sheet for each name of a roster; gives the form to fill and the folder of the build."""
+
+    def make(*names):
+        (tmp_path / "class.csv").write_text("\n".join(["student", *names]), "utf-8")
+        out = tmp_path / "out"
+        made = ["--roster", tmp_path / "class.csv", "--formats", "html", "--out", out]
+        assert course_run(small_course, "build", *made) == 0
+        return out / "answers.csv", out
+
+    return make
+
+
+def test_tables_saved_by_excel_are_read_again(small_course, named, tmp_path):
+    form, out = named("José García", "Zoë")
+    (tmp_path / "answers.csv").write_text(form.read_text("utf-8"), "utf-8")
+    accepted = out / "marks" / "accepted.csv"
+    accepted.parent.mkdir()
+    accepted.write_bytes("student;exercise;part;reason\nJosé García;crank_pin;y;très bien\n".encode("cp1252"))
+    assert grade(small_course, out) == 0
+    marks = out / "marks" / "marks.csv"
+    (line,) = (m for m in table(marks) if m["verdict"] == "accepted")
+    assert (line["student"], line["feedback"].endswith("très bien")) == ("José García", True)
+    marks.write_bytes(marks.read_text("utf-8").encode("cp1252"))
+    assert grade(small_course, out) == 0
+    assert table(out / "marks" / "changes.csv") == []
+
+
+def test_a_name_made_inert_is_the_same_student(small_course, named, tmp_path):
+    """In the form, in the marks that were there before, and where an answer is accepted."""
+    form, out = named("=Evil(1)", "-Bo (2)")
+    assert "'=Evil(1)" in form.read_text("utf-8")
+    (tmp_path / "answers.csv").write_text(form.read_text("utf-8").replace(",x,", ",x,'=2*(3+4)"), "utf-8")
+    (tmp_path / "by_hand.csv").write_text("student,exercise,part\n'=Evil(1),crank_pin,y\n", "utf-8")
+    for _ in range(2):
+        assert grade(small_course, out, "--accepted", tmp_path / "by_hand.csv") == 0
+    assert table(out / "marks" / "rejected.csv") == table(out / "marks" / "changes.csv") == []
+    marks = table(out / "marks" / "marks.csv")
+    assert [m["student"] for m in marks] == ["'=Evil(1)"] * 3 + ["'-Bo (2)"] * 3
+    assert {m["answer"] for m in marks} == {"", "'=2*(3+4)"}
+    assert [m["part"] for m in marks if m["verdict"] == "accepted"] == ["y"]
 
 
 def test_an_interrupted_marking_leaves_the_marks_that_were_there(small_course, issued, monkeypatch):
@@ -185,6 +288,40 @@ def test_an_interrupted_marking_leaves_the_marks_that_were_there(small_course, i
     with pytest.raises(KeyboardInterrupt):
         grade_files(course, answers, issued / "issued.json", issued / "marks", feedback=False)
     assert {p.name: p.read_bytes() for p in (issued / "marks").iterdir()} == before
+
+
+@pytest.mark.parametrize("name", ["marks.csv", "summary.csv", "rejected.csv", "changes.csv"])
+@pytest.mark.parametrize("late", [False, True])
+def test_a_table_that_cannot_be_replaced_costs_no_other(
+    small_course, issued, monkeypatch, capsys, name, late
+):
+    """Whether it is so from the start, or becomes so while the answers are marked."""
+    grade(small_course, issued)
+    grade(small_course, issued, "--accepted", _accepting(issued))
+    from coursework import gradebook
+
+    path = issued / "marks" / name
+    rows = gradebook.summary_rows
+
+    def obstruct(*given):
+        path.unlink()
+        path.mkdir()
+        return rows(*given) if given else None
+
+    monkeypatch.setattr(gradebook, "summary_rows", obstruct if late else rows)
+    if not late:
+        obstruct()
+    before = {p.name: p.read_bytes() for p in (issued / "marks").iterdir() if p.name != name}
+    capsys.readouterr()
+    assert grade(small_course, issued) == 2
+    assert f"{name} cannot be" in capsys.readouterr().err
+    assert {p.name: p.read_bytes() for p in (issued / "marks").iterdir() if p.name != name} == before
+
+
+def _accepting(issued):
+    path = issued.parent / "by_hand.csv"
+    path.write_text("student,exercise,part\nAda,crank_pin,y\n", "utf-8")
+    return path
 
 
 def test_parquet_marks_as_csv_does(small_course, issued, tmp_path):

@@ -1,0 +1,61 @@
+"""CSV as people and spreadsheets keep it: how it is encoded, what parts its cells, and cells that nothing runs."""
+
+from __future__ import annotations
+
+import csv
+import io
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, TextIO
+
+_WARNINGS = {
+    "utf-8-sig": "",
+    "utf-16": "the file is UTF-16, not UTF-8",
+    "cp1252": "the file is not UTF-8; it was read as Windows-1252",
+}
+
+
+def delimiter_of(header: str) -> str:
+    """What parts the cells of a CSV, by its first line: semicolon, comma or tab."""
+    return max((";", ",", "\t"), key=header.count)
+
+
+def encoding_of(data: bytes) -> str:
+    """UTF-8 unless it cannot be, then what Windows and Excel write."""
+    for encoding in ("utf-16", "utf-8-sig") if data[:2] in (b"\xff\xfe", b"\xfe\xff") else ("utf-8-sig",):
+        try:
+            data.decode(encoding)
+            return encoding
+        except UnicodeDecodeError:
+            pass
+    return "cp1252"
+
+
+def decode(data: bytes) -> tuple[str, str]:
+    """The text and a warning."""
+    encoding = encoding_of(data)
+    return data.decode(encoding, "replace"), _WARNINGS[encoding]
+
+
+@contextmanager
+def open_csv(path: Path) -> Iterator[TextIO]:
+    """A CSV to be read line by line, in any encoding that :func:`decode` knows; a cell may be of any length."""
+    data = path.read_bytes()
+    before = csv.field_size_limit(min(sys.maxsize, 2**31 - 1))
+    try:
+        yield io.TextIOWrapper(io.BytesIO(data), encoding_of(data), "replace", newline="")
+    finally:
+        csv.field_size_limit(before)
+
+
+def inert(cell: Any) -> Any:
+    """The cell, or its text kept from being run: a formula that calls, pipes or reaches elsewhere."""
+    runs = isinstance(cell, str) and cell.lstrip()[:1] in ("=", "+", "-", "@") and set(cell) & set("(|!")
+    return f"'{cell}" if runs else cell
+
+
+def as_written(cell: str) -> str:
+    """The text of a cell that may have been made :func:`inert`."""
+    return cell[1:] if cell[:1] == "'" and inert(cell[1:]) == cell else cell
