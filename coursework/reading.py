@@ -21,6 +21,7 @@ import numpy as np
 from coursework.equations import parse_equation
 from coursework.errors import WrongUnit
 from coursework.expressions import MAX_LENGTH, Expression, Unreadable, parse_expression
+from coursework.language import languages, words
 from coursework.spelling import shorten, tidy, without_latex
 from coursework.units import Unit, convert, find_unit, parse_unit, same_dimension
 
@@ -559,9 +560,6 @@ def read_point(text: object, unit: str, count: int) -> Reading:
 
 # --- choices ----------------------------------------------------------------------------
 
-_POSITION = re.compile(r"[(\[]?\s*([a-z]|[0-9]{1,2})\s*(?:(?:[)\]:]|\.(?![0-9]))\s*(?P<label>.*))?")
-
-
 _SIGN = re.compile(r"(^|[=<>(+])\s*[-‐‑‒–−]\s*(?=[0-9])")
 _PLUS = re.compile(r"(^|[=<>(])\s*\+\s*(?=[0-9])")
 _ANY_MINUS = re.compile("[-‐‑‒–−]")
@@ -630,36 +628,86 @@ _BEFORE = re.compile(
 )  #: what people put before a label, and no label needs
 
 
-def _by_position(text: str, choices: Mapping[str, Sequence[str]]) -> tuple[list[str], str]:
-    """The choice that a letter or a number counts, and the label written after it."""
-    found = _POSITION.fullmatch(text.strip().casefold())
-    if found is None:
-        return [], ""
-    place = int(found[1]) - 1 if found[1].isdigit() else ord(found[1]) - ord("a")
-    return list(choices)[place : place + 1] if place >= 0 else [], found["label"] or ""
+@lru_cache(maxsize=1)
+def _numerals() -> Mapping[str, int]:
+    """Numbers as labels have them: digits, Roman numerals, words of any language; folded."""
+    roman = ("i", "ii", "iii", "iv", "v", "vi", "vii", "viii", "ix", "x")
+    found = {str(n): n for n in range(100)} | {name: n for n, name in enumerate(roman, start=1)}
+    for lang in languages():
+        for n, names in enumerate(words(lang)["study"]["reads"]["numbers"]):
+            found |= {_folded(name): n for name in names.split("|")}
+    return found
 
 
+@lru_cache(maxsize=1)
+def _nouns() -> tuple[str, ...]:
+    """What labels are called together, ``class``; folded, the longest first."""
+    found = {_folded(noun) for lang in languages() for noun in words(lang)["choices"]["nouns"]}
+    return tuple(sorted(found, key=len, reverse=True))
+
+
+@lru_cache(maxsize=4096)
+def _without_noun(text: str) -> str:
+    """A folded label without what all of its kind are called: ``classe III`` is ``iii``."""
+    folded = _folded(text)
+    for noun in _nouns():
+        if folded.startswith(f"{noun} "):
+            return folded[len(noun) + 1 :]
+    return folded
+
+
+@lru_cache(maxsize=4096)
+def _numbered(text: str) -> tuple[int | None, str]:
+    """The number that a label begins with, and what follows: ``deux paires`` is 2, ``paires``."""
+    first, _, rest = _without_noun(text).partition(" ")
+    return _numerals().get(first), rest
+
+
+def _by_number(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choice whose label begins with this number, however it is written, where the numbers tell choices apart."""
+    number, rest = _numbered(text.strip("()[] "))
+    if number is None:
+        return []
+    found = {}
+    for key, labels in choices.items():
+        heads = [_numbered(head(label)) for label in labels]
+        if numbers := {n for n, _ in heads if n is not None}:
+            found[key] = numbers, {follows for n, follows in heads if n == number}
+    every = [n for numbers, _ in found.values() for n in numbers]
+    if len(found) < 2 or len(set(every)) < len(every):
+        return []
+    return [key for key, (ns, follows) in found.items() if number in ns and (not rest or rest in follows)]
+
+
+_MARKED = re.compile(r"[(\[]?\s*(?P<mark>[a-z]|[0-9]{1,2})\s*(?:[)\]:]|\.(?![0-9]))\s*(?P<label>\S.*)", re.I)
 _WHOLE = re.compile(r"^\s*([0-9]+)[.,]0+\s*$")  #: what a table makes of a whole number
 
 
 def _choice(text: str, choices: Mapping[str, Sequence[str]]) -> Reading:
     text = _WHOLE.sub(r"\1", text)
     keys = _by_label(text, choices)
-    keys = keys or (_by_label(_BEFORE.sub("", text, count=1), choices) if _BEFORE.match(text) else [])
-    if not keys:
-        keys, label = _by_position(text, choices)
-        keys = list(dict.fromkeys((*keys, *_by_value(text, choices))))
-        if label and (named := _by_label(label, choices)) != keys:
-            raise _Stop("two_values" if named else "not_a_choice", text)
+    if not keys and (marked := _MARKED.fullmatch(text.strip())):  # b) crossed
+        keys = list(dict.fromkeys((*_called(marked["label"], choices), *_by_number(marked["mark"], choices))))
+    keys = keys or _called(text, choices)
     if len(keys) != 1:
         raise _Stop("two_values" if keys else "not_a_choice", text)
     return Reading(text, "read", (keys[0],), (keys[0],))
 
 
-def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
-    """The key of a choice, given by its key, a label of any language or its head, or its place: ``b)``, ``2``.
+def _called(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that a text may mean, its article left out if need be."""
+    for said in dict.fromkeys((text, _BEFORE.sub("", text, count=1))):
+        keys = _by_label(said, choices)
+        keys = keys or list(dict.fromkeys((*_by_number(said, choices), *_by_value(said, choices))))
+        if keys:
+            return keys
+    return []
 
-    ``choices`` maps each key to its labels, in the order in which they are printed.
+
+def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
+    """The key of a choice, given by its key, a label of any language or its head, or the number it begins with.
+
+    ``choices`` maps each key to its labels. A letter or a number never counts places: no sheet prints any.
     """
     text = _bare(text)
     if isinstance(text, Real) and not isinstance(text, (bool, float)):
