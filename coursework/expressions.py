@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -159,6 +159,26 @@ class Operation:
     def constant(self) -> bool:
         return all(node.kind != "variable" for node in self.walk())
 
+    @property
+    def speaks_of_pi(self) -> bool:
+        return any((node.kind, node.name) == ("constant", "pi") for node in self.walk())
+
+    @property
+    def has_inverse(self) -> bool:
+        """Whether an inverse trigonometric function gives an angle in it."""
+        return any(node.kind == "call" and node.name in _INVERSE for node in self.walk())
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is an angle in radians by itself: ``acos(0.5)``, or so many times that."""
+        if self.kind == "call":
+            return self.name in _INVERSE
+        if self.kind == "neg":
+            return self.args[0].turns
+        return self.kind == "product" and [
+            s for s, arg in zip(self.name, self.args, strict=True) if arg.turns
+        ] == ["*"]
+
 
 def _number(value: object) -> np.ndarray | np.generic:
     array = np.asarray(value)
@@ -203,6 +223,36 @@ def _compute(node: Operation, values: Mapping[str, object]) -> Value:
     return total
 
 
+_A_RADIAN = math.degrees(1.0)
+
+
+def _calculated_in_degrees(node: Operation) -> Operation:
+    """A tree whose trigonometric functions take degrees, and whose inverse ones give them unless converted by hand."""
+    args = tuple(map(_calculated_in_degrees, node.args))
+    if node.kind == "call" and node.name in ("sin", "cos", "tan"):
+        return replace(node, args=(Operation("degree", args=args),))
+    if node.kind == "call" and node.name in _INVERSE:
+        return Operation("product", "**", (replace(node, args=args), Operation("number", repr(_A_RADIAN))))
+    if node.turns and _is_conversion(node):
+        args = tuple(
+            new.args[0] if old.kind == "call" and old.turns else new
+            for old, new in zip(node.args, args, strict=True)
+        )
+    return replace(node, args=args)
+
+
+def _is_conversion(node: Operation) -> bool:
+    """Whether a product of an inverse function makes radians into degrees, ``acos(0.5)*180/3.14``."""
+    pairs = [(s, arg) for s, arg in zip(node.name, node.args, strict=True) if not arg.turns]
+    if not pairs or not all(arg.constant for _, arg in pairs):
+        return False
+    signs, args = zip(*pairs, strict=True)
+    one = Operation("number", "1")
+    with np.errstate(all="ignore"):
+        factor = _compute(Operation("product", "*" + "".join(signs), (one, *args)), {})
+    return bool(abs(factor / _A_RADIAN - 1) < 0.01)
+
+
 @dataclass(frozen=True)
 class Expression:
     """A formula that has been read.
@@ -227,10 +277,21 @@ class Expression:
 
     @property
     def speaks_radians(self) -> bool:
-        return any(
-            (node.kind, node.name) == ("constant", "pi") or (node.kind == "call" and node.name in _INVERSE)
-            for node in self.root.walk()
-        )
+        return self.root.speaks_of_pi or self.root.has_inverse
+
+    @property
+    def as_calculated_in_degrees(self) -> Expression | None:
+        """The formula of who works in degrees, ``180 - atan(1.6)``: its functions take and give them.
+
+        None where no inverse function gives an angle, where pi says that it is in radians, or a degree sign has spoken.
+        """
+        if (
+            not self.root.has_inverse
+            or self.root.speaks_of_pi
+            or any(node.angle for node in self.root.walk())
+        ):
+            return None
+        return Expression(self.text, _calculated_in_degrees(self.root))
 
     def evaluate(self, values: Mapping[str, object] | None = None) -> Value:
         """The value, of the shape to which the values broadcast; angles in radians.
@@ -312,10 +373,11 @@ class _Parser:
         self.depth -= 1
         if len(terms) == 1:
             return terms[0]
-        # A term with a variable may be an angle: theta2 + 90°.
-        if len({term.angle for term in terms if term.angle or term.constant}) > 1:
+        # A term with a variable may be an angle: theta2 + 90°. An inverse function gives one: 180° - atan(1.6).
+        in_degrees = any(term.angle for term in terms)
+        if in_degrees and any(term.constant and not (term.angle or term.turns) for term in terms):
             raise self.fail("it adds degrees to a plain number", "mixed_units", self.text)
-        return Operation("sum", signs, tuple(terms), any(term.angle for term in terms))
+        return Operation("sum", signs, tuple(terms), in_degrees)
 
     def product(self) -> Operation:
         signs, factors = "", []
@@ -394,13 +456,14 @@ class _Parser:
 
     def postfix(self) -> Operation:
         node = self.primary()
-        if self.take("°"):
-            return Operation("degree", args=(node,), angle=True)
-        run = _RUN.match(self.text, self.at)
-        if run and self.vocabulary.find(run[0]) == ("degree", "deg"):
+        if not self.take("°"):
+            run = _RUN.match(self.text, self.at)
+            if not run or self.vocabulary.find(run[0]) != ("degree", "deg"):
+                return node
             self.at = run.end()
-            return Operation("degree", args=(node,), angle=True)
-        return node
+        if node.kind == "call" and node.name in _INVERSE:  # acos(0.5)° is an angle already
+            return replace(node, angle=True)
+        return Operation("degree", args=(node,), angle=True)
 
     def primary(self) -> Operation:
         char = self.peek()

@@ -134,6 +134,7 @@ _LITERAL = re.compile(
     rf"(?P<sign>[+-]?)\s*(?P<number>{_GROUPED})(?:{_POWER_OF_TEN})?\s*(?P<rest>.*)", re.VERBOSE | re.DOTALL
 )
 _LOST_POWER = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*(?:\.10\s*\^|[x*]\s*10(?=[+-][0-9]))")
+_FLAT_POWER = re.compile(r"([+-]?\s*[1-9](?:[.,][0-9]+)?)\s*[x*]\s*10(?=[1-9][0-9]?(?![0-9.,^]|\s*[*/^(]))")
 _TWO_WAYS = re.compile(r"[1-9][0-9]{0,2},[0-9]{3}")
 _SEXAGESIMAL = re.compile(
     r"""(?P<sign>[+-]?)\s*(?P<degrees>[0-9]+)\s*°\s*
@@ -290,6 +291,9 @@ def _evaluated(expression: Expression, unit: Unit | None, unit_text: str, target
     for reading in (expression, expression.other):
         if reading is None:
             continue
+        if (unit or target).is_angle and (in_degrees := reading.as_calculated_in_degrees):
+            amounts += _of_inverse(reading, in_degrees, unit, unit_text, target)
+            continue
         value = reading.evaluate()
         digits = _short(value)
         if unit:
@@ -303,6 +307,25 @@ def _evaluated(expression: Expression, unit: Unit | None, unit_text: str, target
             amounts.append(_amount(value, digits, assumed=target.text))
         else:
             amounts.append(_amount(value, digits))
+    return amounts
+
+
+_TURNS = 2  #: of an angle in radians, beyond which its formula was meant in degrees
+
+
+def _of_inverse(
+    reading: Expression, in_degrees: Expression, unit: Unit | None, unit_text: str, target: Unit
+) -> list[_Amount]:
+    """The values of an angle's formula with an inverse function, by who works in degrees and who does in radians."""
+    degree, amounts = parse_unit("deg"), []
+    if unit is None or unit.ratio == degree.ratio:
+        degrees = in_degrees.evaluate()
+        amounts.append(_amount(_in_unit(degrees, degree, target), _short(degrees), unit_text, assumed="deg"))
+    if unit is None or unit.ratio != degree.ratio:
+        value = reading.evaluate()
+        if unit or abs(value) <= _TURNS * math.tau:
+            own = unit or parse_unit("rad")
+            amounts.append(_amount(_in_unit(value, own, target), _short(value), unit_text, assumed="rad"))
     return amounts
 
 
@@ -341,7 +364,7 @@ def _amounts(text: str, target: Unit, thousands: bool = True) -> list[_Amount]:
     _refuse_ranges(text)
     amounts = _scientific(text, target)
     try:
-        return [*amounts, *_formula(text, target)]
+        return [*amounts, *_formula(text, target), *_flattened(text, target)]
     except Unreadable as error:
         if amounts:
             return amounts
@@ -352,6 +375,12 @@ def _amounts(text: str, target: Unit, thousands: bool = True) -> list[_Amount]:
 def _scientific(text: str, target: Unit) -> list[_Amount]:
     """The first reading of ``3.10^2``, 300 on paper and 9.61 on a keyboard, and of ``3x10-2``, 0.03 or 28."""
     repaired, count = _LOST_POWER.subn(r"\1*10^", text, count=1) if _LOST_POWER.match(text) else (text, 0)
+    return (_literal(repaired, target) or []) if count else []
+
+
+def _flattened(text: str, target: Unit) -> list[_Amount]:
+    """The second reading of ``2.739x102``, a power of ten whose exponent is raised no more: 273.9."""
+    repaired, count = _FLAT_POWER.subn(r"\1*10^", text, count=1) if _FLAT_POWER.match(text) else (text, 0)
     return (_literal(repaired, target) or []) if count else []
 
 
