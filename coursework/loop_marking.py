@@ -177,7 +177,8 @@ class LoopJudge:
         for other, places in ((equation, as_told), (read, usual)):
             if other is not None and (own := self._as_it_stands(other, *places)).rank:
                 return own
-        return self._missed(equation)
+        missed = self._missed(equation)
+        return missed if missed.fault or read is None else self._missed(read)
 
     def _as_it_stands(self, equation: Equation, near: _Points, steps: _Points) -> Finding:
         values, sides = (v.reshape(1 + _OFF, -1) for v in equation.gap(near.values, near.count))
