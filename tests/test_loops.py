@@ -221,6 +221,24 @@ def test_numbers_in_place_of_symbols_are_told():
     )
 
 
+@pytest.mark.parametrize(
+    ("text", "slip"),
+    [
+        ("theta4 = arccos(r2*cos(theta2)/rA)", "slip:some_positions"),
+        ("theta4 = 180 - arcsin((r1 + r2*sin(theta2))/rA)", "wrong"),  # the wrong unit as well
+        ("theta4 = pi - arcsin((r1 + r2*sin(theta2))/rA)", "slip:some_positions"),
+        ("theta4 = pi - arcsin(({r1} + r2*sin(theta2))/rA)", "slip:numbers"),
+        ("theta4 = arccos({r2}*cos(theta2)/rA)", "slip:numbers"),
+        ("theta4 = arccos(-r2*cos(theta2)/rA)", "wrong"),
+    ],
+)
+def test_an_equation_that_loses_a_quadrant_is_told_so_and_not_blamed_for_numbers(text, slip):
+    variant = COURSE["slotted_mechanism"].variant(0, "en", ("all",))
+    mark = variant.grade({"loop_1_x": text.format(**variant.given)})["loop_1_x"]
+    assert mark.verdict == slip
+    assert ("only for some positions" in mark.feedback) == (slip == "slip:some_positions")
+
+
 @every_loop
 @pytest.mark.parametrize("lang", ["fr", "en"])
 def test_a_wrong_sign_and_a_forgotten_link_are_told_by_the_symbol_of_every_link(name, loop, lang):
