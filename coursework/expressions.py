@@ -233,7 +233,7 @@ def _calculated_in_degrees(node: Operation) -> Operation:
         return replace(node, args=(Operation("degree", args=args),))
     if node.kind == "call" and node.name in _INVERSE:
         return Operation("product", "**", (replace(node, args=args), Operation("number", repr(_A_RADIAN))))
-    if node.turns and _is_conversion(node):
+    if node.kind == "product" and node.turns and _is_conversion(node):
         args = tuple(
             new.args[0] if old.kind == "call" and old.turns else new
             for old, new in zip(node.args, args, strict=True)

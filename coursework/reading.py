@@ -12,6 +12,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 from numbers import Real
@@ -354,13 +355,24 @@ def _amounts(text: str, target: Unit, thousands: bool = True) -> list[_Amount]:
     """All honest readings of one number, the likelier first."""
     text = _without_name(text)
     text = _PRINTED.sub(r"\1", text) if "(" in text else text
+    text = _inside(text) or text
     if not text:
         raise _Stop("not_a_number", text)
     if _NOT_FINITE.match(text):
         raise _Stop("not_finite", text)
-    amounts = _sexagesimal(text, target) or _mixed(text, target) or _literal(text, target, thousands)
-    if amounts is not None:
-        return amounts
+    amounts = _in_digits(text, target, thousands)
+    if amounts is None and ("(" in text or "=" in text or "≈" in text):
+        amounts = _written_twice(text, target, thousands)
+    return _worked_out(text, target) if amounts is None else amounts
+
+
+def _in_digits(text: str, target: Unit, thousands: bool) -> list[_Amount] | None:
+    """A number without a formula, or ``None``."""
+    return _sexagesimal(text, target) or _mixed(text, target) or _literal(text, target, thousands)
+
+
+def _worked_out(text: str, target: Unit) -> list[_Amount]:
+    """The readings of a formula."""
     _refuse_ranges(text)
     amounts = _scientific(text, target)
     try:
@@ -370,6 +382,102 @@ def _amounts(text: str, target: Unit, thousands: bool = True) -> list[_Amount]:
             return amounts
         words = error.code in ("unknown_symbol", "not_a_number")
         raise (words and _named_unit_unknown(text)) or error from None
+
+
+def _inside(text: str) -> str:
+    """What stands between brackets that open at the start and close at the end; else nothing."""
+    if text[:1] != "(" or text[-1:] != ")":
+        return ""
+    level = 0
+    for at, char in enumerate(text):
+        level += (char == "(") - (char == ")")
+        if level == 0:
+            return text[1:-1].strip() if at == len(text) - 1 else ""
+    return ""
+
+
+_CHECKED = re.compile(r"([^(=≈]*[^\s(=≈+*/^-])\s+(\(.*\))\s*([^()=≈]*)", re.DOTALL)
+_EQUALS = re.compile(r"\s*[=≈]+\s*")
+
+
+def _written_twice(text: str, target: Unit, thousands: bool) -> list[_Amount] | None:
+    """A number written in ways that agree: ``273.9 (273.92)``, ``180 - 75.4 = 104.6``; ``None`` where it is not.
+
+    The number before the brackets is meant, or the end of a chain of equals signs.
+    """
+    if (checked := _CHECKED.fullmatch(text)) and (inside := _inside(checked[2])):
+        unit = checked[3] and f" {checked[3]}"
+        if unit and find_unit(checked[3]) is None:
+            return None
+        return _checked(checked[1] + unit, inside, unit, target, thousands)
+    pieces = _EQUALS.split(text)
+    if len(pieces) < 2 or not all(pieces):
+        return None
+    *others, end = (_way(piece, target, thousands) for piece in pieces)
+    for other in others:
+        if not (amounts := _agreeing(end, other, target)):
+            raise _Stop("two_values", text)
+        end = amounts, end[1]
+    return end[0]
+
+
+def _checked(number: str, inside: str, unit: str, target: Unit, thousands: bool) -> list[_Amount] | None:
+    """A number that what stands in brackets behind it confirms; ``2 (π/3)`` is a product, and ``None``."""
+    meant = _in_digits(number, target, thousands)
+    if meant is None or not any(c in "0123456789π" for c in inside):
+        return None
+    says_more = bool(_WORD.search(inside))  # a unit, or what only a formula has
+    try:
+        other = _way(inside + unit, target, thousands)
+    except (_Stop, Unreadable):
+        other = [], inside
+    amounts = _agreeing((meant, number), other, target)
+    if not amounts and says_more and not (other[0] and other[0][0].unit and not unit):
+        return None
+    if not amounts:
+        raise _Stop("two_values", f"{number} ({inside})")
+    return amounts
+
+
+_Way = tuple[list[_Amount], str]  #: what was read, and in which text
+
+
+def _way(text: str, target: Unit, thousands: bool) -> _Way:
+    amounts = _in_digits(text, target, thousands)
+    return (_worked_out(text, target) if amounts is None else amounts), text
+
+
+def _agreeing(one: _Way, other: _Way, target: Unit) -> list[_Amount]:
+    """The readings of one way to write a number that the other confirms to the last digit of the shorter.
+
+    An angle that does not say its unit may be in radians; what it is in degrees then counts as well.
+    """
+    kept, radian = [], 1 / target.factor
+    for a in one[0]:
+        for b in other[0]:
+            own, its = _half_digit(a, one[1], target), _half_digit(b, other[1], target)
+            if _is_near(a.value, b.value, max(own, its)) or (
+                target.is_angle and not b.unit and _is_near(a.value, b.value * radian, max(own, its * radian))
+            ):
+                kept.append(a)
+            elif (
+                target.is_angle and not a.unit and _is_near(a.value * radian, b.value, max(own * radian, its))
+            ):
+                kept += [a, b]
+    return kept
+
+
+def _is_near(one: float, other: float, half: float) -> bool:
+    return abs(one - other) <= half + 1e-6 * abs(one)
+
+
+def _half_digit(amount: _Amount, text: str, target: Unit) -> float:
+    """Half of the last digit that is written of a number, in the canonical unit; nothing of a formula."""
+    if _LITERAL.fullmatch(text) is None or _literal(text, target) is None:
+        return 0.0
+    digits = amount.echo.split()[0]
+    scale = abs(amount.value / float(digits)) if float(digits) else 1.0
+    return 0.5 * 10.0 ** Decimal(digits).as_tuple().exponent * scale
 
 
 def _scientific(text: str, target: Unit) -> list[_Amount]:

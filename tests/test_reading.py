@@ -2,6 +2,7 @@
 
 import math
 import sys
+from decimal import Decimal
 
 import numpy as np
 import pytest
@@ -78,6 +79,7 @@ NUMBERS = [
         "180 - arctan(1.6)", "arctan(-1.6) + 180", "180° - arctan(1.6)", "180 - arctan(1.6)°", "180 - arctan(1.6) deg",
         "180° - arctan(1.6)°", "180 + atan2(-1.6; 1)", "θ4 = 180 - arctg(1,6)", "180 - 1*atan(16/10) degrés",
         "180-arctan 1.6",
+        "-(arctan(1.6) - 180)",
     )],
     *[(s, "deg", 120) for s in ("90 + arcsin(0.5)", "arccos(-0.5)", "arccos(-0,5)°", "acos(-0.5) deg", "acos(-0.5) rad",
     "2 arccos(0,5)", "2*arccos(0.5)°", "180 - arccos(sin(30))", "90° + asin(sin(30°))")],
@@ -187,6 +189,43 @@ def test_a_product_that_is_no_power_of_ten_has_one_reading(text):
 
 
 @pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("273.9 (273.92)", "mm", 273.9), ("273,9 mm (273,92)", "mm", 273.9), ("273.9 (27.392 cm)", "mm", 273.9),
+        ("6 (5+1)", "1", 6), ("6 (5+1) mm", "mm", 6), ("1 234 (1234)", "mm", 1234), ("1,234 (1.234)", "mm", 1.234),
+        ("0,33 (1/3)", "1", 0.33), ("1.41 (sqrt(2))", "1", 1.41), ("122.1 (2.13)", "deg", 122.1),
+        ("104.6° (1.8256 rad)", "deg", 104.6), ("9.42 (90 tr/min)", "rad/s", 9.42), ("rA = 319.8 (319.80)", "mm", 319.8),
+        ("1.8256 rad = 104.6°", "deg", 104.6), ("6 - 3 = 3", "1", 3), ("θ4 = 180 - 57.9 = 122.1°", "deg", 122.1),
+        ("319.84 ≈ 319.8", "mm", 319.8), ("639.6/2 = 319.8 mm", "mm", 319.8), ("1,234 = 1234", "mm", 1234),
+        ("(-9,42 rad/s)", "rad/s", -9.42), ("(319.8 mm)", "mm", 319.8), ("2(3+4)", "1", 14), ("2 (π/3)", "rad", 2 * math.pi / 3),
+        ("(1+2)(3+4)", "1", 21),
+    ],
+)  # fmt: skip
+def test_a_number_written_twice_alike_is_that_number_and_no_product(text, unit, value):
+    assert read_number(text, unit).values == pytest.approx((value,), rel=1e-14)
+
+
+def test_an_angle_and_itself_in_radians_are_one_answer():
+    assert read_number("2.13 (122.1)", "deg").values == (2.13, 122.1)
+    assert read_number("2.131 = 122.1", "deg").values == (122.1,)
+    assert read_number("2.10 (122.1)", "deg").code == "two_values"
+
+
+@given(
+    st.decimals(-400, 400, places=2),
+    st.decimals(-400, 400, places=1),
+    st.sampled_from(["{} ({})", "{} ({}) mm", "{} = {}"]),
+)
+@settings(max_examples=1000, deadline=None)
+def test_two_numbers_are_one_only_where_they_agree(one, other, form):
+    reading = read_number(form.format(one, other), "mm")
+    if abs(one - other) <= Decimal("0.05"):
+        assert reading.values == (float(other if "=" in form else one),)
+    else:
+        assert reading.code == "two_values"
+
+
+@pytest.mark.parametrize(
     ("text", "unit", "echo", "given"),
     [
         ("319,8 mm", "mm", "319.8 mm", True),
@@ -244,7 +283,9 @@ def test_nothing_but_spaces_is_missing(blank):
         ("-", "not_a_number"), ("?", "not_a_number"), ("!", "not_a_number"), ("5 6", "not_a_number"),
         ("1,2,3", "not_a_number"), ("1,23,456", "not_a_number"), ("1.2.3", "not_a_number"), ("1 3/2",
         "not_a_number"), ("1 0/2", "not_a_number"), ("1 1/2/3", "not_a_number"),
-        ("rA = 3 = 4", "not_a_number"), ("104°75'", "not_a_number"), ("__import__('os')", "not_a_number"),
+        ("rA = 3 = 4", "two_values"), ("273.9 (274.2)", "two_values"), ("6 (5)", "two_values"), ("2 (3+4)", "two_values"),
+        ("6 (5) mm", "two_values"), ("6 - 3 = 4", "two_values"), ("5 (-5)", "two_values"), ("9 mm (9 cm)", "two_values"),
+        ("1 = 2 = 1", "two_values"), ("5 (±0.1)", "two_values"), ("3 = ", "not_a_number"), ("104°75'", "not_a_number"), ("__import__('os')", "not_a_number"),
         (True, "not_a_number"), (False, "not_a_number"), ([1, 2], "not_a_number"), ([], "not_a_number"), ({}, "not_a_number"),
         (float("nan"), "not_finite"), (float("inf"), "not_finite"), (10**400, "not_finite"),
     ],
