@@ -156,9 +156,9 @@ _LOOSE_UNDERSCORE = re.compile(r"(?<![^\W_])_|_(?![^\W_])")
 
 
 def _harmless(text: str) -> str:
-    """A quotation that no Markdown reader takes for markup; an underscore within a name is none."""
+    """A quotation that no Markdown reader takes for markup; an underscore within a name is none, a star is a factor's."""
     text = _LOOSE_UNDERSCORE.sub("", text)
-    return "".join(c for c in text if c.isprintable() and c not in "$`*\\<>[]#|")
+    return "".join(c for c in text if c.isprintable() and c not in "$`\\<>[]#|").replace("*", r"\*")
 
 
 def amount(variant: Variant, name: str, value: float) -> str:

@@ -99,14 +99,15 @@ def test_an_answer_to_an_unknown_part_is_refused_with_the_nearest(slotted):
 
 
 @pytest.mark.parametrize("lang", ["fr", "en"])
-def test_a_choice_may_be_given_by_label_in_either_language_by_key_or_by_place(course, lang):
+def test_a_choice_may_be_given_by_label_in_either_language_or_by_key(course, lang):
     exercise = course["slotted_mechanism"]
     variant = next(v for v in exercise.variants(range(20), lang) if any(p.id == "guide" for p in v.parts))
     right = variant.solution()["guide"]
     place = "ab"[("oscillates", "rotates").index(right)]
     labels = [variant.in_language(other).text.label("guide", right) for other in ("fr", "en")]
-    for answer in (*labels, right, right.upper(), f"{place})", labels[0].upper()):
+    for answer in (*labels, right, right.upper(), f"{place}) {labels[1]}", labels[0].upper()):
         assert verdict(variant, "guide", answer) == "correct", answer
+    assert verdict(variant, "guide", f"{place})") == "unreadable"
     other = {"oscillates": "rotates", "rotates": "oscillates"}[right]
     assert verdict(variant, "guide", other) == "wrong"
     assert verdict(variant, "guide", "peut-être") == "unreadable"
@@ -138,7 +139,14 @@ def test_feedback_names_the_quantity_and_what_was_read(slotted):
 
 def test_a_hostile_answer_cannot_write_markup_into_feedback(slotted):
     mark = slotted.grade({"rA": "<script>$x$`*_[a](b)|\\"})["rA"]
-    assert not set("<>$`*_[]|\\") & set(mark.says.replace("$r_A$", ""))
+    assert not set("<>$`*_[]|\\") & set(mark.says.replace("$r_A$", "").replace(r"\*", ""))
+
+
+def test_an_equation_is_quoted_with_its_stars(course):
+    variant = course["slotted_mechanism"].variant(0, "en", ("all",))
+    mark = variant.grade({"loop_1_x": "r2*cos(theta2) - 2**rA*cos(theta4)"})["loop_1_x"]
+    assert "“r2*cos(theta2) - 2**rA*cos(theta4)”" in mark.feedback
+    assert r"r2\*cos(theta2)" in mark.says
 
 
 def test_both_readings_of_an_ambiguous_group_are_tried(course):
