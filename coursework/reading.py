@@ -23,7 +23,7 @@ from coursework.equations import parse_equation
 from coursework.errors import WrongUnit
 from coursework.expressions import MAX_LENGTH, Expression, Unreadable, parse_expression
 from coursework.language import languages, words
-from coursework.spelling import shorten, tidy, without_latex
+from coursework.spelling import shorten, tidy, unwrapped, without_latex
 from coursework.units import Unit, convert, find_unit, parse_unit, same_dimension
 
 _MAX_INTEGER = 10**15
@@ -103,7 +103,7 @@ def _reading(answer: object, read: Callable[[str], Reading]) -> Reading:
     if len(text) > MAX_LENGTH and len(text.strip()) > MAX_LENGTH:
         return Reading(text, "unreadable", code="too_long", found=shorten(text))
     try:
-        plain = without_latex(tidy(text))
+        plain = without_latex(tidy(unwrapped(text)))
         return read(plain) if plain else Reading(text, "missing")
     except _Stop as stop:
         return Reading(text, stop.status, code=stop.code, found=shorten(stop.found or plain))
@@ -360,10 +360,16 @@ def _amounts(text: str, target: Unit, thousands: bool = True) -> list[_Amount]:
         raise _Stop("not_a_number", text)
     if _NOT_FINITE.match(text):
         raise _Stop("not_finite", text)
+    if target.dimension == _RATIO and (parts := _PROPORTION.fullmatch(text)):
+        text = f"{parts[1]}/{parts[2]}"
     amounts = _in_digits(text, target, thousands)
     if amounts is None and ("(" in text or "=" in text or "≈" in text):
         amounts = _written_twice(text, target, thousands)
     return _worked_out(text, target) if amounts is None else amounts
+
+
+_PROPORTION = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*:\s*([0-9]+(?:[.,][0-9]+)?)")  #: ``1.25:1``
+_RATIO = parse_unit("1").dimension
 
 
 def _in_digits(text: str, target: Unit, thousands: bool) -> list[_Amount] | None:
@@ -697,9 +703,9 @@ def read_point(text: object, unit: str, count: int) -> Reading:
 
 # --- choices ----------------------------------------------------------------------------
 
-_SIGN = re.compile(r"(^|[=<>(+])\s*[-‐‑‒–−]\s*(?=[0-9])")
+_SIGN = re.compile(r"(^|[=<>(+])\s*[-‐‑‒–—−]\s*(?=[0-9])")
 _PLUS = re.compile(r"(^|[=<>(])\s*\+\s*(?=[0-9])")
-_ANY_MINUS = re.compile("[-‐‑‒–−]")
+_ANY_MINUS = re.compile("[-‐‑‒–—−]")
 
 
 @lru_cache(maxsize=4096)
@@ -710,7 +716,7 @@ def _folded(text: str) -> str:
         text = re.sub(r"[\s_*·{}\\]", "", _ANY_MINUS.sub("−", text))
     text = re.sub(r"\\(?:mathrm|text|mathit|vec|overrightarrow)(?![A-Za-z])|\\[,;! ]", " ", text)
     text = unicodedata.normalize("NFKD", text).casefold()
-    text = "".join(" " if c in "-_‐‑–'’/" else c for c in text if not unicodedata.combining(c))
+    text = "".join(" " if c in "-_‐‑–—'’/" else c for c in text if not unicodedata.combining(c))
     return " ".join(re.sub(r"[^\w\s+−<>=%°.,]", " ", text).split()).strip(" .,")
 
 
@@ -821,7 +827,7 @@ _WHOLE = re.compile(r"^\s*([0-9]+)[.,]0+\s*$")  #: what a table makes of a whole
 
 
 def _choice(text: str, choices: Mapping[str, Sequence[str]]) -> Reading:
-    text = _WHOLE.sub(r"\1", text)
+    text = _WHOLE.sub(r"\1", unwrapped(text))
     keys = _by_label(text, choices)
     if not keys and (marked := _MARKED.fullmatch(text.strip())):  # b) crossed
         keys = list(dict.fromkeys((*_called(marked["label"], choices), *_by_number(marked["mark"], choices))))
