@@ -708,6 +708,9 @@ _PLUS = re.compile(r"(^|[=<>(])\s*\+\s*(?=[0-9])")
 _ANY_MINUS = re.compile("[-‐‑‒–—−]")
 
 
+_LOOSE_COMMA = re.compile(r",(?![0-9])|(?<![0-9]),")
+
+
 @lru_cache(maxsize=4096)
 def _folded(text: str) -> str:
     """A label without case, accents, markup and punctuation; a formula without spaces, its signs kept."""
@@ -717,7 +720,8 @@ def _folded(text: str) -> str:
     text = re.sub(r"\\(?:mathrm|text|mathit|vec|overrightarrow)(?![A-Za-z])|\\[,;! ]", " ", text)
     text = unicodedata.normalize("NFKD", text).casefold()
     text = "".join(" " if c in "-_‐‑–—'’/" else c for c in text if not unicodedata.combining(c))
-    return " ".join(re.sub(r"[^\w\s+−<>=%°.,]", " ", text).split()).strip(" .,")
+    text = _LOOSE_COMMA.sub(" ", re.sub(r"[^\w\s+−<>=%°.,]", " ", text))
+    return " ".join(text.split()).strip(" .,")
 
 
 _AFTER_HEAD = re.compile(r"\s*(?:[(,;]|:\s).*", re.DOTALL)
@@ -767,7 +771,7 @@ def _value_of(label: str) -> str:
 
 
 _BEFORE = re.compile(
-    r"\s*(?:(?:c['’]est|il|elle|it is|it|un|une|des|le|la|les|an|a|the)\s+|l['’]\s*)(?=\S)", re.I
+    r"^\s*(?:(?:c['’]est|il|elle|it is|it|un|une|des|le|la|les|an|a|the)\s+|l['’]\s*)(?=\S)", re.I
 )  #: what people put before a label, and no label needs
 
 
@@ -791,12 +795,64 @@ def _nouns() -> tuple[str, ...]:
 
 @lru_cache(maxsize=4096)
 def _without_noun(text: str) -> str:
-    """A folded label without what all of its kind are called: ``classe III`` is ``iii``."""
+    """A folded label without what all of its kind are called: ``classe III`` is ``iii``, ``rigid joint`` ``rigid``."""
     folded = _folded(text)
     for noun in _nouns():
         if folded.startswith(f"{noun} "):
             return folded[len(noun) + 1 :]
+        if folded.endswith(f" {noun}") and len(folded) - len(noun) > _SMALL_WORD:
+            return folded[: -len(noun) - 1]
     return folded
+
+
+_SMALL_WORD = 4  #: letters of a word and its space that say too little alone: ``no joint`` is not ``no``
+
+
+def _by_core(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that are called so but for a noun that all of their kind share: ``pivot``."""
+    core = _without_noun(text)
+    return [
+        k for k, labels in choices.items() if core and any(_without_noun(head(s)) == core for s in labels)
+    ]
+
+
+@lru_cache(maxsize=4096)
+def _beginnings(label: str) -> frozenset[str]:
+    """What a label begins with, two words or more, folded; ``and`` and ``or`` are not left to follow."""
+    pieces = [] if "=" in label or label.startswith("$") else label.split()
+    ends = (n for n in range(2, len(pieces)) if _folded(pieces[n]) not in _conjunctions())
+    return frozenset(_folded(" ".join(pieces[:n])) for n in ends)
+
+
+@lru_cache(maxsize=1)
+def _conjunctions() -> frozenset[str]:
+    return frozenset(
+        _folded(words(lang)["marking"][joint]) for lang in languages() for joint in ("and", "or")
+    )
+
+
+def _by_beginning(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices whose label begins so: ``double balancier``, ``cas limite``; a word with a hyphen is one."""
+    folded = _folded(text)
+    if " " not in folded:
+        return []
+    return [key for key, labels in choices.items() if any(folded in _beginnings(s) for s in labels)]
+
+
+_REMARK = re.compile(r"(?P<said>[^()]+?)\s*\((?P<remark>[^()]+)\)\s*")
+
+
+def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that stand before a remark in brackets which names no other: ``oscille (r2 < r1)``."""
+    found = _REMARK.fullmatch(text)
+    keys = _called(found["said"], choices) if found else []
+    if len(keys) != 1 or any(key not in keys for key in _called(found["remark"], choices)):
+        return []
+    remark = f" {_folded(found['remark'])} "
+    others = (
+        s for key, labels in choices.items() if key not in keys for s in (key, *labels, *map(head, labels))
+    )
+    return [] if any(f" {_folded(s)} " in remark for s in others if _folded(s)) else keys
 
 
 @lru_cache(maxsize=4096)
@@ -838,17 +894,20 @@ def _choice(text: str, choices: Mapping[str, Sequence[str]]) -> Reading:
 
 
 def _called(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices that a text may mean, its article left out if need be."""
-    for said in dict.fromkeys((text, _BEFORE.sub("", text, count=1))):
-        keys = _by_label(said, choices)
-        keys = keys or list(dict.fromkeys((*_by_number(said, choices), *_by_value(said, choices))))
+    """The choices that a text may mean, its article left out if need be; the surest way to call one first."""
+    said = _BEFORE.sub("", text)
+    for words_said in dict.fromkeys((text, said)):
+        keys = _by_label(words_said, choices) or _by_core(words_said, choices)
+        keys = keys or list(
+            dict.fromkeys((*_by_number(words_said, choices), *_by_value(words_said, choices)))
+        )
         if keys:
             return keys
-    return []
+    return _by_beginning(said, choices) or _by_remark(text, choices)
 
 
 def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
-    """The key of a choice, given by its key, a label of any language or its head, or the number it begins with.
+    """The key of a choice, given by its key, a label of any language, its head or beginning, or the number there.
 
     ``choices`` maps each key to its labels. A letter or a number never counts places: no sheet prints any.
     """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -358,3 +359,16 @@ def test_what_a_drawing_lacks_and_a_scale_that_is_none_are_told(course, lang, mi
     drawn = told(course, "velocity_polygon", 1, lang, kv="-10", p="(0;0)", a="(1;2)", b="(3;4)")
     assert scale in drawn["kv"].feedback
     assert scale not in drawn["p"].feedback
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_what_may_be_written_for_a_choice_is_said_in_the_language_of_the_sheet_and_is_read(course, lang):
+    variant = course["parallel_joints"].variant(0, lang)
+    said = " ".join(variant.grade({"equivalent": "qzx"})["equivalent"].feedback.split())
+    shown = (
+        ("« pivot »", "« rotule à doigt »") if lang == "fr" else ("“revolute joint”", "“ball joint with pin”")
+    )
+    assert all(quotation in said for quotation in shown)
+    assert ("revolute" in said) == (lang == "en")
+    for quotation in re.findall("«\\s(.+?)\\s»|“(.+?)”", said)[1:]:
+        assert variant.grade({"equivalent": max(quotation)})["equivalent"].verdict != "unreadable", quotation

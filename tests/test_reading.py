@@ -755,6 +755,87 @@ def test_no_two_cases_of_the_course_have_one_label():
                             assert read_choice(label, known).values == (key,), (name, part.id, label)
 
 
+JOINTS = {
+    "revolute": ("une liaison pivot", "liaison pivot", "a revolute joint", "revolute joint"),
+    "cylindrical": (
+        "une liaison pivot glissant",
+        "liaison pivot glissant",
+        "a cylindrical joint",
+        "cylindrical joint",
+    ),
+    "free": ("l'absence de liaison", "no joint at all"),
+    "double-rocker": ("un double balancier dont la bielle tourne", "double balancier dont la bielle tourne"),
+    "rocker-crank": ("balancier-manivelle : l'entrée oscille",),
+    "limit": ("cas limite de la loi : les barres s'alignent",),
+    "both": ("une manivelle et un balancier",),
+    "bodies": ("même point, pièces différentes",),
+    "places": ("même endroit, mêmes pièces",),
+    "oscillates": ("oscille",),
+    "rotates": ("fait un tour complet", "makes a full turn"),
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "key"),
+    [
+        *[(s, "revolute") for s in ("pivot", "un pivot", "Pivot.", "liaison pivot", "revolute", "a revolute joint", "« pivot »")],
+        *[(s, "cylindrical") for s in ("pivot glissant", "un pivot glissant", "cylindrical")],
+        *[(s, "double-rocker") for s in ("double balancier", "un double balancier", "Double balancier dont la bielle")],
+        *[(s, "limit") for s in ("cas limite", "un cas limite", "cas limite de la loi")],
+        ("balancier-manivelle", "rocker-crank"),
+        ("même point pièces différentes", "bodies"),
+        *[(s, "oscillates") for s in ("oscille (r2 < r1)", "il oscille (r2 < r1)", "&laquo; oscille &raquo;")],
+        ("fait un tour complet (r2 > r1)", "rotates"),
+    ],
+)  # fmt: skip
+def test_a_choice_is_known_by_what_tells_it_from_all_others(text, key):
+    assert read_choice(text, JOINTS).values == (key,)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["liaison", "glissant", "balancier", "double", "un double", "manivelle", "une manivelle", "no", "joint", "cas", "même", "même point pièces",
+     "oscille (puis fait un tour complet)", "oscille (pivot)", "limite", "tour complet", "double balancier qui tourne", "de la loi"],
+)  # fmt: skip
+def test_a_piece_that_tells_too_little_is_no_choice(text):
+    values = read_choice(text, JOINTS).values
+    assert values == () or (text, values) == ("même point pièces", ("bodies",))
+
+
+def test_no_piece_of_a_label_reads_as_another_choice():
+    """Every run of words of every label of the course, with the others' words dropped or exchanged."""
+    import random
+
+    import coursework
+
+    rng, course, tried = random.Random(5), coursework.open_course(), set()
+    for name in course.names:
+        for variant in course[name].variants(range(12), "fr"):
+            for part in (p for p in variant.parts if p.kind == "choice" and (name, p.id) not in tried):
+                tried.add((name, part.id))
+                known = variant.labels(part)
+                for key, labels in known.items():
+                    for label in labels:
+                        pieces = label.split()
+                        runs = [
+                            pieces[a:b] for a in range(len(pieces)) for b in range(a + 1, len(pieces) + 1)
+                        ]
+                        for run in rng.sample(runs, min(len(runs), 25)):
+                            text = " ".join(run)
+                            found = read_choice(text, known).values
+                            if found in ((), (key,)) or {"un", "une", "one", "deux", "two"} & {*run}:
+                                continue  # a number may be that of another label
+                            own = {
+                                w.casefold()
+                                for s in (found[0], *known[found[0]])
+                                for w in s.replace("-", " ").split()
+                            }
+                            assert all(
+                                w.strip(",.:").casefold() in {o.strip(",.:") for o in own} for w in run
+                            ), (text, key, found)
+    assert len(tried) > 40
+
+
 def test_a_head_of_two_choices_chooses_neither():
     assert read_choice("none", {"p": ("none, ever",), "q": ("none (yet)",)}).code == "two_values"
 
