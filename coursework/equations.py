@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
@@ -98,7 +99,7 @@ def _with_numbers(node: Operation, values: Mapping[str, float]) -> Operation:
 
 
 def parse_equation(text: str, variables: Iterable[str]) -> Equation:
-    """Read an equation over the given variables; there must be exactly one equals sign.
+    """Read an equation over the given variables; there must be exactly one equals sign, which may be ``==``.
 
     Raises
     ------
@@ -108,7 +109,7 @@ def parse_equation(text: str, variables: Iterable[str]) -> Equation:
     if len(text) > MAX_LENGTH:
         message = f"an equation of {len(text)} characters is not read; at most {MAX_LENGTH} are"
         raise Unreadable(message, code="too_long", found=text)
-    sides = tidy(text).strip("$ ").split("=")
+    sides = re.split("==?", tidy(text).strip("$ "))
     if len(sides) != 2:
         code = "no_equals_sign" if len(sides) == 1 else "two_equals_signs"
         raise Unreadable(

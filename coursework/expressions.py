@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -79,16 +80,35 @@ def _key(name: str) -> str:
     return name
 
 
+_RATE = re.compile(r"theta(\w*?)(d?dot)")
+
+
 class _Vocabulary:
     """The names that may occur, by any spelling."""
 
     def __init__(self, variables: tuple[str, ...]) -> None:
         self.variables = {_key(v): v for v in variables}
         self.complex = bool(variables)
+        folded = Counter(key.casefold() for key in self.variables)
+        #: names that nothing else is like but for capitals; a letter alone has its case for meaning
+        self.any_capitals = {
+            key.casefold(): v
+            for key, v in self.variables.items()
+            if len(key) > 1 and folded[key.casefold()] == 1
+        }
+
+    def variable(self, run: str) -> str | None:
+        """The variable of a spelling: its own, that of a rate by its dots, ``theta2_dot`` for ``omega2``, or in other capitals."""
+        key = _key(run)
+        if (name := self.variables.get(key)) is not None:
+            return name
+        if (rate := _RATE.fullmatch(key)) is not None:
+            return self.variables.get({"dot": "omega", "ddot": "alpha"}[rate[2]] + rate[1])
+        return self.any_capitals.get(key.casefold())
 
     def find(self, run: str) -> tuple[str, str] | None:
         """Kind and canonical name of one complete spelling."""
-        if (name := self.variables.get(_key(run))) is not None:
+        if self.complex and (name := self.variable(run)) is not None:
             return "variable", name
         low = run.lower()
         low = _ALIASES.get(low, low)
@@ -318,7 +338,7 @@ _NUMBER = re.compile(
     r"(?:[eE][+-]?[0-9]+(?![A-Za-z0-9.,]))?"
 )
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*")
-_TIMES = re.compile(r"(?<=[0-9)])\s*[xX]\s*(?=[0-9(])")
+_TIMES = re.compile(r"(?<=[0-9)])\s*[xX]\s*(?=[0-9(])|(?<=[0-9A-Za-z)])\s+[xX]\s+(?=[0-9A-Za-z(\\])")
 _FRACTION = re.compile(r"\\[dt]?frac\s*")
 _GROUPS = {"(": ")", "[": "]", "{": "}"}
 

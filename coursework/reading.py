@@ -660,7 +660,25 @@ def _bare_point(text: str) -> tuple[str, str]:
     return (found["inside"], found["unit"].lstrip("*").strip()) if found else (text.rstrip(" .;,"), "")
 
 
+_AXIS = re.compile(
+    r"(?P<sign>[+-]?)\s*(?:(?:l'\s*)?ax(?:e|is)\s+)?(?:\\?(?:vec|overrightarrow)\s*)?\{?\s*(?P<letter>[xyz])\u20d7?\s*\}?(?:[ -]axis)?",
+    re.I,
+)  #: ``y``, ``-z``, ``\\vec y``, ``y axis``
+
+
+def _axis(text: str, count: int) -> tuple[float, ...] | None:
+    """The direction of an axis of coordinates that is named, or ``None``."""
+    found = _AXIS.fullmatch(text)
+    place = "xyz".index(found["letter"].lower()) if found else count
+    if place >= count:
+        return None
+    one = -1.0 if found["sign"] == "-" else 1.0
+    return tuple(one if k == place else 0.0 for k in range(count))
+
+
 def _point(text: str, original: str, target: Unit, count: int) -> Reading:
+    if target.dimension == _RATIO and (axis := _axis(text.rstrip(" .;,"), count)):
+        return Reading(original, "read", (axis,), ("(" + "; ".join(f"{c:g}" for c in axis) + ")",))
     inside, unit = _bare_point(text)
     source = target
     if unit:
@@ -688,7 +706,7 @@ def _point(text: str, original: str, target: Unit, count: int) -> Reading:
 
 
 def read_point(text: object, unit: str, count: int) -> Reading:
-    """The ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``.
+    """The ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``; an axis is a direction.
 
     ``(12,3 ; 4,5) mm``, ``12.3, 4.5``, ``[1, 0, 1]``, ``(1 0 1)``, ``x = 1; y = 2``, or a list. A unit
     behind the brackets or behind the last coordinate serves for all.
@@ -811,9 +829,8 @@ _SMALL_WORD = 4  #: letters of a word and its space that say too little alone: `
 def _by_core(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choices that are called so but for a noun that all of their kind share: ``pivot``."""
     core = _without_noun(text)
-    return [
-        k for k, labels in choices.items() if core and any(_without_noun(head(s)) == core for s in labels)
-    ]
+    plain = {key: [head(s) for s in labels if not s.startswith("$")] for key, labels in choices.items()}
+    return [key for key, heads in plain.items() if core and any(_without_noun(s) == core for s in heads)]
 
 
 @lru_cache(maxsize=4096)

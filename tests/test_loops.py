@@ -87,6 +87,8 @@ RIGHT = [
     ("havens_planetary", "loop_1_y", "d*sin(theta4) = (r2 + r3)*sin(theta1 - theta4)"),
     ("two_loop_linkage", "loop_2_x", "xC + r5*cos(beta + theta4) - xF = r7*cos(theta7) - r6*cos(theta6)"),
     ("two_loop_linkage", "loop_2_y", "yF + r7 sin θ7 - r6 sin θ6 - yC = r5 (sin θ4 cos β + cos θ4 sin β)"),
+    ("slotted_mechanism", "loop_1_x", "R2 x cos(Theta2) == RA x cos(Θ4)"),
+    ("slotted_mechanism", "loop_1_x_dot", "ṙA cos θ4 - rA θ̇4 sin θ4 = -r2 θ̇2 sin θ2"),
     ("slotted_mechanism", "loop_1_x", "r1*cos(90)+r2*cos(theta2)-rA*cos(theta4)=0"),
     ("slotted_mechanism", "loop_1_y", "r1*sin(90) + r2*cos(theta2 - 90) - rA*sin(theta4) = 0"),
     ("slotted_mechanism", "loop_1_complex", "r1*e^(i*90) + r2*e^(i*theta2) = rA*e^(i*theta4)"),

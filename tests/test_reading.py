@@ -561,6 +561,28 @@ def test_a_direction_of_three_coordinates_is_read(text):
 
 
 @pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        *[(s, (0, 1, 0)) for s in ("y", "Y", "\\vec y", "\\vec{y}", "$\\vec{y}$", "y\u20d7", "vec y", "axe y", "l'axe y", "y axis", "y-axis")],
+        *[(s, (0, 0, -1)) for s in ("-z", "−z", "-\\vec z", "- \\overrightarrow{z}")],
+        ("x", (1, 0, 0)),
+    ],
+)  # fmt: skip
+def test_an_axis_is_a_direction(text, value):
+    reading = read_point(text, "1", 3)
+    assert (reading.values, reading.read_as) == ((value,), (f"({value[0]:g}; {value[1]:g}; {value[2]:g})",))
+
+
+@pytest.mark.parametrize("text", ["w", "xy", "x, y", "x+y", "5", "y2", "2y", "axe", "\\vec", "--y"])
+def test_what_is_no_axis_is_no_direction(text):
+    assert read_point(text, "1", 3).status == "unreadable"
+
+
+def test_an_axis_is_no_point_and_none_of_the_plane_has_a_third():
+    assert read_point("y", "mm", 3).status == read_point("z", "1", 2).status == "unreadable"
+
+
+@pytest.mark.parametrize(
     ("text", "status", "code"),
     [
         ("1,2,3", "unreadable", "wrong_count"),
@@ -854,7 +876,7 @@ def test_an_equation_is_read_as_written():
 
 @pytest.mark.parametrize(
     ("text", "code"),
-    [("r1 + r2", "no_equals_sign"), ("r1 = r2 = r3", "two_equals_signs"), ("r1 = r9", "unknown_symbol"),
+    [("r1 + r2", "no_equals_sign"), ("r1 === r2", "two_equals_signs"), ("r1 = = r2", "two_equals_signs"), ("r1 = r2 = r3", "two_equals_signs"), ("r1 = r9", "unknown_symbol"),
      ("r1 = ", "not_a_number"), (5, "no_equals_sign"), (True, "not_a_number"), ("r1 = 9^9^9", "too_complex")],
 )  # fmt: skip
 def test_what_is_no_equation_says_why(text, code):
