@@ -409,7 +409,7 @@ _EQUALS = re.compile(r"\s*[=≈]+\s*")
 def _written_twice(text: str, target: Unit, thousands: bool) -> list[_Amount] | None:
     """A number written in ways that agree: ``273.9 (273.92)``, ``180 - 75.4 = 104.6``; ``None`` where it is not.
 
-    The number before the brackets is meant, or the end of a chain of equals signs.
+    The number before the brackets is meant, or that behind the equals sign.
     """
     if (checked := _CHECKED.fullmatch(text)) and (inside := _inside(checked[2])):
         unit = checked[3] and f" {checked[3]}"
@@ -417,14 +417,12 @@ def _written_twice(text: str, target: Unit, thousands: bool) -> list[_Amount] | 
             return None
         return _checked(checked[1] + unit, inside, unit, target, thousands)
     pieces = _EQUALS.split(text)
-    if len(pieces) < 2 or not all(pieces):
+    if len(pieces) != 2 or not all(pieces):
         return None
-    *others, end = (_way(piece, target, thousands) for piece in pieces)
-    for other in others:
-        if not (amounts := _agreeing(end, other, target)):
-            raise _Stop("two_values", text)
-        end = amounts, end[1]
-    return end[0]
+    other, end = (_way(piece, target, thousands) for piece in pieces)
+    if not (amounts := _agreeing(end, other, target)):
+        raise _Stop("two_values", text)
+    return amounts
 
 
 def _checked(number: str, inside: str, unit: str, target: Unit, thousands: bool) -> list[_Amount] | None:

@@ -293,7 +293,7 @@ def test_nothing_but_spaces_is_missing(blank):
         "not_a_number"), ("1 0/2", "not_a_number"), ("1 1/2/3", "not_a_number"),
         ("rA = 3 = 4", "two_values"), ("273.9 (274.2)", "two_values"), ("6 (5)", "two_values"), ("2 (3+4)", "two_values"),
         ("6 (5) mm", "two_values"), ("6 - 3 = 4", "two_values"), ("5 (-5)", "two_values"), ("9 mm (9 cm)", "two_values"),
-        ("1 = 2 = 1", "two_values"), ("5 (±0.1)", "two_values"), ("3 = ", "not_a_number"), ("104°75'", "not_a_number"), ("__import__('os')", "not_a_number"),
+        ("1 = 1 = 1", "not_a_number"), ("5 (±0.1)", "two_values"), ("3 = ", "not_a_number"), ("104°75'", "not_a_number"), ("__import__('os')", "not_a_number"),
         (True, "not_a_number"), (False, "not_a_number"), ([1, 2], "not_a_number"), ([], "not_a_number"), ({}, "not_a_number"),
         (float("nan"), "not_finite"), (float("inf"), "not_finite"), (10**400, "not_finite"),
     ],
