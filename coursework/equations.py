@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
@@ -44,7 +45,7 @@ class Equation:
         return Equation(self.text, left, right)
 
     def in_degrees(self) -> Equation | None:
-        """The equation with numbers that stand beside angles taken as degrees: ``sin(theta2 + 90)``.
+        """The equation with numbers that stand for angles taken as degrees: ``sin(theta2 + 90)``, ``cos(90)``.
 
         None where no such number is.
         """
@@ -55,15 +56,40 @@ class Equation:
 
 
 def _in_degrees(node: Operation) -> Operation:
-    """A tree in which plain numbers added to angles under a sine, a cosine or a tangent are degrees."""
+    """A tree in which plain numbers under a sine, a cosine, a tangent or ``e^(i …)`` are degrees, alone or added."""
     args = tuple(map(_in_degrees, node.args))
-    if node.kind == "call" and node.name in ("sin", "cos", "tan") and args[0].kind == "sum":
-        terms = (
-            Operation("degree", args=(term,), angle=True) if term.constant and not term.angle else term
-            for term in args[0].args
-        )
-        args = (replace(args[0], args=tuple(terms)),)
+    if node.kind == "call" and node.name in ("sin", "cos", "tan"):
+        args = (_angle_in_degrees(args[0]),)
+    elif node.kind == "call" and node.name == "exp":
+        args = (_exponent_in_degrees(args[0]),)
+    elif node.kind == "power" and args[0] == Operation("constant", "e"):
+        args = (args[0], _exponent_in_degrees(args[1]))
     return replace(node, args=args) if args != node.args else node
+
+
+def _angle_in_degrees(node: Operation) -> Operation:
+    """An angle whose plain numbers are degrees; what is said in terms of pi is in radians."""
+    if node.kind in ("sum", "neg"):
+        return replace(node, args=tuple(map(_angle_in_degrees, node.args)))
+    is_plain = node.constant and not (node.angle or node.speaks_of_pi or node.has_inverse)
+    return Operation("degree", args=(node,), angle=True) if is_plain else node
+
+
+def _exponent_in_degrees(node: Operation) -> Operation:
+    """An exponent of e in which plain numbers beside the imaginary unit are degrees: ``i*90``, ``i(theta2 + 90)``."""
+    if node.kind in ("sum", "neg"):
+        return replace(node, args=tuple(map(_exponent_in_degrees, node.args)))
+    if node.kind != "product" or sum(arg == _IMAGINARY for arg in node.args) != 1:
+        return node
+    others = [arg for arg in node.args if arg != _IMAGINARY]
+    if node.constant and not any(arg.angle or arg.speaks_of_pi or arg.has_inverse for arg in others):
+        return Operation("degree", args=(node,))
+    if len(others) == 1:
+        return replace(node, args=tuple(a if a == _IMAGINARY else _angle_in_degrees(a) for a in node.args))
+    return node
+
+
+_IMAGINARY = Operation("constant", "i")
 
 
 def _with_numbers(node: Operation, values: Mapping[str, float]) -> Operation:
@@ -73,7 +99,7 @@ def _with_numbers(node: Operation, values: Mapping[str, float]) -> Operation:
 
 
 def parse_equation(text: str, variables: Iterable[str]) -> Equation:
-    """Read an equation over the given variables; there must be exactly one equals sign.
+    """Read an equation over the given variables; there must be exactly one equals sign, which may be ``==``.
 
     Raises
     ------
@@ -83,7 +109,7 @@ def parse_equation(text: str, variables: Iterable[str]) -> Equation:
     if len(text) > MAX_LENGTH:
         message = f"an equation of {len(text)} characters is not read; at most {MAX_LENGTH} are"
         raise Unreadable(message, code="too_long", found=text)
-    sides = tidy(text).strip("$ ").split("=")
+    sides = re.split("==?", tidy(text).strip("$ "))
     if len(sides) != 2:
         code = "no_equals_sign" if len(sides) == 1 else "two_equals_signs"
         raise Unreadable(

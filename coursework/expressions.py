@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -79,16 +80,35 @@ def _key(name: str) -> str:
     return name
 
 
+_RATE = re.compile(r"theta(\w*?)(d?dot)")
+
+
 class _Vocabulary:
     """The names that may occur, by any spelling."""
 
     def __init__(self, variables: tuple[str, ...]) -> None:
         self.variables = {_key(v): v for v in variables}
         self.complex = bool(variables)
+        folded = Counter(key.casefold() for key in self.variables)
+        #: names that nothing else is like but for capitals; a letter alone has its case for meaning
+        self.any_capitals = {
+            key.casefold(): v
+            for key, v in self.variables.items()
+            if len(key) > 1 and folded[key.casefold()] == 1
+        }
+
+    def variable(self, run: str) -> str | None:
+        """The variable of a spelling: its own, that of a rate by its dots, ``theta2_dot`` for ``omega2``, or in other capitals."""
+        key = _key(run)
+        if (name := self.variables.get(key)) is not None:
+            return name
+        if (rate := _RATE.fullmatch(key)) is not None:
+            return self.variables.get({"dot": "omega", "ddot": "alpha"}[rate[2]] + rate[1])
+        return self.any_capitals.get(key.casefold())
 
     def find(self, run: str) -> tuple[str, str] | None:
         """Kind and canonical name of one complete spelling."""
-        if (name := self.variables.get(_key(run))) is not None:
+        if self.complex and (name := self.variable(run)) is not None:
             return "variable", name
         low = run.lower()
         low = _ALIASES.get(low, low)
@@ -159,6 +179,26 @@ class Operation:
     def constant(self) -> bool:
         return all(node.kind != "variable" for node in self.walk())
 
+    @property
+    def speaks_of_pi(self) -> bool:
+        return any((node.kind, node.name) == ("constant", "pi") for node in self.walk())
+
+    @property
+    def has_inverse(self) -> bool:
+        """Whether an inverse trigonometric function gives an angle in it."""
+        return any(node.kind == "call" and node.name in _INVERSE for node in self.walk())
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is an angle in radians by itself: ``acos(0.5)``, or so many times that."""
+        if self.kind == "call":
+            return self.name in _INVERSE
+        if self.kind == "neg":
+            return self.args[0].turns
+        return self.kind == "product" and [
+            s for s, arg in zip(self.name, self.args, strict=True) if arg.turns
+        ] == ["*"]
+
 
 def _number(value: object) -> np.ndarray | np.generic:
     array = np.asarray(value)
@@ -203,6 +243,36 @@ def _compute(node: Operation, values: Mapping[str, object]) -> Value:
     return total
 
 
+_A_RADIAN = math.degrees(1.0)
+
+
+def _calculated_in_degrees(node: Operation) -> Operation:
+    """A tree whose trigonometric functions take degrees, and whose inverse ones give them unless converted by hand."""
+    args = tuple(map(_calculated_in_degrees, node.args))
+    if node.kind == "call" and node.name in ("sin", "cos", "tan"):
+        return replace(node, args=(Operation("degree", args=args),))
+    if node.kind == "call" and node.name in _INVERSE:
+        return Operation("product", "**", (replace(node, args=args), Operation("number", repr(_A_RADIAN))))
+    if node.kind == "product" and node.turns and _is_conversion(node):
+        args = tuple(
+            new.args[0] if old.kind == "call" and old.turns else new
+            for old, new in zip(node.args, args, strict=True)
+        )
+    return replace(node, args=args)
+
+
+def _is_conversion(node: Operation) -> bool:
+    """Whether a product of an inverse function makes radians into degrees, ``acos(0.5)*180/3.14``."""
+    pairs = [(s, arg) for s, arg in zip(node.name, node.args, strict=True) if not arg.turns]
+    if not pairs or not all(arg.constant for _, arg in pairs):
+        return False
+    signs, args = zip(*pairs, strict=True)
+    one = Operation("number", "1")
+    with np.errstate(all="ignore"):
+        factor = _compute(Operation("product", "*" + "".join(signs), (one, *args)), {})
+    return bool(abs(factor / _A_RADIAN - 1) < 0.01)
+
+
 @dataclass(frozen=True)
 class Expression:
     """A formula that has been read.
@@ -227,10 +297,21 @@ class Expression:
 
     @property
     def speaks_radians(self) -> bool:
-        return any(
-            (node.kind, node.name) == ("constant", "pi") or (node.kind == "call" and node.name in _INVERSE)
-            for node in self.root.walk()
-        )
+        return self.root.speaks_of_pi or self.root.has_inverse
+
+    @property
+    def as_calculated_in_degrees(self) -> Expression | None:
+        """The formula of who works in degrees, ``180 - atan(1.6)``: its functions take and give them.
+
+        None where no inverse function gives an angle, where pi says that it is in radians, or a degree sign has spoken.
+        """
+        if (
+            not self.root.has_inverse
+            or self.root.speaks_of_pi
+            or any(node.angle for node in self.root.walk())
+        ):
+            return None
+        return Expression(self.text, _calculated_in_degrees(self.root))
 
     def evaluate(self, values: Mapping[str, object] | None = None) -> Value:
         """The value, of the shape to which the values broadcast; angles in radians.
@@ -257,7 +338,7 @@ _NUMBER = re.compile(
     r"(?:[eE][+-]?[0-9]+(?![A-Za-z0-9.,]))?"
 )
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*")
-_TIMES = re.compile(r"(?<=[0-9)])\s*[xX]\s*(?=[0-9(])")
+_TIMES = re.compile(r"(?<=[0-9)])\s*[xX]\s*(?=[0-9(])|(?<=[0-9A-Za-z)])\s+[xX]\s+(?=[0-9A-Za-z(\\])")
 _FRACTION = re.compile(r"\\[dt]?frac\s*")
 _GROUPS = {"(": ")", "[": "]", "{": "}"}
 
@@ -312,10 +393,11 @@ class _Parser:
         self.depth -= 1
         if len(terms) == 1:
             return terms[0]
-        # A term with a variable may be an angle: theta2 + 90°.
-        if len({term.angle for term in terms if term.angle or term.constant}) > 1:
+        # A term with a variable may be an angle: theta2 + 90°. An inverse function gives one: 180° - atan(1.6).
+        in_degrees = any(term.angle for term in terms)
+        if in_degrees and any(term.constant and not (term.angle or term.turns) for term in terms):
             raise self.fail("it adds degrees to a plain number", "mixed_units", self.text)
-        return Operation("sum", signs, tuple(terms), any(term.angle for term in terms))
+        return Operation("sum", signs, tuple(terms), in_degrees)
 
     def product(self) -> Operation:
         signs, factors = "", []
@@ -394,13 +476,14 @@ class _Parser:
 
     def postfix(self) -> Operation:
         node = self.primary()
-        if self.take("°"):
-            return Operation("degree", args=(node,), angle=True)
-        run = _RUN.match(self.text, self.at)
-        if run and self.vocabulary.find(run[0]) == ("degree", "deg"):
+        if not self.take("°"):
+            run = _RUN.match(self.text, self.at)
+            if not run or self.vocabulary.find(run[0]) != ("degree", "deg"):
+                return node
             self.at = run.end()
-            return Operation("degree", args=(node,), angle=True)
-        return node
+        if node.kind == "call" and node.name in _INVERSE:  # acos(0.5)° is an angle already
+            return replace(node, angle=True)
+        return Operation("degree", args=(node,), angle=True)
 
     def primary(self) -> Operation:
         char = self.peek()

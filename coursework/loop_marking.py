@@ -177,7 +177,8 @@ class LoopJudge:
         for other, places in ((equation, as_told), (read, usual)):
             if other is not None and (own := self._as_it_stands(other, *places)).rank:
                 return own
-        return self._missed(equation)
+        missed = self._missed(equation)
+        return missed if missed.fault or read is None else self._missed(read)
 
     def _as_it_stands(self, equation: Equation, near: _Points, steps: _Points) -> Finding:
         values, sides = (v.reshape(1 + _OFF, -1) for v in equation.gap(near.values, near.count))
@@ -219,8 +220,8 @@ class LoopJudge:
         beside = 1 + np.array([0.0, 0.1, -0.1, 0.2])
         values = {n: v * beside + (self._sizes[n] * (beside - 1)) for n, v in pose.items()}
         gap = np.abs(equation.gap(values, beside.size)[0])
-        usual = float(np.max(gap[1:]))
-        return bool(np.all(np.isfinite(gap)) and usual > 0 and gap[0] <= _ZERO * usual)
+        usual = float(np.max(gap[1:], where=np.isfinite(gap[1:]), initial=0.0))
+        return bool(usual > 0 and gap[0] <= _ZERO * usual)
 
     def are_alike(self, one: str, other: str) -> bool:
         """Whether two equations are the same, sides exchanged at most, where fixed quantities have their values."""
@@ -372,7 +373,7 @@ def loop_verdicts(variant: Variant, readings: Mapping[str, Reading]) -> dict[str
             judge, equation = judge_of(variant.exercise, part), reading.values[0]
             finding = judge.finding(equation)
             if finding.rank == 0 and not finding.fault and judge.holds_with_numbers(equation, variant):
-                finding = Finding(0, fault="numbers")
+                finding = Finding(0, fault="numbers" if _has_numbers(equation, variant) else "some_positions")
             others = before.setdefault((part.loop, order), []) if form != "complex" else []
             missed, about = _missed_beside(finding, others, 2 if form == "complex" else 1)
             right = finding.rank > 0 and not missed
@@ -380,6 +381,22 @@ def loop_verdicts(variant: Variant, readings: Mapping[str, Reading]) -> dict[str
             if right:
                 others.append(finding.rows)
     return found
+
+
+#: Numbers that an equation of symbols has of its own: factors, powers, parts of a turn.
+_OF_SYMBOLS = frozenset({0, 0.5, 1, 2, 3, 4, 45, 60, 90, 120, 180, 270, 360})
+
+
+def _has_numbers(equation: Equation, variant: Variant) -> bool:
+    """Whether an equation holds numbers in place of symbols: values of the variant, or others that no formula has."""
+    values = {abs(v) for v in variant.given.values() if not isinstance(v, str)} - {0, 1}
+    written = {
+        float(node.name)
+        for side in (equation.left, equation.right)
+        for node in side.root.walk()
+        if node.kind == "number"
+    }
+    return bool(written - _OF_SYMBOLS or written & values)
 
 
 def _missed_beside(

@@ -12,6 +12,7 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 from numbers import Real
@@ -21,7 +22,8 @@ import numpy as np
 from coursework.equations import parse_equation
 from coursework.errors import WrongUnit
 from coursework.expressions import MAX_LENGTH, Expression, Unreadable, parse_expression
-from coursework.spelling import shorten, tidy, without_latex
+from coursework.language import languages, words
+from coursework.spelling import shorten, tidy, unwrapped, without_latex
 from coursework.units import Unit, convert, find_unit, parse_unit, same_dimension
 
 _MAX_INTEGER = 10**15
@@ -101,7 +103,7 @@ def _reading(answer: object, read: Callable[[str], Reading]) -> Reading:
     if len(text) > MAX_LENGTH and len(text.strip()) > MAX_LENGTH:
         return Reading(text, "unreadable", code="too_long", found=shorten(text))
     try:
-        plain = without_latex(tidy(text))
+        plain = without_latex(tidy(unwrapped(text)))
         return read(plain) if plain else Reading(text, "missing")
     except _Stop as stop:
         return Reading(text, stop.status, code=stop.code, found=shorten(stop.found or plain))
@@ -133,6 +135,7 @@ _LITERAL = re.compile(
     rf"(?P<sign>[+-]?)\s*(?P<number>{_GROUPED})(?:{_POWER_OF_TEN})?\s*(?P<rest>.*)", re.VERBOSE | re.DOTALL
 )
 _LOST_POWER = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*(?:\.10\s*\^|[x*]\s*10(?=[+-][0-9]))")
+_FLAT_POWER = re.compile(r"([+-]?\s*[1-9](?:[.,][0-9]+)?)\s*[x*]\s*10(?=[1-9][0-9]?(?![0-9.,^]|\s*[*/^(]))")
 _TWO_WAYS = re.compile(r"[1-9][0-9]{0,2},[0-9]{3}")
 _SEXAGESIMAL = re.compile(
     r"""(?P<sign>[+-]?)\s*(?P<degrees>[0-9]+)\s*°\s*
@@ -289,6 +292,9 @@ def _evaluated(expression: Expression, unit: Unit | None, unit_text: str, target
     for reading in (expression, expression.other):
         if reading is None:
             continue
+        if (unit or target).is_angle and (in_degrees := reading.as_calculated_in_degrees):
+            amounts += _of_inverse(reading, in_degrees, unit, unit_text, target)
+            continue
         value = reading.evaluate()
         digits = _short(value)
         if unit:
@@ -302,6 +308,25 @@ def _evaluated(expression: Expression, unit: Unit | None, unit_text: str, target
             amounts.append(_amount(value, digits, assumed=target.text))
         else:
             amounts.append(_amount(value, digits))
+    return amounts
+
+
+_TURNS = 2  #: of an angle in radians, beyond which its formula was meant in degrees
+
+
+def _of_inverse(
+    reading: Expression, in_degrees: Expression, unit: Unit | None, unit_text: str, target: Unit
+) -> list[_Amount]:
+    """The values of an angle's formula with an inverse function, by who works in degrees and who does in radians."""
+    degree, amounts = parse_unit("deg"), []
+    if unit is None or unit.ratio == degree.ratio:
+        degrees = in_degrees.evaluate()
+        amounts.append(_amount(_in_unit(degrees, degree, target), _short(degrees), unit_text, assumed="deg"))
+    if unit is None or unit.ratio != degree.ratio:
+        value = reading.evaluate()
+        if unit or abs(value) <= _TURNS * math.tau:
+            own = unit or parse_unit("rad")
+            amounts.append(_amount(_in_unit(value, own, target), _short(value), unit_text, assumed="rad"))
     return amounts
 
 
@@ -330,17 +355,34 @@ def _amounts(text: str, target: Unit, thousands: bool = True) -> list[_Amount]:
     """All honest readings of one number, the likelier first."""
     text = _without_name(text)
     text = _PRINTED.sub(r"\1", text) if "(" in text else text
+    text = _inside(text) or text
     if not text:
         raise _Stop("not_a_number", text)
     if _NOT_FINITE.match(text):
         raise _Stop("not_finite", text)
-    amounts = _sexagesimal(text, target) or _mixed(text, target) or _literal(text, target, thousands)
-    if amounts is not None:
-        return amounts
+    if target.dimension == _RATIO and (parts := _PROPORTION.fullmatch(text)):
+        text = f"{parts[1]}/{parts[2]}"
+    amounts = _in_digits(text, target, thousands)
+    if amounts is None and ("(" in text or "=" in text or "≈" in text):
+        amounts = _written_twice(text, target, thousands)
+    return _worked_out(text, target) if amounts is None else amounts
+
+
+_PROPORTION = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*:\s*([0-9]+(?:[.,][0-9]+)?)")  #: ``1.25:1``
+_RATIO = parse_unit("1").dimension
+
+
+def _in_digits(text: str, target: Unit, thousands: bool) -> list[_Amount] | None:
+    """A number without a formula, or ``None``."""
+    return _sexagesimal(text, target) or _mixed(text, target) or _literal(text, target, thousands)
+
+
+def _worked_out(text: str, target: Unit) -> list[_Amount]:
+    """The readings of a formula."""
     _refuse_ranges(text)
     amounts = _scientific(text, target)
     try:
-        return [*amounts, *_formula(text, target)]
+        return [*amounts, *_formula(text, target), *_flattened(text, target)]
     except Unreadable as error:
         if amounts:
             return amounts
@@ -348,9 +390,109 @@ def _amounts(text: str, target: Unit, thousands: bool = True) -> list[_Amount]:
         raise (words and _named_unit_unknown(text)) or error from None
 
 
+def _inside(text: str) -> str:
+    """What stands between brackets that open at the start and close at the end; else nothing."""
+    if text[:1] != "(" or text[-1:] != ")":
+        return ""
+    level = 0
+    for at, char in enumerate(text):
+        level += (char == "(") - (char == ")")
+        if level == 0:
+            return text[1:-1].strip() if at == len(text) - 1 else ""
+    return ""
+
+
+_CHECKED = re.compile(r"([^(=≈]*[^\s(=≈+*/^-])\s+(\(.*\))\s*([^()=≈]*)", re.DOTALL)
+_EQUALS = re.compile(r"\s*[=≈]+\s*")
+
+
+def _written_twice(text: str, target: Unit, thousands: bool) -> list[_Amount] | None:
+    """A number written in ways that agree: ``273.9 (273.92)``, ``180 - 75.4 = 104.6``; ``None`` where it is not.
+
+    The number before the brackets is meant, or that behind the equals sign.
+    """
+    if (checked := _CHECKED.fullmatch(text)) and (inside := _inside(checked[2])):
+        unit = checked[3] and f" {checked[3]}"
+        if unit and find_unit(checked[3]) is None:
+            return None
+        return _checked(checked[1] + unit, inside, unit, target, thousands)
+    pieces = _EQUALS.split(text)
+    if len(pieces) != 2 or not all(pieces):
+        return None
+    other, end = (_way(piece, target, thousands) for piece in pieces)
+    if not (amounts := _agreeing(end, other, target)):
+        raise _Stop("two_values", text)
+    return amounts
+
+
+def _checked(number: str, inside: str, unit: str, target: Unit, thousands: bool) -> list[_Amount] | None:
+    """A number that what stands in brackets behind it confirms; ``2 (π/3)`` is a product, and ``None``."""
+    meant = _in_digits(number, target, thousands)
+    if meant is None or not any(c in "0123456789π" for c in inside):
+        return None
+    says_more = bool(_WORD.search(inside))  # a unit, or what only a formula has
+    try:
+        other = _way(inside + unit, target, thousands)
+    except (_Stop, Unreadable):
+        other = [], inside
+    amounts = _agreeing((meant, number), other, target)
+    if not amounts and says_more and not (other[0] and other[0][0].unit and not unit):
+        return None
+    if not amounts:
+        raise _Stop("two_values", f"{number} ({inside})")
+    return amounts
+
+
+_Way = tuple[list[_Amount], str]  #: what was read, and in which text
+
+
+def _way(text: str, target: Unit, thousands: bool) -> _Way:
+    amounts = _in_digits(text, target, thousands)
+    return (_worked_out(text, target) if amounts is None else amounts), text
+
+
+def _agreeing(one: _Way, other: _Way, target: Unit) -> list[_Amount]:
+    """The readings of one way to write a number that the other confirms to the last digit of the shorter.
+
+    An angle that does not say its unit may be in radians; what it is in degrees then counts as well.
+    """
+    kept, radian = [], 1 / target.factor
+    for a in one[0]:
+        for b in other[0]:
+            own, its = _half_digit(a, one[1], target), _half_digit(b, other[1], target)
+            if _is_near(a.value, b.value, max(own, its)) or (
+                target.is_angle and not b.unit and _is_near(a.value, b.value * radian, max(own, its * radian))
+            ):
+                kept.append(a)
+            elif (
+                target.is_angle and not a.unit and _is_near(a.value * radian, b.value, max(own * radian, its))
+            ):
+                kept += [a, b]
+    return kept
+
+
+def _is_near(one: float, other: float, half: float) -> bool:
+    return abs(one - other) <= half + 1e-6 * abs(one)
+
+
+def _half_digit(amount: _Amount, text: str, target: Unit) -> float:
+    """Half of the last digit that is written of a number, in the canonical unit; nothing of a formula."""
+    if _LITERAL.fullmatch(text) is None or _literal(text, target) is None:
+        return 0.0
+    digits = amount.echo.split()[0]
+    scale = abs(amount.value / float(digits)) if float(digits) else 1.0
+    return 0.5 * 10.0 ** Decimal(digits).as_tuple().exponent * scale
+
+
 def _scientific(text: str, target: Unit) -> list[_Amount]:
     """The first reading of ``3.10^2``, 300 on paper and 9.61 on a keyboard, and of ``3x10-2``, 0.03 or 28."""
     repaired, count = _LOST_POWER.subn(r"\1*10^", text, count=1) if _LOST_POWER.match(text) else (text, 0)
+    return (_literal(repaired, target) or []) if count else []
+
+
+def _flattened(text: str, target: Unit) -> list[_Amount]:
+    """The second reading of ``2.739x102``, a power of ten whose exponent is raised no more: 273.9."""
+    repaired, count = _FLAT_POWER.subn(r"\1*10^", text, count=1) if _FLAT_POWER.match(text) else (text, 0)
     return (_literal(repaired, target) or []) if count else []
 
 
@@ -516,7 +658,25 @@ def _bare_point(text: str) -> tuple[str, str]:
     return (found["inside"], found["unit"].lstrip("*").strip()) if found else (text.rstrip(" .;,"), "")
 
 
+_AXIS = re.compile(
+    r"(?P<sign>[+-]?)\s*(?:(?:l'\s*)?ax(?:e|is)\s+)?(?:\\?(?:vec|overrightarrow)\s*)?\{?\s*(?P<letter>[xyz])\u20d7?\s*\}?(?:[ -]axis)?",
+    re.I,
+)  #: ``y``, ``-z``, ``\\vec y``, ``y axis``
+
+
+def _axis(text: str, count: int) -> tuple[float, ...] | None:
+    """The direction of an axis of coordinates that is named, or ``None``."""
+    found = _AXIS.fullmatch(text)
+    place = "xyz".index(found["letter"].lower()) if found else count
+    if place >= count:
+        return None
+    one = -1.0 if found["sign"] == "-" else 1.0
+    return tuple(one if k == place else 0.0 for k in range(count))
+
+
 def _point(text: str, original: str, target: Unit, count: int) -> Reading:
+    if target.dimension == _RATIO and (axis := _axis(text.rstrip(" .;,"), count)):
+        return Reading(original, "read", (axis,), ("(" + "; ".join(f"{c:g}" for c in axis) + ")",))
     inside, unit = _bare_point(text)
     source = target
     if unit:
@@ -544,7 +704,7 @@ def _point(text: str, original: str, target: Unit, count: int) -> Reading:
 
 
 def read_point(text: object, unit: str, count: int) -> Reading:
-    """The ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``.
+    """The ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``; an axis is a direction.
 
     ``(12,3 ; 4,5) mm``, ``12.3, 4.5``, ``[1, 0, 1]``, ``(1 0 1)``, ``x = 1; y = 2``, or a list. A unit
     behind the brackets or behind the last coordinate serves for all.
@@ -559,12 +719,12 @@ def read_point(text: object, unit: str, count: int) -> Reading:
 
 # --- choices ----------------------------------------------------------------------------
 
-_POSITION = re.compile(r"[(\[]?\s*([a-z]|[0-9]{1,2})\s*(?:(?:[)\]:]|\.(?![0-9]))\s*(?P<label>.*))?")
-
-
-_SIGN = re.compile(r"(^|[=<>(+])\s*[-‐‑‒–−]\s*(?=[0-9])")
+_SIGN = re.compile(r"(^|[=<>(+])\s*[-‐‑‒–—−]\s*(?=[0-9])")
 _PLUS = re.compile(r"(^|[=<>(])\s*\+\s*(?=[0-9])")
-_ANY_MINUS = re.compile("[-‐‑‒–−]")
+_ANY_MINUS = re.compile("[-‐‑‒–—−]")
+
+
+_LOOSE_COMMA = re.compile(r",(?![0-9])|(?<![0-9]),")
 
 
 @lru_cache(maxsize=4096)
@@ -575,8 +735,9 @@ def _folded(text: str) -> str:
         text = re.sub(r"[\s_*·{}\\]", "", _ANY_MINUS.sub("−", text))
     text = re.sub(r"\\(?:mathrm|text|mathit|vec|overrightarrow)(?![A-Za-z])|\\[,;! ]", " ", text)
     text = unicodedata.normalize("NFKD", text).casefold()
-    text = "".join(" " if c in "-_‐‑–'’/" else c for c in text if not unicodedata.combining(c))
-    return " ".join(re.sub(r"[^\w\s+−<>=%°.,]", " ", text).split()).strip(" .,")
+    text = "".join(" " if c in "-_‐‑–—'’/" else c for c in text if not unicodedata.combining(c))
+    text = _LOOSE_COMMA.sub(" ", re.sub(r"[^\w\s+−<>=%°.,]", " ", text))
+    return " ".join(text.split()).strip(" .,")
 
 
 _AFTER_HEAD = re.compile(r"\s*(?:[(,;]|:\s).*", re.DOTALL)
@@ -626,40 +787,144 @@ def _value_of(label: str) -> str:
 
 
 _BEFORE = re.compile(
-    r"\s*(?:(?:c['’]est|il|elle|it is|it|un|une|des|le|la|les|an|a|the)\s+|l['’]\s*)(?=\S)", re.I
+    r"^\s*(?:(?:c['’]est|il|elle|it is|it|un|une|des|le|la|les|an|a|the)\s+|l['’]\s*)(?=\S)", re.I
 )  #: what people put before a label, and no label needs
 
 
-def _by_position(text: str, choices: Mapping[str, Sequence[str]]) -> tuple[list[str], str]:
-    """The choice that a letter or a number counts, and the label written after it."""
-    found = _POSITION.fullmatch(text.strip().casefold())
-    if found is None:
-        return [], ""
-    place = int(found[1]) - 1 if found[1].isdigit() else ord(found[1]) - ord("a")
-    return list(choices)[place : place + 1] if place >= 0 else [], found["label"] or ""
+@lru_cache(maxsize=1)
+def _numerals() -> Mapping[str, int]:
+    """Numbers as labels have them: digits, Roman numerals, words of any language; folded."""
+    roman = ("i", "ii", "iii", "iv", "v", "vi", "vii", "viii", "ix", "x")
+    found = {str(n): n for n in range(100)} | {name: n for n, name in enumerate(roman, start=1)}
+    for lang in languages():
+        for n, names in enumerate(words(lang)["study"]["reads"]["numbers"]):
+            found |= {_folded(name): n for name in names.split("|")}
+    return found
 
 
+@lru_cache(maxsize=1)
+def _nouns() -> tuple[str, ...]:
+    """What labels are called together, ``class``; folded, the longest first."""
+    found = {_folded(noun) for lang in languages() for noun in words(lang)["choices"]["nouns"]}
+    return tuple(sorted(found, key=len, reverse=True))
+
+
+@lru_cache(maxsize=4096)
+def _without_noun(text: str) -> str:
+    """A folded label without what all of its kind are called: ``classe III`` is ``iii``, ``rigid joint`` ``rigid``."""
+    folded = _folded(text)
+    for noun in _nouns():
+        if folded.startswith(f"{noun} "):
+            return folded[len(noun) + 1 :]
+        if folded.endswith(f" {noun}") and len(folded) - len(noun) > _SMALL_WORD:
+            return folded[: -len(noun) - 1]
+    return folded
+
+
+_SMALL_WORD = 4  #: letters of a word and its space that say too little alone: ``no joint`` is not ``no``
+
+
+def _by_core(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that are called so but for a noun that all of their kind share: ``pivot``."""
+    core = _without_noun(text)
+    plain = {key: [head(s) for s in labels if not s.startswith("$")] for key, labels in choices.items()}
+    return [key for key, heads in plain.items() if core and any(_without_noun(s) == core for s in heads)]
+
+
+@lru_cache(maxsize=4096)
+def _beginnings(label: str) -> frozenset[str]:
+    """What a label begins with, two words or more, folded; ``and`` and ``or`` are not left to follow."""
+    pieces = [] if "=" in label or label.startswith("$") else label.split()
+    ends = (n for n in range(2, len(pieces)) if _folded(pieces[n]) not in _conjunctions())
+    return frozenset(_folded(" ".join(pieces[:n])) for n in ends)
+
+
+@lru_cache(maxsize=1)
+def _conjunctions() -> frozenset[str]:
+    return frozenset(
+        _folded(words(lang)["marking"][joint]) for lang in languages() for joint in ("and", "or")
+    )
+
+
+def _by_beginning(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices whose label begins so: ``double balancier``, ``cas limite``; a word with a hyphen is one."""
+    folded = _folded(text)
+    if " " not in folded:
+        return []
+    return [key for key, labels in choices.items() if any(folded in _beginnings(s) for s in labels)]
+
+
+_REMARK = re.compile(r"(?P<said>[^()]+?)\s*\((?P<remark>[^()]+)\)\s*")
+
+
+def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that stand before a remark in brackets which names no other: ``oscille (r2 < r1)``."""
+    found = _REMARK.fullmatch(text)
+    keys = _called(found["said"], choices) if found else []
+    if len(keys) != 1 or any(key not in keys for key in _called(found["remark"], choices)):
+        return []
+    remark = f" {_folded(found['remark'])} "
+    others = (
+        s for key, labels in choices.items() if key not in keys for s in (key, *labels, *map(head, labels))
+    )
+    return [] if any(f" {_folded(s)} " in remark for s in others if _folded(s)) else keys
+
+
+@lru_cache(maxsize=4096)
+def _numbered(text: str) -> tuple[int | None, str]:
+    """The number that a label begins with, and what follows: ``deux paires`` is 2, ``paires``."""
+    first, _, rest = _without_noun(text).partition(" ")
+    return _numerals().get(first), rest
+
+
+def _by_number(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choice whose label begins with this number, however it is written, where the numbers tell choices apart."""
+    number, rest = _numbered(text.strip("()[] "))
+    if number is None:
+        return []
+    found = {}
+    for key, labels in choices.items():
+        heads = [_numbered(head(label)) for label in labels]
+        if numbers := {n for n, _ in heads if n is not None}:
+            found[key] = numbers, {follows for n, follows in heads if n == number}
+    every = [n for numbers, _ in found.values() for n in numbers]
+    if len(found) < 2 or len(set(every)) < len(every):
+        return []
+    return [key for key, (ns, follows) in found.items() if number in ns and (not rest or rest in follows)]
+
+
+_MARKED = re.compile(r"[(\[]?\s*(?P<mark>[a-z]|[0-9]{1,2})\s*(?:[)\]:]|\.(?![0-9]))\s*(?P<label>\S.*)", re.I)
 _WHOLE = re.compile(r"^\s*([0-9]+)[.,]0+\s*$")  #: what a table makes of a whole number
 
 
 def _choice(text: str, choices: Mapping[str, Sequence[str]]) -> Reading:
-    text = _WHOLE.sub(r"\1", text)
+    text = _WHOLE.sub(r"\1", unwrapped(text))
     keys = _by_label(text, choices)
-    keys = keys or (_by_label(_BEFORE.sub("", text, count=1), choices) if _BEFORE.match(text) else [])
-    if not keys:
-        keys, label = _by_position(text, choices)
-        keys = list(dict.fromkeys((*keys, *_by_value(text, choices))))
-        if label and (named := _by_label(label, choices)) != keys:
-            raise _Stop("two_values" if named else "not_a_choice", text)
+    if not keys and (marked := _MARKED.fullmatch(text.strip())):  # b) crossed
+        keys = list(dict.fromkeys((*_called(marked["label"], choices), *_by_number(marked["mark"], choices))))
+    keys = keys or _called(text, choices)
     if len(keys) != 1:
         raise _Stop("two_values" if keys else "not_a_choice", text)
     return Reading(text, "read", (keys[0],), (keys[0],))
 
 
-def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
-    """The key of a choice, given by its key, a label of any language or its head, or its place: ``b)``, ``2``.
+def _called(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that a text may mean, its article left out if need be; the surest way to call one first."""
+    said = _BEFORE.sub("", text)
+    for words_said in dict.fromkeys((text, said)):
+        keys = _by_label(words_said, choices) or _by_core(words_said, choices)
+        keys = keys or list(
+            dict.fromkeys((*_by_number(words_said, choices), *_by_value(words_said, choices)))
+        )
+        if keys:
+            return keys
+    return _by_beginning(said, choices) or _by_remark(text, choices)
 
-    ``choices`` maps each key to its labels, in the order in which they are printed.
+
+def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
+    """The key of a choice, given by its key, a label of any language, its head or beginning, or the number there.
+
+    ``choices`` maps each key to its labels. A letter or a number never counts places: no sheet prints any.
     """
     text = _bare(text)
     if isinstance(text, Real) and not isinstance(text, (bool, float)):

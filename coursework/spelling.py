@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from html import unescape
 
 MAX_FOUND = 60  #: characters of a text that a message quotes
 
@@ -16,7 +17,7 @@ def shorten(text: str) -> str:
 _ALIKE = {
     "*": "×⋅·∙•∗✕",
     "/": "÷∕⁄",
-    "-": "−–‐‑‒﹣",
+    "-": "−–—‐‑‒﹣",
     "'": "’‘′ʹ´",
     '"': "″”“",
     "°": "º˚∘",
@@ -29,6 +30,20 @@ _ALIKE = {
     " ": "\t\n\r\v\f\x85\u2028\u2029٬",
     "": "\u200b\u200c\u200d\u2060\ufeff\u00ad",
 }
+_QUOTES = {'"': '"', "'": "'", "«": "»", "“": "”", "„": "“", "‘": "’"}
+
+
+def unwrapped(text: str) -> str:
+    """A text without what a program put around it: entities of HTML, quotation marks, the ' of a spreadsheet."""
+    text = unescape(text).strip() if "&" in text else text.strip()
+    if text[:1] in _QUOTES:
+        if len(text) > 1 and text[-1] == _QUOTES[text[0]]:
+            return text[1:-1].strip()
+        if text[0] == "'":
+            return text[1:].strip()
+    return text
+
+
 _SUPERSCRIPTS = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻", "0123456789+-", strict=True))
 _SUPERSCRIPT_RUN = re.compile(f"[{''.join(_SUPERSCRIPTS)}]+")
 

@@ -121,22 +121,38 @@ def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
 
 _OF_CHOICES = {"not_a_choice": "not_a_choice", "two_values": "two_choices"}
 _OFFERED = 200  #: characters of all that is offered
+_SAYING = 4  #: words of a beginning that says something
 
 
 def _offered(variant: Variant, part: Part) -> str:
-    """What may be written for a choice, quoted: every label, or the beginning of each, or the key of each."""
-    labels = [variant.label(part.id, case) for case in part.choices]
-    heads = [head(label) for label in labels]
+    """What may be written for a choice, quoted: every label, or its head, or the shortest beginning that will do."""
+    shown = [variant.label(part.id, case) for case in part.choices]
     known = variant.labels(part)
-    distinct = all(
-        read_choice(short, known).values == (case,) for short, case in zip(heads, part.choices, strict=True)
-    )
-    shown = labels
-    if sum(map(len, labels)) > _OFFERED and distinct:
-        shown = heads
     if sum(map(len, shown)) > _OFFERED:
-        shown = list(part.choices)
+        heads = [head(label) for label in shown]
+        shown = [
+            s if _means(s, case, known) else whole
+            for s, whole, case in zip(heads, shown, part.choices, strict=True)
+        ]
+    if sum(map(len, shown)) > _OFFERED:
+        shown = [_shortest(s, case, known, variant.lang) for s, case in zip(shown, part.choices, strict=True)]
     return listed((quoted(label, variant.lang) for label in shown), variant.lang, "or")
+
+
+def _means(text: str, case: str, known: Mapping[str, Sequence[str]]) -> bool:
+    return read_choice(text, known).values == (case,)
+
+
+def _shortest(label: str, case: str, known: Mapping[str, Sequence[str]], lang: str) -> str:
+    """What is short of a label, its article and noun left out, and means its case: its head, or a few words."""
+    table, pieces = words(lang)["choices"], label.split()
+    for small in (table["articles"], table["nouns"]):
+        pieces = pieces[1:] if len(pieces) > 1 and pieces[0].lower() in small else pieces
+    core = head(" ".join(pieces))
+    starts = (
+        [core] if len(core) <= _OFFERED // 5 else [" ".join(pieces[:n]) for n in range(_SAYING, len(pieces))]
+    )
+    return next((s for s in starts if s.count("$") % 2 == 0 and _means(s, case, known)), label)
 
 
 def quoted(text: str, lang: str) -> str:
@@ -156,9 +172,9 @@ _LOOSE_UNDERSCORE = re.compile(r"(?<![^\W_])_|_(?![^\W_])")
 
 
 def _harmless(text: str) -> str:
-    """A quotation that no Markdown reader takes for markup; an underscore within a name is none."""
+    """A quotation that no Markdown reader takes for markup; an underscore within a name is none, a star is a factor's."""
     text = _LOOSE_UNDERSCORE.sub("", text)
-    return "".join(c for c in text if c.isprintable() and c not in "$`*\\<>[]#|")
+    return "".join(c for c in text if c.isprintable() and c not in "$`\\<>[]#|").replace("*", r"\*")
 
 
 def amount(variant: Variant, name: str, value: float) -> str:

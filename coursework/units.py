@@ -149,6 +149,19 @@ def _word(name: str) -> Unit | None:
     return None
 
 
+#: Symbols that are known in any capitals, and with a plural s: no other unit is spelled so.
+_ANY_CAPITALS = ("rad", "rd", "deg", "grad", "gon", "rev", "tr", "rpm", "min", "sec")
+
+
+def _capitals(name: str) -> Unit | None:
+    """A symbol in other capitals, ``RPM``, or with a plural s, ``revs``."""
+    low = name.lower()
+    for symbol in (low, low.removesuffix("s")):
+        if symbol in _ANY_CAPITALS:
+            return _symbol(symbol)
+    return None
+
+
 def _moment(name: str) -> Unit | None:
     """``Nm``, ``kNmm``: the one product that is written without a sign."""
     force, newton, arm = name.partition("N")
@@ -181,12 +194,16 @@ _TOKEN = re.compile(
 )
 
 
+_PER = re.compile(r"(?<![^\W\d_])(?:par|per)(?![^\W\d_])", re.I)
+_HYPHEN = re.compile(r"(?<=[^\W\d_])-(?=[^\W\d_])")
+
+
 class _UnknownPiece(Exception):
     """The piece at which a text stops being a unit."""
 
 
 def _named(name: str) -> Unit:
-    unit = _symbol(name) or _word(name) or _moment(name)
+    unit = _symbol(name) or _word(name) or _moment(name) or _capitals(name)
     if unit is None:
         raise _UnknownPiece(name)
     return unit
@@ -247,7 +264,8 @@ def _analyse(text: str) -> tuple[Unit | None, str]:
     if len(text) > _MAX_LENGTH:
         return None, text
     try:
-        tokens = _tokens(without_latex(tidy(text)))
+        plain = _PER.sub("/", without_latex(tidy(text)))
+        tokens = _tokens(_HYPHEN.sub("*", plain))
         unit = _chain(tokens, text)
     except _UnknownPiece as piece:
         return None, str(piece)
@@ -265,8 +283,8 @@ def find_unit(text: str) -> Unit | None:
 def parse_unit(text: str) -> Unit:
     """The unit that a text names: ``rad.s-1``, ``N·m``, ``mm/s²``, ``tr/min``; ``1`` is a ratio.
 
-    A product may be written ``. · * ×`` or a space, a power ``^2 ² 2``. Case matters. A quotient binds from
-    left to right, ``mm/s/mm`` is ``(mm/s)/mm``.
+    A product may be written ``. · * × -`` or a space, a power ``^2 ² 2``, a quotient ``/`` or ``per``. Case matters, save in
+    ``RPM`` and the like. A quotient binds from left to right, ``mm/s/mm`` is ``(mm/s)/mm``.
 
     Raises
     ------

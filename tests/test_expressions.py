@@ -15,7 +15,7 @@ from coursework.expressions import Unreadable, parse_expression
 
 NAMES = (
     "r1", "r2", "r3", "r4", "theta2", "theta3", "theta4",
-    "theta3_open", "psi_dot", "r1_dot", "r6_ddot", "R", "r",
+    "theta3_open", "psi_dot", "r1_dot", "r6_ddot", "R", "r", "omega2", "alpha2",
 )  # fmt: skip
 
 NUMBERS = [
@@ -69,7 +69,20 @@ def test_a_formula_has_its_value(text, value):
     + [(s, "r1_dot") for s in ("r1_dot", "ṙ1", "ṙ_1", "\\dot{r}_1", "\\dot r_1", "r1dot", "\\dot{r_1}")]
     + [(s, "r6_ddot") for s in ("r6_ddot", "r̈6", "\\ddot r_{6}")]
     + [(s, "theta3_open") for s in ("theta3_open", "θ3_open", "θ_{3_open}")]
-    + [("R", "R"), ("r", "r")],
+    + [
+        ("R", "R"),
+        ("r", "r"),
+        ("R2", "r2"),
+        ("R_2", "r2"),
+        ("Theta2", "theta2"),
+        ("THETA_2", "theta2"),
+        ("Θ2", "theta2"),
+    ]
+    + [
+        (s, "omega2")
+        for s in ("theta2_dot", "θ̇2", "θ̇_2", "\\dot\\theta_2", "\\dot{\\theta}_{2}", "θ2'", "ω2", "Omega2")
+    ]
+    + [(s, "alpha2") for s in ("theta2_ddot", "θ̈2", "\\ddot\\theta_2", "θ2''", "α_2")],
 )
 def test_a_symbol_is_known_by_every_spelling(spelling, name):
     assert parse_expression(spelling, NAMES).variables == {name}
@@ -96,6 +109,29 @@ def test_a_symbol_is_known_by_every_spelling(spelling, name):
 def test_side_by_side_means_times(text, meaning):
     values = {name: np.linspace(0.4 + k / 7, 2.0 + k / 10, 5) for k, name in enumerate(NAMES)}
     np.testing.assert_allclose(parse_expression(text, NAMES).evaluate(values), meaning(values), rtol=1e-13)
+
+
+def test_capitals_tell_names_apart_where_both_are_known_and_letters_always():
+    names = ("R", "r", "r2", "R2", "xC")
+    assert [parse_expression(s, names).variables for s in ("R2", "r2", "R", "r", "XC")] == [
+        {"R2"}, {"r2"}, {"R"}, {"r"}, {"xC"},
+    ]  # fmt: skip
+    for text, known in (
+        ("R", ("r",)),
+        ("rb", ("rA",)),
+        ("theta3_dot", ("omega2", "theta3")),
+        ("theta2_dot", ("theta2",)),
+    ):
+        with pytest.raises(Unreadable):
+            parse_expression(text, known)
+
+
+def test_an_x_between_spaces_is_times_unless_it_is_a_symbol():
+    assert parse_expression("r2 x cos(theta2) x 2", NAMES).variables == {"r2", "theta2"}
+    assert parse_expression("2 x sqrt(4)").evaluate() == 4
+    assert "x" in parse_expression("r2 x cos(theta2)", (*NAMES, "x")).variables
+    with pytest.raises(Unreadable):
+        parse_expression("r2 x", NAMES)
 
 
 def test_a_variable_called_e_leaves_euler_under_an_imaginary_exponent():
@@ -394,7 +430,7 @@ def test_primes_stand_anywhere_in_an_equation():
     assert not same_equation(parse_equation("(R+r)φ' = rω - Rψ'", names), reference)
 
 
-@pytest.mark.parametrize("text", ["r1''' + r1", "'", "phi'", "theta2'", "r1 '"])
+@pytest.mark.parametrize("text", ["r1''' + r1", "'", "phi'", "theta3'", "r1 '"])
 def test_a_prime_without_its_derivative_among_the_names_is_unreadable(text):
     with pytest.raises(Unreadable):
         parse_expression(text, NAMES)

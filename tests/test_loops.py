@@ -87,6 +87,14 @@ RIGHT = [
     ("havens_planetary", "loop_1_y", "d*sin(theta4) = (r2 + r3)*sin(theta1 - theta4)"),
     ("two_loop_linkage", "loop_2_x", "xC + r5*cos(beta + theta4) - xF = r7*cos(theta7) - r6*cos(theta6)"),
     ("two_loop_linkage", "loop_2_y", "yF + r7 sin θ7 - r6 sin θ6 - yC = r5 (sin θ4 cos β + cos θ4 sin β)"),
+    ("slotted_mechanism", "loop_1_x", "R2 x cos(Theta2) == RA x cos(Θ4)"),
+    ("slotted_mechanism", "loop_1_x_dot", "ṙA cos θ4 - rA θ̇4 sin θ4 = -r2 θ̇2 sin θ2"),
+    ("slotted_mechanism", "loop_1_x", "r1*cos(90)+r2*cos(theta2)-rA*cos(theta4)=0"),
+    ("slotted_mechanism", "loop_1_y", "r1*sin(90) + r2*cos(theta2 - 90) - rA*sin(theta4) = 0"),
+    ("slotted_mechanism", "loop_1_complex", "r1*e^(i*90) + r2*e^(i*theta2) = rA*e^(i*theta4)"),
+    ("slotted_mechanism", "loop_1_complex", "r1*exp(90i) + r2*e^(i*(theta2 + 360)) = rA*e^(iθ4 - 360i)"),
+    ("four_bar_motion", "loop_1_x", "r2*cos(theta2) + r3*cos(theta3) - r4*cos(theta4) + r1*cos(180) = 0"),
+    ("slider_crank", "loop_1_y", "r2 sin θ2 + r3 sin θ3 - e sin(90) = 0"),
     ("three_loop_shaper", "loop_3_y", "d3 = yD + r5 sin θ5 + r7 sin θ7"),
     ("three_loop_shaper", "loop_2_complex", "r2 e^(iθ2) + r6 e^(i(θ3 + β)) = xD + i yD + d5 e^(iθ5)"),
 ]  # fmt: skip
@@ -175,6 +183,36 @@ def test_a_factor_that_does_not_vanish_changes_nothing(factor):
     assert verdict("four_bar_positions", "loop_1_y", text) == "correct"
 
 
+def test_a_constant_angle_in_degrees_is_right_only_where_it_is_the_direction():
+    """Every multiple of 15 degrees, in every place and both signs, against the direction that it gives."""
+    vertical = {"cos": 0.0, "sin": 1.0}
+    for function, right in vertical.items():
+        part = "loop_1_x" if function == "cos" else "loop_1_y"
+        for written, trig in (("cos", math.cos), ("sin", math.sin)):
+            for degrees in range(-360, 361, 15):
+                text = f"r1*{written}({degrees}) + r2*{function}(theta2) - rA*{function}(theta4) = 0"
+                is_right = abs(trig(math.radians(degrees)) - right) < 1e-9
+                assert (verdict("slotted_mechanism", part, text) == "correct") == is_right, text
+    for degrees in range(-360, 361, 15):
+        text = f"r1*e^(i*({degrees})) + r2*e^(i*theta2) = rA*e^(i*theta4)"
+        assert (verdict("slotted_mechanism", "loop_1_complex", text) == "correct") == (
+            degrees in (90, -270)
+        ), text
+
+
+@pytest.mark.parametrize(
+    ("part", "text", "slip"),
+    [
+        ("loop_1_x", "r1*cos(90) + r2*cos(theta2) + rA*cos(theta4) = 0", "slip:link_sign"),
+        ("loop_1_y", "r1*sin(-90) + r2*sin(theta2) - rA*sin(theta4) = 0", "slip:link_sign"),
+        ("loop_1_x", "r1*cos(0) + r2*cos(theta2) - rA*cos(theta4) = 0", "slip:link_axis"),
+        ("loop_1_x", "r1*cos(pi/2 + 1) + r2*cos(theta2) - rA*cos(theta4) = 0", "wrong"),
+    ],
+)
+def test_what_is_wrong_beside_a_constant_angle_in_degrees_is_told(part, text, slip):
+    assert verdict("slotted_mechanism", part, text) == slip
+
+
 def test_numbers_in_place_of_symbols_are_told():
     variant = asking_all("four_bar_positions")
     r1, r2 = (f"{variant.given[n]:g}" for n in ("r1", "r2"))
@@ -183,6 +221,24 @@ def test_numbers_in_place_of_symbols_are_told():
     assert (
         verdict("four_bar_positions", "loop_1_x", text.replace(r1, f"{variant.given['r1'] + 1:g}")) == "wrong"
     )
+
+
+@pytest.mark.parametrize(
+    ("text", "slip"),
+    [
+        ("theta4 = arccos(r2*cos(theta2)/rA)", "slip:some_positions"),
+        ("theta4 = 180 - arcsin((r1 + r2*sin(theta2))/rA)", "wrong"),  # the wrong unit as well
+        ("theta4 = pi - arcsin((r1 + r2*sin(theta2))/rA)", "slip:some_positions"),
+        ("theta4 = pi - arcsin(({r1} + r2*sin(theta2))/rA)", "slip:numbers"),
+        ("theta4 = arccos({r2}*cos(theta2)/rA)", "slip:numbers"),
+        ("theta4 = arccos(-r2*cos(theta2)/rA)", "wrong"),
+    ],
+)
+def test_an_equation_that_loses_a_quadrant_is_told_so_and_not_blamed_for_numbers(text, slip):
+    variant = COURSE["slotted_mechanism"].variant(0, "en", ("all",))
+    mark = variant.grade({"loop_1_x": text.format(**variant.given)})["loop_1_x"]
+    assert mark.verdict == slip
+    assert ("only for some positions" in mark.feedback) == (slip == "slip:some_positions")
 
 
 @every_loop

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -99,14 +100,15 @@ def test_an_answer_to_an_unknown_part_is_refused_with_the_nearest(slotted):
 
 
 @pytest.mark.parametrize("lang", ["fr", "en"])
-def test_a_choice_may_be_given_by_label_in_either_language_by_key_or_by_place(course, lang):
+def test_a_choice_may_be_given_by_label_in_either_language_or_by_key(course, lang):
     exercise = course["slotted_mechanism"]
     variant = next(v for v in exercise.variants(range(20), lang) if any(p.id == "guide" for p in v.parts))
     right = variant.solution()["guide"]
     place = "ab"[("oscillates", "rotates").index(right)]
     labels = [variant.in_language(other).text.label("guide", right) for other in ("fr", "en")]
-    for answer in (*labels, right, right.upper(), f"{place})", labels[0].upper()):
+    for answer in (*labels, right, right.upper(), f"{place}) {labels[1]}", labels[0].upper()):
         assert verdict(variant, "guide", answer) == "correct", answer
+    assert verdict(variant, "guide", f"{place})") == "unreadable"
     other = {"oscillates": "rotates", "rotates": "oscillates"}[right]
     assert verdict(variant, "guide", other) == "wrong"
     assert verdict(variant, "guide", "peut-être") == "unreadable"
@@ -138,7 +140,14 @@ def test_feedback_names_the_quantity_and_what_was_read(slotted):
 
 def test_a_hostile_answer_cannot_write_markup_into_feedback(slotted):
     mark = slotted.grade({"rA": "<script>$x$`*_[a](b)|\\"})["rA"]
-    assert not set("<>$`*_[]|\\") & set(mark.says.replace("$r_A$", ""))
+    assert not set("<>$`*_[]|\\") & set(mark.says.replace("$r_A$", "").replace(r"\*", ""))
+
+
+def test_an_equation_is_quoted_with_its_stars(course):
+    variant = course["slotted_mechanism"].variant(0, "en", ("all",))
+    mark = variant.grade({"loop_1_x": "r2*cos(theta2) - 2**rA*cos(theta4)"})["loop_1_x"]
+    assert "“r2*cos(theta2) - 2**rA*cos(theta4)”" in mark.feedback
+    assert r"r2\*cos(theta2)" in mark.says
 
 
 def test_both_readings_of_an_ambiguous_group_are_tried(course):
@@ -350,3 +359,16 @@ def test_what_a_drawing_lacks_and_a_scale_that_is_none_are_told(course, lang, mi
     drawn = told(course, "velocity_polygon", 1, lang, kv="-10", p="(0;0)", a="(1;2)", b="(3;4)")
     assert scale in drawn["kv"].feedback
     assert scale not in drawn["p"].feedback
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_what_may_be_written_for_a_choice_is_said_in_the_language_of_the_sheet_and_is_read(course, lang):
+    variant = course["parallel_joints"].variant(0, lang)
+    said = " ".join(variant.grade({"equivalent": "qzx"})["equivalent"].feedback.split())
+    shown = (
+        ("« pivot »", "« rotule à doigt »") if lang == "fr" else ("“revolute joint”", "“ball joint with pin”")
+    )
+    assert all(quotation in said for quotation in shown)
+    assert ("revolute" in said) == (lang == "en")
+    for quotation in re.findall("«\\s(.+?)\\s»|“(.+?)”", said)[1:]:
+        assert variant.grade({"equivalent": max(quotation)})["equivalent"].verdict != "unreadable", quotation

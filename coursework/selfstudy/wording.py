@@ -87,12 +87,10 @@ def count(text: Any) -> int | None:
         return int(float(said.replace(",", ".")))
     for lang in languages():
         table = words(lang)["study"]["reads"]
-        names = [folded(w) for w in table["numbers"]]
-        if said in names:
-            return names.index(said)
-        often = [[folded(w) for w in group.split("|")] for group in table["often"]]
-        if found := [n for n, group in enumerate(often) if said in group]:
-            return found[0]
+        for names in (table["numbers"], table["often"]):
+            groups = [[folded(w) for w in group.split("|")] for group in names]
+            if found := [n for n, group in enumerate(groups) if said in group]:
+                return found[0]
     return None
 
 
