@@ -6,7 +6,7 @@ import pickle
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -15,6 +15,7 @@ from coursework import booklets
 from coursework.blocks import processors
 from coursework.booklets import File
 from coursework.course import Course
+from coursework.errors import BadInput
 from coursework.handout import AnswerSheet, Handout
 from coursework.issuing import (
     Issue,
@@ -25,6 +26,7 @@ from coursework.issuing import (
     key_content,
     key_rows,
 )
+from coursework.placing import place
 from coursework.processes import processes, workers
 from coursework.rendering import Renderer
 from coursework.submissions import COLUMNS
@@ -142,20 +144,43 @@ def _with(path: Path, ending: str) -> Path:
 
 
 def write_tree(
-    out: Path, wanted: Sequence[File], progress: Callable[[Path], None] = lambda path: None
-) -> None:
-    """Make and write a build: it appears whole, in place of the one before, or not at all."""
+    out: Path,
+    wanted: Sequence[File],
+    progress: Callable[[Path], None] = lambda path: None,
+    *,
+    anew: bool = False,
+) -> list[str]:
+    """Make and write a build: it appears whole, in place of the one before, or not at all.
+
+    What somebody changed or put there is not lost, and ``anew`` is as in :func:`coursework.placing.place`; gives
+    notes to tell.
+
+    Raises
+    ------
+    BadInput
+        The folder cannot be written, or a file that no build wrote stands in the way.
+    """
     staging = out / ".building"
     shutil.rmtree(staging, ignore_errors=True)
     try:
-        write(staging, wanted, progress)
-        for made in sorted(staging.iterdir()):
-            final = out / made.name
-            if final.is_dir():
-                shutil.rmtree(final)
-            made.replace(final)
+        with writing(out):
+            (staging / "new").mkdir(parents=True)
+        write(staging / "new", wanted, progress)
+        with writing(out):
+            return place(staging, out, anew=anew)
     finally:
         shutil.rmtree(staging, ignore_errors=True)
+
+
+@contextmanager
+def writing(place: Path) -> Iterator[None]:
+    """What the system says against writing, told with the place that was asked for and what would do."""
+    try:
+        yield
+    except OSError as fault:
+        raise BadInput(
+            f"{place} cannot be written: {fault.strerror or fault}; name another folder, or make this one writable"
+        ) from fault
 
 
 def write(out: Path, wanted: Sequence[File], progress: Callable[[Path], None] = lambda path: None) -> None:
@@ -206,8 +231,15 @@ def _write_all(out: Path, files: Sequence[File]) -> None:
 
 
 def write_whole(path: Path, data: bytes) -> None:
-    """Write a file so that it appears whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
+    """Write a file so that it appears whole or not at all.
+
+    Raises
+    ------
+    BadInput
+        It cannot be written.
+    """
     part = path.with_name(path.name + ".part")
-    part.write_bytes(data)
-    part.replace(path)
+    with writing(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part.write_bytes(data)
+        part.replace(path)

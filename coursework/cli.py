@@ -56,6 +56,14 @@ def _command(arguments: Sequence[str]) -> str:
     return f"{known[0]} " if known else ""
 
 
+def _tell(notes: Sequence[str]) -> None:
+    """Say what is to be known and is no error."""
+    for note in notes[:10]:
+        click.echo(f"coursework: note: {note}", err=True)
+    if len(notes) > 10:
+        click.echo(f"coursework: note: and {len(notes) - 10} more such", err=True)
+
+
 def _complain(message: str) -> int:
     click.echo(f"coursework: {' '.join(message.split())}", err=True)
     return BAD
@@ -551,7 +559,11 @@ def accuracy(
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."
 )
-@click.option("--overwrite", is_flag=True, help="Replace what was issued there before.")
+@click.option(
+    "--overwrite",
+    is_flag=True,
+    help="Replace what was issued there before. Files that were filled in or changed are set aside, not lost.",
+)
 @click.pass_context
 def build(
     context: click.Context,
@@ -621,9 +633,10 @@ def build_files(
     )
     issued = issuing.json_text(issuing.issued_content(course, issues))
     before = out / "issued.json"
-    if before.exists() and before.read_bytes() != issued.encode("utf-8") and not overwrite:
+    if before.is_file() and before.read_bytes() != issued.encode("utf-8") and not overwrite:
         raise BadInput(
-            f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them"
+            f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them "
+            "(files that were filled in or changed are set aside, not lost)"
         )
     wanted = list(
         building.files(
@@ -631,7 +644,8 @@ def build_files(
         )
     )
     with progress_bar("building", len(wanted)) as advance:
-        building.write_tree(out, wanted, advance)
+        notes = building.write_tree(out, wanted, advance, anew=overwrite)
+    _tell(notes)
     return len(wanted)
 
 
