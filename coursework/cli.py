@@ -110,6 +110,9 @@ _parts_option = click.option(
     metavar="P,P",
     help="The parts to ask: ids, 'usual' for those asked unless told, 'all' for every one.",
 )
+_replace_option = click.option(
+    "--overwrite", is_flag=True, help="Replace notebooks that are there, and what was written in them."
+)
 _seed_option = click.option(
     "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Which variant (the first one)."
 )
@@ -418,20 +421,37 @@ def animate(context: click.Context, exercise: str, seed: int, effects: str, lang
 @click.argument("lessons", nargs=-1)
 @_lang_option
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for the notebooks.")
+@_replace_option
 @click.pass_context
-def lesson(context: click.Context, lessons: Sequence[str], lang: str, out: Path | None) -> None:
+def lesson(
+    context: click.Context, lessons: Sequence[str], lang: str, out: Path | None, overwrite: bool
+) -> None:
     """Write the course's lessons as notebooks; without --out, list them."""
     from coursework.building import write_whole
 
     course = _course(context)
-    names = lessons or course.lessons
-    for name in names:
-        book = course.lesson(name, lang)
-        if out is None:
+    books = {name: course.lesson(name, lang) for name in lessons or course.lessons}
+    if out is None:
+        for name in books:
             click.echo(name)
-        else:
-            write_whole(out / f"{name}.{lang}.ipynb", book.encode("utf-8"))
-            click.echo(f"{out / name}.{lang}.ipynb")
+        return
+    paths = [out / f"{name}.{lang}.ipynb" for name in books]
+    _spare(paths, overwrite)
+    for path, book in zip(paths, books.values(), strict=True):
+        write_whole(path, book.encode("utf-8"))
+        click.echo(str(path))
+
+
+def _spare(paths: Sequence[Path], overwrite: bool) -> None:
+    """Notebooks that somebody may have written in are not replaced unasked."""
+    there = [] if overwrite else [path for path in paths if path.exists()]
+    if there:
+        told = str(there[0]) if len(there) == 1 else f"{there[0]} and {len(there) - 1} more"
+        exist = "exists" if len(there) == 1 else "exist"
+        raise BadInput(
+            f"{told} {exist} already, and may hold what somebody wrote; choose another --out, or --overwrite to "
+            "replace"
+        )
 
 
 # --------------------------------------------------------------------- notebook
@@ -448,9 +468,15 @@ def lesson(context: click.Context, lessons: Sequence[str], lang: str, out: Path 
     show_default=True,
     help="Folder for the notebooks.",
 )
+@_replace_option
 @click.pass_context
 def notebook(
-    context: click.Context, exercises: Sequence[str], seed: int, langs: Sequence[str], out: Path
+    context: click.Context,
+    exercises: Sequence[str],
+    seed: int,
+    langs: Sequence[str],
+    out: Path,
+    overwrite: bool,
 ) -> None:
     """Write self-study notebooks: predictions, instant feedback, hints, plots, fresh variants.
 
@@ -460,13 +486,16 @@ def notebook(
     from coursework.issuing import distinct_variants
 
     course = _course(context)
-    for name in _exercise_names(course, exercises):
-        for lang in langs:
-            (variant,) = distinct_variants(course[name], seed, 1, lang)
-            sheet = variant.study_sheet()
-            path = out / f"{name}.{lang}.ipynb"
-            write_whole(path, course.renderer.study(sheet).encode("utf-8"))
-            click.echo(str(path))
+    paths = {
+        (name, lang): out / f"{name}.{lang}.ipynb"
+        for name in _exercise_names(course, exercises)
+        for lang in langs
+    }
+    _spare(list(paths.values()), overwrite)
+    for (name, lang), path in paths.items():
+        (variant,) = distinct_variants(course[name], seed, 1, lang)
+        write_whole(path, course.renderer.study(variant.study_sheet()).encode("utf-8"))
+        click.echo(str(path))
 
 
 # --------------------------------------------------------------------- accuracy

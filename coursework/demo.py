@@ -8,6 +8,7 @@ accepted kind, a damaged one among them, and marked like any others.
 from __future__ import annotations
 
 import csv
+import io
 import json
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -15,12 +16,15 @@ from typing import Any
 
 import numpy as np
 
+from coursework.booklets import File
+from coursework.building import write_tree
 from coursework.course import open_course
 from coursework.issued import Issued
 from coursework.key import Key
 from coursework.language import languages, significant
 from coursework.model import Part
 from coursework.rendering.markup import to_text
+from coursework.submissions import COLUMNS
 from coursework.variant import Variant
 
 CLASS = Path(__file__).parent / "class_of_twelve"
@@ -154,7 +158,7 @@ def class_of_twelve(
     formats = ("pdf", "ipynb", "html")
     written = build(course, names, 1, FIRST_SEED, ROSTER, formats, languages()[:1], out, overwrite=True)
     issued = Issued.read(out / "issued.json")
-    _hand_in(course, issued, out)
+    notes = _hand_in(course, issued, out / "submissions")
     book = grade(course, [out / "submissions"], out / "issued.json", out / "marks", feedback=True)
     rows = []
     for name in names:
@@ -169,8 +173,10 @@ def class_of_twelve(
         )
     marked = sum(r["answers"] for r in rows)
     report = [
+        *(f"note: {note}" for note in notes),
         f"{written} files built, {book.rows_in} rows handed in: {marked} marked, {len(book.rejected)} rejected.",
         *(f"  rejected: {r.source}: {r.reason}" for r in book.rejected),
+        "  a second answer, a stranger and a damaged notebook are among the answers on purpose.",
         f"sheets and notebooks to give away   {out / 'handouts'}",
         f"worked solutions and key            {out / 'instructor'}",
         f"answers as they came                {out / 'submissions'}",
@@ -179,12 +185,12 @@ def class_of_twelve(
     return rows, report
 
 
-def _hand_in(course: Any, issued: Issued, out: Path) -> None:
-    """Write the class's answers: CSV, JSON and notebooks, with the accidents of a real Monday."""
-    folder = out / "submissions"
-    folder.mkdir(parents=True, exist_ok=True)
-    for old in folder.iterdir():
-        old.unlink()
+def _hand_in(course: Any, issued: Issued, folder: Path) -> list[str]:
+    """Write the class's answers: CSV, JSON and notebooks, with the accidents of a real Monday.
+
+    They take the place of those before; gives notes on what else stood there.
+    """
+    files: dict[str, str] = {"broken.ipynb": '{"cells": ['}
     rows: list[list[Any]] = []
     sheets: list[dict[str, Any]] = []
     for number, student in enumerate(issued.students):
@@ -199,23 +205,20 @@ def _hand_in(course: Any, issued: Issued, out: Path) -> None:
             elif number % 3 == 1:
                 sheets.append({"student": student, "exercise": name, "seed": seed, "answers": answers})
             else:
-                _write_notebook(course, variant, student, answers, folder)
+                files[f"{name}-{seed}.ipynb"] = _notebook(course, variant, student, answers)
     rows.insert(3, [*rows[2][:4], "a second thought"])
     rows.insert(9, ["Zoé Inconnue", *rows[8][1:]])
-    with (folder / "answers.csv").open("w", encoding="utf-8-sig", newline="") as file:
-        writer = csv.writer(file, delimiter=";")
-        writer.writerow(["student", "exercise", "seed", "part", "answer"])
-        writer.writerows(rows)
-    (folder / "answers.json").write_text(json.dumps(sheets, ensure_ascii=False, indent=1), "utf-8")
-    (folder / "broken.ipynb").write_text('{"cells": [', "utf-8")
+    typed = io.StringIO(newline="")
+    csv.writer(typed, delimiter=";").writerows([COLUMNS, *rows])
+    files["answers.csv"] = f"\ufeff{typed.getvalue()}"
+    files["answers.json"] = json.dumps(sheets, ensure_ascii=False, indent=1)
+    wanted = [File(Path(name), text.encode) for name, text in files.items()]
+    return write_tree(folder, wanted, anew=True)
 
 
-def _write_notebook(
-    course: Any, variant: Variant, student: str, answers: Mapping[str, Any], folder: Path
-) -> None:
+def _notebook(course: Any, variant: Variant, student: str, answers: Mapping[str, Any]) -> str:
     notebook = json.loads(course.renderer.notebook(variant.handout(student)))
     cell = next(c for c in notebook["cells"] if "answers" in c["metadata"].get("tags", ()))
     lines = [f"    {part!r}: {answer!r},\n" for part, answer in answers.items()]
     cell["source"] = ["answers = {\n", *lines, "}"]
-    path = folder / f"{variant.exercise.name}-{variant.seed}.ipynb"
-    path.write_text(json.dumps(notebook, ensure_ascii=False), "utf-8")
+    return json.dumps(notebook, ensure_ascii=False)

@@ -2,11 +2,16 @@
 
 import pytest
 
-from coursework import building
+import coursework
+from coursework import building, demo, issuing
 from coursework.booklets import File
 from coursework.building import write_tree
 from coursework.cli import BAD, DONE, run
 from coursework.errors import BadInput
+from coursework.issued import Issued
+from coursework.issuing import Student
+
+CLASS = [Student("Ada"), Student("Bo"), Student("Cy")]
 
 
 def wanted(**contents):
@@ -168,3 +173,34 @@ def test_a_folder_that_cannot_be_written_is_told_by_the_name_that_was_asked(smal
     assert f"{out} cannot be written: " in told
     assert "name another folder" in told
     assert ".building" not in told
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [(["notebook", "grashof", "mobility"], "grashof.fr.ipynb"), (["lesson"], "mechanisms.fr.ipynb")],
+)
+def test_a_notebook_that_somebody_wrote_in_is_not_replaced_unasked(command, name, tmp_path, capsys):
+    (tmp_path / name).write_text("mine", "utf-8")
+    command = [*command, "--out", str(tmp_path)]
+    assert run(command) == BAD
+    told = capsys.readouterr().err
+    assert f"{tmp_path / name} exists already" in told
+    assert "choose another --out, or --overwrite" in told
+    assert tree(tmp_path) == {name: "mine"}
+    assert run([*command, "--overwrite"]) == DONE
+    assert (tmp_path / name).read_text("utf-8") != "mine"
+
+
+def test_the_demo_deletes_no_file_of_ones_own(tmp_path, monkeypatch):
+    folder = tmp_path / "submissions"
+    folder.mkdir()
+    (folder / "mine.txt").write_text("mine")
+    (folder / "answers.csv").write_text("typed")
+    monkeypatch.setattr(demo, "HABITS", demo.HABITS[:1])
+    course = coursework.open_course()
+    issues = issuing.issue(course, ["slotted_mechanism"], first_seed=3, count=1, langs=["fr"], roster=CLASS)
+    issued = Issued(issuing.issued_content(course, issues), "issued.json")
+    (note,) = demo._hand_in(course, issued, folder)
+    assert "answers.before.csv" in note
+    assert demo._hand_in(course, issued, folder) == []
+    assert {"mine", "typed"} < set(tree(folder).values())
