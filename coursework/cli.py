@@ -14,6 +14,7 @@ from coursework.printing import print_json, print_table, progress_bar
 
 if TYPE_CHECKING:
     from coursework.course import Course
+    from coursework.roster import Student
 
 DONE, FOUND, BAD = 0, 1, 2  #: exit statuses
 
@@ -566,10 +567,19 @@ def accuracy(
 )
 @_seed_option
 @click.option(
-    "--roster", type=click.Path(path_type=Path), help="CSV with a column student and, if wanted, lang."
+    "--roster",
+    type=click.Path(path_type=Path),
+    help="CSV with a column student, or surname and first name, and, if wanted, lang.",
 )
 @click.option("--formats", type=_Lists(_known_formats), default="pdf,ipynb,html", show_default=True)
-@click.option("--lang", "langs", type=_Lists(_known_languages), default="fr", show_default=True)
+@click.option(
+    "--lang",
+    "langs",
+    type=_Lists(_known_languages),
+    default="fr",
+    show_default=True,
+    help="Languages of the sheets: fr, en, or both as fr,en. A student whose roster line says lang has that one.",
+)
 @_parts_option
 @click.option("--practice", is_flag=True, help="Self-study notebooks, which check answers.")
 @click.option(
@@ -611,16 +621,27 @@ def build(
     overwrite: bool,
 ) -> None:
     """Make sheets, notebooks and pages for a class, with the staff's half beside them."""
+    from coursework.roster import read_roster
+
     if roster and count:
         raise BadInput("--variants and --roster exclude each other: a roster has one variant a student")
     course = _course(context)
     names = _exercise_names(course, exercises)
+    notes: list[str] = []
+    students = read_roster(roster, notes.append) if roster else []
+    own = sum(bool(student.lang) for student in students)
+    if own and context.get_parameter_source("langs") is not click.core.ParameterSource.DEFAULT:
+        notes.append(
+            f"the roster says the language of {own} of its {len(students)} students, which counts; "
+            f"--lang {','.join(langs)} is for those of whom it says none"
+        )
+    _tell(notes)
     written = build_files(
         course,
         names,
         count or 1,
         seed,
-        roster,
+        students,
         formats,
         langs,
         out,
@@ -641,7 +662,7 @@ def build_files(
     names: Sequence[str],
     count: int,
     seed: int,
-    roster: Path | None,
+    students: Sequence[Student],
     formats: Sequence[str],
     langs: Sequence[str],
     out: Path,
@@ -656,7 +677,6 @@ def build_files(
     """Issue and write a build; gives how many files were written."""
     from coursework import building, issuing
 
-    students = issuing.read_roster(roster) if roster else ()
     issues = issuing.issue(
         course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts
     )

@@ -24,6 +24,7 @@ from coursework.key import Key
 from coursework.language import languages, significant
 from coursework.model import Part
 from coursework.rendering.markup import to_text
+from coursework.roster import read_roster
 from coursework.submissions import COLUMNS
 from coursework.variant import Variant
 
@@ -156,7 +157,9 @@ def class_of_twelve(
     course = open_course()
     names = (CLASS / "exercises.txt").read_text("utf-8").split()
     formats = ("pdf", "ipynb", "html")
-    written = build(course, names, 1, FIRST_SEED, ROSTER, formats, languages()[:1], out, overwrite=True)
+    written = build(
+        course, names, 1, FIRST_SEED, read_roster(ROSTER), formats, languages()[:1], out, overwrite=True
+    )
     issued = Issued.read(out / "issued.json")
     notes = _hand_in(course, issued, out / "submissions")
     book = grade(course, [out / "submissions"], out / "issued.json", out / "marks", feedback=True)

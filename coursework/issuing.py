@@ -1,4 +1,4 @@
-"""Who gets which variant: the roster, distinct draws, what was issued, and the key to it."""
+"""Who gets which variant: distinct draws, what was issued, and the key to it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import unicodedata
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,67 +20,12 @@ from coursework.course import Course
 from coursework.errors import BadInput, Starved, unknown
 from coursework.exercise import ALL, USUAL, CourseExercise
 from coursework.issued import ISSUED_FORMAT
-from coursework.language import languages
-from coursework.names import folded
-from coursework.tables import delimiter_of, inert
+from coursework.roster import Student
+from coursework.tables import inert
 from coursework.variant import Variant
 from coursework.worth import try_judges, worthy
 
-_STUDENT_COLUMNS = ("student", "name", "étudiant", "etudiant", "élève", "eleve", "nom")
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
-_LANG_COLUMNS = ("lang", "language", "langue")
-
-
-@dataclass(frozen=True)
-class Student:
-    """A line of the roster; ``lang`` is empty where it does not say."""
-
-    name: str
-    lang: str = ""
-
-
-def read_roster(path: Path) -> list[Student]:
-    """The students of a CSV with a column ``student`` and, if wanted, ``lang``.
-
-    Raises
-    ------
-    BadInput
-        The file cannot be read, names no students, or names one twice.
-    """
-    try:
-        text = path.read_bytes().decode("utf-8-sig")
-    except OSError as fault:
-        raise BadInput(f"the roster {path} cannot be read: {fault.strerror}") from fault
-    except UnicodeDecodeError as fault:
-        raise BadInput(f"the roster {path} is not UTF-8; save it as “CSV UTF-8”") from fault
-    lines = csv.DictReader(io.StringIO(text), delimiter=delimiter_of(text.split("\n", 1)[0]))
-    header = {(h or "").strip().casefold(): h for h in lines.fieldnames or ()}
-    column = next((header[c] for c in _STUDENT_COLUMNS if c in header), None)
-    if column is None:
-        found = ", ".join(h for h in header if h) or "nothing"
-        raise BadInput(f"the roster {path} needs a column named student; found {found}")
-    lang_column = next((header[c] for c in _LANG_COLUMNS if c in header), None)
-    students: list[Student] = []
-    seen: dict[str, int] = {}
-    for number, line in enumerate(lines, start=2):
-        name = " ".join((line[column] or "").split())
-        lang = (line[lang_column] or "").strip().lower() if lang_column else ""
-        if not name:
-            continue
-        if lang and lang not in languages():
-            raise BadInput(
-                f"the roster {path}, line {number}: no language {lang!r}; there is {', '.join(languages())}"
-            )
-        if folded(name) in seen:
-            raise BadInput(
-                f"the roster {path}, line {number}: {name} stands on line {seen[folded(name)]} already; "
-                "tell them apart, by a number for instance"
-            )
-        seen[folded(name)] = number
-        students.append(Student(name, lang))
-    if not students:
-        raise BadInput(f"the roster {path} names no student")
-    return students
 
 
 def distinct_variants(

@@ -6,7 +6,6 @@ Every row of every file comes out, as a :class:`Row` or as a :class:`Rejected` w
 from __future__ import annotations
 
 import ast
-import csv
 import json
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -14,11 +13,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from coursework.tables import as_written, decode, delimiter_of
+from coursework.tables import as_written, decode, delimiter_of, record
 
 COLUMNS = ("student", "exercise", "seed", "part", "answer")
 ENDINGS = (".csv", ".json", ".ipynb", ".parquet")
-MAX_LINES = 20  #: of one quoted answer
 MAX_BYTES = 1_000_000_000  #: of one file of answers
 
 
@@ -110,7 +108,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
     number = 0
     while number < len(lines):
         place = f"{source}, line {number + 1}"
-        cells, taken = _record(lines, number, delimiter, len(header))
+        cells, taken = record(lines, number, delimiter, len(header))
         number += taken
         if not any(c.strip() for c in cells):
             continue  # a blank line is no row
@@ -169,36 +167,6 @@ def _read_parquet(path: Path) -> Iterator[Row | Rejected]:
                 yield Row(*names, _as_answer(answer), f"{path}, row {number}")
     except (OSError, pyarrow.ArrowException) as fault:
         yield Rejected(str(path), f"not a Parquet file: {_short(fault)}")
-
-
-def _record(lines: list[str], start: int, delimiter: str, width: int) -> tuple[list[str], int]:
-    """The cells of the record at a line, and how many lines it takes.
-
-    A quoted cell may run over a few lines, if the record is then well formed, has as many cells as the
-    header, and swallows no line that would be a record by itself. Any other quotation mark is a
-    character like another: it costs no row, and is kept.
-    """
-    whole = _cells(lines[start], delimiter)
-    if whole is not None:
-        return whole, 1
-    for taken in range(2, min(MAX_LINES, len(lines) - start) + 1):
-        added = lines[start + taken - 1]
-        if len(added.split(delimiter)) >= width:
-            break
-        cells = _cells("\n".join(lines[start : start + taken]), delimiter)
-        if cells is not None and len(cells) == width:
-            return cells, taken
-    return [cell.removeprefix('"') for cell in lines[start].split(delimiter)], 1
-
-
-def _cells(record: str, delimiter: str) -> list[str] | None:
-    """The cells of a well-formed record; None where a quotation mark does not close as it should."""
-    if '"' not in record:
-        return record.split(delimiter)
-    try:
-        return next(csv.reader([record], delimiter=delimiter, strict=True), [])
-    except csv.Error:
-        return None
 
 
 def _csv_row(header: list[str], cells: list[str], place: str, warning: str) -> Iterator[Row | Rejected]:

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO
 
+MAX_LINES = 20  #: of one quoted cell
 _WARNINGS = {
     "utf-8-sig": "",
     "utf-16": "the file is UTF-16, not UTF-8",
@@ -37,6 +38,36 @@ def decode(data: bytes) -> tuple[str, str]:
     """The text and a warning."""
     encoding = encoding_of(data)
     return data.decode(encoding, "replace"), _WARNINGS[encoding]
+
+
+def record(lines: list[str], start: int, delimiter: str, width: int) -> tuple[list[str], int]:
+    """The cells of the record at a line, and how many lines it takes.
+
+    A quoted cell may run over a few lines, if the record is then well formed, has as many cells as the
+    header, and swallows no line that would be a record by itself. Any other quotation mark is a
+    character like another: it costs no row, and is kept.
+    """
+    whole = _cells(lines[start], delimiter)
+    if whole is not None:
+        return whole, 1
+    for taken in range(2, min(MAX_LINES, len(lines) - start) + 1):
+        added = lines[start + taken - 1]
+        if len(added.split(delimiter)) >= width:
+            break
+        cells = _cells("\n".join(lines[start : start + taken]), delimiter)
+        if cells is not None and len(cells) == width:
+            return cells, taken
+    return [cell.removeprefix('"') for cell in lines[start].split(delimiter)], 1
+
+
+def _cells(text: str, delimiter: str) -> list[str] | None:
+    """The cells of a well-formed record; None where a quotation mark does not close as it should."""
+    if '"' not in text:
+        return text.split(delimiter)
+    try:
+        return next(csv.reader([text], delimiter=delimiter, strict=True), [])
+    except csv.Error:
+        return None
 
 
 @contextmanager

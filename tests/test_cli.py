@@ -478,6 +478,10 @@ def test_a_users_mistake_is_one_line_and_status_2(cli, tmp_path, monkeypatch, ar
         ("student\nJosé\nJose\u0301\n", "stands on line 2 already"),
         ("student\nO'Neil\nO’Neil\n", "stands on line 2 already"),
         ("student,lang\nAnn,xx\n", "no language 'xx'"),
+        ("student,lang\nAnn,fr\n ,en\n", "line 3: no name"),
+        ("student,lang\nAnn,fr\nDurand, Paul,en\n", "line 3: 3 cells where the header has 2"),
+        ("student\nAnn\nBo\0\n", "no CSV"),
+        ("student\n\nAnn\nann\n", "line 4: ann stands on line 3"),
     ],
 )
 def test_a_bad_roster_is_told_by_its_line(cli, tmp_path, roster, told):
