@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.errors import BadInput, CourseworkError, WrongValue
+from coursework.errors import BadInput, CourseworkError, WrongValue, counted
 from coursework.printing import print_json, print_table, progress_bar
 
 if TYPE_CHECKING:
@@ -70,6 +70,24 @@ def _complain(message: str) -> int:
     return BAD
 
 
+class _Whole(click.ParamType):
+    """A whole number that is not less than the least."""
+
+    name = "whole number"
+
+    def __init__(self, least: int):
+        self.least = least
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> int:
+        try:
+            number = int(value)
+        except ValueError:
+            number = self.least - 1
+        if number < self.least:
+            self.fail(f"takes a whole number, {self.least} or more; found {value!r}", param, ctx)
+        return number
+
+
 class _Lists(click.ParamType):
     """Comma-separated words, each among those known."""
 
@@ -115,7 +133,7 @@ _replace_option = click.option(
     "--overwrite", is_flag=True, help="Replace notebooks that are there, and what was written in them."
 )
 _seed_option = click.option(
-    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Which variant (the first one)."
+    "--seed", type=_Whole(0), default=0, show_default=True, help="Which variant (the first one)."
 )
 
 
@@ -200,9 +218,7 @@ def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[A
 @cli.command()
 @click.argument("exercise")
 @_seed_option
-@click.option(
-    "--count", type=click.IntRange(min=1), default=1, show_default=True, help="How many, seed after seed."
-)
+@click.option("--count", type=_Whole(1), default=1, show_default=True, help="How many, seed after seed.")
 @click.option("--solution", is_flag=True, help="With the reference answers.")
 @_lang_option
 @_parts_option
@@ -309,7 +325,7 @@ def _json_value(value: Any) -> Any:
 @click.option(
     "--over", type=click.Choice(["cycle"]), default="cycle", show_default=True, help="One turn of the driver."
 )
-@click.option("--steps", type=click.IntRange(min=1), default=360, show_default=True, help="Steps of a cycle.")
+@click.option("--steps", type=_Whole(1), default=360, show_default=True, help="Steps of a cycle.")
 @click.option(
     "--drive", metavar="torque=VALUE", help="Integrate the motion under this constant torque instead."
 )
@@ -562,9 +578,7 @@ def accuracy(
 
 @cli.command()
 @click.argument("exercises", nargs=-1)
-@click.option(
-    "--variants", "count", type=click.IntRange(min=1), help="How many variants; with a roster, one a student."
-)
+@click.option("--variants", "count", type=_Whole(1), help="How many variants; with a roster, one a student.")
 @_seed_option
 @click.option(
     "--roster",
@@ -632,7 +646,7 @@ def build(
     own = sum(bool(student.lang) for student in students)
     if own and context.get_parameter_source("langs") is not click.core.ParameterSource.DEFAULT:
         notes.append(
-            f"the roster says the language of {own} of its {len(students)} students, which counts; "
+            f"the roster says the language of {own} of its {counted(len(students), 'student')}, which counts; "
             f"--lang {','.join(langs)} is for those of whom it says none"
         )
     _tell(notes)
@@ -652,7 +666,9 @@ def build(
         polygons=polygons,
         overwrite=overwrite,
     )
-    click.echo(f"{written} files in {out}: handouts/ to give away, issued.json and answers.csv to keep")
+    click.echo(
+        f"{counted(written, 'file')} in {out}: handouts/ to give away, issued.json and answers.csv to keep"
+    )
     if course.has_solutions:
         click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
 
@@ -732,9 +748,13 @@ def grade(
 
     Marked again, it says what changed and for whom.
     """
+    if issued.is_dir():
+        inside = issued / "issued.json"
+        would_do = f"did you mean {inside}?" if inside.exists() else "name the issued.json that build wrote"
+        raise BadInput(f"--issued takes a file; {issued} is a folder: {would_do}")
     out = out or issued.parent / "marks"
     book = grade_with_bar(_course(context), submissions, issued, out, feedback=feedback, accepted=accepted)
-    told = f"{book.rows_in} rows: {book.marked} marked, {len(book.rejected)} rejected"
+    told = f"{counted(book.rows_in, 'row')}: {book.marked} marked, {len(book.rejected)} rejected"
     told += f", {book.blanks} blank beside another" if book.blanks else ""
     click.echo(f"{told}; see {out}")
     if book.changes:
@@ -802,7 +822,7 @@ def report(context: click.Context, folder: Path, lang: str, out: Path | None, as
         _write_report(course, told, lang, out)
     if not as_json:
         click.echo(
-            f"{told.students} students, {told.answers} answers, {told.needs_a_look} to be looked at; "
+            f"{counted(told.students, 'student')}, {counted(told.answers, 'answer')}, {told.needs_a_look} to be looked at; "
             f"see {out / 'report'}.html, .pdf, parts.csv, mistakes.csv"
         )
 
@@ -830,7 +850,7 @@ def _write_report(course: Course, told: Any, lang: str, out: Path) -> None:
 
 @cli.command()
 @click.argument("exercises", nargs=-1)
-@click.option("--variants", "count", type=click.IntRange(min=1), default=200, show_default=True)
+@click.option("--variants", "count", type=_Whole(1), default=200, show_default=True)
 @_json_option
 @click.pass_context
 def check(context: click.Context, exercises: Sequence[str], count: int, as_json: bool) -> int:

@@ -73,6 +73,11 @@ class BadInput(CourseworkError, ValueError):
     """What a user gives, a file or what a call is told, is not what it should be."""
 
 
+def counted(number: int, noun: str) -> str:
+    """``1 row``, ``2 rows``."""
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def closest(name: str, known: Iterable[str]) -> str | None:
     """The known name that may have been meant, if one is near."""
     known = list(known)

@@ -17,7 +17,7 @@ import numpy as np
 
 from coursework import draws
 from coursework.course import Course
-from coursework.errors import BadInput, Starved, unknown
+from coursework.errors import BadInput, Starved, counted, unknown
 from coursework.exercise import ALL, USUAL, CourseExercise
 from coursework.issued import ISSUED_FORMAT
 from coursework.roster import Student
@@ -70,11 +70,11 @@ def distinct_variants(
         seed = batch.stop
     if len(found) < count:
         exist = draws.population(exercise.spec)
-        told = f"{len(found)} were found" if exist is None or refused else f"only {exist} exist"
-        flaws = ", ".join(f"{flaw} ({times} times)" for flaw, times in refused.most_common(3))
+        told = f"{len(found)} found" if exist is None or refused else f"only {exist} exist"
+        flaws = ", ".join(f"{flaw} ({counted(n, 'time')})" for flaw, n in refused.most_common(3))
         told += f"; passed over as {flaws}" if flaws else ""
         raise Starved(
-            f"{exercise.name}: {count} different variants were asked, {told}; "
+            f"{exercise.name}: {counted(count, 'different variant')} asked, {told}; "
             "ask for fewer, widen a range or make a step finer"
         )
     return list(found.values())

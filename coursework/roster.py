@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from coursework.errors import BadInput
+from coursework.errors import BadInput, counted
 from coursework.language import languages
 from coursework.names import folded
 from coursework.tables import decode, delimiter_of, record
@@ -55,7 +55,7 @@ def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> 
         place = f"the roster {path}, line {number}"
         if any(cell.strip() for cell in cells[len(titles) :]):
             raise BadInput(
-                f"{place}: {len(cells)} cells where the header has {len(titles)}; "
+                f"{place}: {counted(len(cells), 'cell')} where the header has {len(titles)}; "
                 "put a name that holds a comma or a semicolon between quotation marks, or give the column a title"
             )
         cells += [""] * (len(titles) - len(cells))

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.errors import BadCourse, Undefined, WrongValue, unknown
+from coursework.errors import BadCourse, Undefined, WrongValue, counted, unknown
 from coursework.exercise import CourseExercise
 from coursework.model import Driver
 
@@ -287,5 +287,8 @@ class _Motion:
         kinetic = np.array([0.5 * self.inertia(a) * w**2 for a, w in zip(angle, speed, strict=True)])
         exchanged = max(float(np.ptp(kinetic)), float(np.ptp(work)), 1e-300)
         balance = float(np.max(np.abs(kinetic - kinetic[0] - work))) / exchanged
-        notes = (f"energy balance: {balance:.1e} of the energy exchanged", f"{int(dead.sum())} dead centres")
+        notes = (
+            f"energy balance: {balance:.1e} of the energy exchanged",
+            counted(int(dead.sum()), "dead centre"),
+        )
         return Table(columns, scene._units(columns), scene._evaluated(), notes, balance)

@@ -440,7 +440,9 @@ def test_check_reports_a_broken_promise_with_status_1(cli, small_course):
     [
         (["show", "sloted_mechanism"], "did you mean 'slotted_mechanism'"),
         (["show", "slotted_mechanism", "--lang", "de"], "no language 'de'"),
-        (["show", "slotted_mechanism", "--seed", "-1"], "--seed"),
+        (["show", "slotted_mechanism", "--seed", "-1"], "--seed': takes a whole number, 0 or more; found '-1'"),
+        (["show", "slotted_mechanism", "--seed", "1.5"], "--seed': takes a whole number, 0 or more; found '1.5'"),
+        (["grade", "none.csv", "--issued", "."], "name the issued.json that build wrote"),
         (["solve", "slotted_mechanism", "--set", "r1"], "NAME=VALUE"),
         (["solve", "slotted_mechanism", "--set", "r1=3kg", "--only", "rA"], "r1 is in mm"),
         (["solve", "slotted_mechanism", "--set", "r1=-3", "--only", "rA"], "r1 must be positive"),
@@ -500,6 +502,13 @@ def test_a_damaged_issued_file_is_told(cli, tmp_path, content):
     status, _, err = cli("grade", tmp_path / "a.csv", "--issued", tmp_path / "issued.json")
     assert status == 2
     assert "issued.json" in err
+
+
+def test_a_folder_named_for_the_issued_file_in_it_is_told(cli, tmp_path):
+    (tmp_path / "issued.json").write_text("{}", "utf-8")
+    status, _, err = cli("grade", tmp_path, "--issued", tmp_path)
+    assert status == 2
+    assert f"did you mean {tmp_path / 'issued.json'}?" in err
 
 
 def test_an_author_is_told_the_file_and_line_of_a_slip(cli, small_course):

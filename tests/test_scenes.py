@@ -164,3 +164,5 @@ def test_dead_centres_are_rows_where_the_piston_stands_still(course):
     assert 3 <= dead.sum() <= 6  # two a turn, about two and a half turns
     fastest = np.abs(table.columns["r1_dot"]).max()
     assert np.abs(table.columns["r1_dot"][dead]).max() < 1e-6 * fastest
+    assert table.notes[-1] == f"{dead.sum()} dead centres"
+    assert scene.in_time(0.0, 0.15, count=10).notes[-1] == "1 dead centre"

@@ -194,6 +194,12 @@ def test_what_is_mistyped_is_said_in_the_language_of_the_notebook(mistyped, lang
 
 
 @pytest.mark.parametrize("lang", ["fr", "en"])
+def test_the_effects_that_a_motion_has_are_each_named_once(lang, here):
+    with pytest.raises(BadInput, match=r": position, velocity, acceleration\.$"):
+        coursework.study("four_bar_motion", lang=lang).motion("coriolis")
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
 def test_a_notebook_that_cannot_begin_says_so_in_its_language(lang, here):
     said = words(lang)["study"]["refused"]
     for told, start in (

@@ -164,7 +164,7 @@ class StudySession:
         except WrongValue:
             if missing := self._missing():
                 return self._shown(missing)
-            shown = ", ".join(("position", *self.variant.animation(()).available))
+            shown = ", ".join(dict.fromkeys(("position", *self.variant.animation(()).available)))
             raise refusals.refused(self.variant.lang, "no_effect", names=shown) from None
         if not effects:
             usual = [e for e in ("position", "velocity") if e in moving.available]
