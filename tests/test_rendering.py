@@ -435,6 +435,37 @@ def test_each_sheet_of_a_booklet_starts_on_an_odd_page_and_counts_its_own_pages(
     assert RENDERER.booklet_pdf(sheets) == RENDERER.booklet_pdf(sheets)
 
 
+def test_feedback_sheets_follow_one_another_without_a_blank_page():
+    from coursework.rendering.pdf import source
+
+    pages = typst.compile(
+        source([TEMPLATES], [feedback_sheet("fr"), feedback_sheet("en")]).encode(), format="svg"
+    )
+    assert len(pages) == 2
+
+
+def test_a_long_number_stays_in_its_column_of_the_feedback():
+    from coursework.rendering.pdf import source
+
+    sheet = feedback_sheet("fr")
+    number = "8832.123456789012"
+    line = replace(sheet.lines[0], answer=number, read_as=number)
+    text = source([TEMPLATES], [replace(sheet, lines=(line,))])
+    assert text.count(f"written[{number}]") == 2
+    definitions = text.partition("\n//=\n")[0]
+    high = "measure(block(width: 25mm, written[{}])).height.pt()"
+    asked = f"#context [#metadata(({high.format(number)}, {high.format('8832.1')})) <high>]"
+    (found,) = json.loads(typst.query(f"{definitions}\n{asked}".encode(), "<high>", field="value"))
+    assert found[0] > 2 * found[1] > 0
+
+
+def test_words_of_a_margin_are_not_spread_over_their_narrow_column():
+    text = RENDERER.typst(answer_sheet("fr"))
+    margins = [line for line in text.split("\n") if line.startswith("  [*")]
+    assert margins
+    assert all("par(justify: false)[" in line for line in margins)
+
+
 def test_threads_share_a_renderer():
     alone = [RENDERER.pdf(handout(lang)) for lang in ("fr", "en")]
     with ThreadPoolExecutor(2) as pool:

@@ -46,7 +46,7 @@ class Renderer:
         return self.booklet_pdf([sheet])
 
     def booklet_pdf(self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]) -> bytes:
-        """Several sheets in one PDF, each from an odd page on, with its own page numbers."""
+        """Several sheets in one PDF, each with its own page numbers; those to print from an odd page on."""
         from coursework.rendering import pdf
 
         return pdf.compile_pdf(pdf.source(self.template_folders, sheets, self.paper))

@@ -16,6 +16,7 @@ from coursework.errors import BadStatement
 from coursework.figures import Beginning, Figure
 from coursework.figures.text import SIZE
 from coursework.figures.writing import Letters
+from coursework.handout import FeedbackSheet
 from coursework.rendering import markup, views
 from coursework.rendering.environment import environment, render
 from coursework.rendering.formulas import spoken, to_typst
@@ -26,7 +27,10 @@ _OUTPUT = {"format": "pdf", "pdf_standards": ["a-2a", "ua-1"], "timestamp": 0}
 
 
 def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = "a4") -> str:
-    """The Typst source of one document that holds these sheets, each from an odd page on."""
+    """The Typst source of one document that holds these sheets, each from an odd page on.
+
+    Feedback is read on a screen: its sheets follow one another without a blank page.
+    """
     contexts = [views.context(sheet) for sheet in sheets]
     bodies = [
         Markup(
@@ -36,7 +40,8 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = 
         )
         for sheet, names in zip(sheets, contexts, strict=True)
     ]
-    page = contexts[0] | {"bodies": bodies, "paper": paper}
+    printed = not isinstance(sheets[0], FeedbackSheet)
+    page = contexts[0] | {"bodies": bodies, "paper": paper, "printed": printed}
     return render(environment_of(tuple(folders), page["lang"]), "_page.typ.j2", page)
 
 
