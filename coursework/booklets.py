@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 
 from coursework.course import Course
-from coursework.issuing import Issue, csv_text
+from coursework.issuing import Issue, csv_file
 from coursework.rendering import Renderer
 
 SHEETS = 50  #: in one booklet, at most
@@ -114,4 +114,4 @@ def _solutions(renderer: Renderer, booklet: _Booklet) -> bytes:
 
 def _table(booklets: Sequence[_Booklet], pages: Sequence[Future[Pages]]) -> bytes:
     rows = (row for one, found in zip(booklets, pages, strict=True) for row in one.rows(found.result()))
-    return csv_text(rows, PAGE_COLUMNS).encode("utf-8")
+    return csv_file(rows, PAGE_COLUMNS)

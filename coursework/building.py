@@ -19,7 +19,7 @@ from coursework.errors import BadInput
 from coursework.handout import AnswerSheet, Handout
 from coursework.issuing import (
     Issue,
-    csv_text,
+    csv_file,
     form_rows,
     issued_content,
     json_text,
@@ -69,12 +69,12 @@ def files(
         yield from booklets.files(course, renderer, issues, polygons=polygons)
     content = issued_content(course, issues)
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
-    yield File(Path("answers.csv"), _text(lambda: csv_text(form_rows(issues), COLUMNS)))
+    yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS))
     if course.has_solutions:
         key = key_content(issues)
         folder = Path("instructor")
         yield File(folder / "key.json", _text(lambda: json_text(key)))
-        yield File(folder / "key.csv", _text(lambda: csv_text(key_rows(key), KEY_COLUMNS)))
+        yield File(folder / "key.csv", lambda: csv_file(key_rows(key), KEY_COLUMNS))
 
 
 def _sheets(

@@ -87,7 +87,7 @@ def test_the_table_of_pages_has_a_line_for_each_sheet_whichever_booklet_holds_it
     monkeypatch.setattr(booklets, "SHEETS", 2)
     issues = issues_of(course, 3, ("fr", "en"))
     building.write(tmp_path, list(booklets.files(course, course.renderer, issues)))
-    rows = list(csv.DictReader(io.StringIO((tmp_path / "handouts" / "pages.csv").read_text("utf-8"))))
+    rows = list(csv.DictReader(io.StringIO((tmp_path / "handouts" / "pages.csv").read_text("utf-8-sig"))))
     assert [(r["lang"], int(r["seed"])) for r in rows] == [
         (lang, issue.variant.seed) for lang in ("fr", "en") for issue in issues
     ]
@@ -108,7 +108,7 @@ def test_build_writes_booklets_beside_the_single_files(tmp_path):
         "instructor/slotted_mechanism.fr.solutions.pdf",
         "instructor/slotted_mechanism/zoe.fr.solution.pdf",
     }
-    rows = csv.DictReader(io.StringIO((tmp_path / "out" / "handouts" / "pages.csv").read_text("utf-8")))
+    rows = csv.DictReader(io.StringIO((tmp_path / "out" / "handouts" / "pages.csv").read_text("utf-8-sig")))
     assert [(r["student"], r["lang"]) for r in rows] == [
         ("Zoé", "fr"),
         ("Élodie #1", "fr"),

@@ -29,7 +29,7 @@ def cli(capsys):
 
 
 def table(path):
-    with path.open(encoding="utf-8", newline="") as file:
+    with path.open(encoding="utf-8-sig", newline="") as file:
         return list(csv.DictReader(file))
 
 
@@ -143,6 +143,9 @@ def test_issued_and_form_hold_no_answer_and_the_key_holds_them_all(built):
     ]
     assert "answers" not in (built / "issued.json").read_text("utf-8")
     assert all(row["answer"] == "" for row in table(built / "answers.csv"))
+    # A spreadsheet shows the accents of names by the mark at the head.
+    assert (built / "answers.csv").read_bytes().startswith(b"\xef\xbb\xbfstudent,")
+    assert (built / "instructor" / "key.csv").read_bytes().startswith(b"\xef\xbb\xbfstudent,")
     key = json.loads((built / "instructor" / "key.json").read_text("utf-8"))
     assert [k["seed"] for k in key] == [i["record"]["seed"] for i in issued["issued"]]
     assert all(set(k["answers"]) == {p["id"] for p in k["parts"]} for k in key)
