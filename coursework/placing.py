@@ -53,7 +53,7 @@ def place(staging: Path, out: Path, *, anew: bool) -> list[str]:
         first = str(out / next(iter(strange)))
         told = first if len(strange) == 1 else f"{first} and {len(strange) - 1} more"
         raise BadInput(
-            f"no build wrote {told}, in the place of what this one writes; move it, choose another --out, "
+            f"not as a build wrote it, and in the way of this one: {told}; move it, choose another --out, "
             "or --overwrite to set it aside under another name"
         )
     notes = list(kept.values())
@@ -70,10 +70,11 @@ def place(staging: Path, out: Path, *, anew: bool) -> list[str]:
             beside = _free_name(out / path)
             _move(out / path, beside, undo)
             notes.append(f"{out / path} was not as a build leaves it; it is now {beside.name}")
-        for path in [p for p in gone if p not in mine] + [p for p in put if os.path.lexists(out / p)]:
-            _move(out / path, staging / "old" / path, undo)
-        for path in put:
-            _move(new / path, out / path, undo)
+        for path in [path for path in gone if path not in mine] + put:
+            if os.path.lexists(out / path):
+                _move(out / path, staging / "old" / path, undo)
+            if path in made:
+                _move(new / path, out / path, undo)
         now = {path: [made[path]] for path in put}
         _write(out, {**before, **now} if same else now)
         undo.pop_all()
