@@ -14,6 +14,7 @@ from typing import Any, TypeAlias
 from coursework import booklets
 from coursework.blocks import processors
 from coursework.booklets import File
+from coursework.build_folder import place
 from coursework.course import Course
 from coursework.errors import BadInput
 from coursework.handout import AnswerSheet, Handout
@@ -26,7 +27,6 @@ from coursework.issuing import (
     key_content,
     key_rows,
 )
-from coursework.placing import place
 from coursework.processes import processes, workers
 from coursework.rendering import Renderer
 from coursework.submissions import COLUMNS
@@ -152,7 +152,7 @@ def write_tree(
 ) -> list[str]:
     """Make and write a build: it appears whole, in place of the one before, or not at all.
 
-    What somebody changed or put there is not lost, and ``anew`` is as in :func:`coursework.placing.place`; gives
+    What somebody changed or put there is not lost, and ``anew`` is as in :func:`coursework.build_folder.place`; gives
     notes to tell.
 
     Raises
