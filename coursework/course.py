@@ -103,7 +103,7 @@ class Course:
         if not path.exists():
             return {}
         try:
-            return tomllib.loads(path.read_text("utf-8"))
+            return tomllib.loads(path.read_text("utf-8-sig"))
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
             raise BadCourse(f"{path}: {fault}") from fault
 

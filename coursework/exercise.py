@@ -290,11 +290,12 @@ class CourseExercise:
         A solution need not have one: then every section is absent.
         """
         path = self.text_file(kind, lang)
+        source = path.relative_to(self.course.root).as_posix()
         if not path.exists() and kind == "solutions":
-            return statement.Text("", "", {}, path.name)
+            return statement.Text("", "", {}, source)
         if not path.exists():
-            raise BadCourse(f"{self.name} has no text in {lang!r}: {kind}/{path.name} is missing")
-        return statement.render(path, self.course.template_folders, variables)
+            raise BadCourse(f"{self.name} has no text in {lang!r}: {source} is missing")
+        return statement.render(path, self.course.template_folders, variables, source)
 
     def constants(self, kind: str, lang: str) -> statement.Constants:
         """What of a text is the same for every variant; read once."""
