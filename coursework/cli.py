@@ -66,8 +66,11 @@ class _Lists(click.ParamType):
 
     name = "list"
 
-    def __init__(self, known: Callable[[], Iterable[str]]):
+    def __init__(self, known: Callable[[], Iterable[str]], refusal: Callable[[str], str] | None = None):
         self.known = known
+        self.refusal = (
+            refusal  #: what is said of an unknown word, where more is to be said than what there is
+        )
 
     def convert(self, value: Any, param: Any, ctx: Any) -> tuple[str, ...]:
         if isinstance(value, tuple):
@@ -76,7 +79,8 @@ class _Lists(click.ParamType):
         known = tuple(self.known())
         for word in words:
             if word not in known:
-                self.fail(f"no {word!r}; there is {', '.join(known)}", param, ctx)
+                told = self.refusal(word) if self.refusal else f"no {word!r}; there is {', '.join(known)}"
+                self.fail(told, param, ctx)
         if not words:
             self.fail(f"nothing named; there is {', '.join(known)}", param, ctx)
         return words
@@ -86,6 +90,12 @@ def _known_languages() -> tuple[str, ...]:
     from coursework.language import languages
 
     return languages()
+
+
+def _unknown_language(lang: str) -> str:
+    from coursework.language import no_language
+
+    return str(no_language(lang))
 
 
 def _known_formats() -> tuple[str, ...]:
@@ -432,7 +442,9 @@ def lesson(context: click.Context, lessons: Sequence[str], lang: str, out: Path 
 @cli.command()
 @click.argument("exercises", nargs=-1)
 @_seed_option
-@click.option("--lang", "langs", type=_Lists(_known_languages), default="fr", show_default=True)
+@click.option(
+    "--lang", "langs", type=_Lists(_known_languages, _unknown_language), default="fr", show_default=True
+)
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
@@ -532,7 +544,9 @@ def accuracy(
     "--roster", type=click.Path(path_type=Path), help="CSV with a column student and, if wanted, lang."
 )
 @click.option("--formats", type=_Lists(_known_formats), default="pdf,ipynb,html", show_default=True)
-@click.option("--lang", "langs", type=_Lists(_known_languages), default="fr", show_default=True)
+@click.option(
+    "--lang", "langs", type=_Lists(_known_languages, _unknown_language), default="fr", show_default=True
+)
 @_parts_option
 @click.option("--practice", is_flag=True, help="Self-study notebooks, which check answers.")
 @click.option(

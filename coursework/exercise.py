@@ -284,6 +284,17 @@ class CourseExercise:
         within = self.course.root / kind / self.name / f"{self.name}.{lang}.md.j2"
         return within if within.exists() else beside
 
+    @property
+    def unspoken(self) -> dict[str, Path]:
+        """By language, a text of the exercise in each that the engine does not speak: nothing reads it."""
+        return {
+            lang: path
+            for kind in ("solutions", "exercises")
+            for folder in (self.course.root / kind, self.course.root / kind / self.name)
+            for path in sorted(folder.glob(f"{self.name}.*.md.j2"))
+            if (lang := path.name.removeprefix(f"{self.name}.").removesuffix(".md.j2")) not in languages()
+        }
+
     def text(self, kind: str, lang: str, variables: Mapping[str, object]) -> statement.Text:
         """The texts of the exercise (``exercises``) or of its solution (``solutions``).
 

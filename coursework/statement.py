@@ -59,7 +59,8 @@ class Text:
     def section(self, name: str) -> Section:
         """The section of this name; a clear error if the file has none."""
         if name not in self.sections:
-            raise BadStatement(f"{self.source} has no section '## {name}'")
+            is_there = f"{self.source} has no" if self.title else f"{self.source} is missing, and with it the"
+            raise BadStatement(f"{is_there} section '## {name}'")
         return self.sections[name]
 
     def label(self, quantity: str, case: str) -> str:
