@@ -22,7 +22,7 @@ from coursework.graph import plain_scalar
 from coursework.issuing import distinct_variants
 from coursework.judging import judged, judges_of
 from coursework.key import FOLLOWED, Key, envelopes, exists
-from coursework.language import languages, plain, significant
+from coursework.language import file_of, languages, plain, significant, words
 from coursework.loop_checks import check_loops
 from coursework.model import Part
 from coursework.processes import processes, workers
@@ -45,6 +45,7 @@ def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) 
     report = Report(exercise.name)
     steps: Sequence[Callable[[], None]] = (
         lambda: check_texts(exercise, report),
+        lambda: check_symbols(exercise, report),
         lambda: check_known(exercise, report),
         lambda: _check_variants(exercise, variants, report),
         lambda: check_rendering(exercise, rendered, report),
@@ -144,11 +145,22 @@ def _describe(drawn: Sequence[Variant], report: Report) -> None:
 
 
 def check_texts(exercise: CourseExercise, report: Report) -> None:
-    """Every language says every part, every case and every mistake."""
+    """Every language says every part, every case and every mistake, and nothing is written in vain."""
+    for lang, path in exercise.unspoken.items():
+        report.fail(
+            f"{path.relative_to(exercise.course.root).as_posix()} is read by nothing: the engine speaks no {lang!r}, "
+            f"whose words would be {file_of(lang)}"
+        )
     for lang in languages():
+        words(lang)  # a file of words that cannot be used says so here
         if lang not in exercise.languages:
             report.fail(f"no statement in {lang!r}: exercises/{exercise.name}.{lang}.md.j2 is missing")
             continue
+        if exercise.course.lacks_title(lang):
+            report.fail(
+                f"exercises/course.toml has no title in {lang!r}: sheets would be headed "
+                f"{exercise.course.title(lang)!r}; write it under [title]"
+            )
         variant = exercise.variant(0, lang)
         text = variant.text
         for part in exercise.spec.parts:
@@ -161,17 +173,31 @@ def check_texts(exercise: CourseExercise, report: Report) -> None:
                 text.label(name, case)
         if exercise.spec.figure and not text.section("figure").text:
             report.fail(f"{text.source}: the figure has no words")
-        words = exercise.text("solutions", lang, _every_name(exercise, variant))
-        if exercise.film and not words.section("motion").text:
-            report.fail(f"{words.source}: the film has no words")
+        told = exercise.text("solutions", lang, _every_name(exercise, variant))
+        if exercise.film and not told.section("motion").text:
+            report.fail(f"{told.source}: the film has no words")
         for name in exercise.solution.mistakes:
-            if not words.section(f"mistake {name}").text:
-                report.fail(f"{words.source}: mistake {name} is told in no words")
+            if not told.section(f"mistake {name}").text:
+                report.fail(f"{told.source}: mistake {name} is told in no words")
         report.counts["texts"] += 1
 
 
 def _every_name(exercise: CourseExercise, variant: Variant) -> dict[str, object]:
     return {**dict.fromkeys(exercise.solution.graph.quantities, "0"), **variant.printed}
+
+
+def check_symbols(exercise: CourseExercise, report: Report) -> None:
+    """What is given or asked bears its symbol on the sheet too, not in the solution alone."""
+    on_the_sheet = {*exercise.spec.given, *(part.quantity for part in exercise.spec.parts)}
+    for name, symbol in exercise.solution.symbols.items():
+        stated = (
+            name in exercise.spec.symbols
+        )  # another form in formulas, a fraction say, is the author's choice
+        if name in on_the_sheet and not stated and symbol != exercise.symbol(name):
+            report.fail(
+                f"SYMBOLS of solutions/{exercise.name}.py names {name!r}, which is given or asked: its symbol belongs "
+                f"in Exercise(symbols=…), else the sheet shows it as {exercise.symbol(name)}"
+            )
 
 
 # ------------------------------------------------------------------------ known

@@ -93,8 +93,11 @@ class _Lists(click.ParamType):
 
     name = "list"
 
-    def __init__(self, known: Callable[[], Iterable[str]]):
+    def __init__(self, known: Callable[[], Iterable[str]], refusal: Callable[[str], str] | None = None):
         self.known = known
+        self.refusal = (
+            refusal  #: what is said of an unknown word, where more is to be said than what there is
+        )
 
     def convert(self, value: Any, param: Any, ctx: Any) -> tuple[str, ...]:
         if isinstance(value, tuple):
@@ -103,7 +106,8 @@ class _Lists(click.ParamType):
         known = tuple(self.known())
         for word in words:
             if word not in known:
-                self.fail(f"no {word!r}; there is {', '.join(known)}", param, ctx)
+                told = self.refusal(word) if self.refusal else f"no {word!r}; there is {', '.join(known)}"
+                self.fail(told, param, ctx)
         if not words:
             self.fail(f"nothing named; there is {', '.join(known)}", param, ctx)
         return words
@@ -113,6 +117,12 @@ def _known_languages() -> tuple[str, ...]:
     from coursework.language import languages
 
     return languages()
+
+
+def _unknown_language(lang: str) -> str:
+    from coursework.language import no_language
+
+    return str(no_language(lang))
 
 
 def _known_formats() -> tuple[str, ...]:
@@ -477,7 +487,9 @@ def _spare(paths: Sequence[Path], overwrite: bool) -> None:
 @cli.command()
 @click.argument("exercises", nargs=-1)
 @_seed_option
-@click.option("--lang", "langs", type=_Lists(_known_languages), default="fr", show_default=True)
+@click.option(
+    "--lang", "langs", type=_Lists(_known_languages, _unknown_language), default="fr", show_default=True
+)
 @click.option(
     "--out",
     type=click.Path(path_type=Path, file_okay=False),
@@ -589,7 +601,7 @@ def accuracy(
 @click.option(
     "--lang",
     "langs",
-    type=_Lists(_known_languages),
+    type=_Lists(_known_languages, _unknown_language),
     default="fr",
     show_default=True,
     help="Languages of the sheets: fr, en, or both as fr,en. A student whose roster line says lang has that one.",

@@ -12,9 +12,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
 
-from coursework.errors import unknown
 from coursework.figures import Beginning, Element, Figure, line, point, scale_bar, vector
-from coursework.language import languages, listed, localise, significant, unit_text, words
+from coursework.language import languages, listed, localise, no_language, significant, unit_text, words
 from coursework.polygons import Polygon, Side, Stage
 
 BOX_MM = (110.0, 90.0)  #: width and height of a whole drawing on paper
@@ -63,7 +62,7 @@ class Construction:
 
     def __init__(self, polygon: Polygon, lang: str = "fr"):
         if lang not in languages():
-            raise unknown("language", lang, languages())
+            raise no_language(lang)
         self.polygon = polygon
         self.lang = lang
 

@@ -103,7 +103,7 @@ class Course:
         if not path.exists():
             return {}
         try:
-            return tomllib.loads(path.read_text("utf-8"))
+            return tomllib.loads(path.read_text("utf-8-sig"))
         except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
             raise BadCourse(f"{path}: {fault}") from fault
 
@@ -115,10 +115,18 @@ class Course:
 
     def title(self, lang: str) -> str:
         """The course's title in a language; the folder's name when it states none."""
+        return str(self._titles(lang).get(lang, self.root.name))
+
+    def lacks_title(self, lang: str) -> bool:
+        """Whether the course states its title in other languages than this one alone."""
+        titles = self._titles(lang)
+        return bool(titles) and lang not in titles
+
+    def _titles(self, lang: str) -> Mapping[str, Any]:
         titles = self.settings.get("title", {})
         if not isinstance(titles, dict):
             raise BadCourse(f'{self.root / "exercises" / "course.toml"}: write [title], then {lang} = "…"')
-        return str(titles.get(lang, self.root.name))
+        return titles
 
     @cached_property
     def template_folders(self) -> tuple[Path, ...]:

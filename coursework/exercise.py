@@ -284,17 +284,29 @@ class CourseExercise:
         within = self.course.root / kind / self.name / f"{self.name}.{lang}.md.j2"
         return within if within.exists() else beside
 
+    @property
+    def unspoken(self) -> dict[str, Path]:
+        """By language, a text of the exercise in each that the engine does not speak: nothing reads it."""
+        return {
+            lang: path
+            for kind in ("solutions", "exercises")
+            for folder in (self.course.root / kind, self.course.root / kind / self.name)
+            for path in sorted(folder.glob(f"{self.name}.*.md.j2"))
+            if (lang := path.name.removeprefix(f"{self.name}.").removesuffix(".md.j2")) not in languages()
+        }
+
     def text(self, kind: str, lang: str, variables: Mapping[str, object]) -> statement.Text:
         """The texts of the exercise (``exercises``) or of its solution (``solutions``).
 
         A solution need not have one: then every section is absent.
         """
         path = self.text_file(kind, lang)
+        source = path.relative_to(self.course.root).as_posix()
         if not path.exists() and kind == "solutions":
-            return statement.Text("", "", {}, path.name)
+            return statement.Text("", "", {}, source)
         if not path.exists():
-            raise BadCourse(f"{self.name} has no text in {lang!r}: {kind}/{path.name} is missing")
-        return statement.render(path, self.course.template_folders, variables)
+            raise BadCourse(f"{self.name} has no text in {lang!r}: {source} is missing")
+        return statement.render(path, self.course.template_folders, variables, source)
 
     def constants(self, kind: str, lang: str) -> statement.Constants:
         """What of a text is the same for every variant; read once."""

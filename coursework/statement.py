@@ -28,10 +28,14 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from weakref import WeakSet
 
 from coursework.errors import BadStatement
+from coursework.proofreading import pair_dollars, read_formulas
 
 _HEADING = re.compile(r"^(#{1,2})\s+(.+?)\s*$", re.MULTILINE)
+_ENCODING = "utf-8-sig"  #: a mark of the byte order, which some editors write, is no part of the text
+_TELLING = 15  #: characters by which a line of a text is found again
 _LABEL = re.compile(r"^- ([A-Za-z][\w-]*): (.+)$", re.MULTILINE)
 
 
@@ -55,7 +59,8 @@ class Text:
     def section(self, name: str) -> Section:
         """The section of this name; a clear error if the file has none."""
         if name not in self.sections:
-            raise BadStatement(f"{self.source} has no section '## {name}'")
+            is_there = f"{self.source} has no" if self.title else f"{self.source} is missing, and with it the"
+            raise BadStatement(f"{is_there} section '## {name}'")
         return self.sections[name]
 
     def label(self, quantity: str, case: str) -> str:
@@ -95,28 +100,55 @@ def parse(markdown: str, source: str) -> Text:
     return Text(title, opening, sections, source)
 
 
-def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object]) -> Text:
-    """Render a text file with the variables of a variant.
+def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object], source: str) -> Text:
+    """Render a text file with the variables of a variant; ``source`` is what messages call the file.
 
     Raises
     ------
     BadStatement
-        Unknown variable or broken template: says the file and the line.
+        Unknown variable, broken template, a dollar without its partner, a formula that cannot be read: says the
+        file and, where it is known, the line.
     """
     import jinja2
 
-    template = _template(path, path.stat().st_mtime_ns, folders)
+    template = _template(path, path.stat().st_mtime_ns, folders, source)
     if isinstance(template, Text):
         return template
     try:
-        return parse(template.render(variables), path.name)
+        markdown = template.render(variables)
     except jinja2.UndefinedError as fault:
         names = ", ".join(sorted(variables))
-        raise BadStatement(f"{path.name}: {fault.message}; a text may use: {names}") from fault
+        raise BadStatement(f"{source}: {fault.message}; a text may use: {names}") from fault
     except jinja2.TemplateError as fault:
-        raise BadStatement(f"{path.name}: {fault}") from fault
+        raise BadStatement(f"{source}: {fault}") from fault
     except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as fault:
-        raise BadStatement(f"{path.name}: an expression fails: {fault}") from fault
+        raise BadStatement(f"{source}: an expression fails: {fault}") from fault
+    text = _text(markdown, path, source, formulas=template not in _proofread)
+    _proofread.add(template)
+    return text
+
+
+def _text(markdown: str, path: Path, source: str, *, formulas: bool) -> Text:
+    """The sections of a rendered text, once it is proofread; its formulas only where told."""
+
+    def place(piece: str) -> str:
+        first = piece.split("\n")[0]
+        lines = path.read_text(_ENCODING).split("\n")
+        whole = [n for n, line in enumerate(lines, 1) if first in line]
+        begun = [
+            n for n, line in enumerate(lines, 1) if first[:_TELLING] in line
+        ]  # a value stands further on
+        found = whole[0] if whole else begun[0] if len(begun) == 1 else None
+        return f"{source}, line {found}" if found else source
+
+    pair_dollars(markdown, place)
+    if formulas:
+        read_formulas(markdown, place)
+    return parse(markdown, source)
+
+
+#: Templates whose formulas were read as the first variant has them; those of others are read as they are printed.
+_proofread: WeakSet[object] = WeakSet()
 
 
 @dataclass(frozen=True)
@@ -129,7 +161,7 @@ class Constants:
 
 def constants(path: Path) -> Constants:
     """What of a file needs no variant to be read; nothing where there is no file."""
-    source = path.read_text("utf-8") if path.exists() else ""
+    source = path.read_text(_ENCODING) if path.exists() else ""
     if not source or not all(map(_stands_alone, source.split("\n## "))):
         return Constants({}, {})  # a block that holds whole sections may repeat or leave out some of them
     sections = parse(source, path.name).sections
@@ -164,24 +196,26 @@ def _stands_alone(section: str) -> bool:
 _templates: dict[tuple, object] = {}
 
 
-def _template(path: Path, changed: int, folders: tuple[Path, ...]):
+def _template(path: Path, changed: int, folders: tuple[Path, ...], source: str):
     import jinja2
 
     key = (path, changed, folders)
     if key not in _templates:
         environment = jinja2.Environment(
-            loader=jinja2.FileSystemLoader([path.parent, *folders]),
+            loader=jinja2.FileSystemLoader([path.parent, *folders], encoding=_ENCODING),
             undefined=jinja2.StrictUndefined,
             autoescape=False,
             keep_trailing_newline=True,
         )
         try:
-            source = path.read_text("utf-8")
+            text = path.read_text(_ENCODING)
             # A text without a variable in it is the same for every variant.
-            plain = "{{" not in source and "{%" not in source and "{#" not in source
-            _templates[key] = parse(source, path.name) if plain else environment.get_template(path.name)
+            plain = "{{" not in text and "{%" not in text and "{#" not in text
+            _templates[key] = (
+                _text(text, path, source, formulas=True) if plain else environment.get_template(path.name)
+            )
         except jinja2.TemplateSyntaxError as fault:
-            raise BadStatement(f"{path.name}, line {fault.lineno}: {fault.message}") from fault
+            raise BadStatement(f"{source}, line {fault.lineno}: {fault.message}") from fault
         except UnicodeDecodeError as fault:
-            raise BadStatement(f"{path.name} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
+            raise BadStatement(f"{source} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
     return _templates[key]

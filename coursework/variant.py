@@ -9,9 +9,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from coursework import statement
-from coursework.errors import unknown
 from coursework.graph import plain_scalar
-from coursework.language import languages, localise, plain, significant, with_unit, words
+from coursework.language import languages, localise, no_language, plain, significant, with_unit, words
 from coursework.model import Part
 
 if TYPE_CHECKING:
@@ -37,7 +36,7 @@ class Variant:
         parts: Sequence[Part] | None = None,
     ):
         if lang not in languages():
-            raise unknown("language", lang, languages())
+            raise no_language(lang)
         self.exercise = exercise
         self.seed = seed
         self.lang = lang

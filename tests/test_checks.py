@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import shutil
+
 import pytest
 
 import coursework
 from coursework.checks import agrees, check
+from coursework.language import file_of
 
 X = "return r * cos(theta)"
 
@@ -35,6 +38,18 @@ BREAKS = {
     "a part without words": ("exercises/crank_pin.en.md.j2", "## v", "## w", "has no section '## v'"),
     "a figure without words": ("exercises/crank_pin.en.md.j2", "## figure", "## drawing", "## figure"),
     "a formula that no format can print": ("solutions/crank_pin.fr.md.j2", "$r$", r"$\foo r$", "foo"),
+    "a symbol that the sheet does not have": (
+        "solutions/crank_pin.py",
+        "#: Values known",
+        'SYMBOLS = {"v": r"\\nu"}\n#: Values known',
+        "'v', which is given or asked: its symbol belongs in Exercise(symbols=…)",
+    ),
+    "a course without a title in one language": (
+        "exercises/course.toml",
+        'en = "My course"',
+        "",
+        "exercises/course.toml has no title in 'en': sheets would be headed 'small'",
+    ),
     "no tolerance at zero": (
         "solutions/crank_pin.py",
         "return r * omega\n",
@@ -72,6 +87,28 @@ def test_a_missing_language_is_a_failure(small_course):
     (small_course / "exercises" / "crank_pin.en.md.j2").unlink()
     report = check(coursework.open_course(small_course)["crank_pin"], 2, rendered=1)
     assert any("no statement in 'en'" in f for f in report.failures)
+
+
+def test_texts_in_a_language_that_the_engine_does_not_speak_are_a_failure(small_course):
+    for kind in ("exercises", "solutions"):
+        shutil.copy(small_course / kind / "crank_pin.en.md.j2", small_course / kind / "crank_pin.es.md.j2")
+    failures = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    told = [f for f in failures if f.endswith(f"words would be {file_of('es')}")]
+    assert [f.split(" ")[0] for f in told] == ["exercises/crank_pin.es.md.j2"]
+
+
+def test_a_solution_without_its_text_is_told_by_its_folder(small_course):
+    (small_course / "solutions" / "crank_pin.en.md.j2").unlink()
+    failures = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    assert any(
+        f.startswith("solutions/crank_pin.en.md.j2 is missing, and with it the section '## mistake")
+        for f in failures
+    )
+
+
+def test_a_course_without_any_title_is_headed_by_its_folder(small_course):
+    (small_course / "exercises" / "course.toml").unlink()
+    assert check(coursework.open_course(small_course)["crank_pin"], 2).failures == []
 
 
 def test_a_printed_value_agrees_to_its_last_digit():

@@ -454,7 +454,7 @@ def test_check_reports_a_broken_promise_with_status_1(cli, small_course):
         (["solve", "slotted_mechanism", "--set", "r1=300", "--set", "r2=100", "--only", "rAA"], "did you mean 'rA'"),
         (["solve", "slotted_mechanism", "--set", "r1=100", "--set", "r2=300", "--only", "swing"], "swing does not exist"),
         (["build", "slotted_mechanism", "--formats", "docx", "--out", "x"], "no 'docx'"),
-        (["build", "slotted_mechanism", "--lang", "de", "--out", "x"], "no 'de'"),
+        (["build", "slotted_mechanism", "--lang", "de", "--out", "x"], "no language 'de'"),
         (["build", "slotted_mechanism", "--variants", "0", "--out", "x"], "--variants"),
         (["build", "slotted_mechanism"], "--out"),
         (["build", "slotted_mechanism", "--roster", "none.csv", "--out", "x"], "none.csv"),

@@ -1,0 +1,62 @@
+"""A language's words: what is wrong with their file is said with its place, when they are read."""
+
+from __future__ import annotations
+
+import codecs
+import shutil
+
+import pytest
+
+from coursework import language
+from coursework.cli import run
+from coursework.errors import BadCourse, UnknownName
+
+
+@pytest.fixture
+def spanish(tmp_path, monkeypatch):
+    """A third language: the path of its words, which are the English ones."""
+    folder = tmp_path / "words"
+    shutil.copytree(language._FOLDER, folder)
+    monkeypatch.setattr(language, "_FOLDER", folder)
+    language.languages.cache_clear()
+    language.words.cache_clear()
+    shutil.copy(folder / "en.toml", folder / "es.toml")
+    yield folder / "es.toml"
+    language.languages.cache_clear()
+    language.words.cache_clear()
+
+
+def test_a_copy_of_the_english_words_is_a_language_with_a_byte_order_mark_too(spanish):
+    spanish.write_bytes(codecs.BOM_UTF8 + spanish.read_bytes())
+    assert language.languages() == ("en", "es", "fr")
+    assert language.words("es") == language.words("en")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ('data = "Given"', 'data = "Datos', "at line 19"),
+        ('data = "Given"', 'data = "Dátos"', "is not UTF-8"),
+        ('data = "Given"\n', "", "lacks sheet.data"),
+        ('data = "Given"', "data = 1", "sheet.data is to be like the English 'Given'; found 1"),
+        ("To be predicted: {names}", "A predecir: {nombres}", "{nombres}"),
+        ("To be predicted: {names}", "A predecir: {nombres}", "study.which_predictions has {call}, {nombres} where"),
+        ("To be predicted: {names}", "A predecir:", "where the English text has {call}, {names}"),
+        ("To be predicted: {names}", "A predecir: {names", "study.which_predictions"),
+    ],
+)  # fmt: skip
+def test_words_that_cannot_be_used_are_one_line_with_file_and_place(spanish, capsys, old, new, told):
+    text = spanish.read_text("utf-8")
+    assert old in text
+    spanish.write_bytes(text.replace(old, new).encode("latin-1" if "á" in new else "utf-8", "replace"))
+    with pytest.raises(BadCourse) as caught:
+        language.words("es")
+    assert told in str(caught.value)
+    assert str(spanish) in str(caught.value)
+    assert run(["show", "slotted_mechanism", "--lang", "es"]) == 2
+    assert str(spanish) in capsys.readouterr().err
+
+
+def test_a_language_that_is_not_there_names_the_file_that_would_make_it_one():
+    with pytest.raises(UnknownName, match=r"no language 'it'; there is en, fr; .*words.it\.toml"):
+        language.words("it")
