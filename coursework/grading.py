@@ -48,6 +48,11 @@ def grade_files(
     Where marks were there before, ``changes.csv`` says what differs now. ``accepted`` names answers that
     a person accepts; unless told, those of ``accepted.csv`` in ``out``. ``feedback`` None prints sheets for a
     class of usual size.
+
+    Raises
+    ------
+    BadInput
+        A file that is not there, or nothing that can be marked: then nothing is written.
     """
     issued = Issued.read(issued_path)
     if feedback is None:
@@ -61,6 +66,8 @@ def grade_files(
             yield from [found] if isinstance(found, Rejected) else read_file(found)
 
     sheets = gradebook.placed(course, issued, rows())
+    if not sheets.sheets:
+        raise BadInput(_nothing(submissions, sheets.rejected))
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
     shown: list[Graded] = []
     with _Tables(out) as tables:
@@ -92,6 +99,16 @@ def grade_files(
     if feedback:
         _write_feedback(course, book, shown, out / "feedback", progress)
     return book
+
+
+def _nothing(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str:
+    """That nothing can be marked, and why."""
+    where = ", ".join(map(str, submissions[:3])) + (", …" if len(submissions) > 3 else "")
+    told = f"nothing in {where} can be marked, so nothing is written"
+    if not rejected:
+        return f"{told}; a file of answers has a line of headings, then a line an answer"
+    count = "" if len(rejected) == 1 else f" ({len(rejected)} rows rejected; the first is told)"
+    return f"{told}{count}: {rejected[0].source}: {rejected[0].reason}"
 
 
 class _Table:

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from coursework.errors import BadInput, closest
 from coursework.tables import as_written, decode, delimiter_of
 
 COLUMNS = ("student", "exercise", "seed", "part", "answer")
@@ -45,19 +46,37 @@ class Rejected:
 
 
 def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
-    """The files to read, folders walked in name order."""
+    """The files to read, folders walked in name order.
+
+    Raises
+    ------
+    BadInput
+        One of the paths is not there.
+    """
+    paths = tuple(paths)
+    for path in paths:
+        if not path.exists():
+            raise BadInput(f"no such file or folder: {path}{_beside(path)}")
     for path in paths:
         if path.is_dir():
             files = sorted(p for p in path.rglob("*") if p.is_file() and not _is_hidden(p, path))
             yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files)
             if not files:
                 yield Rejected(str(path), "the folder holds no file")
-        elif not path.exists():
-            yield Rejected(str(path), "there is no such file")
         elif path.suffix.lower() not in ENDINGS:
             yield _odd_file(path)
         else:
             yield path
+
+
+def _beside(path: Path) -> str:
+    """The file or folder that may have been meant, if one of nearly that name is there."""
+    names = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
+    near = closest(path.name, names)
+    if near is None:
+        return ""
+    meant = path.with_name(near)
+    return f" (did you mean {meant}{'/' if meant.is_dir() else ''}?)"
 
 
 def _is_hidden(path: Path, below: Path) -> bool:

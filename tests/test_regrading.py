@@ -324,6 +324,31 @@ def _accepting(issued):
     return path
 
 
+@pytest.mark.parametrize("content", [None, {}, {"a.docx": "x"}, {"a.ipynb": "{"}, {"a.csv": ""}, {"a.csv": "form"},
+                                     {"a.csv": "student,exercise,seed,part,answer\nZoe,crank_pin,1,y,3\n"}])  # fmt: skip
+def test_answers_in_which_nothing_can_be_marked_leave_the_marks_that_were_there(
+    small_course, issued, capsys, content
+):
+    grade(small_course, issued)
+    marks = issued / "marks"
+    (marks / "feedback").mkdir()
+    (marks / "feedback" / "ada.pdf").write_bytes(b"before")
+    before = {p: p.read_bytes() for p in marks.rglob("*") if p.is_file()}
+    capsys.readouterr()
+    other = issued.parent / "retuned"
+    if content is not None:
+        other.mkdir()
+        for name, text in content.items():
+            (other / name).write_text(
+                "student,exercise,seed,part,answer\n" if text == "form" else text, "utf-8"
+            )
+    assert course_run(small_course, "grade", other, "--issued", issued / "issued.json", "--out", marks) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert ("no such file or folder" if content is None else "nothing is written") in said
+    assert {p: p.read_bytes() for p in marks.rglob("*") if p.is_file()} == before
+
+
 def test_parquet_marks_as_csv_does(small_course, issued, tmp_path):
     import pyarrow
     from pyarrow import parquet
@@ -341,10 +366,13 @@ def test_parquet_marks_as_csv_does(small_course, issued, tmp_path):
     ).read_bytes()
 
 
-def test_a_parquet_file_that_is_none_is_rejected_with_its_reason(small_course, issued, tmp_path):
+def test_a_parquet_file_that_is_none_is_rejected_with_its_reason(small_course, issued, tmp_path, capsys):
     (tmp_path / "odd.parquet").write_bytes(b"PAR?")
     where = ["--issued", str(issued / "issued.json"), "--no-feedback", "--out", str(tmp_path / "m")]
-    assert course_run(small_course, "grade", tmp_path / "odd.parquet", *where) == 1
+    assert course_run(small_course, "grade", tmp_path / "odd.parquet", *where) == 2
+    assert "not a Parquet file" in capsys.readouterr().err
+    answers = issued.parent / "answers.csv"
+    assert course_run(small_course, "grade", answers, tmp_path / "odd.parquet", *where) == 1
     (rejected,) = table(tmp_path / "m" / "rejected.csv")
     assert "not a Parquet file" in rejected["reason"]
 
