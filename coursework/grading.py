@@ -7,7 +7,6 @@ and each is seen to be replaceable.
 from __future__ import annotations
 
 import csv
-import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -97,7 +96,8 @@ def grade_files(
             rejected.write(row)
         tables.keep()
     if feedback:
-        _write_feedback(course, book, shown, out / "feedback", progress)
+        made = file_stems(dict.fromkeys((*issued.students, *before.students)))
+        _write_feedback(course, book, shown, out / "feedback", made, progress)
     return book
 
 
@@ -197,11 +197,16 @@ def feedback_sheet(course: Course, graded: Graded) -> FeedbackSheet:
 
 
 def _write_feedback(
-    course: Course, book: Gradebook, shown: Sequence[Graded], folder: Path, progress: Progress
+    course: Course,
+    book: Gradebook,
+    shown: Sequence[Graded],
+    folder: Path,
+    before: Sequence[str],
+    progress: Progress,
 ) -> None:
     """One PDF a student, an exercise after another, called as the student's handouts are.
 
-    A sheet that cannot be printed is a warning, and costs no other.
+    Those of an earlier marking, whose stems are ``before``, make way; any other file stays. A sheet that cannot be printed is a warning, and costs no other.
     """
     by_student: dict[str, list[Graded]] = {student: [] for student in book.issued.students}
     for graded in shown:
@@ -217,7 +222,8 @@ def _write_feedback(
 
         return make
 
-    shutil.rmtree(folder, ignore_errors=True)
+    for stem in before:
+        (folder / f"{stem}.pdf").unlink(missing_ok=True)
     stems = file_stems(by_student)
     files = [
         File(Path(f"{stem}.pdf"), maker(student, mine))

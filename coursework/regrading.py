@@ -129,6 +129,11 @@ class Before:
                 self._names.setdefault(folded(row.get("student", "")), row.get("student", ""))
                 self._marks[_place(row)] = alike.setdefault(mark, mark)
 
+    @property
+    def students(self) -> tuple[str, ...]:
+        """Those who had marks, in the order of the file."""
+        return tuple(self._names.values())
+
     def changed(self, row: Mapping[str, Any]) -> dict[str, Any] | None:
         """What changed in a row of the new marks; None when nothing did."""
         now = (row["verdict"], row["points"])

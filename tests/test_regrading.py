@@ -324,6 +324,21 @@ def _accepting(issued):
     return path
 
 
+def test_feedback_replaces_its_own_sheets_and_no_other_file(small_course, issued):
+    feedback = issued / "marks" / "feedback"
+    answers, where = issued.parent / "answers.csv", ["--issued", issued / "issued.json", "--feedback"]
+    assert course_run(small_course, "grade", answers, *where) == 1
+    assert {p.name for p in feedback.iterdir()} == {"ada.pdf", "bo.pdf", "cy.pdf"}
+    (feedback / "notes.md").write_text("mine", "utf-8")
+    (feedback / "old").mkdir()
+    (feedback / "old" / "ada.pdf").write_bytes(b"mine")
+    lines = [line for line in answers.read_text("utf-8").splitlines() if not line.startswith("Cy")]
+    answers.write_text("\n".join(lines), "utf-8")
+    assert course_run(small_course, "grade", answers, *where) == 1
+    found = {p.relative_to(feedback).as_posix() for p in feedback.rglob("*") if p.is_file()}
+    assert found == {"ada.pdf", "bo.pdf", "notes.md", "old/ada.pdf"}, "Cy has no marks any more"
+
+
 @pytest.mark.parametrize("content", [None, {}, {"a.docx": "x"}, {"a.ipynb": "{"}, {"a.csv": ""}, {"a.csv": "form"},
                                      {"a.csv": "student,exercise,seed,part,answer\nZoe,crank_pin,1,y,3\n"}])  # fmt: skip
 def test_answers_in_which_nothing_can_be_marked_leave_the_marks_that_were_there(
