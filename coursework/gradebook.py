@@ -17,12 +17,13 @@ from coursework.course import Course, open_course
 from coursework.errors import CourseworkError, NoSolution, nearest
 from coursework.issued import Issued
 from coursework.key import keys_of
+from coursework.language import words
 from coursework.marking import Mark, mark
 from coursework.model import Part
 from coursework.plainly import plainly_right
 from coursework.processes import processes, workers
 from coursework.submissions import Rejected, Row
-from coursework.telling import right_feedback
+from coursework.telling import plain_line, right_feedback
 from coursework.variant import Variant
 
 CHUNK = 500  #: sheets marked together
@@ -44,10 +45,14 @@ class Line(NamedTuple):
 
     @staticmethod
     def of(mark: Mark, *, printed: bool) -> Line:
-        """``printed``: with the Markdown that a feedback sheet needs."""
+        """``printed``: with the Markdown that a feedback sheet needs. What could not be read is said to wait."""
+        says, feedback = mark.says if printed else "", mark.feedback
+        if mark.verdict == "unreadable":
+            waits = words(mark.lang)["marking"]["waits"]
+            says, feedback = f"{says} {waits}", f"{feedback} {plain_line(waits, mark.lang)}"
         return Line(
             mark.part, mark.answer, mark.read_as, mark.verdict, mark.points, mark.out_of,
-            mark.says if printed else "", mark.feedback, mark.matches,
+            says, feedback, mark.matches,
         )  # fmt: skip
 
 
@@ -398,10 +403,14 @@ class Gradebook:
             exercise.add(graded.lines[part])
 
     @property
+    def unreadable(self) -> int:
+        """How many lines of ``marks.csv`` hold an answer that could not be read."""
+        return sum(total.verdicts["unreadable"] for total in self.exercises.values())
+
+    @property
     def needs_a_look(self) -> int:
         """How many rows somebody must look at: rejected or unreadable."""
-        unreadable = sum(total.verdicts["unreadable"] for total in self.exercises.values())
-        return len(self.rejected) + unreadable
+        return len(self.rejected) + self.unreadable
 
 
 def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:

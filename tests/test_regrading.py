@@ -11,6 +11,10 @@ import pytest
 import coursework
 from coursework.cli import run
 from coursework.errors import BadInput
+from coursework.gradebook import marked, placed
+from coursework.grading import feedback_sheet
+from coursework.issued import Issued
+from coursework.submissions import read_file
 
 SOLUTION = "solutions/crank_pin.py"
 
@@ -322,6 +326,33 @@ def _accepting(issued):
     path = issued.parent / "by_hand.csv"
     path.write_text("student,exercise,part\nAda,crank_pin,y\n", "utf-8")
     return path
+
+
+def test_what_is_left_to_look_at_is_said(small_course, issued, capsys):
+    assert grade(small_course, issued) == 1
+    assert "1 unreadable answer to look at: verdict unreadable in" in capsys.readouterr().out
+    answers = issued.parent / "answers.csv"
+    answers.write_text(answers.read_text("utf-8").replace("somewhere", "3"), "utf-8")
+    assert grade(small_course, issued) == 0
+    assert "unreadable" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("lang", "told"), [("en", "somebody will look at it"), ("fr", "quelqu’un y regardera")]
+)
+def test_who_wrote_what_cannot_be_read_is_told_that_somebody_will_look(small_course, issued, lang, told):
+    content = json.loads((issued / "issued.json").read_text("utf-8"))
+    for item in content["issued"]:
+        item["record"]["lang"] = lang
+    (issued / "issued.json").write_text(json.dumps(content), "utf-8")
+    assert grade(small_course, issued) == 1
+    said = {m["verdict"]: m["feedback"] for m in table(issued / "marks" / "marks.csv")}
+    assert told in said["unreadable"]
+    assert told not in said["correct"]
+    course, kept = coursework.open_course(small_course), Issued.read(issued / "issued.json")
+    sheets = placed(course, kept, list(read_file(issued.parent / "answers.csv")))
+    pages = [course.renderer.html(feedback_sheet(course, graded)) for graded in marked(course, kept, sheets)]
+    assert [told in page for page in pages] == [True, False, False]
 
 
 def test_feedback_replaces_its_own_sheets_and_no_other_file(small_course, issued):
