@@ -11,6 +11,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from coursework.course import Course, open_course
@@ -383,6 +384,7 @@ class Gradebook:
     students: dict[str, Total] = field(default_factory=dict)
     exercises: dict[str, Total] = field(default_factory=dict)  #: of the answers that came
     handed_in: dict[str, set[str]] = field(default_factory=dict)  #: exercises by student
+    blank: dict[tuple[str, str], set[str]] = field(default_factory=dict)  #: parts by sheet; see ``unread``
     changes: int = 0  #: marks that differ from those that were there before
 
     @property
@@ -396,11 +398,41 @@ class Gradebook:
         self.handed_in.setdefault(graded.student, set()).add(graded.exercise)
         for line in graded.lines.values():
             student.add(line)
+        if graded.student in self._rejected_of:
+            blank = {line.part for line in graded.lines.values() if line.verdict == "missing"}
+            self.blank[graded.student, graded.exercise] = blank
         for part in graded.answered:
             exercise.add(graded.lines[part])
             exercise.answers += 1
         for part in graded.unanswered:
             exercise.add(graded.lines[part])
+
+    @cached_property
+    def _rejected_of(self) -> frozenset[str]:
+        """The students of rejected rows."""
+        return frozenset(filter(None, (self.issued.student(r.row.get("student", "")) for r in self.rejected)))
+
+    def unread(self) -> dict[str, dict[tuple[str, int], set[str]]]:
+        """What came in rejected rows alone: by student, the parts of exercise and seed."""
+        issued = self.issued
+        found: dict[str, dict[tuple[str, int], set[str]]] = {}
+        for row in (one.row for one in self.rejected):
+            student, exercise = issued.student(row.get("student", "")), row.get("exercise", "")
+            if not student or not row.get("answer", "").strip():
+                continue
+            written = row.get("seed", "")
+            seed = int(written) if not issued.has_roster and re.fullmatch("[0-9]{1,30}", written) else -1
+            sheet = exercise, issued.seeds.get((student, exercise), seed)
+            if sheet not in issued.records:
+                continue
+            parts = {str(part["id"]) for part in issued.records[sheet]["parts"]}
+            if row.get("part"):
+                parts &= {row["part"]}
+            if exercise in self.handed_in.get(student, ()):
+                parts &= self.blank.get((student, exercise), set())
+            if parts:
+                found.setdefault(student, {}).setdefault(sheet, set()).update(parts)
+        return found
 
     @property
     def unreadable(self) -> int:
@@ -416,24 +448,27 @@ class Gradebook:
 def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
     """The lines of ``summary.csv``: every student of the roster and every one who answered.
 
-    Points are out of all that a student was issued, or without a roster of all that they answered to.
+    Points are out of all that a student was issued, or without a roster of all that they answered to. What came in
+    rejected rows alone is unreadable, and not missing.
     """
-    issued = book.issued
-    for student in dict.fromkeys((*issued.students, *book.students)):
+    issued, unread = book.issued, book.unread()
+    for student in dict.fromkeys((*issued.students, *book.students, *unread)):
         total = book.students.get(student, Total())
+        own = unread.get(student, {})
         owed = {
             (e, seed)
-            for e, seed in issued.issued_to(student).items()
+            for e, seed in (*issued.issued_to(student).items(), *own)
             if e not in book.handed_in.get(student, ())
         }
         lost = [part for key in owed for part in issued.records[key]["parts"]]
         out_of = total.out_of + sum(part["points"] for part in lost)
-        missing = total.verdicts["missing"] + len(lost)
+        waiting = sum(map(len, own.values()))
         yield {
             "student": student,
             "points": f"{total.points:g}",
             "out_of": f"{out_of:g}",
             "percent": f"{100 * total.points / out_of:.1f}" if out_of else "",
             **{verdict: total.verdicts[verdict] for verdict in VERDICTS},
-            "missing": missing,
+            "unreadable": total.verdicts["unreadable"] + waiting,
+            "missing": total.verdicts["missing"] + len(lost) - waiting,
         }

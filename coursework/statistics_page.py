@@ -114,6 +114,7 @@ class _Page:
         rows = [
             (self.said["students"], self._number(told.students)),
             (self.said["silent"], self._number(told.silent)),
+            (self.said["unread"], self._number(told.unread)),
             (self.said["answers"], self._number(told.answers)),
             (self.said["without_line"], self._number(told.without_line)),
             (self.verdicts["missing"], self._number(told.counts["missing"])),
@@ -247,7 +248,7 @@ class _Page:
         measured = [p for p in self.statistics.parts if p.discrimination is not None]
         if not measured:
             return reading["unmeasured"].format(ENOUGH)
-        active = self.statistics.students - self.statistics.silent
+        active = self.statistics.students - self.statistics.silent - self.statistics.unread
         # The standard error of a correlation near 0.
         uncertain = reading["uncertain"].format(
             students=active, error=self._decimal(1 / math.sqrt(active - 1))

@@ -11,7 +11,7 @@ import pytest
 import coursework
 from coursework.cli import run
 from coursework.errors import BadInput
-from coursework.gradebook import marked, placed
+from coursework.gradebook import Line, marked, placed
 from coursework.grading import feedback_sheet
 from coursework.issued import Issued
 from coursework.submissions import read_file
@@ -127,7 +127,7 @@ def test_a_mark_is_replayed_from_its_record_alone(small_course, issued):
     course = coursework.open_course(small_course)
     for line in table(issued / "marks" / "marks.csv"):
         variant = course["crank_pin"].from_record(records[line["student"]])
-        mark = variant.grade({line["part"]: line["answer"]})[line["part"]]
+        mark = Line.of(variant.grade({line["part"]: line["answer"]})[line["part"]], printed=False)
         assert (mark.verdict, f"{mark.points:g}", mark.feedback) == (
             line["verdict"],
             line["points"],
@@ -353,6 +353,39 @@ def test_who_wrote_what_cannot_be_read_is_told_that_somebody_will_look(small_cou
     sheets = placed(course, kept, list(read_file(issued.parent / "answers.csv")))
     pages = [course.renderer.html(feedback_sheet(course, graded)) for graded in marked(course, kept, sheets)]
     assert [told in page for page in pages] == [True, False, False]
+
+
+@pytest.mark.parametrize("roster", [True, False])
+def test_a_notebook_that_cannot_be_read_was_handed_in(small_course, issued, capsys, roster):
+    """And so was one row that is rejected beside others that are marked."""
+    content = json.loads((issued / "issued.json").read_text("utf-8"))
+    if not roster:
+        content["roster"] = False
+        content["issued"] = [{**item, "student": ""} for item in content["issued"]]
+        (issued / "issued.json").write_text(json.dumps(content), "utf-8")
+    answers = issued.parent / "answers.csv"
+    lines = [line for line in answers.read_text("utf-8").splitlines() if not line.startswith("Cy")]
+    lines[2] += ",1"
+    answers.write_text("\n".join(lines), "utf-8")
+    about = {"student": "Cy", "exercise": "crank_pin", "seed": content["issued"][2]["record"]["seed"]}
+    cell = {"cell_type": "code", "metadata": {"tags": ["answers"]}, "source": 'answers = {"y": "1" "x": "2"}'}
+    notebook = json.dumps({"metadata": {"coursework": about}, "cells": [cell]})
+    (issued.parent / "cy.ipynb").write_text(notebook, "utf-8")
+    where = ["--issued", issued / "issued.json", "--no-feedback"]
+    assert course_run(small_course, "grade", answers, issued.parent / "cy.ipynb", *where) == 1
+    rows = table(issued / "marks" / "summary.csv")
+    asked = len(content["issued"][0]["record"]["parts"])
+    assert [(r["student"], int(r["unreadable"]), int(r["missing"])) for r in rows] == [
+        ("Ada", 1, 0),
+        ("Bo", 0, 0),
+        ("Cy", asked, 0),
+    ]
+    assert {r["out_of"] for r in rows} == {rows[0]["out_of"]}
+    capsys.readouterr()
+    assert course_run(small_course, "report", issued / "marks", "--json") == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["students"], told["handed_in_nothing"], told["handed_in_unreadable"]) == (3, 0, 1)
+    assert told["asked_without_line"] == 0
 
 
 def test_feedback_replaces_its_own_sheets_and_no_other_file(small_course, issued):

@@ -157,15 +157,16 @@ def test_the_answers_cell_of_a_notebook(tmp_path, code):
 @pytest.mark.parametrize(
     "code",
     [
-        'answers = {"rA": __import__("os").system("touch ran")}',
         'import os\nanswers = {"rA": "3"}',
         "answers = dict(rA=3)",
-        'answers = {"rA": f"{3}"}',
         "answers = {",
         "answers = 3",
         "",
         "x" * 300_000,
         "answers = " + "{" * 5000,
+        'answers = {**{"rA": "3"}}',
+        'answers = {"rA": "3" "b": "4"}',
+        'answers = {\n"rA": 3,5,\n}\nimport os',
     ],
 )
 def test_code_in_the_answers_cell_is_told_and_never_run(tmp_path, monkeypatch, code):
@@ -175,6 +176,45 @@ def test_code_in_the_answers_cell_is_told_and_never_run(tmp_path, monkeypatch, c
     assert len(rejected) == 1
     assert rejected[0].row["student"] == "Ann"
     assert not (tmp_path / "ran").exists()
+
+
+@pytest.mark.parametrize(
+    ("value", "answer"),
+    [
+        ("r1*2", "r1*2"),
+        ("rA", "rA"),
+        ("f'{3}'", "f'{3}'"),
+        ('__import__("os").system("touch ran")', '__import__("os").system("touch ran")'),
+        ("(2 +\n 3) * r1", "(2 +\n 3) * r1"),
+        ("é*2", "é*2"),
+        ("111,5", "111,5"),
+        ("12.5 mm", "12.5 mm"),
+        ("72°", "72°"),
+        ('"72', "72"),
+        ('72"', "72"),
+        ("", ""),
+    ],
+)
+@pytest.mark.parametrize("comma", [",  # mm", ",", ""])
+def test_a_value_not_written_as_asked_costs_no_other_answer(tmp_path, monkeypatch, value, answer, comma):
+    monkeypatch.chdir(tmp_path)
+    code = f'# Your answers.\r\nanswers = {{\n  "a": "é 1",  # deg\n  "rA": {value}{comma}\n  "b": 2,\n  "c": "3"}}\n'
+    if "\n" in value and not comma:
+        return
+    rows, rejected = read(tmp_path, "a.ipynb", notebook(code))
+    assert [(r.part, r.answer) for r in rows] == [("a", "é 1"), ("rA", answer), ("b", 2), ("c", "3")]
+    assert rejected == []
+    assert not (tmp_path / "ran").exists()
+
+
+def test_an_answers_cell_that_cannot_be_read_is_told_by_its_line_and_part(tmp_path):
+    code = 'answers = {\n  "a": "1",\n  "rA": "2" "b": "3",\n}'
+    _, (rejected,) = read(tmp_path, "ann.ipynb", notebook(code, about={"exercise": "x", "seed": 1}))
+    assert rejected.source.endswith("ann.ipynb")
+    assert (
+        "line 3, part rA, is not written as in the notebook: quotes around text, a comma" in rejected.reason
+    )
+    assert (rejected.row["student"], rejected.row["exercise"]) == ("ann", "x")
 
 
 @pytest.mark.parametrize(
