@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from coursework import gradebook
-from coursework.building import File, write
+from coursework.building import File, write, write_whole
 from coursework.course import Course
 from coursework.errors import BadInput, CourseworkError
 from coursework.gradebook import Gradebook, Graded
@@ -94,11 +94,25 @@ def grade_files(
             summary.write(row)
         for row in gradebook.rejected_rows(book.rejected):
             rejected.write(row)
+        if book.changes and before.edited(out / "summary.csv"):
+            book.warnings.insert(0, _kept(out / "marks.csv"))
         tables.keep()
     if feedback:
         made = file_stems(dict.fromkeys((*issued.students, *before.students)))
         _write_feedback(course, book, shown, out / "feedback", made, progress)
     return book
+
+
+def _kept(marks: Path) -> str:
+    """Keep marks that were edited, beside those that take their place; says so."""
+    kept, number = marks.with_name("marks.before.csv"), 2
+    while kept.exists():
+        kept, number = marks.with_name(f"marks.before-{number}.csv"), number + 1
+    write_whole(kept, marks.read_bytes())
+    return (
+        f"{marks.name} had been edited, and is written anew: the edited one is kept as {kept}; a mark that is to last is "
+        f"named in {marks.with_name('accepted.csv')}"
+    )
 
 
 def _nothing(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str:

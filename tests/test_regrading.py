@@ -388,6 +388,42 @@ def test_a_notebook_that_cannot_be_read_was_handed_in(small_course, issued, caps
     assert told["asked_without_line"] == 0
 
 
+def test_marks_mended_by_hand_are_kept_beside_those_that_replace_them(small_course, issued, capsys):
+    grade(small_course, issued)
+    marks = issued / "marks"
+    mended = (marks / "marks.csv").read_text("utf-8").replace(",unreadable,0,", ',correct,"0,5",')
+    (marks / "marks.csv").write_text(mended, "utf-8")
+    capsys.readouterr()
+    for kept in ("marks.before.csv", "marks.before-2.csv"):
+        assert grade(small_course, issued) == 1
+        said = capsys.readouterr().err
+        assert "had been edited" in said
+        assert kept in said
+        assert "accepted.csv" in said
+        assert (marks / kept).read_text("utf-8") == mended
+        (marks / "marks.csv").write_text(mended, "utf-8")
+
+
+@pytest.mark.parametrize(
+    "again", ["nothing", "saved by a spreadsheet", "another answer", "mended, then accepted"]
+)
+def test_marks_that_nobody_edited_are_replaced_without_a_word(small_course, issued, capsys, again):
+    grade(small_course, issued)
+    marks, answers = issued / "marks", issued.parent / "answers.csv"
+    written = (marks / "marks.csv").read_text("utf-8")
+    if again == "another answer":
+        answers.write_text(answers.read_text("utf-8").replace("somewhere", "3"), "utf-8")
+    if again == "saved by a spreadsheet":
+        (marks / "marks.csv").write_text(written.replace("\n", "\r\n"), "utf-8-sig")
+    if again == "mended, then accepted":
+        (marks / "marks.csv").write_text(written.replace(",unreadable,0,", ",accepted,1,"), "utf-8")
+        (marks / "accepted.csv").write_text("student,exercise,part\nAda,crank_pin,y\n", "utf-8")
+    capsys.readouterr()
+    grade(small_course, issued)
+    assert "edited" not in capsys.readouterr().err
+    assert not list(marks.glob("marks.before*"))
+
+
 def test_feedback_replaces_its_own_sheets_and_no_other_file(small_course, issued):
     feedback = issued / "marks" / "feedback"
     answers, where = issued.parent / "answers.csv", ["--issued", issued / "issued.json", "--feedback"]
