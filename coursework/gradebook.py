@@ -15,7 +15,7 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 from coursework.course import Course, open_course
-from coursework.errors import CourseworkError, NoSolution, nearest
+from coursework.errors import CourseworkError, NoSolution, UnknownName, nearest
 from coursework.issued import Issued
 from coursework.key import keys_of
 from coursework.language import words
@@ -27,6 +27,7 @@ from coursework.submissions import Rejected, Row
 from coursework.telling import plain_line, right_feedback
 from coursework.variant import Variant
 
+_LISTED = 8  #: names that a message lists
 CHUNK = 500  #: sheets marked together
 WORTH_PROCESSES = 20_000  #: answers; fewer are marked before a process has started
 
@@ -108,17 +109,20 @@ def _place(issued: Issued, row: Row) -> tuple[str, str, int]:
     if student is None:
         raise _Refused(f"no student {row.student!r} on the roster{_near(row.student, issued.students)}")
     if row.exercise not in issued.exercises:
-        raise _Refused(f"no exercise {row.exercise!r} was issued{_near(row.exercise, issued.exercises)}")
+        raise _Refused(
+            f"no exercise {row.exercise!r} was issued{_near_or_all(row.exercise, issued.exercises)}"
+        )
     mine = issued.seeds.get((student, row.exercise))
     if not row.seed and mine is not None:
         return student, row.exercise, mine
     if not re.fullmatch(r"[0-9]{1,30}(\.0)?", row.seed):
         raise _Refused(f"a seed is a whole number; found {row.seed[:40]!r}")
     seed = int(row.seed.removesuffix(".0"))
+    theirs = f"; {student} has seed {mine}" if mine is not None else f"; {student} was issued none"
+    theirs = theirs if issued.has_roster else ""
     if (row.exercise, seed) not in issued.records:
-        raise _Refused(f"seed {seed} of {row.exercise} was not issued")
+        raise _Refused(f"seed {seed} of {row.exercise} was not issued{theirs}")
     if issued.has_roster and mine != seed:
-        theirs = f"; {student} has seed {mine}" if mine is not None else f"; {student} was issued none"
         raise _Refused(f"seed {seed} of {row.exercise} is another student's{theirs}")
     return student, row.exercise, seed
 
@@ -126,6 +130,12 @@ def _place(issued: Issued, row: Row) -> tuple[str, str, int]:
 def _near(name: str, known: Iterable[str]) -> str:
     hint = nearest(name[:60], known)
     return hint if "did you mean" in hint else ""
+
+
+def _near_or_all(name: str, known: Sequence[str]) -> str:
+    if hint := _near(name, known):
+        return hint
+    return f"; issued: {', '.join(known[:_LISTED])}{', …' if len(known) > _LISTED else ''}"
 
 
 def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sheets:
@@ -138,6 +148,11 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
     """
     found = Sheets()
     for exercise, one in {key[0]: record for key, record in issued.records.items()}.items():
+        if exercise not in course:
+            raise UnknownName(
+                f"no exercise {exercise!r} in {course.label}, though it was issued: name the course that it was built "
+                "from, coursework --course FOLDER grade …"
+            )
         _ = course[exercise].solution
         course[exercise].from_record(one)
     asked: dict[tuple[str, int], frozenset[str]] = {}

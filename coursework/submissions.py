@@ -106,6 +106,12 @@ def read_file(path: Path) -> Iterator[Row | Rejected]:
     yield from reader(data, str(path))
 
 
+def _decoded(data: bytes, source: str) -> tuple[str, str]:
+    """The text, and a warning that names its file."""
+    text, warning = decode(data)
+    return text, f"{source}: {warning}" if warning else ""
+
+
 def _whole(text: str) -> str:
     """The text without halves of characters, which no file can hold."""
     return text.encode("utf-8", "replace").decode("utf-8")
@@ -118,7 +124,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
     if not data.strip():
         yield Rejected(source, "the file is empty")
         return
-    text, warning = decode(data)
+    text, warning = _decoded(data, source)
     if "\0" in text:
         yield Rejected(source, "the file holds NUL bytes: it is not a CSV of answers")
         return
@@ -135,7 +141,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
         if not any(c.strip() for c in cells):
             continue  # a blank line is no row
         if header:
-            yield from _csv_row(header, cells, place, warning)
+            yield from _csv_row(header, cells, delimiter, place, warning)
             # Lines that are plain, as nearly all are, without more ado.
             while number < len(lines) and '"' not in lines[number]:
                 cells = lines[number].split(delimiter)
@@ -221,11 +227,16 @@ def _cells(record: str, delimiter: str) -> list[str] | None:
         return None
 
 
-def _csv_row(header: list[str], cells: list[str], place: str, warning: str) -> Iterator[Row | Rejected]:
+def _csv_row(
+    header: list[str], cells: list[str], delimiter: str, place: str, warning: str
+) -> Iterator[Row | Rejected]:
     row = dict(zip(header, cells, strict=False))
     if len(cells) != len(header):
         kept = {c: row.get(c, "") for c in COLUMNS}
-        yield Rejected(place, f"{len(cells)} cells where the header has {len(header)}", kept)
+        reason = f"{len(cells)} cells where the header has {len(header)}"
+        if delimiter == "," and len(cells) > len(header):
+            reason += "; put an answer with a comma between quotation marks, or semicolons between all cells"
+        yield Rejected(place, reason, kept)
         return
     yield _row_of([row[c] for c in COLUMNS], range(len(COLUMNS)), place, warning)
 
@@ -234,7 +245,7 @@ def _csv_row(header: list[str], cells: list[str], place: str, warning: str) -> I
 
 
 def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected]:
-    text, warning = decode(data)
+    text, warning = _decoded(data, source)
     try:
         content = _load_json(text)
     except (ValueError, RecursionError) as fault:
@@ -328,7 +339,7 @@ def _short(fault: BaseException) -> str:
 
 
 def _read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
-    text, warning = decode(data)
+    text, warning = _decoded(data, source)
     try:
         notebook = _load_json(text)
     except (ValueError, RecursionError) as fault:

@@ -328,6 +328,14 @@ def _accepting(issued):
     return path
 
 
+def test_answers_to_another_course_are_told_which_option_names_it(small_course, issued, capsys):
+    assert run(["grade", str(issued.parent / "answers.csv"), "--issued", str(issued / "issued.json")]) == 2
+    said = capsys.readouterr().err
+    assert "no exercise 'crank_pin'" in said
+    assert "--course FOLDER" in said
+    assert "slotted_mechanism" not in said
+
+
 def test_what_is_left_to_look_at_is_said(small_course, issued, capsys):
     assert grade(small_course, issued) == 1
     assert "1 unreadable answer to look at: verdict unreadable in" in capsys.readouterr().out

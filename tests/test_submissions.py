@@ -39,6 +39,7 @@ def test_a_wrong_encoding_is_read_and_reported(tmp_path):
     rows, _ = read(tmp_path, "a.csv", (HEADER + "Émilie,x,1,rA,104°\n").encode("cp1252"))
     assert (rows[0].student, rows[0].answer) == ("Émilie", "104°")
     assert "Windows-1252" in rows[0].warning
+    assert "a.csv: the file is not UTF-8" in rows[0].warning
 
 
 def test_semicolons_leave_decimal_commas_alone(tmp_path):
@@ -69,6 +70,8 @@ def test_a_row_of_another_width_is_rejected_with_its_line(tmp_path):
     assert [r.student for r in rows] == ["Bob"]
     assert [r.source.rpartition(", ")[2] for r in rejected] == ["line 2", "line 4"]
     assert rejected[0].row["student"] == "Ann"
+    assert "quotation marks" not in rejected[0].reason
+    assert "between quotation marks, or semicolons between all cells" in rejected[1].reason
 
 
 def test_a_header_without_the_columns_says_which_are_missing(tmp_path):
