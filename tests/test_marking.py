@@ -350,3 +350,22 @@ def test_what_a_drawing_lacks_and_a_scale_that_is_none_are_told(course, lang, mi
     drawn = told(course, "velocity_polygon", 1, lang, kv="-10", p="(0;0)", a="(1;2)", b="(3;4)")
     assert scale in drawn["kv"].feedback
     assert scale not in drawn["p"].feedback
+
+
+@pytest.mark.parametrize(
+    ("part", "answer", "told"),
+    [
+        ("rA", "je ne sais pas", "« je ne sais pas »"),
+        ("rA", "12.5.8", "« 12.5.8 »"),
+        (
+            "rA",
+            "je\nne sais pas du tout ce qu'il faut mettre ici",
+            "« je ne sais pas du tout ce qu'il faut me… »",
+        ),
+        ("rA", "12 parsecs", "« parsecs »"),
+    ],
+)
+def test_an_answer_that_cannot_be_read_is_quoted_whole(course, part, answer, told):
+    feedback = course["slotted_mechanism"].variant(1, "fr").grade({part: answer})[part].feedback
+    plain = feedback.replace("\N{NARROW NO-BREAK SPACE}", " ").replace("’", "'")
+    assert told in plain
