@@ -769,6 +769,9 @@ def grade(
     told = f"{counted(book.rows_in, 'row')}: {book.marked} marked, {len(book.rejected)} rejected"
     told += f", {book.blanks} blank beside another" if book.blanks else ""
     click.echo(f"{told}; see {out}")
+    if book.unreadable:
+        what = "1 unreadable answer" if book.unreadable == 1 else f"{book.unreadable} unreadable answers"
+        click.echo(f"{what} to look at: verdict unreadable in {out / 'marks.csv'}")
     if book.changes:
         what = (
             "1 mark is not what it was"

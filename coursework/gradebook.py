@@ -11,20 +11,23 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, NamedTuple
 
 from coursework.course import Course, open_course
-from coursework.errors import CourseworkError, NoSolution, nearest
+from coursework.errors import CourseworkError, NoSolution, UnknownName, nearest
 from coursework.issued import Issued
 from coursework.key import keys_of
+from coursework.language import words
 from coursework.marking import Mark, mark
 from coursework.model import Part
 from coursework.plainly import plainly_right
 from coursework.processes import processes, workers
 from coursework.submissions import Rejected, Row
-from coursework.telling import right_feedback
+from coursework.telling import plain_line, right_feedback
 from coursework.variant import Variant
 
+_LISTED = 8  #: names that a message lists
 CHUNK = 500  #: sheets marked together
 WORTH_PROCESSES = 20_000  #: answers; fewer are marked before a process has started
 
@@ -44,10 +47,14 @@ class Line(NamedTuple):
 
     @staticmethod
     def of(mark: Mark, *, printed: bool) -> Line:
-        """``printed``: with the Markdown that a feedback sheet needs."""
+        """``printed``: with the Markdown that a feedback sheet needs. What could not be read is said to wait."""
+        says, feedback = mark.says if printed else "", mark.feedback
+        if mark.verdict == "unreadable":
+            waits = words(mark.lang)["marking"]["waits"]
+            says, feedback = f"{says} {waits}", f"{feedback} {plain_line(waits, mark.lang)}"
         return Line(
             mark.part, mark.answer, mark.read_as, mark.verdict, mark.points, mark.out_of,
-            mark.says if printed else "", mark.feedback, mark.matches,
+            says, feedback, mark.matches,
         )  # fmt: skip
 
 
@@ -102,17 +109,20 @@ def _place(issued: Issued, row: Row) -> tuple[str, str, int]:
     if student is None:
         raise _Refused(f"no student {row.student!r} on the roster{_near(row.student, issued.students)}")
     if row.exercise not in issued.exercises:
-        raise _Refused(f"no exercise {row.exercise!r} was issued{_near(row.exercise, issued.exercises)}")
+        raise _Refused(
+            f"no exercise {row.exercise!r} was issued{_near_or_all(row.exercise, issued.exercises)}"
+        )
     mine = issued.seeds.get((student, row.exercise))
     if not row.seed and mine is not None:
         return student, row.exercise, mine
     if not re.fullmatch(r"[0-9]{1,30}(\.0)?", row.seed):
         raise _Refused(f"a seed is a whole number; found {row.seed[:40]!r}")
     seed = int(row.seed.removesuffix(".0"))
+    theirs = f"; {student} has seed {mine}" if mine is not None else f"; {student} was issued none"
+    theirs = theirs if issued.has_roster else ""
     if (row.exercise, seed) not in issued.records:
-        raise _Refused(f"seed {seed} of {row.exercise} was not issued")
+        raise _Refused(f"seed {seed} of {row.exercise} was not issued{theirs}")
     if issued.has_roster and mine != seed:
-        theirs = f"; {student} has seed {mine}" if mine is not None else f"; {student} was issued none"
         raise _Refused(f"seed {seed} of {row.exercise} is another student's{theirs}")
     return student, row.exercise, seed
 
@@ -120,6 +130,12 @@ def _place(issued: Issued, row: Row) -> tuple[str, str, int]:
 def _near(name: str, known: Iterable[str]) -> str:
     hint = nearest(name[:60], known)
     return hint if "did you mean" in hint else ""
+
+
+def _near_or_all(name: str, known: Sequence[str]) -> str:
+    if hint := _near(name, known):
+        return hint
+    return f"; issued: {', '.join(known[:_LISTED])}{', …' if len(known) > _LISTED else ''}"
 
 
 def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sheets:
@@ -132,6 +148,11 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
     """
     found = Sheets()
     for exercise, one in {key[0]: record for key, record in issued.records.items()}.items():
+        if exercise not in course:
+            raise UnknownName(
+                f"no exercise {exercise!r} in {course.label}, though it was issued: name the course that it was built "
+                "from, coursework --course FOLDER grade …"
+            )
         _ = course[exercise].solution
         course[exercise].from_record(one)
     asked: dict[tuple[str, int], frozenset[str]] = {}
@@ -378,6 +399,7 @@ class Gradebook:
     students: dict[str, Total] = field(default_factory=dict)
     exercises: dict[str, Total] = field(default_factory=dict)  #: of the answers that came
     handed_in: dict[str, set[str]] = field(default_factory=dict)  #: exercises by student
+    blank: dict[tuple[str, str], set[str]] = field(default_factory=dict)  #: parts by sheet; see ``unread``
     changes: int = 0  #: marks that differ from those that were there before
 
     @property
@@ -391,40 +413,77 @@ class Gradebook:
         self.handed_in.setdefault(graded.student, set()).add(graded.exercise)
         for line in graded.lines.values():
             student.add(line)
+        if graded.student in self._rejected_of:
+            blank = {line.part for line in graded.lines.values() if line.verdict == "missing"}
+            self.blank[graded.student, graded.exercise] = blank
         for part in graded.answered:
             exercise.add(graded.lines[part])
             exercise.answers += 1
         for part in graded.unanswered:
             exercise.add(graded.lines[part])
 
+    @cached_property
+    def _rejected_of(self) -> frozenset[str]:
+        """The students of rejected rows."""
+        return frozenset(filter(None, (self.issued.student(r.row.get("student", "")) for r in self.rejected)))
+
+    def unread(self) -> dict[str, dict[tuple[str, int], set[str]]]:
+        """What came in rejected rows alone: by student, the parts of exercise and seed."""
+        issued = self.issued
+        found: dict[str, dict[tuple[str, int], set[str]]] = {}
+        for row in (one.row for one in self.rejected):
+            student, exercise = issued.student(row.get("student", "")), row.get("exercise", "")
+            if not student or not row.get("answer", "").strip():
+                continue
+            written = row.get("seed", "")
+            seed = int(written) if not issued.has_roster and re.fullmatch("[0-9]{1,30}", written) else -1
+            sheet = exercise, issued.seeds.get((student, exercise), seed)
+            if sheet not in issued.records:
+                continue
+            parts = {str(part["id"]) for part in issued.records[sheet]["parts"]}
+            if row.get("part"):
+                parts &= {row["part"]}
+            if exercise in self.handed_in.get(student, ()):
+                parts &= self.blank.get((student, exercise), set())
+            if parts:
+                found.setdefault(student, {}).setdefault(sheet, set()).update(parts)
+        return found
+
+    @property
+    def unreadable(self) -> int:
+        """How many lines of ``marks.csv`` hold an answer that could not be read."""
+        return sum(total.verdicts["unreadable"] for total in self.exercises.values())
+
     @property
     def needs_a_look(self) -> int:
         """How many rows somebody must look at: rejected or unreadable."""
-        unreadable = sum(total.verdicts["unreadable"] for total in self.exercises.values())
-        return len(self.rejected) + unreadable
+        return len(self.rejected) + self.unreadable
 
 
 def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
     """The lines of ``summary.csv``: every student of the roster and every one who answered.
 
-    Points are out of all that a student was issued, or without a roster of all that they answered to.
+    Points are out of all that a student was issued, or without a roster of all that they answered to. What came in
+    rejected rows alone is unreadable, and not missing.
     """
-    issued = book.issued
-    for student in dict.fromkeys((*issued.students, *book.students)):
+    issued, unread = book.issued, book.unread()
+    for student in dict.fromkeys((*issued.students, *book.students, *unread)):
         total = book.students.get(student, Total())
+        own = unread.get(student, {})
         owed = {
             (e, seed)
-            for e, seed in issued.issued_to(student).items()
+            for e, seed in (*issued.issued_to(student).items(), *own)
             if e not in book.handed_in.get(student, ())
         }
         lost = [part for key in owed for part in issued.records[key]["parts"]]
         out_of = total.out_of + sum(part["points"] for part in lost)
-        missing = total.verdicts["missing"] + len(lost)
+        waiting = sum(map(len, own.values()))
         yield {
             "student": student,
             "points": f"{total.points:g}",
             "out_of": f"{out_of:g}",
             "percent": f"{100 * total.points / out_of:.1f}" if out_of else "",
             **{verdict: total.verdicts[verdict] for verdict in VERDICTS},
-            "missing": missing,
+            "unreadable": total.verdicts["unreadable"] + waiting,
+            "missing": total.verdicts["missing"] + len(lost) - waiting,
         }

@@ -7,14 +7,13 @@ and each is seen to be replaceable.
 from __future__ import annotations
 
 import csv
-import shutil
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from coursework import gradebook
-from coursework.building import File, write
+from coursework.building import File, write, write_whole
 from coursework.course import Course
 from coursework.errors import BadInput, CourseworkError
 from coursework.gradebook import Gradebook, Graded
@@ -48,6 +47,11 @@ def grade_files(
     Where marks were there before, ``changes.csv`` says what differs now. ``accepted`` names answers that
     a person accepts; unless told, those of ``accepted.csv`` in ``out``. ``feedback`` None prints sheets for a
     class of usual size.
+
+    Raises
+    ------
+    BadInput
+        A file that is not there, or nothing that can be marked: then nothing is written.
     """
     issued = Issued.read(issued_path)
     if feedback is None:
@@ -61,6 +65,8 @@ def grade_files(
             yield from [found] if isinstance(found, Rejected) else read_file(found)
 
     sheets = gradebook.placed(course, issued, rows())
+    if not sheets.sheets:
+        raise BadInput(_nothing(submissions, sheets.rejected))
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
     shown: list[Graded] = []
     with _Tables(out) as tables:
@@ -88,10 +94,35 @@ def grade_files(
             summary.write(row)
         for row in gradebook.rejected_rows(book.rejected):
             rejected.write(row)
+        if book.changes and before.edited(out / "summary.csv"):
+            book.warnings.insert(0, _kept(out / "marks.csv"))
         tables.keep()
     if feedback:
-        _write_feedback(course, book, shown, out / "feedback", progress)
+        made = file_stems(dict.fromkeys((*issued.students, *before.students)))
+        _write_feedback(course, book, shown, out / "feedback", made, progress)
     return book
+
+
+def _kept(marks: Path) -> str:
+    """Keep marks that were edited, beside those that take their place; says so."""
+    kept, number = marks.with_name("marks.before.csv"), 2
+    while kept.exists():
+        kept, number = marks.with_name(f"marks.before-{number}.csv"), number + 1
+    write_whole(kept, marks.read_bytes())
+    return (
+        f"{marks.name} had been edited, and is written anew: the edited one is kept as {kept}; a mark that is to last is "
+        f"named in {marks.with_name('accepted.csv')}"
+    )
+
+
+def _nothing(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str:
+    """That nothing can be marked, and why."""
+    where = ", ".join(map(str, submissions[:3])) + (", …" if len(submissions) > 3 else "")
+    told = f"nothing in {where} can be marked, so nothing is written"
+    if not rejected:
+        return f"{told}; a file of answers has a line of headings, then a line an answer"
+    count = "" if len(rejected) == 1 else f" ({len(rejected)} rows rejected; the first is told)"
+    return f"{told}{count}: {rejected[0].source}: {rejected[0].reason}"
 
 
 class _Table:
@@ -180,11 +211,16 @@ def feedback_sheet(course: Course, graded: Graded) -> FeedbackSheet:
 
 
 def _write_feedback(
-    course: Course, book: Gradebook, shown: Sequence[Graded], folder: Path, progress: Progress
+    course: Course,
+    book: Gradebook,
+    shown: Sequence[Graded],
+    folder: Path,
+    before: Sequence[str],
+    progress: Progress,
 ) -> None:
     """One PDF a student, an exercise after another, called as the student's handouts are.
 
-    A sheet that cannot be printed is a warning, and costs no other.
+    Those of an earlier marking, whose stems are ``before``, make way; any other file stays. A sheet that cannot be printed is a warning, and costs no other.
     """
     by_student: dict[str, list[Graded]] = {student: [] for student in book.issued.students}
     for graded in shown:
@@ -200,7 +236,8 @@ def _write_feedback(
 
         return make
 
-    shutil.rmtree(folder, ignore_errors=True)
+    for stem in before:
+        (folder / f"{stem}.pdf").unlink(missing_ok=True)
     stems = file_stems(by_student)
     files = [
         File(Path(f"{stem}.pdf"), maker(student, mine))

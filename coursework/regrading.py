@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from coursework.errors import BadInput
-from coursework.gradebook import Graded, Line
+from coursework.gradebook import VERDICTS, Graded, Line
 from coursework.language import words
 from coursework.names import folded
 from coursework.tables import as_written, delimiter_of, open_csv
@@ -115,19 +116,54 @@ def _points(text: str, place: str) -> float | None:
     return points
 
 
+def _number(text: str) -> float:
+    """Points of a file that anybody may have edited."""
+    try:
+        return float(text.replace(",", ".") or 0)
+    except ValueError:
+        return math.nan
+
+
+_ROUNDING = 1e-4  #: of points, as both tables print them
+#: Verdicts that have a line in the marks for each in the summary.
+_IN_BOTH = tuple(v for v in VERDICTS if v not in ("unreadable", "missing"))
+
+
 class Before:
     """The marks that were there before."""
 
     def __init__(self, path: Path) -> None:
         self._marks: dict[str, tuple[str, str]] = {}
         self._names: dict[str, str] = {}  #: as they are written
+        self._points: dict[str, float] = {}
+        self._verdicts: Counter[str] = Counter()
         self.exists = path.exists()
         if self.exists:
             alike: dict[tuple[str, str], tuple[str, str]] = {}
             for row in _rows(path):
                 mark = (row.get("verdict", ""), row.get("points", ""))
-                self._names.setdefault(folded(row.get("student", "")), row.get("student", ""))
+                name = folded(row.get("student", ""))
+                self._names.setdefault(name, row.get("student", ""))
+                self._points[name] = self._points.get(name, 0.0) + _number(mark[1])
+                self._verdicts[mark[0].partition(":")[0]] += 1
                 self._marks[_place(row)] = alike.setdefault(mark, mark)
+
+    @property
+    def students(self) -> tuple[str, ...]:
+        """Those who had marks, in the order of the file."""
+        return tuple(self._names.values())
+
+    def edited(self, summary: Path) -> bool:
+        """Whether the marks are no longer those of the summary that was written with them."""
+        if not (self.exists and summary.exists()):
+            return False
+        told: Counter[str] = Counter()
+        for row in _rows(summary):
+            points = self._points.get(folded(row.get("student", "")), 0.0)
+            if not abs(_number(row.get("points", "")) - points) < _ROUNDING * max(1.0, points):
+                return True
+            told.update({v: int(row[v]) for v in _IN_BOTH if row.get(v, "").isdecimal()})
+        return any(told[verdict] != self._verdicts[verdict] for verdict in _IN_BOTH)
 
     def changed(self, row: Mapping[str, Any]) -> dict[str, Any] | None:
         """What changed in a row of the new marks; None when nothing did."""

@@ -35,7 +35,7 @@ MISTAKE_COLUMNS = ("exercise", "part", "kind", "mistake", "count", "share", "los
 
 _MARKS = ("student", "exercise", "part", "verdict", "points", "out_of")
 _REJECTED = ("source", "reason")
-_SUMMARY = ("student", "out_of", "missing")
+_SUMMARY = ("student", "unreadable", "out_of", "missing")
 
 
 # ---------------------------------------------------------------------- reading
@@ -56,6 +56,7 @@ class Marks:
     issued: np.ndarray  #: points that each student could have, shape (students,)
     without_line: int  #: answers asked for that no line holds
     rejected: int  #: rows that could not be marked
+    unread: int  #: students who handed in, and nothing that could be marked
 
     @property
     def exercises(self) -> tuple[str, ...]:
@@ -111,7 +112,8 @@ def read(folder: Path) -> Marks:
     if np.any(out_of <= 0):
         raise BadInput(f"{path}: a line is out of {out_of.min():g} points; every part is out of some")
 
-    told, asked_blank = _summary(folder / "summary.csv", students, decimals)
+    marked = len(students)
+    told, asked_blank, unread = _summary(folder / "summary.csv", students, decimals)
     issued = np.bincount(columns[0], out_of, minlength=len(students))
     issued = np.maximum(issued, [told.get(s, 0.0) for s in students])
     blank = np.array([_family(v) == "missing" for v in verdicts], dtype=bool)
@@ -127,19 +129,23 @@ def read(folder: Path) -> Marks:
         issued,
         without_line if told else 0,
         sum(1 for _ in _lines(rejected, _REJECTED)) if rejected.is_file() else 0,
+        sum(1 for student in unread if students[student] >= marked),
     )
 
 
-def _summary(path: Path, students: _Numbered, decimals: _Decimals) -> tuple[dict[str, float], int]:
-    """The points that each student could have, and the count of blank answers; new students join."""
+def _summary(path: Path, students: _Numbered, decimals: _Decimals) -> tuple[dict[str, float], int, set[str]]:
+    """The points that each student could have, the count of blank answers, and those who handed in what cannot be
+    read; new students join."""
     told: dict[str, float] = {}
-    blank = 0
+    blank, unread = 0, set()
     if path.is_file():
-        for name, out_of, missing in _lines(path, _SUMMARY, decimals):
+        for name, unreadable, out_of, missing in _lines(path, _SUMMARY, decimals):
             students[name]
+            if unreadable.strip() not in ("", "0"):
+                unread.add(name)
             told[name] = out_of
             blank += round(missing)
-    return told, blank
+    return told, blank, unread
 
 
 def _no_marks(folder: Path) -> str:
@@ -277,6 +283,7 @@ class Statistics:
 
     students: int
     silent: int  #: students who handed in nothing
+    unread: int  #: students who handed in, and nothing that could be marked
     answers: int  #: lines of marks.csv, blank ones included
     counts: Mapping[str, int]  #: of all lines, by family of verdicts
     without_line: int  #: answers asked for that no line holds
@@ -324,6 +331,7 @@ class Statistics:
         return {
             "students": self.students,
             "handed_in_nothing": self.silent,
+            "handed_in_unreadable": self.unread,
             "answers": self.answers,
             "verdicts": dict(self.counts),
             "asked_without_line": self.without_line,
@@ -380,7 +388,8 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
     has = marks.issued > 0
     return Statistics(
         students=students,
-        silent=students - int(np.count_nonzero(with_line)),
+        silent=students - int(np.count_nonzero(with_line)) - marks.unread,
+        unread=marks.unread,
         answers=len(marks.student),
         counts=dict(zip(VERDICTS, counts.sum(axis=0).tolist(), strict=True)),
         without_line=marks.without_line,

@@ -12,10 +12,9 @@ import numpy as np
 
 from coursework.charts import bars, formula_label, histogram, plain_label
 from coursework.course import Course
-from coursework.errors import CourseworkError
-from coursework.exercise import CourseExercise
 from coursework.gradebook import VERDICTS
 from coursework.language import listed, localise, plain, words
+from coursework.naming import SHORT, Names
 from coursework.rendering.markup import drawable, to_text
 from coursework.rendering.typography import typeset
 from coursework.report import Chart, Report, Section, Table
@@ -29,11 +28,11 @@ from coursework.statistics import (
     Statistics,
 )
 
+_QUOTED = 160  #: characters of a mistake's words in a sentence
 _NAMED = 5  #: questions that a sentence names
 _CHARTED = 12  #: mistakes in the chart
 _LISTED = 12  #: mistakes in the table of an exercise
 _CHART_ROWS = 16  #: bars that one chart holds
-_MEASURED_BY_SYMBOL = ("number", "angle", "integer")
 
 Words = Mapping[str, Any]
 
@@ -56,7 +55,7 @@ def report(course: Course, statistics: Statistics, lang: str) -> Report:
         lang,
         course.title(lang),
         page.said["title"],
-        "coursework report",
+        page.said["source"],
         page.said["opening"],
         tuple(sections),
     )
@@ -64,35 +63,9 @@ def report(course: Course, statistics: Statistics, lang: str) -> Report:
 
 def mistake_rows(course: Course, statistics: Statistics, lang: str) -> Iterator[dict[str, Any]]:
     """The lines of ``mistakes.csv``."""
-    told = _Told(course, lang)
+    names = Names(course, statistics, lang)
     for one in statistics.mistakes:
-        says = " ".join(to_text(told.says(one), lang).split())
-        yield {c: {**one.row(), "says": says}[c] for c in MISTAKE_COLUMNS}
-
-
-class _Told:
-    """What students are told of each mistake."""
-
-    def __init__(self, course: Course, lang: str) -> None:
-        self.course = course
-        self.lang = lang
-        self._texts: dict[str, list[Any]] = {}
-
-    def says(self, one: MistakeStatistics) -> str:
-        """Markdown; nothing where the course has no words for all, or words with a student's own numbers."""
-        if one.exercise not in self._texts:
-            self._texts[one.exercise] = self._of_two_variants(one.exercise)
-        section = f"mistake {one.name}"
-        found = {t.sections[section].text for t in self._texts[one.exercise] if section in t.sections}
-        return found.pop() if one.kind == "mistake" and len(found) == 1 else ""
-
-    def _of_two_variants(self, name: str) -> list[Any]:
-        if name not in self.course:
-            return []
-        try:
-            return [v.solution_text for v in self.course[name].variants((0, 1), self.lang)]
-        except CourseworkError:
-            return []  # a course without solutions, or without this text, has no words for mistakes
+        yield {c: {**one.row(), "says": names.says(one)}[c] for c in MISTAKE_COLUMNS}
 
 
 class _Page:
@@ -104,7 +77,7 @@ class _Page:
         self.lang = lang
         self.said: Words = words(lang)["statistics"]
         self.verdicts: Words = words(lang)["verdicts"]
-        self.told = _Told(course, lang)
+        self.names = Names(course, statistics, lang)
 
     # ---------------------------------------------------------------- sections
 
@@ -114,6 +87,7 @@ class _Page:
         rows = [
             (self.said["students"], self._number(told.students)),
             (self.said["silent"], self._number(told.silent)),
+            (self.said["unread"], self._number(told.unread)),
             (self.said["answers"], self._number(told.answers)),
             (self.said["without_line"], self._number(told.without_line)),
             (self.verdicts["missing"], self._number(told.counts["missing"])),
@@ -184,7 +158,7 @@ class _Page:
         keys = ("part", "part_answers", "right", "mean", "discrimination")
         rows = tuple(
             (
-                self._name(p),
+                self._name_and_id(p),
                 self._number(p.answers),
                 self._percent(p.right),
                 self._percent(p.mean),
@@ -214,16 +188,15 @@ class _Page:
         rows = tuple(
             (
                 self._name(parts[one.part]),
-                _as_it_is(one.name),
+                self.names.says_markdown(one) or _as_it_is(self.names.says(one) or one.name),
                 self._number(one.count),
                 self._percent(one.share),
                 self._decimal(one.lost, 1),
-                " ".join(self.told.says(one).split()),
             )
             for one in mistakes
         )
-        heads = tuple(self.said[h] for h in ("part", "mistake", "part_answers", "share", "lost", "says"))
-        return Table(heads, rows, (False, False, True, True, True, False), self._heading(exercise))
+        heads = tuple(self.said[h] for h in ("part", "says", "part_answers", "share", "lost"))
+        return Table(heads, rows, (False, False, True, True, True), self._heading(exercise))
 
     # ----------------------------------------------------------------- reading
 
@@ -247,7 +220,7 @@ class _Page:
         measured = [p for p in self.statistics.parts if p.discrimination is not None]
         if not measured:
             return reading["unmeasured"].format(ENOUGH)
-        active = self.statistics.students - self.statistics.silent
+        active = self.statistics.students - self.statistics.silent - self.statistics.unread
         # The standard error of a correlation near 0.
         uncertain = reading["uncertain"].format(
             students=active, error=self._decimal(1 / math.sqrt(active - 1))
@@ -268,7 +241,7 @@ class _Page:
         if costly is None:
             return reading["no_mistake"]
         return reading["costly"].format(
-            name=f"*{_as_it_is(costly.name)}*",
+            name=f"*{_as_it_is(self.names.mistake(costly, most=_QUOTED))}*",
             exercise=self._title(costly.exercise),
             count=self._number(costly.count),
             answers=self._number(round(costly.count / costly.share)),
@@ -285,30 +258,27 @@ class _Page:
 
     # ------------------------------------------------------------------- names
 
-    def _known(self, name: str) -> CourseExercise | None:
-        if name not in self.course:
-            return None
-        return self.course[name]
-
     def _title(self, name: str) -> str:
         """An exercise's title as Markdown."""
-        exercise = self._known(name)
+        exercise = self.names.exercise(name)
         return exercise.title(self.lang) if exercise and self.lang in exercise.languages else _as_it_is(name)
 
     def _heading(self, name: str) -> str:
         """An exercise's title as plain text."""
         return " ".join(to_text(self._title(name), self.lang).split())
 
-    def _symbol(self, part: PartStatistics) -> str:
-        """LaTeX of what the part asks; nothing where a symbol says nothing, or the course knows no such part."""
-        exercise = self._known(part.exercise)
-        asked = exercise.spec.part(part.part) if exercise else None
-        measured = asked is not None and asked.kind in _MEASURED_BY_SYMBOL
-        return exercise.symbol(asked.quantity) if measured else ""
+    def _numbered(self, part: PartStatistics, name: str) -> str:
+        number = self.names.number(part)
+        return name if number is None else f"{number} · {name}"
 
     def _name(self, part: PartStatistics) -> str:
-        symbol = self._symbol(part)
-        return f"${symbol}$" if symbol else _as_it_is(part.part)
+        symbol = self.names.symbol(part)
+        return self._numbered(part, f"${symbol}$" if symbol else _as_it_is(self.names.question(part)))
+
+    def _name_and_id(self, part: PartStatistics) -> str:
+        """For the one table where an author looks for a part by its id."""
+        name, own = self._name(part), _as_it_is(part.part)
+        return name if name == own else f"{name} ({own})"
 
     def _with(self, part: PartStatistics, value: str) -> str:
         """A part and a number of it, in a sentence about the class."""
@@ -317,13 +287,13 @@ class _Page:
         return f"{self._name(part)} ({note})"
 
     def _label(self, part: PartStatistics) -> str:
-        symbol = self._symbol(part)
-        return formula_label(symbol, _short(part.part)) if symbol else plain_label(_short(part.part))
+        symbol, name = self.names.symbol(part), plain_label(_short(self.names.question(part), SHORT))
+        return self._numbered(part, formula_label(symbol, _short(part.part)) if symbol else name)
 
     def _mistake_label(self, one: MistakeStatistics) -> str:
         several = len(self.statistics.exercises) > 1
-        name = _short(one.name)
-        return plain_label(f"{name} ({_short(one.exercise)})" if several else name)
+        name = _short(self.names.mistake(one), SHORT)
+        return plain_label(f"{name} ({_short(self._heading(one.exercise), 24)})" if several else name)
 
     # ------------------------------------------------------------------ pieces
 

@@ -9,10 +9,12 @@ import ast
 import json
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from coursework.errors import BadInput, closest
 from coursework.tables import as_written, decode, delimiter_of, record
 
 COLUMNS = ("student", "exercise", "seed", "part", "answer")
@@ -43,19 +45,37 @@ class Rejected:
 
 
 def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
-    """The files to read, folders walked in name order."""
+    """The files to read, folders walked in name order.
+
+    Raises
+    ------
+    BadInput
+        One of the paths is not there.
+    """
+    paths = tuple(paths)
+    for path in paths:
+        if not path.exists():
+            raise BadInput(f"no such file or folder: {path}{_beside(path)}")
     for path in paths:
         if path.is_dir():
             files = sorted(p for p in path.rglob("*") if p.is_file() and not _is_hidden(p, path))
             yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files)
             if not files:
                 yield Rejected(str(path), "the folder holds no file")
-        elif not path.exists():
-            yield Rejected(str(path), "there is no such file")
         elif path.suffix.lower() not in ENDINGS:
             yield _odd_file(path)
         else:
             yield path
+
+
+def _beside(path: Path) -> str:
+    """The file or folder that may have been meant, if one of nearly that name is there."""
+    names = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
+    near = closest(path.name, names)
+    if near is None:
+        return ""
+    meant = path.with_name(near)
+    return f" (did you mean {meant}{'/' if meant.is_dir() else ''}?)"
 
 
 def _is_hidden(path: Path, below: Path) -> bool:
@@ -84,6 +104,12 @@ def read_file(path: Path) -> Iterator[Row | Rejected]:
     yield from reader(data, str(path))
 
 
+def _decoded(data: bytes, source: str) -> tuple[str, str]:
+    """The text, and a warning that names its file."""
+    text, warning = decode(data)
+    return text, f"{source}: {warning}" if warning else ""
+
+
 def _whole(text: str) -> str:
     """The text without halves of characters, which no file can hold."""
     return text.encode("utf-8", "replace").decode("utf-8")
@@ -96,7 +122,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
     if not data.strip():
         yield Rejected(source, "the file is empty")
         return
-    text, warning = decode(data)
+    text, warning = _decoded(data, source)
     if "\0" in text:
         yield Rejected(source, "the file holds NUL bytes: it is not a CSV of answers")
         return
@@ -113,7 +139,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
         if not any(c.strip() for c in cells):
             continue  # a blank line is no row
         if header:
-            yield from _csv_row(header, cells, place, warning)
+            yield from _csv_row(header, cells, delimiter, place, warning)
             # Lines that are plain, as nearly all are, without more ado.
             while number < len(lines) and '"' not in lines[number]:
                 cells = lines[number].split(delimiter)
@@ -169,11 +195,16 @@ def _read_parquet(path: Path) -> Iterator[Row | Rejected]:
         yield Rejected(str(path), f"not a Parquet file: {_short(fault)}")
 
 
-def _csv_row(header: list[str], cells: list[str], place: str, warning: str) -> Iterator[Row | Rejected]:
+def _csv_row(
+    header: list[str], cells: list[str], delimiter: str, place: str, warning: str
+) -> Iterator[Row | Rejected]:
     row = dict(zip(header, cells, strict=False))
     if len(cells) != len(header):
         kept = {c: row.get(c, "") for c in COLUMNS}
-        yield Rejected(place, f"{len(cells)} cells where the header has {len(header)}", kept)
+        reason = f"{len(cells)} cells where the header has {len(header)}"
+        if delimiter == "," and len(cells) > len(header):
+            reason += "; put an answer with a comma between quotation marks, or semicolons between all cells"
+        yield Rejected(place, reason, kept)
         return
     yield _row_of([row[c] for c in COLUMNS], range(len(COLUMNS)), place, warning)
 
@@ -182,7 +213,7 @@ def _csv_row(header: list[str], cells: list[str], place: str, warning: str) -> I
 
 
 def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected]:
-    text, warning = decode(data)
+    text, warning = _decoded(data, source)
     try:
         content = _load_json(text)
     except (ValueError, RecursionError) as fault:
@@ -276,7 +307,7 @@ def _short(fault: BaseException) -> str:
 
 
 def _read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
-    text, warning = decode(data)
+    text, warning = _decoded(data, source)
     try:
         notebook = _load_json(text)
     except (ValueError, RecursionError) as fault:
@@ -290,13 +321,14 @@ def _read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
         return
     tagged = [c for c in cells if isinstance(c, dict) and "answers" in _tags(c)]
     if len(tagged) != 1:
-        yield Rejected(source, f"one cell must be tagged 'answers'; found {len(tagged)}", _about(about))
+        found = "\n".join(_code(c) for c in cells if isinstance(c, dict) and c.get("cell_type") == "code")
+        row = _about(about, source) | {"answer": found.strip()[:200]}
+        yield Rejected(source, f"one cell must be tagged 'answers'; found {len(tagged)}", row)
         return
-    code = tagged[0].get("source", "")
-    code = "".join(code) if isinstance(code, list) else str(code)
+    code = _code(tagged[0])
     answers = literal_answers(code)
     if isinstance(answers, str):
-        yield Rejected(source, f"the answers cell {answers}", _about(about) | {"answer": code[:200]})
+        yield Rejected(source, answers, _about(about, source) | {"answer": code[:200]})
         return
     about, warning = _with_name(about, answers, source, warning)
     yield from _sheet_rows(about, answers, source, warning)
@@ -315,8 +347,15 @@ def _with_name(
     return {**about, "student": Path(source).stem}, warning or note
 
 
-def _about(about: dict[str, Any]) -> dict[str, str]:
-    return {**{c: _name(about.get(c)) for c in ("student", "exercise", "seed")}, "part": "", "answer": ""}
+def _about(about: dict[str, Any], source: str) -> dict[str, str]:
+    """What a notebook says of itself; one that was nobody's is called as its file."""
+    named = {c: _name(about.get(c)) for c in ("student", "exercise", "seed")}
+    return {**named, "student": named["student"] or Path(source).stem, "part": "", "answer": ""}
+
+
+def _code(cell: dict[str, Any]) -> str:
+    code = cell.get("source", "")
+    return "".join(map(str, code)) if isinstance(code, list) else str(code)
 
 
 def _tags(cell: dict[str, Any]) -> list[Any]:
@@ -328,26 +367,96 @@ def _tags(cell: dict[str, Any]) -> list[Any]:
 def literal_answers(code: str) -> dict[Any, Any] | str:
     """The dict that an answers cell holds, or what is wrong with the cell. Nothing is run.
 
-    ``answers = {…}`` or a bare ``{…}`` of texts, numbers, None, and lists or tuples of these.
+    ``answers = {…}`` or a bare ``{…}`` of texts, numbers, None, and lists or tuples of these. A value that is none of
+    them is the text that stands there; a cell that is no Python is read line by line.
     """
     if len(code) > 200_000:
-        return "is too long to be read"
+        return "the answers cell is too long to be read"
+    code = re.sub(r"\r\n?", "\n", code)
     try:
         statements = ast.parse(code).body
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as fault:
-        line = f", line {fault.lineno}" if isinstance(fault, SyntaxError) and fault.lineno else ""
-        return f"is not a Python literal{line}: {_short(fault)}"
+    except _NO_PYTHON:
+        return _answers_by_line(code)
     if len(statements) != 1:
-        return f"must hold one dict and nothing else; found {len(statements)} statements"
+        return f"the answers cell must hold one dict and nothing else; found {len(statements)} statements"
     statement = statements[0]
     value = statement.value if isinstance(statement, (ast.Assign, ast.AnnAssign, ast.Expr)) else None
     if not isinstance(value, ast.Dict):
-        return "must hold one dict and nothing else; found code, which is never run"
+        return "the answers cell must hold one dict and nothing else; found code, which is never run"
     try:
-        keys = [ast.literal_eval(key) for key in value.keys if key is not None]
-        values = [ast.literal_eval(item) for item in value.values]
-        if len(keys) != len(values):
-            raise ValueError("** is code")
-        return _object(list(zip(keys, values, strict=True)))
-    except (ValueError, TypeError, RecursionError, MemoryError):
-        return "must hold texts and numbers only; found code, which is never run"
+        return _object(_pairs(value, code))
+    except _NO_PYTHON:
+        return "the answers cell must hold texts and numbers only; found code, which is never run"
+
+
+_NO_PYTHON = (SyntaxError, ValueError, TypeError, RecursionError, MemoryError)
+
+
+def _pairs(found: ast.Dict, code: str) -> list[tuple[Any, Any]]:
+    lines = [line.encode("utf-8", "replace") for line in code.split("\n")]
+
+    def value(node: ast.expr) -> Any:
+        try:
+            return ast.literal_eval(node)
+        except _NO_PYTHON:
+            taken = lines[node.lineno - 1 : node.end_lineno]
+            taken[-1] = taken[-1][: node.end_col_offset]
+            taken[0] = taken[0][node.col_offset :]
+            return b"\n".join(taken).decode("utf-8", "replace")
+
+    if None in found.keys:
+        raise ValueError("** is code")
+    return [(value(key), value(item)) for key, item in zip(found.keys, found.values, strict=True)]
+
+
+_OPENS = re.compile(r"(?:\w+\s*=\s*)?\{\s*")
+_KEY = re.compile(r"""(["'])([^"']+)\1\s*:\s*""")
+_QUOTED = re.compile(r"""(["'])([^"']*)\1""")
+
+
+def _answers_by_line(code: str) -> dict[Any, Any] | str:
+    """The answers of a cell that is no Python, each on its line as in the notebook, or which line is not."""
+    pairs: list[tuple[Any, Any]] = []
+    is_open = is_closed = False
+    line = number = 0
+    for number, line in enumerate(map(str.strip, code.split("\n")), start=1):
+        text = line
+        if not is_open and (opening := _OPENS.match(text)):
+            is_open, text = True, text[opening.end() :]
+        if not text or text.startswith("#"):
+            continue
+        found = None if is_closed or not is_open else _pairs_of_line(text)
+        if found is None and is_open and not is_closed and text.endswith("}"):
+            is_closed, text = True, text[:-1].rstrip()
+            found = _pairs_of_line(text) if text else []
+        if found is None:
+            return _not_as_written(number, line)
+        pairs += found
+    return _object(pairs) if pairs else _not_as_written(number, str(line))
+
+
+def _pairs_of_line(line: str) -> list[tuple[Any, Any]] | None:
+    """The answers of a line; None where they cannot be told apart."""
+    code = f"{{{line}\n}}"
+    with suppress(*_NO_PYTHON):
+        found = ast.parse(code, mode="eval").body
+        return _pairs(found, code) if isinstance(found, ast.Dict) else None
+    key = _KEY.match(line)
+    if key is None:
+        return None
+    quoted = _QUOTED.match(line, key.end())
+    rest = line[quoted.end() if quoted else key.end() :].partition("#")[0].strip().removesuffix(",").rstrip()
+    if quoted:
+        return [(key[2], quoted[2])] if not rest else None
+    bare = rest[1:] if rest[:1] in ("'", '"') else rest
+    bare = bare[:-1] if bare[-1:] in ("'", '"') else bare
+    return [(key[2], bare.strip())] if not set(bare) & set("\"'{}:") else None
+
+
+def _not_as_written(number: int, line: str) -> str:
+    key = _KEY.match(line)
+    part = f", part {key[2][:40]}" if key else ""
+    return (
+        f"the answers cell, line {number}{part}, is not written as in the notebook: quotes around text, "
+        f"a comma after each answer; found {line[:40]!r}"
+    )

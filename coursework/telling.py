@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from coursework.variant import Variant
 
 ECHO = 60  #: characters of an answer quoted back
+QUOTED = 40  #: characters of one that could not be read
 
 
 class Said(NamedTuple):
@@ -99,7 +100,9 @@ def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
     """Why an answer could not be read, or that there is none."""
     table = words(variant.lang)["marking"]
     unit = unit_text(part.unit, variant.lang)
-    found = (reading.found or reading.text)[:ECHO]
+    of_piece = ("unknown_unit", "unknown_symbol") if part.kind == "equation" else ("unknown_unit",)
+    is_piece = reading.found and (reading.status == "wrong_unit" or reading.code in of_piece)
+    found = shortened(reading.found if is_piece else reading.text)
     pieces = {"name": _opening(variant, part), "found": _harmless(found), "unit": unit or "1"}
     unitless = "wrong_unit_integer" if part.kind == "integer" else "wrong_unit_ratio"
     if reading.status == "unreadable":
@@ -117,6 +120,12 @@ def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
     else:
         sentence = table["missing"]
     return Said(sentence, pieces)
+
+
+def shortened(answer: str) -> str:
+    """An answer on one line, its end left out where it is long."""
+    line = " ".join(str(answer).split())
+    return line if len(line) <= QUOTED else line[: QUOTED - 1] + "…"
 
 
 _OF_CHOICES = {"not_a_choice": "not_a_choice", "two_values": "two_choices"}

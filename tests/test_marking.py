@@ -372,3 +372,22 @@ def test_what_may_be_written_for_a_choice_is_said_in_the_language_of_the_sheet_a
     assert ("revolute" in said) == (lang == "en")
     for quotation in re.findall("«\\s(.+?)\\s»|“(.+?)”", said)[1:]:
         assert variant.grade({"equivalent": max(quotation)})["equivalent"].verdict != "unreadable", quotation
+
+
+@pytest.mark.parametrize(
+    ("part", "answer", "told"),
+    [
+        ("rA", "je ne sais pas", "« je ne sais pas »"),
+        ("rA", "12.5.8", "« 12.5.8 »"),
+        (
+            "rA",
+            "je\nne sais pas du tout ce qu'il faut mettre ici",
+            "« je ne sais pas du tout ce qu'il faut me… »",
+        ),
+        ("rA", "12 parsecs", "« parsecs »"),
+    ],
+)
+def test_an_answer_that_cannot_be_read_is_quoted_whole(course, part, answer, told):
+    feedback = course["slotted_mechanism"].variant(1, "fr").grade({part: answer})[part].feedback
+    plain = feedback.replace("\N{NARROW NO-BREAK SPACE}", " ").replace("’", "'")
+    assert told in plain

@@ -11,6 +11,10 @@ import pytest
 import coursework
 from coursework.cli import run
 from coursework.errors import BadInput
+from coursework.gradebook import Line, marked, placed
+from coursework.grading import feedback_sheet
+from coursework.issued import Issued
+from coursework.submissions import read_file
 
 SOLUTION = "solutions/crank_pin.py"
 
@@ -123,7 +127,7 @@ def test_a_mark_is_replayed_from_its_record_alone(small_course, issued):
     course = coursework.open_course(small_course)
     for line in table(issued / "marks" / "marks.csv"):
         variant = course["crank_pin"].from_record(records[line["student"]])
-        mark = variant.grade({line["part"]: line["answer"]})[line["part"]]
+        mark = Line.of(variant.grade({line["part"]: line["answer"]})[line["part"]], printed=False)
         assert (mark.verdict, f"{mark.points:g}", mark.feedback) == (
             line["verdict"],
             line["points"],
@@ -324,6 +328,150 @@ def _accepting(issued):
     return path
 
 
+def test_answers_to_another_course_are_told_which_option_names_it(small_course, issued, capsys):
+    assert run(["grade", str(issued.parent / "answers.csv"), "--issued", str(issued / "issued.json")]) == 2
+    said = capsys.readouterr().err
+    assert "no exercise 'crank_pin'" in said
+    assert "--course FOLDER" in said
+    assert "slotted_mechanism" not in said
+
+
+def test_what_is_left_to_look_at_is_said(small_course, issued, capsys):
+    assert grade(small_course, issued) == 1
+    assert "1 unreadable answer to look at: verdict unreadable in" in capsys.readouterr().out
+    answers = issued.parent / "answers.csv"
+    answers.write_text(answers.read_text("utf-8").replace("somewhere", "3"), "utf-8")
+    assert grade(small_course, issued) == 0
+    assert "unreadable" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("lang", "told"), [("en", "somebody will look at it"), ("fr", "quelqu’un y regardera")]
+)
+def test_who_wrote_what_cannot_be_read_is_told_that_somebody_will_look(small_course, issued, lang, told):
+    content = json.loads((issued / "issued.json").read_text("utf-8"))
+    for item in content["issued"]:
+        item["record"]["lang"] = lang
+    (issued / "issued.json").write_text(json.dumps(content), "utf-8")
+    assert grade(small_course, issued) == 1
+    said = {m["verdict"]: m["feedback"] for m in table(issued / "marks" / "marks.csv")}
+    assert told in said["unreadable"]
+    assert told not in said["correct"]
+    course, kept = coursework.open_course(small_course), Issued.read(issued / "issued.json")
+    sheets = placed(course, kept, list(read_file(issued.parent / "answers.csv")))
+    pages = [course.renderer.html(feedback_sheet(course, graded)) for graded in marked(course, kept, sheets)]
+    assert [told in page for page in pages] == [True, False, False]
+
+
+@pytest.mark.parametrize("roster", [True, False])
+def test_a_notebook_that_cannot_be_read_was_handed_in(small_course, issued, capsys, roster):
+    """And so was one row that is rejected beside others that are marked."""
+    content = json.loads((issued / "issued.json").read_text("utf-8"))
+    if not roster:
+        content["roster"] = False
+        content["issued"] = [{**item, "student": ""} for item in content["issued"]]
+        (issued / "issued.json").write_text(json.dumps(content), "utf-8")
+    answers = issued.parent / "answers.csv"
+    lines = [line for line in answers.read_text("utf-8").splitlines() if not line.startswith("Cy")]
+    lines[2] += ",1"
+    answers.write_text("\n".join(lines), "utf-8")
+    about = {"student": "Cy", "exercise": "crank_pin", "seed": content["issued"][2]["record"]["seed"]}
+    cell = {"cell_type": "code", "metadata": {"tags": ["answers"]}, "source": 'answers = {"y": "1" "x": "2"}'}
+    notebook = json.dumps({"metadata": {"coursework": about}, "cells": [cell]})
+    (issued.parent / "cy.ipynb").write_text(notebook, "utf-8")
+    where = ["--issued", issued / "issued.json", "--no-feedback"]
+    assert course_run(small_course, "grade", answers, issued.parent / "cy.ipynb", *where) == 1
+    rows = table(issued / "marks" / "summary.csv")
+    asked = len(content["issued"][0]["record"]["parts"])
+    assert [(r["student"], int(r["unreadable"]), int(r["missing"])) for r in rows] == [
+        ("Ada", 1, 0),
+        ("Bo", 0, 0),
+        ("Cy", asked, 0),
+    ]
+    assert {r["out_of"] for r in rows} == {rows[0]["out_of"]}
+    capsys.readouterr()
+    assert course_run(small_course, "report", issued / "marks", "--json") == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["students"], told["handed_in_nothing"], told["handed_in_unreadable"]) == (3, 0, 1)
+    assert told["asked_without_line"] == 0
+
+
+def test_marks_mended_by_hand_are_kept_beside_those_that_replace_them(small_course, issued, capsys):
+    grade(small_course, issued)
+    marks = issued / "marks"
+    mended = (marks / "marks.csv").read_text("utf-8").replace(",unreadable,0,", ',correct,"0,5",')
+    (marks / "marks.csv").write_text(mended, "utf-8")
+    capsys.readouterr()
+    for kept in ("marks.before.csv", "marks.before-2.csv"):
+        assert grade(small_course, issued) == 1
+        said = capsys.readouterr().err
+        assert "had been edited" in said
+        assert kept in said
+        assert "accepted.csv" in said
+        assert (marks / kept).read_text("utf-8") == mended
+        (marks / "marks.csv").write_text(mended, "utf-8")
+
+
+@pytest.mark.parametrize(
+    "again", ["nothing", "saved by a spreadsheet", "another answer", "mended, then accepted"]
+)
+def test_marks_that_nobody_edited_are_replaced_without_a_word(small_course, issued, capsys, again):
+    grade(small_course, issued)
+    marks, answers = issued / "marks", issued.parent / "answers.csv"
+    written = (marks / "marks.csv").read_text("utf-8")
+    if again == "another answer":
+        answers.write_text(answers.read_text("utf-8").replace("somewhere", "3"), "utf-8")
+    if again == "saved by a spreadsheet":
+        (marks / "marks.csv").write_text(written.replace("\n", "\r\n"), "utf-8-sig")
+    if again == "mended, then accepted":
+        (marks / "marks.csv").write_text(written.replace(",unreadable,0,", ",accepted,1,"), "utf-8")
+        (marks / "accepted.csv").write_text("student,exercise,part\nAda,crank_pin,y\n", "utf-8")
+    capsys.readouterr()
+    grade(small_course, issued)
+    assert "edited" not in capsys.readouterr().err
+    assert not list(marks.glob("marks.before*"))
+
+
+def test_feedback_replaces_its_own_sheets_and_no_other_file(small_course, issued):
+    feedback = issued / "marks" / "feedback"
+    answers, where = issued.parent / "answers.csv", ["--issued", issued / "issued.json", "--feedback"]
+    assert course_run(small_course, "grade", answers, *where) == 1
+    assert {p.name for p in feedback.iterdir()} == {"ada.pdf", "bo.pdf", "cy.pdf"}
+    (feedback / "notes.md").write_text("mine", "utf-8")
+    (feedback / "old").mkdir()
+    (feedback / "old" / "ada.pdf").write_bytes(b"mine")
+    lines = [line for line in answers.read_text("utf-8").splitlines() if not line.startswith("Cy")]
+    answers.write_text("\n".join(lines), "utf-8")
+    assert course_run(small_course, "grade", answers, *where) == 1
+    found = {p.relative_to(feedback).as_posix() for p in feedback.rglob("*") if p.is_file()}
+    assert found == {"ada.pdf", "bo.pdf", "notes.md", "old/ada.pdf"}, "Cy has no marks any more"
+
+
+@pytest.mark.parametrize("content", [None, {}, {"a.docx": "x"}, {"a.ipynb": "{"}, {"a.csv": ""}, {"a.csv": "form"},
+                                     {"a.csv": "student,exercise,seed,part,answer\nZoe,crank_pin,1,y,3\n"}])  # fmt: skip
+def test_answers_in_which_nothing_can_be_marked_leave_the_marks_that_were_there(
+    small_course, issued, capsys, content
+):
+    grade(small_course, issued)
+    marks = issued / "marks"
+    (marks / "feedback").mkdir()
+    (marks / "feedback" / "ada.pdf").write_bytes(b"before")
+    before = {p: p.read_bytes() for p in marks.rglob("*") if p.is_file()}
+    capsys.readouterr()
+    other = issued.parent / "retuned"
+    if content is not None:
+        other.mkdir()
+        for name, text in content.items():
+            (other / name).write_text(
+                "student,exercise,seed,part,answer\n" if text == "form" else text, "utf-8"
+            )
+    assert course_run(small_course, "grade", other, "--issued", issued / "issued.json", "--out", marks) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert ("no such file or folder" if content is None else "nothing is written") in said
+    assert {p: p.read_bytes() for p in marks.rglob("*") if p.is_file()} == before
+
+
 def test_parquet_marks_as_csv_does(small_course, issued, tmp_path):
     import pyarrow
     from pyarrow import parquet
@@ -341,10 +489,13 @@ def test_parquet_marks_as_csv_does(small_course, issued, tmp_path):
     ).read_bytes()
 
 
-def test_a_parquet_file_that_is_none_is_rejected_with_its_reason(small_course, issued, tmp_path):
+def test_a_parquet_file_that_is_none_is_rejected_with_its_reason(small_course, issued, tmp_path, capsys):
     (tmp_path / "odd.parquet").write_bytes(b"PAR?")
     where = ["--issued", str(issued / "issued.json"), "--no-feedback", "--out", str(tmp_path / "m")]
-    assert course_run(small_course, "grade", tmp_path / "odd.parquet", *where) == 1
+    assert course_run(small_course, "grade", tmp_path / "odd.parquet", *where) == 2
+    assert "not a Parquet file" in capsys.readouterr().err
+    answers = issued.parent / "answers.csv"
+    assert course_run(small_course, "grade", answers, tmp_path / "odd.parquet", *where) == 1
     (rejected,) = table(tmp_path / "m" / "rejected.csv")
     assert "not a Parquet file" in rejected["reason"]
 

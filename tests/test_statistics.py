@@ -13,6 +13,7 @@ from coursework.cli import run
 from coursework.errors import BadInput, BadStatement
 from coursework.gradebook import MARKS_COLUMNS, REJECTED_COLUMNS, SUMMARY_COLUMNS, VERDICTS
 from coursework.language import languages, words
+from coursework.naming import Names
 from coursework.rendering import Renderer
 from coursework.statistics import ENOUGH, WEAK, correlation, measure, read
 from coursework.statistics_page import mistake_rows, report, sheet_order
@@ -405,6 +406,46 @@ def test_mistakes_are_listed_with_what_the_student_is_told(course, folder):
     says = {r["mistake"]: r["says"] for r in mistake_rows(course, told, "fr")}
     assert "Coriolis" in says["no_coriolis"]
     assert says["x"] == says["no_centripetal"] == ""
+
+
+@pytest.mark.parametrize(
+    ("lang", "slip"),
+    [("fr", "a la grandeur attendue et le signe"), ("en", "has the expected size and the opposite sign")],
+)
+def test_questions_and_mistakes_are_called_as_the_students_know_them(course, folder, lang, slip):
+    lines = [
+        line("b", "slotted_mechanism", "rA_ddot", "mistake:no_coriolis", 0.5),
+        line("b", "slotted_mechanism", "omega4", "slip:sign", 0),
+        line("b", "slotted_mechanism", "guide", "wrong", 0),
+    ]
+    told = measure(read(folder(lines)), sheet_order(course, ["slotted_mechanism"]))
+    page = report(course, told, lang)
+    assert "coursework report" not in course.renderer.report_html(page)
+    reading, (table,) = page.sections[0].text, page.sections[-1].tables
+    assert slip in reading
+    assert "sign*" not in reading.replace(slip, "")
+    assert "oriolis" in "".join(row[1] for row in table.rows)
+    assert slip in "".join(row[1] for row in table.rows)
+    assert "no_coriolis" not in course.renderer.report_html(page)
+    (guide,) = (p for p in told.parts if p.part == "guide")
+    asked = Names(course, told, lang).question(guide)
+    assert " " in asked
+    parts, became = page.sections[2].tables
+    assert parts.rows[0][0].endswith("(guide)"), "for its author"
+    assert "(guide)" not in became.rows[0][0]
+
+
+def test_a_number_is_told_only_where_every_sheet_has_it(course, folder):
+    """``slotted_mechanism`` asks its third and later questions of some variants only."""
+    ids = [p.id for p in course["slotted_mechanism"].spec.parts if not p.by_request]
+
+    def numbers(asked):
+        told = measure(read(folder([line("a", "slotted_mechanism", i, "correct", 1) for i in asked])))
+        return [Names(course, told, "fr").number(p) for p in told.parts]
+
+    assert numbers(ids)[:2] == [1, 2]
+    assert numbers(ids)[-1] is None
+    assert numbers(ids[1:]) == [None] * len(ids[1:])
 
 
 def test_a_label_that_the_charts_cannot_set_is_plain():

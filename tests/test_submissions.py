@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from coursework.errors import BadInput
 from coursework.submissions import Rejected, Row, find, literal_answers, read_file
 
 HEADER = "student,exercise,seed,part,answer\n"
@@ -38,6 +39,7 @@ def test_a_wrong_encoding_is_read_and_reported(tmp_path):
     rows, _ = read(tmp_path, "a.csv", (HEADER + "Émilie,x,1,rA,104°\n").encode("cp1252"))
     assert (rows[0].student, rows[0].answer) == ("Émilie", "104°")
     assert "Windows-1252" in rows[0].warning
+    assert "a.csv: the file is not UTF-8" in rows[0].warning
 
 
 def test_semicolons_leave_decimal_commas_alone(tmp_path):
@@ -68,6 +70,8 @@ def test_a_row_of_another_width_is_rejected_with_its_line(tmp_path):
     assert [r.student for r in rows] == ["Bob"]
     assert [r.source.rpartition(", ")[2] for r in rejected] == ["line 2", "line 4"]
     assert rejected[0].row["student"] == "Ann"
+    assert "quotation marks" not in rejected[0].reason
+    assert "between quotation marks, or semicolons between all cells" in rejected[1].reason
 
 
 def test_a_header_without_the_columns_says_which_are_missing(tmp_path):
@@ -156,15 +160,16 @@ def test_the_answers_cell_of_a_notebook(tmp_path, code):
 @pytest.mark.parametrize(
     "code",
     [
-        'answers = {"rA": __import__("os").system("touch ran")}',
         'import os\nanswers = {"rA": "3"}',
         "answers = dict(rA=3)",
-        'answers = {"rA": f"{3}"}',
         "answers = {",
         "answers = 3",
         "",
         "x" * 300_000,
         "answers = " + "{" * 5000,
+        'answers = {**{"rA": "3"}}',
+        'answers = {"rA": "3" "b": "4"}',
+        'answers = {\n"rA": 3,5,\n}\nimport os',
     ],
 )
 def test_code_in_the_answers_cell_is_told_and_never_run(tmp_path, monkeypatch, code):
@@ -174,6 +179,45 @@ def test_code_in_the_answers_cell_is_told_and_never_run(tmp_path, monkeypatch, c
     assert len(rejected) == 1
     assert rejected[0].row["student"] == "Ann"
     assert not (tmp_path / "ran").exists()
+
+
+@pytest.mark.parametrize(
+    ("value", "answer"),
+    [
+        ("r1*2", "r1*2"),
+        ("rA", "rA"),
+        ("f'{3}'", "f'{3}'"),
+        ('__import__("os").system("touch ran")', '__import__("os").system("touch ran")'),
+        ("(2 +\n 3) * r1", "(2 +\n 3) * r1"),
+        ("é*2", "é*2"),
+        ("111,5", "111,5"),
+        ("12.5 mm", "12.5 mm"),
+        ("72°", "72°"),
+        ('"72', "72"),
+        ('72"', "72"),
+        ("", ""),
+    ],
+)
+@pytest.mark.parametrize("comma", [",  # mm", ",", ""])
+def test_a_value_not_written_as_asked_costs_no_other_answer(tmp_path, monkeypatch, value, answer, comma):
+    monkeypatch.chdir(tmp_path)
+    code = f'# Your answers.\r\nanswers = {{\n  "a": "é 1",  # deg\n  "rA": {value}{comma}\n  "b": 2,\n  "c": "3"}}\n'
+    if "\n" in value and not comma:
+        return
+    rows, rejected = read(tmp_path, "a.ipynb", notebook(code))
+    assert [(r.part, r.answer) for r in rows] == [("a", "é 1"), ("rA", answer), ("b", 2), ("c", "3")]
+    assert rejected == []
+    assert not (tmp_path / "ran").exists()
+
+
+def test_an_answers_cell_that_cannot_be_read_is_told_by_its_line_and_part(tmp_path):
+    code = 'answers = {\n  "a": "1",\n  "rA": "2" "b": "3",\n}'
+    _, (rejected,) = read(tmp_path, "ann.ipynb", notebook(code, about={"exercise": "x", "seed": 1}))
+    assert rejected.source.endswith("ann.ipynb")
+    assert (
+        "line 3, part rA, is not written as in the notebook: quotes around text, a comma" in rejected.reason
+    )
+    assert (rejected.row["student"], rejected.row["exercise"]) == ("ann", "x")
 
 
 @pytest.mark.parametrize(
@@ -196,12 +240,18 @@ def test_folders_are_walked_in_name_order_and_strangers_are_reported(tmp_path):
     for name in ("b.csv", "a.json", "sub/c.ipynb", "notes.docx", ".hidden/x.csv"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text("x")
-    found = list(find([tmp_path, tmp_path / "none.csv"]))
+    found = list(find([tmp_path]))
     assert [p.name for p in found if isinstance(p, Path)] == ["a.json", "b.csv", "c.ipynb"]
-    assert ["docx" in r.reason or "no such file" in r.reason for r in found if isinstance(r, Rejected)] == [
-        True,
-        True,
-    ]
+    assert ["docx" in r.reason for r in found if isinstance(r, Rejected)] == [True]
+
+
+def test_a_path_that_is_not_there_is_told_with_the_nearest(tmp_path):
+    (tmp_path / "returned").mkdir()
+    (tmp_path / "returned" / "a.csv").write_text(HEADER)
+    with pytest.raises(BadInput, match=r"no such file or folder: .*retuned \(did you mean .*returned/\?\)"):
+        list(find([tmp_path / "returned", tmp_path / "retuned"]))
+    with pytest.raises(BadInput, match=r"no such file or folder: [^(]*zzz$"):
+        list(find([tmp_path / "nowhere" / "zzz"]))
 
 
 @given(st.lists(st.text("ab1,\"° '", max_size=12), min_size=1, max_size=8))
