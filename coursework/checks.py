@@ -96,7 +96,9 @@ def _check_one(root: str, name: str, variants: int) -> Report:
     try:
         return check(open_course(root)[name], variants)
     except CourseworkError as fault:
-        return Report(name, failures=[str(fault)])
+        report = Report(name)
+        report.fail(str(fault))
+        return report
 
 
 def _check_variants(exercise: CourseExercise, count: int, report: Report) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from coursework.errors import BadInput, CourseworkError, WrongValue, counted
-from coursework.printing import print_json, print_table, progress_bar
+from coursework.printing import print_json, print_note, print_table, progress_bar
 
 if TYPE_CHECKING:
     from coursework.course import Course
@@ -879,7 +879,7 @@ def check(context: click.Context, exercises: Sequence[str], count: int, as_json:
     else:
         print_table(check_report.table(reports))
         for note in check_report.notes(reports):
-            click.echo(note)
+            print_note(note)
         for report in reports:
             for failure in report.failures[:20]:
                 click.echo(f"{report.name}: {failure}")
