@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.errors import BadCourse, CourseworkError, Starved
+from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starved, nearest
 from coursework.graph import Graph
 from coursework.model import Bound, Exercise, GivenSpec
 
@@ -223,5 +223,9 @@ def check_conditions(name: str, exercise: Exercise) -> None:
     graph, names = conditions(exercise)
     try:
         graph.plan(names, exercise.given)
+    except MissingQuantity as fault:
+        known = {*exercise.given, *graph.quantities} - {*names}
+        near = nearest(fault.names[0], known)
+        raise BadCourse(f"{name}: a condition cannot be evaluated: {fault.needed}{near}") from fault
     except CourseworkError as fault:
         raise BadCourse(f"{name}: a condition cannot be evaluated: {fault}") from fault
