@@ -124,6 +124,20 @@ def test_a_fault_is_told_once_without_the_name_that_is_printed_before_it(small_c
     assert len(failures) == len(set(failures))
 
 
+def test_a_function_that_fails_everywhere_is_told_once(small_course):
+    path = small_course / "solutions" / "crank_pin.py"
+    path.write_text(path.read_text("utf-8").replace("return r * omega\n", "return r * omegga\n"), "utf-8")
+    (failure,) = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    assert "name 'omegga' is not defined" in failure
+
+
+def test_a_parameter_that_nothing_gives_is_told_with_the_nearest_name(small_course):
+    path = small_course / "solutions" / "crank_pin.py"
+    path.write_text(path.read_text("utf-8").replace("def x(r, theta)", "def x(r, thta)"), "utf-8")
+    failures = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    assert failures == ["solutions/crank_pin.py: x needs thta, which is not given; did you mean 'theta'?"]
+
+
 def test_a_course_without_solutions_is_told_so_once_and_without_numbers_that_are_none(small_course):
     shutil.rmtree(small_course / "solutions")
     report = check(coursework.open_course(small_course)["crank_pin"], 2)
