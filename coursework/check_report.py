@@ -31,8 +31,10 @@ class Report:
         return not self.failures
 
     def fail(self, what: str) -> None:
-        """A promise is broken: how, in one line."""
-        self.failures.append(what)
+        """A promise is broken: how, in one line; said once, however often it is met."""
+        what = what.removeprefix(f"{self.name}: ")  # whoever prints it says whose it is
+        if what not in self.failures:
+            self.failures.append(what)
 
     def as_json(self) -> dict[str, Any]:
         """What ``coursework check --json`` prints of it."""
@@ -43,48 +45,71 @@ class Report:
             "counts": dict(self.counts),
             "mistakes": {n: dict(t) for n, t in self.mistakes.items()},
             "refused": dict(self.refused),
-            "conditioning": dict(zip(("median", "largest"), self.conditioning, strict=True)),
+            "conditioning": {
+                name: value if math.isfinite(value) else None
+                for name, value in zip(("median", "largest"), self.conditioning, strict=True)
+            },
             "cases": {n: dict(c) for n, c in self.cases.items()},
             "failures": self.failures,
         }
 
 
 def table(reports: Sequence[Report]) -> list[Mapping[str, Any]]:
-    """A line an exercise, for printing."""
+    """A line an exercise, for printing: narrow enough for 80 columns."""
     return [
         {
             "exercise": r.name,
             "variants": r.variants,
-            "draws kept": f"{100 * r.acceptance:.0f} %" if r.variants else "",
-            "worth issuing": _share_worthy(r),
-            "right answers": r.counts["right answers"],
-            "rounded": sum(r.counts[f"rounding to {d}"] for d in KEPT_DIGITS),
-            "mistakes": r.counts["mistakes recognised"],
-            "slips": r.counts["slips recognised"],
-            "loops": r.counts["loops told"],
-            "followed": r.counts["follow-through"],
-            "nonsense": r.counts["nonsense"],
+            "draws\nkept": f"{100 * r.acceptance:.0f} %" if r.variants else "",
+            "worth\nissuing": _share_worthy(r),
+            "tried": sum(_tried(r).values()),
             "failures": len(r.failures),
         }
         for r in reports
     ]
 
 
+def _tried(report: Report) -> dict[str, int]:
+    """How many answers of each kind were marked; not the kinds that the exercise has none of."""
+    counts = report.counts
+    kinds = {
+        "right answers": counts["right answers"],
+        "rounded": sum(counts[f"rounding to {d}"] for d in KEPT_DIGITS),
+        "mistakes": counts["mistakes recognised"],
+        "slips": counts["slips recognised"],
+        "loops": counts["loops told"],
+        "followed": counts["follow-through"],
+        "nonsense": counts["nonsense"],
+    }
+    return {kind: count for kind, count in kinds.items() if count}
+
+
 def notes(reports: Sequence[Report]) -> list[str]:
-    """What the variants are like: what refuses most draws, conditioning, and the branches met."""
+    """What was tried, and what the variants are like: conditioning, the branches met, what refuses most draws."""
     lines = []
     for r in reports:
         if not r.variants:
             continue
+        told = (
+            [f"tried {', '.join(f'{count} {kind}' for kind, count in _tried(r).items())}"]
+            if _tried(r)
+            else []
+        )
         median, largest = r.conditioning
-        line = f"{r.name}: rounding takes {100 * median:.0f} % of what a variant may have, {100 * largest:.0f} % at most"
+        if math.isfinite(median):
+            told.append(
+                f"rounding takes {100 * median:.0f} % of what a variant may have, {100 * largest:.0f} % at most"
+            )
         for name, cases in r.cases.items():
             if len(cases) == 1 and cases.total() < r.variants:
                 continue  # a question of a bank: its answer is the same wherever it is asked
-            told = ", ".join(f"{case} {100 * n / r.variants:.0f} %" for case, n in cases.most_common())
-            line += f"; {name}: {told}"
-        flaws = ", ".join(f"{flaw} ({n})" for flaw, n in r.refused.most_common(3))
-        lines.append(line + (f"; passed over most for {flaws}" if flaws else ""))
+            met = ", ".join(f"{case} {100 * n / r.variants:.0f} %" for case, n in cases.most_common())
+            told.append(f"{name}: {met}")
+        if r.refused:
+            flaws = ", ".join(f"{flaw} ({n})" for flaw, n in r.refused.most_common(3))
+            told.append(f"passed over most for {flaws}")
+        if told:
+            lines.append(f"{r.name}: {'; '.join(told)}")
     return lines
 
 

@@ -16,7 +16,7 @@ from coursework import draws
 from coursework.check_report import KEPT_DIGITS, RESIDUAL, Report
 from coursework.comparing import distance
 from coursework.course import Course, open_course
-from coursework.errors import CourseworkError, Starved
+from coursework.errors import CourseworkError, MissingQuantity, Starved, nearest
 from coursework.exercise import ALL, CourseExercise
 from coursework.graph import plain_scalar
 from coursework.issuing import distinct_variants
@@ -40,9 +40,11 @@ EXTREMES = ("0", "1e308", "-1e308", "1e-320")  #: coordinates too
 def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) -> Report:
     """Try every promise on the variants of seeds 0, 1, …
 
-    Whatever breaks is reported, and the rest is tried all the same.
+    Whatever breaks is reported, and the rest is tried all the same, unless no variant has an answer.
     """
     report = Report(exercise.name)
+    if not check_needs(exercise, report):
+        return report
     steps: Sequence[Callable[[], None]] = (
         lambda: check_texts(exercise, report),
         lambda: check_symbols(exercise, report),
@@ -96,7 +98,9 @@ def _check_one(root: str, name: str, variants: int) -> Report:
     try:
         return check(open_course(root)[name], variants)
     except CourseworkError as fault:
-        return Report(name, failures=[str(fault)])
+        report = Report(name)
+        report.fail(str(fault))
+        return report
 
 
 def _check_variants(exercise: CourseExercise, count: int, report: Report) -> None:
@@ -105,7 +109,8 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
     try:
         drawn = distinct_variants(exercise, 0, count, lang, report.refused, (ALL,))
     except Starved as fault:
-        report.fail(str(fault))
+        if not any(told in str(fault) for told in report.failures):
+            report.fail(str(fault))
         drawn = worthy(exercise, exercise.variants(range(count), lang, (ALL,)))
     report.variants = len(drawn)
     if not drawn:
@@ -184,6 +189,19 @@ def check_texts(exercise: CourseExercise, report: Report) -> None:
 
 def _every_name(exercise: CourseExercise, variant: Variant) -> dict[str, object]:
     return {**dict.fromkeys(exercise.solution.graph.quantities, "0"), **variant.printed}
+
+
+def check_needs(exercise: CourseExercise, report: Report) -> bool:
+    """What is asked follows from what is given; False where a function needs what nothing gives."""
+    try:
+        exercise.plan([part.quantity for part in exercise.spec.parts], effects=exercise.spec.effects)
+    except MissingQuantity as fault:
+        near = nearest(fault.names[0], ({*exercise.spec.given} | exercise.quantity_names) - {*fault.names})
+        report.fail(f"solutions/{exercise.name}.py: {fault.needed}{near}")
+        return False
+    except CourseworkError:
+        pass  # it is told by what needs it
+    return True
 
 
 def check_symbols(exercise: CourseExercise, report: Report) -> None:

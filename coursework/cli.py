@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.errors import BadInput, CourseworkError, WrongValue, counted
-from coursework.printing import print_json, print_table, progress_bar
+from coursework.errors import BadInput, CourseworkError, MissingQuantity, WrongValue, counted
+from coursework.printing import print_json, print_note, print_table, progress_bar
 
 if TYPE_CHECKING:
     from coursework.course import Course
@@ -180,25 +180,35 @@ def _exercise_names(course: Course, names: Sequence[str]) -> tuple[str, ...]:
 @cli.command("list")
 @_json_option
 @click.pass_context
-def list_exercises(context: click.Context, as_json: bool) -> None:
-    """Say which exercises the course has."""
+def list_exercises(context: click.Context, as_json: bool) -> int:
+    """Say which exercises the course has; status 1 when one of them is broken."""
     course = _course(context)
-    rows = [
-        {
-            "exercise": name,
-            "title": {lang: course[name].title(lang) for lang in course[name].languages},
-            "version": course[name].version,
-            "parts": sum(not part.by_request for part in course[name].spec.parts),
-            "by_request": sum(part.by_request for part in course[name].spec.parts),
-        }
-        for name in course.names
-    ]
+    rows, faults = [], {}
+    for name in course.names:
+        try:
+            rows.append(_listed(course[name]))
+        except CourseworkError as fault:
+            faults[name] = str(fault)
     if as_json:
         print_json(rows)
     else:
         print_table([{**r, "title": "\n".join(r["title"].values())} for r in rows])
-        if not rows:
+        if not course.names:
             click.echo("This course has no exercise yet.")
+    for name, told in faults.items():
+        _complain(f"{name} cannot be listed: {told.removeprefix(f'{name}: ')}")
+    return FOUND if faults else DONE
+
+
+def _listed(exercise: Any) -> dict[str, Any]:
+    """What ``list`` says of an exercise."""
+    return {
+        "exercise": exercise.name,
+        "title": {lang: exercise.title(lang) for lang in exercise.languages},
+        "version": exercise.version,
+        "parts": sum(not part.by_request for part in exercise.spec.parts),
+        "by_request": sum(part.by_request for part in exercise.spec.parts),
+    }
 
 
 @cli.command()
@@ -276,7 +286,10 @@ def solve(
 
     one = _course(context)[exercise]
     given = _settings(settings)
-    found = one.solve(**given, only=_split(only) or None, effects=_split(effects))
+    try:
+        found = one.solve(**given, only=_split(only) or None, effects=_split(effects))
+    except MissingQuantity as fault:
+        raise BadInput(fault.advising(" ".join(f"--set {n}=…" for n in fault.names))) from fault
     used = {n: one.spec.given[n].default for n in one.spec.given if one.spec.given[n].default is not None}
     used |= {n: one.intake.value(n, v) for n, v in given.items()}
     units = one.units
@@ -882,7 +895,7 @@ def check(context: click.Context, exercises: Sequence[str], count: int, as_json:
     else:
         print_table(check_report.table(reports))
         for note in check_report.notes(reports):
-            click.echo(note)
+            print_note(note)
         for report in reports:
             for failure in report.failures[:20]:
                 click.echo(f"{report.name}: {failure}")

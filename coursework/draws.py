@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.errors import BadCourse, CourseworkError, Starved
+from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starved, nearest
 from coursework.graph import Graph
 from coursework.model import Bound, Exercise, GivenSpec
 
@@ -108,14 +108,15 @@ def conditions(exercise: Exercise) -> tuple[Graph, tuple[str, ...]]:
 def kept(exercise: Exercise, drawn: Mapping[str, np.ndarray]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Which candidates are variants, and for each condition which it refuses.
 
-    Shapes ``(n,)``. A candidate with an empty range is refused as ``range is empty``.
+    Shapes ``(n,)``. A candidate with an empty range is refused as ``range of NAME is empty``, of the first such.
     """
     size = len(next(iter(drawn.values())))
+    refused = {}
     empty = np.zeros(size, dtype=bool)
-    for values in drawn.values():
-        if values.dtype.kind == "f":
-            empty |= np.isnan(values)
-    refused = {"range is empty": empty} if empty.any() else {}
+    for name, values in drawn.items():
+        if values.dtype.kind == "f" and (here := np.isnan(values) & ~empty).any():
+            refused[f"range of {name} is empty"] = here
+            empty |= here
     graph, names = conditions(exercise)
     usable = {n: drawn[n] for n in drawn if n in graph.leaves}
     for name, answer in graph.evaluate(names, usable).items():
@@ -136,7 +137,6 @@ def draw(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[dict[str, 
     """
     found: list[dict[str, float | str] | None] = [None] * len(seeds)
     pending = np.arange(len(seeds))
-    refusals: Counter[str] = Counter()
     width = len(exercise.given)
     for block in range(MAX_BLOCKS):
         # A block of candidates for each pending seed; few at a time, so that memory stays flat.
@@ -144,8 +144,7 @@ def draw(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[dict[str, 
         for chunk in _chunks(pending, 4096):
             words = np.concatenate([_words(name, exercise.version, seeds[i], block, width) for i in chunk])
             drawn = candidates(exercise, words)
-            good, refused = kept(exercise, drawn)
-            refusals.update({condition: int(mask.sum()) for condition, mask in refused.items()})
+            good, _ = kept(exercise, drawn)
             good = good.reshape(len(chunk), BLOCK)
             first = good.argmax(axis=1)
             hit = good.any(axis=1)
@@ -157,10 +156,18 @@ def draw(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[dict[str, 
         pending = np.concatenate(still) if still else pending[:0]
         if not len(pending):
             return found  # type: ignore[return-value]
-    tried = BLOCK * MAX_BLOCKS
+    raise _starved(name, exercise, seeds[pending[0]])
+
+
+def _starved(name: str, exercise: Exercise, seed: int) -> Starved:
+    """What is said of a seed without a variant: which conditions refuse most of its draws."""
+    width = len(exercise.given)
+    words = np.concatenate([_words(name, exercise.version, seed, b, width) for b in range(MAX_BLOCKS)])
+    _, refused = kept(exercise, candidates(exercise, words))
+    refusals = Counter({condition: int(mask.sum()) for condition, mask in refused.items()})
     worst = ", ".join(f"{condition} ({count} times)" for condition, count in refusals.most_common(3) if count)
-    raise Starved(
-        f"{name}: seed {seeds[pending[0]]} found no variant in {tried} draws; refused by {worst}; "
+    return Starved(
+        f"{name}: seed {seed} found no variant in {len(words)} draws; refused by {worst}; "
         "widen a range or relax the condition"
     )
 
@@ -216,5 +223,9 @@ def check_conditions(name: str, exercise: Exercise) -> None:
     graph, names = conditions(exercise)
     try:
         graph.plan(names, exercise.given)
+    except MissingQuantity as fault:
+        known = {*exercise.given, *graph.quantities} - {*names}
+        near = nearest(fault.names[0], known)
+        raise BadCourse(f"{name}: a condition cannot be evaluated: {fault.needed}{near}") from fault
     except CourseworkError as fault:
         raise BadCourse(f"{name}: a condition cannot be evaluated: {fault}") from fault

@@ -22,7 +22,19 @@ class UnknownName(CourseworkError, LookupError):
 
 
 class MissingQuantity(CourseworkError, TypeError):
-    """A request needs a quantity that nothing gives."""
+    """A request needs quantities that nothing gives: ``names``; ``needed`` says what needs them."""
+
+    def __init__(self, needed: str, names: tuple[str, ...] = ()):
+        super().__init__(needed, names)
+        self.needed = needed
+        self.names = names
+
+    def __str__(self) -> str:
+        return self.advising(f"{', '.join(f'{name}=…' for name in self.names)} to the request")
+
+    def advising(self, what: str) -> str:
+        """The message, with what to add."""
+        return f"{self.needed}; add {what}" if self.names else self.needed
 
 
 class Cycle(CourseworkError, ValueError):

@@ -116,6 +116,18 @@ def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
             raise BrokenFunction(f"{_place(function)} fails: {type(fault).__name__}: {fault}") from fault
 
 
+def _missing(found: Mapping[str, str]) -> MissingQuantity:
+    """What is said of quantities that are not given; with each, the one that needs it first."""
+    names = tuple(found)
+    listed = f"{', '.join(names[:-1])} and {names[-1]}" if names[1:] else names[0]
+    are = "are" if names[1:] else "is"
+    needing = set(found.values())
+    who = needing.pop() if len(needing) == 1 else "the request"
+    return MissingQuantity(
+        f"{who} needs {listed}, which {are} not given" if who else f"{listed} {are} not given", names
+    )
+
+
 class Graph:
     """Quantities by name. Immutable; plans are remembered for each shape of request."""
 
@@ -220,13 +232,14 @@ class Graph:
         order: dict[str, tuple[Callable, tuple[str, ...]]] = {}
         constants: dict[str, Value] = {}
         path: list[str] = []
+        missing: dict[str, str] = {}  # and what needs each first
 
         def visit(name: str) -> None:
             if name in given or name in order or name in found:
                 return
             if name not in self._nodes:
-                wanting = f"{path[-1]} needs {name}, which is" if path else f"{name} is"
-                raise MissingQuantity(f"{wanting} not given; add {name}=… to the request")
+                missing.setdefault(name, next((p for p in reversed(path) if not _is_hidden(p)), ""))
+                return
             if name in path:
                 loop = " -> ".join([*path[path.index(name) :], name])
                 raise Cycle(f"quantities need each other: {loop}; give one of them a value")
@@ -250,6 +263,8 @@ class Graph:
             if name not in self._known and name not in given:
                 raise unknown("quantity", name, self.quantities)
             visit(name)
+        if missing:
+            raise _missing(missing)
         steps = [(name, function, arguments) for name, (function, arguments) in order.items()]
         return tuple(order), steps, constants
 

@@ -25,6 +25,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 from coursework.errors import BadCourse, WrongValue, nearest
+from coursework.units import check_unit
 
 KINDS = ("number", "angle", "integer", "choice", "point", "point_on_line", "direction", "equation")
 _EXACT_KINDS = ("integer", "choice", "equation")
@@ -313,9 +314,12 @@ class Exercise:
             )
         if not self.given or not self.parts:
             raise BadCourse("an exercise needs given quantities and parts; one of them is empty")
-        for name in self.given:
+        for name, spec in self.given.items():
             if not _NAME.match(name):
                 raise BadCourse(f"{name!r} is no name for a quantity; use letters, digits and underscores")
+            check_unit(f"the unit of {name}", spec.unit)
+        for part in self.parts:
+            check_unit(f"the unit of part {part.id!r}", part.unit)
         ids = [part.id for part in self.parts]
         twice = sorted({i for i in ids if ids.count(i) > 1})
         if twice:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -34,6 +35,14 @@ def print_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
     console = Console()
     # Piped into a file there is no width to fit: nothing is cut.
     Console(width=None if console.is_terminal else 200).print(table)
+
+
+def print_note(text: str) -> None:
+    """A line of words; on a terminal wrapped to its width, the lines after the first indented."""
+    from rich.console import Console
+
+    console = Console()
+    click.echo(textwrap.fill(text, console.width, subsequent_indent="  ") if console.is_terminal else text)
 
 
 @contextmanager

@@ -35,6 +35,7 @@ import numpy as np
 from coursework.errors import BadCourse, CourseworkError, unknown
 from coursework.graph import Graph, Node, Replacement
 from coursework.loops import Loop, quantities, stated
+from coursework.units import check_unit
 
 if TYPE_CHECKING:
     from coursework.polygons import Polygon
@@ -241,6 +242,9 @@ class Solution:
                 graph.replacing(wrong.replacement)
             except CourseworkError as fault:
                 raise BadCourse(f"solutions/{name}.py: mistake {wrong.name!r}: {fault}") from fault
+        units = dict(getattr(module, "UNITS", {}))
+        for quantity, unit in units.items():
+            check_unit(f"solutions/{name}.py: UNITS of {quantity}", unit)
         return Solution(
             name,
             graph,
@@ -249,7 +253,7 @@ class Solution:
             own.get("residual"),
             own.get("figure"),
             own.get("motion"),
-            dict(getattr(module, "UNITS", {})),
+            units,
             dict(getattr(module, "SYMBOLS", {})),
             frozenset(getattr(module, "STRUCTURES", ())),
             judges,

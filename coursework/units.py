@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 
-from coursework.errors import WrongUnit
+from coursework.errors import BadCourse, WrongUnit
 from coursework.spelling import shorten, tidy, without_latex
 
 #: What the entries of a dimension count. A cycle is a count (1 Hz is one a second) that is a turn
@@ -298,8 +298,17 @@ def parse_unit(text: str) -> Unit:
         near = [s for s in known if s.casefold() == piece.casefold()]
         near = near or difflib.get_close_matches(piece, known, n=1, cutoff=0.5)
         hint = f"; did you mean {near[0]!r}?" if near else "; units are such as mm, rad/s, N.m, kg.m^2"
-        raise UnknownUnit(f"no unit {piece!r} in {shorten(text)!r}{hint}", found=piece)
+        where = f" in {shorten(text)!r}" if piece != shorten(text) else ""
+        raise UnknownUnit(f"no unit {piece!r}{where}{hint}", found=piece)
     return unit
+
+
+def check_unit(whose: str, text: str) -> None:
+    """Refuse a course that states a unit that is none; ``whose`` begins the message."""
+    try:
+        parse_unit(text)
+    except WrongUnit as fault:
+        raise BadCourse(f"{whose}: {fault}") from fault
 
 
 # --- converting -------------------------------------------------------------------------

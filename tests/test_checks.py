@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import shutil
+from collections import Counter
 
 import pytest
 
 import coursework
+from coursework.check_report import Report, notes, table
 from coursework.checks import agrees, check
 from coursework.language import file_of
+from coursework.printing import print_table
 
 X = "return r * cos(theta)"
 
@@ -109,6 +113,48 @@ def test_a_solution_without_its_text_is_told_by_its_folder(small_course):
 def test_a_course_without_any_title_is_headed_by_its_folder(small_course):
     (small_course / "exercises" / "course.toml").unlink()
     assert check(coursework.open_course(small_course)["crank_pin"], 2).failures == []
+
+
+def test_a_fault_is_told_once_without_the_name_that_is_printed_before_it(small_course):
+    path = small_course / "exercises" / "crank_pin.py"
+    path.write_text(path.read_text("utf-8").replace("theta % 90 >= 10", "theta > 999"), "utf-8")
+    failures = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    starved = [f for f in failures if "found no variant" in f]
+    assert [f.split(" ")[0] for f in starved] == ["seed"]
+    assert len(failures) == len(set(failures))
+
+
+def test_a_function_that_fails_everywhere_is_told_once(small_course):
+    path = small_course / "solutions" / "crank_pin.py"
+    path.write_text(path.read_text("utf-8").replace("return r * omega\n", "return r * omegga\n"), "utf-8")
+    (failure,) = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    assert "name 'omegga' is not defined" in failure
+
+
+def test_a_parameter_that_nothing_gives_is_told_with_the_nearest_name(small_course):
+    path = small_course / "solutions" / "crank_pin.py"
+    path.write_text(path.read_text("utf-8").replace("def x(r, theta)", "def x(r, thta)"), "utf-8")
+    failures = check(coursework.open_course(small_course)["crank_pin"], 2).failures
+    assert failures == ["solutions/crank_pin.py: x needs thta, which is not given; did you mean 'theta'?"]
+
+
+def test_a_course_without_solutions_is_told_so_once_and_without_numbers_that_are_none(small_course):
+    shutil.rmtree(small_course / "solutions")
+    report = check(coursework.open_course(small_course)["crank_pin"], 2)
+    assert len(report.failures) == 1
+    assert "no solution of 'crank_pin'" in report.failures[0]
+    assert not any("nan" in note for note in notes([report]))
+    assert "NaN" not in json.dumps(report.as_json())
+
+
+def test_the_table_of_a_check_is_read_on_80_columns(capsys):
+    counts = Counter({"right answers": 24_946, "mistakes recognised": 26_601})
+    report = Report("acceleration_polygon_slider", 200, counts, acceptance=0.4)
+    print_table(table([report]))
+    lines = capsys.readouterr().out.splitlines()
+    assert max(map(len, lines)) <= 80
+    assert any("acceleration_polygon_slider" in line and "51547" in line for line in lines)
+    assert "24946 right answers, 26601 mistakes" in notes([report])[0]
 
 
 def test_a_printed_value_agrees_to_its_last_digit():

@@ -451,7 +451,7 @@ def test_check_reports_a_broken_promise_with_status_1(cli, small_course):
         (["solve", "slotted_mechanism", "--set", "r1"], "NAME=VALUE"),
         (["solve", "slotted_mechanism", "--set", "r1=3kg", "--only", "rA"], "r1 is in mm"),
         (["solve", "slotted_mechanism", "--set", "r1=-3", "--only", "rA"], "r1 must be positive"),
-        (["solve", "slotted_mechanism", "--set", "r1=3", "--only", "rA"], "needs r2"),
+        (["solve", "slotted_mechanism", "--set", "r1=3", "--only", "rA"], "rA needs r2 and theta2, which are not given; add --set r2=… --set theta2=…"),
         (["solve", "slotted_mechanism", "--set", "r9=3", "--only", "rA"], "no quantity 'r9'"),
         (["solve", "slotted_mechanism", "--set", "r1=300", "--set", "r2=100", "--only", "rAA"], "did you mean 'rA'"),
         (["solve", "slotted_mechanism", "--set", "r1=100", "--set", "r2=300", "--only", "swing"], "swing does not exist"),
@@ -519,10 +519,31 @@ def test_a_folder_named_for_the_issued_file_in_it_is_told(cli, tmp_path):
 def test_an_author_is_told_the_file_and_line_of_a_slip(cli, small_course):
     path = small_course / "exercises" / "crank_pin.py"
     path.write_text(path.read_text("utf-8").replace('Part("x", unit="mm"),', 'Part("x", unit="mm"'), "utf-8")
-    status, _, err = cli("--course", small_course, "list")
+    status, _, err = cli("--course", small_course, "show", "crank_pin")
     assert status == 2
     assert "exercises/crank_pin.py" in err
     assert "line" in err
+
+
+def test_list_names_the_others_where_one_exercise_is_broken(cli, small_course):
+    assert cli("new", small_course, "tram_linkage")[0] == 0
+    path = small_course / "exercises" / "crank_pin.py"
+    path.write_text(path.read_text("utf-8").replace('Part("x", unit="mm"),', 'Part("x", unit="mm"'), "utf-8")
+    status, out, err = cli("--course", small_course, "list")
+    assert status == 1
+    assert "tram_linkage" in out
+    assert err.startswith("coursework: crank_pin cannot be listed: exercises/crank_pin.py")
+    status, out, err = cli("--course", small_course, "list", "--json")
+    assert status == 1
+    assert [row["exercise"] for row in json.loads(out)] == ["tram_linkage"]
+    assert "crank_pin" in err
+
+
+def test_solve_asks_for_all_that_is_missing_as_it_is_written(cli):
+    status, _, err = cli("solve", "slotted_mechanism", "--set", "theta2=30")
+    assert status == 2
+    assert "r1, r2 and omega2, which are not given; add --set r1=… --set r2=… --set omega2=…" in err
+    assert "_arm" not in err
 
 
 def test_help_answers_without_loading_the_heavy_libraries():

@@ -11,7 +11,7 @@ import click
 import pytest
 
 import coursework
-from coursework.cli import cli
+from coursework.cli import cli, run
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
@@ -126,6 +126,18 @@ def test_pages_do_show_commands():
 def test_a_command_that_does_not_exist_would_be_found(wrong):
     with pytest.raises((click.UsageError, AssertionError)):
         read_command(wrong)
+
+
+@pytest.mark.parametrize(("page", "course"), [("first_hour.md", None), ("writing.md", "mine")])
+def test_what_check_is_shown_to_print_is_what_it_prints(page, course, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    if course is not None:
+        assert run(["new", course]) == run(["new", course, "tram_linkage"]) == 0
+    (shown,) = (block for block in blocks(DOCS / page, "console") if " check " in block and "┏" in block)
+    command, printed = shown.removeprefix("$ coursework ").split("\n", 1)
+    capsys.readouterr()
+    assert run(shlex.split(command)) == 0
+    assert capsys.readouterr().out == printed
 
 
 # ------------------------------------------------------------------------- code

@@ -115,6 +115,12 @@ def test_starving_names_the_condition_that_refuses():
         draws.draw("test", exercise, [3])
 
 
+def test_an_empty_range_is_named():
+    given = {"x": ranged(1, 9), "y": ranged(lambda x: x + 10, 9), "z": ranged(lambda y: y, 9)}
+    with pytest.raises(Starved, match=r"refused by range of y is empty \(4096 times\); widen"):
+        draws.draw("test", exercise_of(given), [3, 4])
+
+
 def test_a_condition_on_something_unknown_is_refused_at_once():
     exercise = exercise_of({"r": ranged(1, 9)}, keep=(never,))
     with pytest.raises(BadCourse, match="never needs x"):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -155,6 +157,15 @@ def test_a_given_value_opens_a_cycle():
 def test_a_missing_quantity_is_named_with_what_needs_it():
     with pytest.raises(MissingQuantity, match=r"volume needs depth.*add depth="):
         GRAPH.evaluate(("volume",), {"width": 1.0, "height": 1.0})
+
+
+def test_all_that_is_missing_is_named_at_once():
+    with pytest.raises(
+        MissingQuantity, match=r"the request needs width, height and depth, which are not given"
+    ) as caught:
+        GRAPH.evaluate(("volume",), {})
+    assert caught.value.names == ("width", "height", "depth")
+    assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
 
 
 def test_an_unknown_name_brings_the_nearest():

@@ -35,7 +35,7 @@ def test_a_copy_of_the_english_words_is_a_language_with_a_byte_order_mark_too(sp
 @pytest.mark.parametrize(
     ("old", "new", "told"),
     [
-        ('data = "Given"', 'data = "Datos', "at line 19"),
+        ('data = "Given"', 'data = "Datos', "column 14)"),
         ('data = "Given"', 'data = "Dátos"', "is not UTF-8"),
         ('data = "Given"\n', "", "lacks sheet.data"),
         ('data = "Given"', "data = 1", "sheet.data is to be like the English 'Given'; found 1"),
