@@ -23,7 +23,7 @@ from coursework.equations import parse_equation
 from coursework.errors import WrongUnit
 from coursework.expressions import MAX_LENGTH, Expression, Unreadable, parse_expression
 from coursework.language import languages, words
-from coursework.spelling import shorten, tidy, unwrapped, without_latex
+from coursework.spelling import primes_as_dots, shorten, spelled_out, tidy, unwrapped, without_latex
 from coursework.units import Unit, convert, find_unit, parse_unit, same_dimension
 
 _MAX_INTEGER = 10**15
@@ -759,12 +759,23 @@ def _by_label(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
 
 
 def _is_called(text: str, label: str) -> bool:
-    """Whether a text is a label; one that is a formula is told from others by its operators too."""
-    if _folded(text) != _folded(label):
+    """Whether a text is a label; one that is a formula is told from others by its operators too, not by its spaces."""
+    if _IN_WORDS.search(_COMMANDS.sub("", label)):
+        return _folded(text) == _folded(label)
+    if _squeezed(text) != _squeezed(label):
         return False
-    if not (label.startswith("$") and label.endswith("$")):
-        return True
-    return _operators(text) in ("", _operators(label))
+    written, offered = _operators(text), _operators(label)
+    return written in ("", offered) or "/" not in written + offered
+
+
+_COMMANDS = re.compile(r"\\[A-Za-z]+")
+_IN_WORDS = re.compile(r"[^\W\d_]{3,}")
+
+
+@lru_cache(maxsize=4096)
+def _squeezed(formula: str) -> str:
+    """A formula without its spaces and bars, Greek letters and dots spelled."""
+    return _folded(primes_as_dots(spelled_out(formula.strip("$ "))).replace("*", " ")).replace(" ", "")
 
 
 @lru_cache(maxsize=4096)

@@ -167,6 +167,10 @@ class Variant:
         """The labels of a case, and each without its article."""
         for lang in self._langs:
             yield (label := self.label(part, case, lang))
+            if "$" in label:
+                from coursework.telling import plain_line
+
+                yield plain_line(label, lang)  # what is offered is read
             for article in words(lang)["choices"]["articles"]:
                 start = article if article.endswith("'") else f"{article} "
                 if label.replace("’", "'").lower().startswith(start):

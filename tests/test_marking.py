@@ -8,9 +8,11 @@ import re
 import numpy as np
 import pytest
 
+from coursework import marking
 from coursework.comparing import distance
 from coursework.errors import NoSolution, UnknownName, WrongValue
 from coursework.model import Part
+from coursework.telling import plain_line
 
 GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "theta2": 135.0, "omega2": 5.0, "alpha2": 0.0}
 
@@ -359,6 +361,17 @@ def test_what_a_drawing_lacks_and_a_scale_that_is_none_are_told(course, lang, mi
     drawn = told(course, "velocity_polygon", 1, lang, kv="-10", p="(0;0)", a="(1;2)", b="(3;4)")
     assert scale in drawn["kv"].feedback
     assert scale not in drawn["p"].feedback
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_every_choice_is_read_by_what_is_offered_for_it(course, lang):
+    """The label in one line of plain text, as a transcript or the feedback has it."""
+    for name in course.names:
+        variant = course[name].variant(1, lang, parts=["all"])
+        for part in variant.parts:
+            for case in part.choices if part.kind == "choice" else ():
+                reading = marking.read(variant, part, plain_line(variant.label(part.id, case), lang))
+                assert reading.values == (case,), (name, part.id, case, reading)
 
 
 @pytest.mark.parametrize("lang", ["fr", "en"])

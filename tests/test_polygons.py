@@ -397,7 +397,7 @@ def test_the_pages_of_the_drawings_are_of_their_own_size():
 def test_a_build_puts_the_drawings_beside_the_staffs_source_alone(tmp_path, capsys):
     out = tmp_path / "out"
     assert run(["build", "slotted_mechanism", "--formats", "tex", "--lang", "en", "--out", str(out)]) == DONE
-    made = [path for path in out.rglob("*") if path.is_file()]
+    made = [path for path in out.rglob("*") if path.is_file() and not path.name.startswith(".")]
     assert f"{len(made)} files" in capsys.readouterr().out
     assert [path.parts[-3] for path in made if "polygons" in path.name] == ["instructor"]
     assert not [path for path in (out / "handouts").rglob("*.tex") if "[page=" in path.read_text("utf-8")]

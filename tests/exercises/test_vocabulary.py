@@ -64,7 +64,10 @@ def test_who_is_wrong_is_told_what_was_confused():
     mark = variant.grade({"coriolis_size": "once"})["coriolis_size"]
     assert mark.verdict == "mistake:coriolis_size_once"
     assert "twice" in mark.feedback
-    assert variant.grade({"coriolis_size": "b"})["coriolis_size"].verdict == "correct"
+    for answer in ("twice", "2 |ω ṙ|", "2|omega r_dot|", "2 ω ṙ", "2*|omega*rdot|", r"2\,|\omega\,\dot r|"):
+        assert variant.grade({"coriolis_size": answer})["coriolis_size"].verdict == "correct", answer
+    for answer in ("2 omega r", "b", "3 |ω ṙ|"):
+        assert variant.grade({"coriolis_size": answer})["coriolis_size"].verdict == "unreadable", answer
 
 
 @pytest.fixture
