@@ -458,7 +458,7 @@ def check_slips(variant: Variant, key: Key, report: Report) -> None:
 def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
     """Who errs once, much or little, and goes on rightly is marked wrong once."""
     parts = [p for p in variant.parts if p.kind in FOLLOWED and not p.judge]
-    half = parts[variant.seed % 2 : -1 : 2]  # the other half on the next variant
+    half = parts[variant.seed % 2 :: 2] or parts  # the other half on the next variant
     for first, wrong in ((part, value) for part in half for value in _little_and_much(part, key)):
         answers, expected, own = {first.id: wrong}, {}, {first.quantity: wrong}
         for part in parts[parts.index(first) + 1 :]:
