@@ -67,7 +67,7 @@ def place(staging: Path, out: Path, *, anew: bool) -> list[str]:
     _write(out, {**before, **{path: [*before.get(path, ()), made[path]] for path in put}})
     with ExitStack() as undo:
         for path in aside:
-            beside = _free_name(out / path)
+            beside = free_name(out / path)
             _move(out / path, beside, undo)
             notes.append(f"{out / path} was not as a build leaves it; it is now {beside.name}")
         for path in [path for path in gone if path not in mine] + put:
@@ -105,7 +105,7 @@ def _digest(file: Path) -> str:
         return hashlib.file_digest(data, "sha256").hexdigest()
 
 
-def _free_name(path: Path) -> Path:
+def free_name(path: Path) -> Path:
     """``answers.before.csv`` for ``answers.csv``, or the next such name that is free."""
     number = 1
     while True:

@@ -208,9 +208,8 @@ def check_symbols(exercise: CourseExercise, report: Report) -> None:
     """What is given or asked bears its symbol on the sheet too, not in the solution alone."""
     on_the_sheet = {*exercise.spec.given, *(part.quantity for part in exercise.spec.parts)}
     for name, symbol in exercise.solution.symbols.items():
-        stated = (
-            name in exercise.spec.symbols
-        )  # another form in formulas, a fraction say, is the author's choice
+        # Where the exercise has its own, another form in formulas, a fraction say, is the author's choice.
+        stated = name in exercise.spec.symbols
         if name in on_the_sheet and not stated and symbol != exercise.symbol(name):
             report.fail(
                 f"SYMBOLS of solutions/{exercise.name}.py names {name!r}, which is given or asked: its symbol belongs "

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from coursework import gradebook
+from coursework.build_folder import free_name
 from coursework.building import File, write, write_whole
 from coursework.course import Course
 from coursework.errors import BadInput, CourseworkError
@@ -105,9 +106,7 @@ def grade_files(
 
 def _kept(marks: Path) -> str:
     """Keep marks that were edited, beside those that take their place; says so."""
-    kept, number = marks.with_name("marks.before.csv"), 2
-    while kept.exists():
-        kept, number = marks.with_name(f"marks.before-{number}.csv"), number + 1
+    kept = free_name(marks)
     write_whole(kept, marks.read_bytes())
     return (
         f"{marks.name} had been edited, and is written anew: the edited one is kept as {kept}; a mark that is to last is "

@@ -181,11 +181,10 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             nearest = _nearest(part, reading, key, judged_by)
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
         before.shown.update(marks[i].matches)
-        if reading.status == "read" and part.kind in ("number", "angle", "integer", "choice"):
-            before.read.append((judged_by, reading))
         if marks[i].verdict == "correct":
             before.right.add(judged_by.quantity)
         if reading.status == "read" and part.kind in FOLLOWED:
+            before.read.append((judged_by, reading))
             before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
                 before.wrong.add(judged_by.quantity)

@@ -10,9 +10,9 @@ from coursework.course import Course
 from coursework.errors import CourseworkError
 from coursework.exercise import ALL, CourseExercise
 from coursework.language import words
-from coursework.rendering.markup import to_text
 from coursework.sheets import prompt
 from coursework.statistics import MistakeStatistics, PartStatistics, Statistics
+from coursework.telling import plain_line
 
 SHORT = 44  #: characters of a question's words, or of a mistake's, that stand for it
 _MEASURED_BY_SYMBOL = ("number", "angle", "integer")
@@ -66,7 +66,7 @@ class Names:
             said = prompt(exercise.variant(0, self._lang, (ALL,)), asked)
         except CourseworkError:
             return part.part
-        return shortened(_line(said, self._lang)) or part.part
+        return shortened(plain_line(said, self._lang)) or part.part
 
     # ---------------------------------------------------------------- mistakes
 
@@ -75,7 +75,7 @@ class Names:
         nothing where the course has none."""
         if one.kind == "slip":
             return self._slip(one.name)
-        told = [_line(text, self._lang) for text in self._told(one)]
+        told = [plain_line(text, self._lang) for text in self._told(one)]
         return _common(told) if told else ""
 
     def says_markdown(self, one: MistakeStatistics) -> str:
@@ -100,7 +100,7 @@ class Names:
     def _slip(self, kind: str) -> str:
         sentence = words(self._lang)["marking"].get(f"slip_{kind}", "")
         told = sentence.removeprefix("{name}").lstrip(" :\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}")
-        said = _line(_OPEN.sub("…", told), self._lang)
+        said = plain_line(_OPEN.sub("…", told), self._lang)
         return said[:1].upper() + said[1:]
 
     def _of_two_variants(self, name: str) -> list[Mapping[str, Any]]:
@@ -118,10 +118,6 @@ def shortened(text: str, most: int = SHORT) -> str:
         return text
     whole = text[:most].rpartition(" ")[0] or text[: most - 1]
     return whole.rstrip(" ,;:.") + "…"
-
-
-def _line(markdown: str, lang: str) -> str:
-    return " ".join(to_text(markdown, lang).split())
 
 
 def _common(texts: list[str]) -> str:

@@ -30,10 +30,10 @@ def in_perspective(rows, bodies=(), *, tall=36.0):
     several joints carries all their names."""
     places = [tuple(row["point"]) for row in rows]
     steps = list(dict.fromkeys(step for place in places for step in _steps(place)))
-    heights = [end.imag for step in steps for end in step] or [0.0]
-    lefts = [end.real for step in steps for end in step] or [0.0]
-    scale = min(_SCALE, tall / (max(heights) - min(heights) or 1.0))
-    corner = complex(min(lefts), min(heights)) + _CORNER / scale
+    ends = [end for step in steps for end in step] or [0j]
+    left, low, high = min(z.real for z in ends), min(z.imag for z in ends), max(z.imag for z in ends)
+    scale = min(_SCALE, tall / (high - low or 1.0))
+    corner = complex(left, low) + _CORNER / scale
     elements = [vector(corner, _BASE / scale * way, rf"\vec{{{letter}}}") for letter, way in _SEEN.items()]
     elements += [line(p, q, dashed=True) for p, q in steps]
     for number, first, second in bodies:
