@@ -8,9 +8,10 @@ from __future__ import annotations
 import numpy as np
 from timing import best_in_turn, machine, print_table
 
-from coursework.equations import parse_equation
-from coursework.equivalence import same_equation
-from coursework.reading import read_equation, read_number, read_numbers, read_point
+from coursework.reading.equations import parse_equation, read_equation
+from coursework.reading.equivalence import same_equation
+from coursework.reading.numbers import read_number, read_numbers
+from coursework.reading.points import read_point
 
 COUNT = 100_000
 ROUNDS = 7

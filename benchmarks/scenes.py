@@ -8,7 +8,7 @@ from __future__ import annotations
 from timing import best_in_turn, machine, print_table
 
 import coursework
-from coursework.scenes import Scene
+from coursework.motion.scenes import Scene
 
 CASES = {
     "slider_crank_torque": (

@@ -17,7 +17,8 @@ from pathlib import Path
 from timing import machine, print_table
 
 import coursework
-from coursework import building, issuing
+from coursework.making import build as building
+from coursework.making import issuing
 
 BY_LATEX = 20  #: sheets that pdflatex is timed on
 

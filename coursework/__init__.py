@@ -12,12 +12,10 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from coursework.course import Course, open_course
+    from coursework.api import Variant, open_course, show_motion, study
+    from coursework.course.course import Course
     from coursework.errors import CannotAssemble, CourseworkError, NoSolution, Undefined, UnknownName
-    from coursework.motion import show_motion
-    from coursework.selfstudy.lessons import compare, plot
-    from coursework.selfstudy.session import study
-    from coursework.variant import Variant
+    from coursework.study.lessons import compare, plot
 
 __version__ = "0.1.0"
 __all__ = [
@@ -37,13 +35,13 @@ __all__ = [
 
 
 _HOMES = {
-    "Course": "course",
-    "Variant": "variant",
-    "compare": "selfstudy.lessons",
-    "open_course": "course",
-    "plot": "selfstudy.lessons",
-    "show_motion": "motion",
-    "study": "selfstudy.session",
+    "Course": "course.course",
+    "Variant": "api",
+    "compare": "study.lessons",
+    "open_course": "api",
+    "plot": "study.lessons",
+    "show_motion": "api",
+    "study": "api",
 }
 
 

@@ -25,7 +25,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 from coursework.errors import BadCourse, WrongValue, nearest
-from coursework.units import check_unit
+from coursework.reading.units import check_unit
 
 KINDS = ("number", "angle", "integer", "choice", "point", "point_on_line", "direction", "equation")
 _EXACT_KINDS = ("integer", "choice", "equation")

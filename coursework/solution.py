@@ -33,12 +33,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError, unknown
-from coursework.graph import Graph, Node, Replacement
-from coursework.loops import Loop, quantities, stated
-from coursework.units import check_unit
+from coursework.quantities.graph import Graph, Node, Replacement
+from coursework.quantities.loops import Loop, quantities, stated
+from coursework.reading.units import check_unit
 
 if TYPE_CHECKING:
-    from coursework.polygons import Polygon
+    from coursework.polygons.polygon import Polygon
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ import re
 from docutils import nodes
 
 from coursework import __version__
-from coursework.rendering.formulas import to_mathml
+from coursework.markup.mathml import to_mathml
 
 project = "coursework"
 author = "the authors of coursework"

@@ -15,15 +15,16 @@ from html import escape
 from pathlib import Path
 
 import coursework
-from coursework.course import Course
-from coursework.exercise import CourseExercise
-from coursework.handout import Question
-from coursework.language import plain, with_unit
+from coursework.course.course import Course
+from coursework.course.exercise import CourseExercise
+from coursework.course.variant import Variant
+from coursework.language.numbers import plain, with_unit
+from coursework.markup.markdown import html_inline, to_html
+from coursework.markup.mathml import to_mathml
 from coursework.model import GivenSpec
-from coursework.motion import Animation
-from coursework.rendering.formulas import to_mathml
-from coursework.rendering.markup import html_inline, to_html
-from coursework.variant import Variant
+from coursework.motion.animation import Animation
+from coursework.rendering.renderer import renderer_of
+from coursework.sheets.sheet import Question
 
 SEED = 0  #: the variant shown
 WHOLE = "whole/pages"  #: copied as they are into the site, as ``pages``
@@ -37,7 +38,7 @@ def pages(course: Course) -> Iterator[tuple[str, bytes]]:
     for name in course.names:
         exercise = course[name]
         for lang in exercise.languages:
-            sheet = course.renderer.typst(exercise.variant(SEED, lang).handout())
+            sheet = renderer_of(course.folder).typst(exercise.variant(SEED, lang).handout())
             yield f"{name}.{lang}.png", first_page(sheet)
         figure = exercise.variant(SEED, exercise.languages[0]).figure
         if figure is not None:
@@ -51,7 +52,7 @@ def attached(exercise: CourseExercise) -> Iterator[tuple[str, str]]:
     """What a page shows or leads to: polygons, the motion, and whole pages that stand alone, in ``WHOLE``."""
     for lang in exercise.languages:
         variant = exercise.variant(SEED, lang)
-        solution = exercise.course.renderer.html(variant.answer_sheet())
+        solution = renderer_of(exercise.folder).html(variant.answer_sheet())
         yield f"{WHOLE}/{exercise.name}.{lang}.solution.html", solution
         if exercise.is_animated:
             yield f"{WHOLE}/{exercise.name}.{lang}.motion.html", animation(variant).html()

@@ -5,7 +5,7 @@ import numpy as np
 from coursework.degrees import angle, polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider
 from coursework.kinematics.dyads import rrp, rrr, side_of
-from coursework.language import significant
+from coursework.language.numbers import significant
 from coursework.model import Part, chosen, drawn
 
 PAPER_MM = (160, 90)  #: the box of millimetre paper to draw in

@@ -1,8 +1,8 @@
 """A closed chain of four joints: loops, ranks, mobility and static indeterminacy."""
 
+from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part
 
-from ._in_space import in_perspective
 from ._solids import IN_CHAINS, coordinate, direction, joint_kind, mobility_of_loop, table
 
 

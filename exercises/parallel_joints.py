@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part
 from coursework.solids import EQUIVALENTS, each_distinct
 
-from ._in_space import in_perspective
 from ._solids import WITH_DIRECTION, WITH_LINE, axis_parts, combined, table, two_joints
 
 

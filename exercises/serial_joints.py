@@ -1,9 +1,9 @@
 """Two joints in a row: kinematic unknowns, useful and internal mobility, and the joint that replaces the row."""
 
+from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part
 from coursework.solids import EQUIVALENTS
 
-from ._in_space import in_perspective
 from ._solids import WITH_DIRECTION, WITH_LINE, axis_parts, combined, table, two_joints
 
 

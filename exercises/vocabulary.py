@@ -8,10 +8,10 @@ import tomllib
 from functools import lru_cache
 from pathlib import Path
 
+from coursework.course.texts import constants
 from coursework.errors import BadCourse
 from coursework.figures import Figure, ground_pivot, line, link, note, pin, slider, slot_link
 from coursework.model import Exercise, Part, drawn
-from coursework.statement import constants
 from coursework.structure.growing import Choices
 
 THEMES = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))

@@ -2,11 +2,12 @@
 
 import numpy as np
 
+from coursework.quantities.columns import each_stacked
 from coursework.solids import joint_of
 from coursework.solution import mistake
 
 from ._counts import *
-from ._solids import _chain, _chain_of, _each
+from ._solids import _chain, _chain_of
 
 STRUCTURES = ("joints", "motions")  #: ``motions``, of each chain its own, tell where its rank comes from
 
@@ -17,7 +18,7 @@ def _solids(joints):
 
 def rc(_solids, motions):
     """The rank of the loop equations, after the motions that are told in words."""
-    return _each(lambda one: one.rc, _solids)
+    return each_stacked(lambda one: one.rc, _solids)
 
 
 def rs(n, m):

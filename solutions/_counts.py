@@ -3,25 +3,26 @@
 A solution that takes these has the hidden ``_solids``: the chain, or an array of chains.
 """
 
-from ._solids import _each
+
+from coursework.quantities.columns import each_stacked
 
 
 def n(_solids):
     """Moving bodies."""
-    return _each(lambda one: one.n, _solids)
+    return each_stacked(lambda one: one.n, _solids)
 
 
 def gamma(_solids):
-    return _each(lambda one: one.gamma, _solids)
+    return each_stacked(lambda one: one.gamma, _solids)
 
 
 def Nc(_solids):
-    return _each(lambda one: one.Nc, _solids)
+    return each_stacked(lambda one: one.Nc, _solids)
 
 
 def rc(_solids):
     """The rank of the loop equations."""
-    return _each(lambda one: one.rc, _solids)
+    return each_stacked(lambda one: one.rc, _solids)
 
 
 def m(Nc, rc):
@@ -29,7 +30,7 @@ def m(Nc, rc):
 
 
 def Ns(_solids):
-    return _each(lambda one: one.Ns, _solids)
+    return each_stacked(lambda one: one.Ns, _solids)
 
 
 def i(m, h):

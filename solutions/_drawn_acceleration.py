@@ -8,9 +8,9 @@ and its direction, complex.
 
 import numpy as np
 
+from coursework.marking.drawn_polygons import met, off_both, scale_for, to_paper, turned
 from coursework.solution import mistake
 
-from ._drawn import _met, _off_both, _paper, _scale_for, _turned
 from ._drawn_start import *
 
 
@@ -24,20 +24,20 @@ def known_BA_t():
 
 def ka(_images):
     """A round scale at which the drawing fills its box."""
-    return _scale_for(*_images)
+    return scale_for(*_images)
 
 
 def a(_images, ka):
-    return _paper(_images[0], ka)
+    return to_paper(_images[0], ka)
 
 
 def n(_images, ka):
-    return _paper(_images[1], ka)
+    return to_paper(_images[1], ka)
 
 
 def b(n, _start, _lines):
     along, other = _lines
-    return _met(n, along, _start, other)
+    return met(n, along, _start, other)
 
 
 def pa_b(_images, ka):
@@ -53,7 +53,7 @@ def n_length(a, n):
 @mistake("n")
 def n_direction(a, n):
     """Square to the bar."""
-    return _turned(a, n, 90)
+    return turned(a, n, 90)
 
 
 @mistake("n", share=0.5)
@@ -64,7 +64,7 @@ def n_sense(a, n):
 
 @mistake("n")
 def n_vector(a, n):
-    return a + 1.6 * (_turned(a, n, 75) - a)
+    return a + 1.6 * (turned(a, n, 75) - a)
 
 
 @mistake("n")
@@ -75,7 +75,7 @@ def n_on_p(p, a, n):
 @mistake("b")
 def bt_direction(n, _start, _lines):
     along, other = _lines
-    return _met(n, along * np.exp(-0.35j), _start, other)
+    return met(n, along * np.exp(-0.35j), _start, other)
 
 
 @mistake("b", share=0.5)
@@ -87,12 +87,12 @@ def bt_sense(n, b):
 def bt_on_a(a, _start, _lines):
     """The normal part left out."""
     along, other = _lines
-    return _met(a, along, _start, other)
+    return met(a, along, _start, other)
 
 
 @mistake("b")
 def b_vector(n, b, _lines):
-    return _off_both(b, _lines, n)
+    return off_both(b, _lines, n)
 
 
 @mistake("bb_t", "pa_b")

@@ -1,13 +1,12 @@
 """What every drawn polygon begins with: the pole p, and the end a of the first vector, which is known whole."""
 
+from coursework.marking.drawn_polygons import to_paper, turned
 from coursework.solution import mistake
-
-from ._drawn import _paper, _turned
 
 
 def p(_images):
     """Anywhere: here it is the origin."""
-    return _paper(0 * _images[0], 1.0)
+    return to_paper(0 * _images[0], 1.0)
 
 
 @mistake("a")
@@ -18,7 +17,7 @@ def a_length(p, a):
 @mistake("a")
 def a_direction(p, a):
     """Turned by a quarter of a turn."""
-    return _turned(p, a, 90)
+    return turned(p, a, 90)
 
 
 @mistake("a", share=0.5)
@@ -28,4 +27,4 @@ def a_sense(p, a):
 
 @mistake("a")
 def a_vector(p, a):
-    return p + 0.6 * (_turned(p, a, 75) - p)
+    return p + 0.6 * (turned(p, a, 75) - p)

@@ -7,9 +7,9 @@ velocity of B, through p.
 
 import numpy as np
 
+from coursework.marking.drawn_polygons import met, off_both, scale_for, to_paper
 from coursework.solution import mistake
 
-from ._drawn import _met, _off_both, _paper, _scale_for
 from ._drawn_start import *
 
 
@@ -27,16 +27,16 @@ def known_B():
 
 def kv(_images):
     """A round scale at which the drawing fills its box."""
-    return _scale_for(*_images)
+    return scale_for(*_images)
 
 
 def a(_images, kv):
-    return _paper(_images[0], kv)
+    return to_paper(_images[0], kv)
 
 
 def b(p, a, _lines):
     across, way = _lines
-    return _met(a, across, p, way)
+    return met(a, across, p, way)
 
 
 def ab(_images, kv):
@@ -55,13 +55,13 @@ def pv_b(_images, kv):
 def ba_direction(p, a, _lines):
     """On the line of the velocity of B, but not square to AB from a."""
     across, way = _lines
-    return _met(a, across * np.exp(-0.35j), p, way)
+    return met(a, across * np.exp(-0.35j), p, way)
 
 
 @mistake("b")
 def vb_direction(p, a, _lines):
     across, way = _lines
-    return _met(a, across, p, way * np.exp(-0.35j))
+    return met(a, across, p, way * np.exp(-0.35j))
 
 
 @mistake("b", share=0.5)
@@ -82,7 +82,7 @@ def ba_on_p(p, a, b):
 
 @mistake("b")
 def b_vector(a, b, _lines):
-    return _off_both(b, _lines, a)
+    return off_both(b, _lines, a)
 
 
 @mistake("kv", "p", "a", "b")

@@ -1,11 +1,13 @@
 """What the solutions on chains of solids share. Names begin with an underscore: none of it is a quantity."""
 
+from __future__ import annotations
+
 from functools import lru_cache
 
 import numpy as np
 
-from coursework.errors import WrongValue
-from coursework.language import significant
+from coursework.language.numbers import significant
+from coursework.quantities.columns import each_stacked
 from coursework.solids import Chain, PlanarChain, in_parallel, in_series, joints_of
 
 _in_parallel = lru_cache(maxsize=4096)(in_parallel)
@@ -18,22 +20,12 @@ _WITH_LINE = ("revolute", "helical", "cylindrical", "point_contact")
 _NOWHERE = (np.nan, np.nan, np.nan)
 
 
-def _each(read, whole):
-    """``read`` of one thing, or of each in an array of objects; vectors along a last axis."""
-    if not isinstance(whole, np.ndarray):
-        return read(whole)
-    if whole.dtype != object or not whole.size:
-        raise WrongValue(f"joints is a list of joints, each a mapping; found {str(whole)[:60]!r}")
-    found = np.array([read(one) for one in whole.ravel()])
-    return found.reshape(whole.shape + found.shape[1:])
-
-
 def _parallel_of(joints):
-    return _each(lambda one: _in_parallel(joints_of(one)), joints)
+    return each_stacked(lambda one: _in_parallel(joints_of(one)), joints)
 
 
 def _series_of(joints):
-    return _each(lambda one: _in_series(joints_of(one)), joints)
+    return each_stacked(lambda one: _in_series(joints_of(one)), joints)
 
 
 def _stiffest(whole):
@@ -78,8 +70,8 @@ def _sum_of(terms):
 
 
 def _chain_of(joints):
-    return _each(lambda one: _chain(joints_of(one)), joints)
+    return each_stacked(lambda one: _chain(joints_of(one)), joints)
 
 
 def _planar_chain_of(joints):
-    return _each(lambda one: _planar_chain(joints_of(one)), joints)
+    return each_stacked(lambda one: _planar_chain(joints_of(one)), joints)

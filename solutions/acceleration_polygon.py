@@ -6,11 +6,11 @@ import numpy as np
 from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
+from coursework.marking.drawn_polygons import Asked, Read, met, to_paper, turned, verdicts
+from coursework.polygons import acceleration_polygon, crank_a, two_bars_a
 from coursework.solution import formula, judge, mistake
 
-from ._drawn import _Asked, _met, _paper, _Read, _turned, _verdicts
 from ._drawn_acceleration import *
-from ._polygons import _accelerations, _crank_a, _two_bars_a
 
 UNITS = {"mb_t": "mm"}
 SYMBOLS = {"sense3": "s_3", "sense4": "s_4", "mb_t": "b'' b"}
@@ -51,7 +51,7 @@ def known_B_t():
 
 
 def m(_images, ka):
-    return _paper(_images[2], ka)
+    return to_paper(_images[2], ka)
 
 
 def _start(m):
@@ -115,7 +115,7 @@ def m_length(p, m):
 @mistake("m")
 def m_direction(p, m):
     """Square to the bar."""
-    return _turned(p, m, 90)
+    return turned(p, m, 90)
 
 
 @mistake("m", share=0.5)
@@ -126,7 +126,7 @@ def m_sense(p, m):
 
 @mistake("m")
 def m_vector(p, m):
-    return p + 1.6 * (_turned(p, m, 75) - p)
+    return p + 1.6 * (turned(p, m, 75) - p)
 
 
 @mistake("m")
@@ -137,7 +137,7 @@ def m_on_a(p, a, m):
 @mistake("b")
 def ct_direction(n, _start, _lines):
     along, other = _lines
-    return _met(n, along, _start, other * np.exp(-0.35j))
+    return met(n, along, _start, other * np.exp(-0.35j))
 
 
 @mistake("b", share=0.5)
@@ -149,7 +149,7 @@ def ct_sense(_start, b):
 def ct_on_p(n, p, _lines):
     """The normal part of B left out."""
     along, other = _lines
-    return _met(n, along, p, other)
+    return met(n, along, p, other)
 
 
 @mistake("ka", "p", "a", "n", "m", "b")
@@ -197,30 +197,30 @@ def drawing(answers, r1, r2, r3, r4, theta2, omega2, mode):
     _, coupler, rocker, *_ = bars
     of_coupler = {"radii_exchanged": ("b'", "b", 1 / r4)}
     of_rocker = {"radii_exchanged": ("b''", "b", 1 / r3), "alpha4_of_a_B": ("p_a", "b", 1 / r4)}
-    asked = _Asked(
+    asked = Asked(
         scale="ka",
         points={"p": "p_a", "a": "a", "n": "b'", "m": "b''", "b": "b"},
         lengths={"bb_t": ("b'", "b"), "pa_b": ("p_a", "b")},
         reads={
-            "a_B": _Read("p_a", "b", abs, 1.0),
-            "alpha3": _Read("b'", "b", lambda v: (v / (1j * coupler)).real, 1 / r3, of_coupler),
-            "alpha4": _Read("b''", "b", lambda v: (v / (1j * rocker)).real, 1 / r4, of_rocker),
+            "a_B": Read("p_a", "b", abs, 1.0),
+            "alpha3": Read("b'", "b", lambda v: (v / (1j * coupler)).real, 1 / r3, of_coupler),
+            "alpha4": Read("b''", "b", lambda v: (v / (1j * rocker)).real, 1 / r4, of_rocker),
         },
         sides={
             ("p_a", "a"): "a", ("a", "b'"): "n", ("p_a", "b''"): "m", ("b'", "b"): "bt", ("b''", "b"): "ct",
         },
         hung=frozenset({"n_on_p", "m_on_a", "bt_on_a", "ct_on_p"}),
     )  # fmt: skip
-    return _verdicts(answers, _polygon(bars, omega2), asked)
+    return verdicts(answers, _polygon(bars, omega2), asked)
 
 
 def _polygon(bars, omega2, scale=None):
     crank, coupler, rocker, *ratios, gain3, gain4 = bars
     omega3, omega4 = (ratio * omega2 for ratio in ratios)
     alpha3, alpha4 = (gain * omega2**2 for gain in (gain3, gain4))
-    return _accelerations(
-        _crank_a("A", "OA", crank, omega2),
-        _two_bars_a("B", "A", "C", coupler, omega3, alpha3, "r_3", rocker, omega4, alpha4, "r_4"),
+    return acceleration_polygon(
+        crank_a("A", "OA", crank, omega2),
+        two_bars_a("B", "A", "C", coupler, omega3, alpha3, "r_3", rocker, omega4, alpha4, "r_4"),
         scale=scale,
     )
 

@@ -6,11 +6,11 @@ import numpy as np
 from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
+from coursework.marking.drawn_polygons import Asked, Read, met, verdicts
+from coursework.polygons import acceleration_polygon, crank_a, slider_a
 from coursework.solution import formula, judge, mistake
 
-from ._drawn import _Asked, _met, _Read, _verdicts
 from ._drawn_acceleration import *
-from ._polygons import _accelerations, _crank_a, _slider_a
 
 SYMBOLS = {"side_B": "s_B", "sense3": "s_3"}
 
@@ -90,7 +90,7 @@ def tangential_part_unknown():
 @mistake("b")
 def pb_direction(n, _start, _lines):
     along, other = _lines
-    return _met(n, along, _start, other * np.exp(-0.35j))
+    return met(n, along, _start, other * np.exp(-0.35j))
 
 
 @mistake("b", share=0.5)
@@ -141,26 +141,26 @@ def drawing(answers, r2, r3, theta2, omega2):
     bars = _bars(r2, r3, theta2)
     _, rod, *_ = bars
     of_rod = {"crank_for_rod": ("b'", "b", 1 / r2)}
-    asked = _Asked(
+    asked = Asked(
         scale="ka",
         points={"p": "p_a", "a": "a", "n": "b'", "b": "b"},
         lengths={"bb_t": ("b'", "b"), "pa_b": ("p_a", "b")},
         reads={
-            "r1_ddot": _Read("p_a", "b", lambda v: v.real, 1.0, sense="a_B_sense"),
-            "alpha3": _Read("b'", "b", lambda v: (v / (1j * rod)).real, 1 / r3, of_rod),
+            "r1_ddot": Read("p_a", "b", lambda v: v.real, 1.0, sense="a_B_sense"),
+            "alpha3": Read("b'", "b", lambda v: (v / (1j * rod)).real, 1 / r3, of_rod),
         },
         sides={("p_a", "a"): "a", ("a", "b'"): "n", ("b'", "b"): "bt", ("p_a", "b"): "pb"},
         hung=frozenset({"n_on_p", "bt_on_a"}),
     )
-    return _verdicts(answers, _polygon(bars, omega2), asked)
+    return verdicts(answers, _polygon(bars, omega2), asked)
 
 
 def _polygon(bars, omega2, scale=None):
     crank, rod, ratio, gain = bars
     of_B = _images(bars, omega2)[-1].real
-    return _accelerations(
-        _crank_a("A", "OA", crank, omega2),
-        _slider_a("B", "A", rod, ratio * omega2, gain * omega2**2, "r_3", of_B),
+    return acceleration_polygon(
+        crank_a("A", "OA", crank, omega2),
+        slider_a("B", "A", rod, ratio * omega2, gain * omega2**2, "r_3", of_B),
         scale=scale,
     )
 

@@ -2,9 +2,9 @@
 
 from functools import lru_cache
 
+from coursework.quantities.columns import each
 from coursework.solution import mistake
 from coursework.structure import assour
-from coursework.structure.columns import each
 from coursework.structure.joints import FRAME, JointGraph, copied
 from coursework.structure.library import LIBRARY
 from coursework.structure.numbered import last_body, to_decompose

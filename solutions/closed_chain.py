@@ -4,11 +4,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from coursework.quantities.columns import each, each_stacked
 from coursework.solids import aligned, each_distinct
-from coursework.structure.columns import each
 
 from ._chains import *
-from ._solids import _each, _sum_of
+from ._solids import _sum_of
 
 SYMBOLS = {"input_body": "b_e", "output_body": "b_s"}
 
@@ -90,7 +90,7 @@ def input_body():
 
 def output_body(_solids):
     """The last one."""
-    return _each(lambda one: one.n, _solids)
+    return each_stacked(lambda one: one.n, _solids)
 
 
 _X, _Y, _Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)

@@ -3,13 +3,13 @@
 import numpy as np
 
 from coursework.errors import WrongValue
+from coursework.quantities.columns import each, each_stacked
 from coursework.solids import aligned, each_distinct
 from coursework.solution import mistake
-from coursework.structure.columns import each
 
 from ..exercises._complex import DIRECTIONS, LAYOUTS, points_of
 from ._chains import *
-from ._solids import _each, _planar_chain
+from ._solids import _planar_chain
 
 SYMBOLS = {"input_body": "b_e", "output_body": "b_s"}
 
@@ -57,7 +57,7 @@ def input_body():
 
 def output_body(_solids, layout=""):
     """The body that the statement names; the last one of a list of joints."""
-    last = _each(lambda one: one.n, _solids)
+    last = each_stacked(lambda one: one.n, _solids)
     return np.where(np.asarray(layout) == "strut", LAYOUTS["strut"].output, last)[()]
 
 

@@ -11,10 +11,17 @@ from coursework.degrees import cos, polar, sin
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
+from coursework.polygons import (
+    acceleration_polygon,
+    crank_a,
+    crank_v,
+    two_bars_a,
+    two_bars_v,
+    velocity_polygon,
+)
 from coursework.solution import Moving, formula, mistake, stable
 
 from ._four_bar import *
-from ._polygons import _accelerations, _crank_a, _crank_v, _two_bars_a, _two_bars_v, _velocities
 
 UNITS = {"AC": "mm", "phi": "deg", "psi": "deg", "side": "1"}
 SYMBOLS = {"AC": "AC", "phi": r"\varphi", "psi": r"\psi", "side": r"\varepsilon"}
@@ -135,10 +142,10 @@ def motion(r1, r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha
 def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4):
     OA, AB, CB = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4)
     return (
-        _velocities(_crank_v("A", "OA", OA, omega2), _two_bars_v("B", "A", "C", AB, omega3, CB, omega4)),
-        _accelerations(
-            _crank_a("A", "OA", OA, omega2, alpha2),
-            _two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
+        velocity_polygon(crank_v("A", "OA", OA, omega2), two_bars_v("B", "A", "C", AB, omega3, CB, omega4)),
+        acceleration_polygon(
+            crank_a("A", "OA", OA, omega2, alpha2),
+            two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
         ),
     )
 

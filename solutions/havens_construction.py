@@ -3,11 +3,10 @@
 import numpy as np
 
 from coursework.degrees import polar
-from coursework.drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_paper, vector_fault
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
+from coursework.marking.drawn_polygons import scale_for, to_paper
+from coursework.polygons.hand_drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_paper, vector_fault
 from coursework.solution import Judged, formula, judge, mistake
-
-from ._drawn import _paper, _scale_for
 
 VECTORS = ("v10", "v40", "v14", "v24", "v20", "v30")
 _WIDTH = 2 * TOLERANCE_MM
@@ -50,31 +49,31 @@ def _of_I(pose, v20):
 
 def kv(_images):
     """A round scale at which the arrows fit the box."""
-    return _scale_for(*_images)
+    return scale_for(*_images)
 
 
 def v10(_images, kv):
-    return _paper(_images[0], kv)
+    return to_paper(_images[0], kv)
 
 
 def v40(_images, kv):
-    return _paper(_images[1], kv)
+    return to_paper(_images[1], kv)
 
 
 def v14(_images, kv):
-    return _paper(_images[2], kv)
+    return to_paper(_images[2], kv)
 
 
 def v24(_images, kv):
-    return _paper(_images[3], kv)
+    return to_paper(_images[3], kv)
 
 
 def v20(_images, kv):
-    return _paper(_images[4], kv)
+    return to_paper(_images[4], kv)
 
 
 def v30(_images, kv):
-    return _paper(_images[5], kv)
+    return to_paper(_images[5], kv)
 
 
 def why_v40():
@@ -141,7 +140,7 @@ def drawing(answers, d, r2, r3, b, theta1, omega1):
     elif _WIDTH < abs(drawn.get("v10", 0)) < MOST_MM:
         scale = abs(right["v10"]) / abs(drawn["v10"])
     elif stated is not None and "v10" in drawn:
-        scale = _scale_for(*right.values())  # nothing tells it; that of the solution is as good as any
+        scale = scale_for(*right.values())  # nothing tells it; that of the solution is as good as any
     else:
         return said
     if longest / scale < LEAST_MM:

@@ -12,10 +12,8 @@ from coursework.figures import Figure, circle, contact, ground_pivot, link, pin,
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slotted_guide import SlottedGuidePose
-from coursework.polygons import Side, turning
+from coursework.polygons import Side, crank_v, guide_v, turning, velocity_polygon
 from coursework.solution import Moving, formula, mistake, stable
-
-from ._polygons import _crank_v, _guide_v, _velocities
 
 UNITS = {"e": "mm"}
 LOOPS = {
@@ -176,9 +174,9 @@ def polygons(e, r2, b, theta1, omega1, theta4, rA, omega4, v_slide, v_B2_x, v_B2
     """The crank's point A_1, the guide's point A_4 under it; B_2 and I are points of the wheel, about A_1."""
     crank, along = polar(1.0, theta1), polar(1.0, theta4)
     return (
-        _velocities(
-            _crank_v("A_1", "O_1A_1", e * crank, omega1, "1", "e"),
-            _guide_v("A_1", "A_4", "O_4A_1", rA * along, omega4, v_slide),
+        velocity_polygon(
+            crank_v("A_1", "O_1A_1", e * crank, omega1, "1", "e"),
+            guide_v("A_1", "A_4", "O_4A_1", rA * along, omega4, v_slide),
             (
                 turning("a_1", "b_2", "B_2/A_1", "A_1B_2", b * along, omega4, "b V_{A_4} / r_A"),
                 turning("a_1", "i", "I/A_1", "O_1A_1", -r2 * crank, omega4, "r_2 V_{A_4} / r_A"),

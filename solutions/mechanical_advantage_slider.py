@@ -10,9 +10,8 @@ from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
+from coursework.polygons import crank_v, slider_v, velocity_polygon
 from coursework.solution import Moving, formula, mistake, stable
-
-from ._polygons import _crank_v, _slider_v, _velocities
 
 UNITS = {
     "p": "mm",
@@ -122,8 +121,8 @@ def force_divided(F_e, mechanical_advantage):
 
 def polygons(r2, theta2, omega2, p, q, omega3, r1_dot):
     return (
-        _velocities(
-            _crank_v("A", "OA", polar(r2, theta2), omega2), _slider_v("B", "A", q + 1j * p, omega3, r1_dot)
+        velocity_polygon(
+            crank_v("A", "OA", polar(r2, theta2), omega2), slider_v("B", "A", q + 1j * p, omega3, r1_dot)
         ),
     )
 

@@ -1,7 +1,7 @@
 """Structure of a mechanism: solution. Count the bodies and the pairs; the formulas do the rest."""
 
+from coursework.quantities.columns import each
 from coursework.solution import mistake
-from coursework.structure.columns import each
 from coursework.structure.joints import FRAME, JointGraph, copied
 from coursework.structure.library import LIBRARY
 from coursework.structure.numbered import to_count

@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from coursework.quantities.columns import each_stacked
 from coursework.solids import FREEDOMS, aligned, each_distinct, joint_of
 from coursework.solution import mistake
 
-from ._solids import _direction, _each, _parallel_of, _point_of_axis, _stiffest
+from ._solids import _direction, _parallel_of, _point_of_axis, _stiffest
 
 STRUCTURES = ("joints",)
 
@@ -25,12 +26,12 @@ def _combined(joints):
 
 def Ns(_combined):
     """Six less the freedoms, joint by joint."""
-    return _each(lambda one: one.Ns, _combined)
+    return each_stacked(lambda one: one.Ns, _combined)
 
 
 def rs(_combined):
     """The rank of all the transmitted actions at one point."""
-    return _each(lambda one: one.rs, _combined)
+    return each_stacked(lambda one: one.rs, _combined)
 
 
 def h(Ns, rs):
@@ -42,21 +43,21 @@ def m(rs):
 
 
 def equivalent(_combined):
-    return _each(lambda one: one.equivalent.name, _combined)
+    return each_stacked(lambda one: one.equivalent.name, _combined)
 
 
 def axis_dir(_combined):
     """Along the axis, or along the normal of a joint without axis."""
-    return _each(_direction, _combined)
+    return each_stacked(_direction, _combined)
 
 
 def axis_point(_combined):
-    return _each(_point_of_axis, _combined)
+    return each_stacked(_point_of_axis, _combined)
 
 
 @mistake("Ns")
 def freedoms_for_unknowns(_combined):
-    return _each(lambda one: sum(joint.freedoms for joint in one.joints), _combined)
+    return each_stacked(lambda one: sum(joint.freedoms for joint in one.joints), _combined)
 
 
 @mistake("rs")
@@ -76,12 +77,12 @@ def h_from_six(Ns):
 
 @mistake("m")
 def freedoms_added(_combined):
-    return _each(lambda one: sum(joint.freedoms for joint in one.joints), _combined)
+    return each_stacked(lambda one: sum(joint.freedoms for joint in one.joints), _combined)
 
 
 @mistake("equivalent")
 def stiffer_joint_alone(_combined):
-    return _each(_stiffest, _combined)
+    return each_stacked(_stiffest, _combined)
 
 
 def residual(joints, Ns, rs, h, m, equivalent):

@@ -3,11 +3,12 @@
 import numpy as np
 
 from coursework.errors import WrongValue
+from coursework.quantities.columns import each_stacked
 from coursework.solids import aligned, each_distinct, joints_of, planar_kind
 from coursework.solution import mistake
 
 from ._counts import *
-from ._solids import _chain_of, _each, _planar_chain_of
+from ._solids import _chain_of, _planar_chain_of
 
 STRUCTURES = ("joints",)
 
@@ -53,7 +54,7 @@ def _joint(chain, number):
 
 
 def _kinds(chains, number):
-    return _each(lambda one: planar_kind(_joint(one, number)), chains)
+    return each_stacked(lambda one: planar_kind(_joint(one, number)), chains)
 
 
 def planar_1(_solids):
@@ -82,11 +83,11 @@ def h(Ns, rs):
 
 def Nc_space(_space):
     """With all the freedoms, those out of the plane too."""
-    return _each(lambda one: one.Nc, _space)
+    return each_stacked(lambda one: one.Nc, _space)
 
 
 def rc_space(_space):
-    return _each(lambda one: one.rc, _space)
+    return each_stacked(lambda one: one.rc, _space)
 
 
 def h_space(gamma, rc_space):

@@ -16,18 +16,18 @@ from coursework.kinematics.chains import Vector
 from coursework.kinematics.cycle import turning_points
 from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.kinematics.margins import grashof_margins
+from coursework.polygons import (
+    acceleration_polygon,
+    crank_a,
+    crank_v,
+    slider_a,
+    slider_v,
+    two_bars_a,
+    two_bars_v,
+    velocity_polygon,
+)
 from coursework.solution import Moving, formula, mistake, stable
 
-from ._polygons import (
-    _accelerations,
-    _crank_a,
-    _crank_v,
-    _slider_a,
-    _slider_v,
-    _two_bars_a,
-    _two_bars_v,
-    _velocities,
-)
 from ._strokes import *
 
 UNITS = {
@@ -542,15 +542,15 @@ def polygons(
     OA, AB, DB, BC = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r5, theta5)
     alpha3 = (((1j * alpha4 - omega4**2) * DB + omega2**2 * OA) / AB).imag
     return (
-        _velocities(
-            _crank_v("A", "OA", OA, omega2),
-            _two_bars_v("B", "A", "D", AB, omega3, DB, omega4),
-            _slider_v("C", "B", BC, omega5, v_C),
+        velocity_polygon(
+            crank_v("A", "OA", OA, omega2),
+            two_bars_v("B", "A", "D", AB, omega3, DB, omega4),
+            slider_v("C", "B", BC, omega5, v_C),
         ),
-        _accelerations(
-            _crank_a("A", "OA", OA, omega2),
-            _two_bars_a("B", "A", "D", AB, omega3, alpha3, "r_3", DB, omega4, alpha4, "r_4"),
-            _slider_a("C", "B", BC, omega5, alpha5, "r_5", a_C),
+        acceleration_polygon(
+            crank_a("A", "OA", OA, omega2),
+            two_bars_a("B", "A", "D", AB, omega3, alpha3, "r_3", DB, omega4, alpha4, "r_4"),
+            slider_a("C", "B", BC, omega5, alpha5, "r_5", a_C),
         ),
     )
 

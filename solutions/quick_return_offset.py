@@ -15,10 +15,10 @@ from coursework.errors import CannotAssemble
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
+from coursework.polygons import crank_v, slider_v, velocity_polygon
 from coursework.solution import Moving, formula, mistake, stable
 
 from ._in_line import _in_line
-from ._polygons import _crank_v, _slider_v, _velocities
 from ._strokes import *
 
 UNITS = {
@@ -206,8 +206,8 @@ def motion(r2, e, theta2, omega2, p, q, omega3, xC, v_C):
 
 def polygons(r2, theta2, omega2, p, q, omega3, v_C):
     return (
-        _velocities(
-            _crank_v("A", "OA", polar(r2, theta2), omega2), _slider_v("C", "A", q + 1j * p, omega3, v_C)
+        velocity_polygon(
+            crank_v("A", "OA", polar(r2, theta2), omega2), slider_v("C", "A", q + 1j * p, omega3, v_C)
         ),
     )
 

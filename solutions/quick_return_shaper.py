@@ -12,16 +12,7 @@ import numpy as np
 
 from coursework.degrees import acos, asin, atan2, cos, polar, sin, sqrt
 from coursework.errors import CannotAssemble, Undefined
-from coursework.figures import (
-    Figure,
-    circle,
-    ground_pivot,
-    line,
-    link,
-    pin,
-    point,
-    rotation_arrow,
-)
+from coursework.figures import Figure, circle, ground_pivot, line, link, pin, point, rotation_arrow
 from coursework.solution import formula, mistake, stable
 
 from ._slotted_ram import *

@@ -4,11 +4,11 @@ from functools import lru_cache
 
 import numpy as np
 
+from coursework.quantities.columns import each, each_stacked
 from coursework.solids import FREEDOMS, aligned, each_distinct, joint_of
 from coursework.solution import mistake
-from coursework.structure.columns import each
 
-from ._solids import _direction, _each, _freest, _in_parallel, _number, _point_of_axis, _series_of, _sum_of
+from ._solids import _direction, _freest, _in_parallel, _number, _point_of_axis, _series_of, _sum_of
 
 STRUCTURES = ("joints", "free_motions")
 
@@ -63,7 +63,7 @@ def _triple(vector):
 
 def Nc(free_motions):
     """The freedoms, joint by joint."""
-    return _each(len, free_motions)
+    return each_stacked(len, free_motions)
 
 
 def m(Nc):
@@ -72,7 +72,7 @@ def m(Nc):
 
 def m_useful(_combined):
     """The rank of all the free motions at one point."""
-    return _each(lambda one: one.m_useful, _combined)
+    return each_stacked(lambda one: one.m_useful, _combined)
 
 
 def m_internal(m, m_useful):
@@ -84,16 +84,16 @@ def h():
 
 
 def equivalent(_combined):
-    return _each(lambda one: one.equivalent.name, _combined)
+    return each_stacked(lambda one: one.equivalent.name, _combined)
 
 
 def axis_dir(_combined):
     """Along the axis, or along the normal of a joint without axis."""
-    return _each(_direction, _combined)
+    return each_stacked(_direction, _combined)
 
 
 def axis_point(_combined):
-    return _each(_point_of_axis, _combined)
+    return each_stacked(_point_of_axis, _combined)
 
 
 def _statics(whole):
@@ -103,7 +103,7 @@ def _statics(whole):
 
 @mistake("Nc")
 def unknowns_for_freedoms(_combined):
-    return _each(_statics, _combined)
+    return each_stacked(_statics, _combined)
 
 
 @mistake("m")
@@ -124,19 +124,19 @@ def useful_up_to_six(Nc):
 @mistake("m_useful", "h")
 def statics_added(_combined):
     return (
-        _each(lambda one: _in_parallel(one.joints).m, _combined),
-        _each(lambda one: _in_parallel(one.joints).h, _combined),
+        each_stacked(lambda one: _in_parallel(one.joints).m, _combined),
+        each_stacked(lambda one: _in_parallel(one.joints).h, _combined),
     )
 
 
 @mistake("h")
 def h_from_six(_combined):
-    return _each(_statics, _combined) - 6
+    return each_stacked(_statics, _combined) - 6
 
 
 @mistake("equivalent")
 def freer_joint_alone(_combined):
-    return _each(_freest, _combined)
+    return each_stacked(_freest, _combined)
 
 
 def residual(joints, Nc, m, m_useful, m_internal, h, equivalent):

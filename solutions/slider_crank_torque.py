@@ -17,10 +17,16 @@ from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.polygons import Side
+from coursework.polygons import (
+    Side,
+    acceleration_polygon,
+    crank_a,
+    crank_v,
+    slider_a,
+    slider_v,
+    velocity_polygon,
+)
 from coursework.solution import Moving, formula, mistake, stable
-
-from ._polygons import _accelerations, _crank_a, _crank_v, _slider_a, _slider_v, _velocities
 
 GRAVITY = 9.81  #: m/s^2, along -y
 
@@ -353,10 +359,10 @@ def polygons(r2, theta2, omega2, alpha2, s3, p, q, omega3, r1_dot, alpha3, r1_dd
     OA, AB = polar(r2, theta2), q + 1j * p
     a_GA = s3 * (1j * alpha3 - omega3**2) * AB
     return (
-        _velocities(_crank_v("A", "OA", OA, omega2), _slider_v("B", "A", AB, omega3, r1_dot)),
-        _accelerations(
-            _crank_a("A", "OA", OA, omega2, alpha2),
-            _slider_a("B", "A", AB, omega3, alpha3, "r_3", r1_ddot),
+        velocity_polygon(crank_v("A", "OA", OA, omega2), slider_v("B", "A", AB, omega3, r1_dot)),
+        acceleration_polygon(
+            crank_a("A", "OA", OA, omega2, alpha2),
+            slider_a("B", "A", AB, omega3, alpha3, "r_3", r1_ddot),
             (
                 Side("a", "g", r"\vec{a}_{G/A}", a_GA, r"\parallel ab", r"s_3\,ab"),
                 Side("p_a", "g", r"\vec{a}_G", (1j * alpha2 - omega2**2) * OA + a_GA),

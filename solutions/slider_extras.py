@@ -16,18 +16,17 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
-from coursework.solution import Moving, formula, mistake, stable
-
-from ._polygons import (
-    _accelerations,
-    _crank_a,
-    _crank_v,
-    _slider_a,
-    _slider_v,
-    _two_bars_a,
-    _two_bars_v,
-    _velocities,
+from coursework.polygons import (
+    acceleration_polygon,
+    crank_a,
+    crank_v,
+    slider_a,
+    slider_v,
+    two_bars_a,
+    two_bars_v,
+    velocity_polygon,
 )
+from coursework.solution import Moving, formula, mistake, stable
 
 UNITS = {"A": "1", "side": "1"}
 SYMBOLS = {"side": r"\varepsilon"}
@@ -341,15 +340,15 @@ def polygons(
     """Two bars meet at B, then the rod from B to the slider."""
     OA, AB, DB, BP = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), -polar(r5, theta5)
     return (
-        _velocities(
-            _crank_v("A", "OA", OA, omega2),
-            _two_bars_v("B", "A", "D", AB, omega3, DB, omega4),
-            _slider_v("P", "B", BP, omega5, r6_dot),
+        velocity_polygon(
+            crank_v("A", "OA", OA, omega2),
+            two_bars_v("B", "A", "D", AB, omega3, DB, omega4),
+            slider_v("P", "B", BP, omega5, r6_dot),
         ),
-        _accelerations(
-            _crank_a("A", "OA", OA, omega2),
-            _two_bars_a("B", "A", "D", AB, omega3, alpha3, "r_3", DB, omega4, alpha4, "r_4"),
-            _slider_a("P", "B", BP, omega5, alpha5, "r_5", r6_ddot),
+        acceleration_polygon(
+            crank_a("A", "OA", OA, omega2),
+            two_bars_a("B", "A", "D", AB, omega3, alpha3, "r_3", DB, omega4, alpha4, "r_4"),
+            slider_a("P", "B", BP, omega5, alpha5, "r_5", r6_ddot),
         ),
     )
 

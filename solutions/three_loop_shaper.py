@@ -16,22 +16,24 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import rrp, side_of
 from coursework.kinematics.four_bar import FourBar
-from coursework.polygons import normal, tangential, turning
+from coursework.polygons import (
+    acceleration_polygon,
+    crank_a,
+    crank_v,
+    guide_a,
+    guide_v,
+    normal,
+    slider_a,
+    slider_v,
+    tangential,
+    turning,
+    two_bars_a,
+    two_bars_v,
+    velocity_polygon,
+)
 from coursework.solution import Moving, formula, mistake, stable
 
 from ._first_four_bar import *
-from ._polygons import (
-    _accelerations,
-    _crank_a,
-    _crank_v,
-    _guide_a,
-    _guide_v,
-    _slider_a,
-    _slider_v,
-    _two_bars_a,
-    _two_bars_v,
-    _velocities,
-)
 
 UNITS = {
     "AC": "mm",
@@ -365,27 +367,27 @@ def polygons(
     OA, AB, CB, AE = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r6, theta6)
     DE, DF, FG = polar(d5, theta5), polar(r5, theta5), polar(r7, theta7)
     return (
-        _velocities(
-            _crank_v("A", "OA", OA, omega2),
-            _two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
+        velocity_polygon(
+            crank_v("A", "OA", OA, omega2),
+            two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
             (turning("a", "e", "E/A", "AE", AE, omega3, "r_6 V_{B/A} / r_3"),),
-            _guide_v("E", "E_5", "DE", DE, omega5, d5_dot),
+            guide_v("E", "E_5", "DE", DE, omega5, d5_dot),
             (turning("p_v", "f", "F", "DF", DF, omega5, "r_5 V_{E_5} / d_5"),),
-            _slider_v("G", "F", FG, omega7, x8_dot),
+            slider_v("G", "F", FG, omega7, x8_dot),
         ),
-        _accelerations(
-            _crank_a("A", "OA", OA, omega2),
-            _two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
+        acceleration_polygon(
+            crank_a("A", "OA", OA, omega2),
+            two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
             (
                 normal("a", "e'", "E/A", "AE", AE, omega3, "V_{E/A}^2 / r_6"),
                 tangential("e'", "e", "E/A", "AE", AE, alpha3, "r_6 a_{B/A}^t / r_3"),
             ),
-            _guide_a("E", "E_5", "DE", DE, omega5, alpha5, d5_dot, d5_ddot, "d_5", r"\omega_5"),
+            guide_a("E", "E_5", "DE", DE, omega5, alpha5, d5_dot, d5_ddot, "d_5", r"\omega_5"),
             (
                 normal("p_a", "f'", "F", "DF", DF, omega5, "V_F^2 / r_5"),
                 tangential("f'", "f", "F", "DF", DF, alpha5, "r_5 a_{E_5}^t / d_5"),
             ),
-            _slider_a("G", "F", FG, omega7, alpha7, "r_7", x8_ddot),
+            slider_a("G", "F", FG, omega7, alpha7, "r_7", x8_ddot),
         ),
     )
 

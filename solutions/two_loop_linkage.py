@@ -16,11 +16,20 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
-from coursework.polygons import normal, tangential, turning
+from coursework.polygons import (
+    acceleration_polygon,
+    crank_a,
+    crank_v,
+    normal,
+    tangential,
+    turning,
+    two_bars_a,
+    two_bars_v,
+    velocity_polygon,
+)
 from coursework.solution import Moving, formula, mistake, stable
 
 from ._first_four_bar import *
-from ._polygons import _accelerations, _crank_a, _crank_v, _two_bars_a, _two_bars_v, _velocities
 
 UNITS = {
     "AC": "mm",
@@ -334,20 +343,20 @@ def polygons(
     OA, AB, CB, CD = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r5, theta5)
     DE, FE = polar(r6, theta6), polar(r7, theta7)
     return (
-        _velocities(
-            _crank_v("A", "OA", OA, omega2),
-            _two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
+        velocity_polygon(
+            crank_v("A", "OA", OA, omega2),
+            two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
             (turning("p_v", "d", "D", "CD", CD, omega4, "r_5 V_B / r_4"),),
-            _two_bars_v("E", "D", "F", DE, omega6, FE, omega7),
+            two_bars_v("E", "D", "F", DE, omega6, FE, omega7),
         ),
-        _accelerations(
-            _crank_a("A", "OA", OA, omega2),
-            _two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
+        acceleration_polygon(
+            crank_a("A", "OA", OA, omega2),
+            two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
             (
                 normal("p_a", "d'", "D", "CD", CD, omega4, "V_D^2 / r_5"),
                 tangential("d'", "d", "D", "CD", CD, alpha4, "r_5 a_B^t / r_4"),
             ),
-            _two_bars_a("E", "D", "F", DE, omega6, alpha6, "r_6", FE, omega7, alpha7, "r_7"),
+            two_bars_a("E", "D", "F", DE, omega6, alpha6, "r_6", FE, omega7, alpha7, "r_7"),
         ),
     )
 

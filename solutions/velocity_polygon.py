@@ -5,11 +5,11 @@ import numpy as np
 from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
+from coursework.marking.drawn_polygons import Asked, Read, verdicts
+from coursework.polygons import crank_v, two_bars_v, velocity_polygon
 from coursework.solution import formula, judge, mistake
 
-from ._drawn import _Asked, _Read, _verdicts
 from ._drawn_velocity import *
-from ._polygons import _crank_v, _two_bars_v, _velocities
 
 SYMBOLS = {"turn_3": r"\varepsilon_3", "turn_4": r"\varepsilon_4"}
 
@@ -96,27 +96,27 @@ def drawing(answers, r1, r2, r3, r4, theta2, omega2, mode):
     _, coupler, rocker, *_ = bars
     of_coupler = {"radii_exchanged": ("a", "b", 1 / r4), "omega3_of_V_B": ("p_v", "b", 1 / r3)}
     of_rocker = {"radii_exchanged": ("p_v", "b", 1 / r3)}
-    asked = _Asked(
+    asked = Asked(
         scale="kv",
         points={"p": "p_v", "a": "a", "b": "b"},
         lengths={"ab": ("a", "b"), "pv_b": ("p_v", "b")},
         reads={
-            "v_B": _Read("p_v", "b", abs, 1.0),
-            "omega3": _Read("a", "b", lambda v: (v / (1j * coupler)).real, 1 / r3, of_coupler),
-            "omega4": _Read("p_v", "b", lambda v: (v / (1j * rocker)).real, 1 / r4, of_rocker),
+            "v_B": Read("p_v", "b", abs, 1.0),
+            "omega3": Read("a", "b", lambda v: (v / (1j * coupler)).real, 1 / r3, of_coupler),
+            "omega4": Read("p_v", "b", lambda v: (v / (1j * rocker)).real, 1 / r4, of_rocker),
         },
         sides={("p_v", "a"): "a", ("a", "b"): "ba", ("p_v", "b"): "vb"},
         hung=frozenset({"ba_on_p"}),
     )
-    return _verdicts(answers, _polygon(bars, omega2), asked)
+    return verdicts(answers, _polygon(bars, omega2), asked)
 
 
 def _polygon(bars, omega2, scale=None):
     crank, coupler, rocker, *ratios = bars
     omega3, omega4 = (ratio * omega2 for ratio in ratios)
-    return _velocities(
-        _crank_v("A", "OA", crank, omega2),
-        _two_bars_v("B", "A", "C", coupler, omega3, rocker, omega4),
+    return velocity_polygon(
+        crank_v("A", "OA", crank, omega2),
+        two_bars_v("B", "A", "C", coupler, omega3, rocker, omega4),
         scale=scale,
     )
 

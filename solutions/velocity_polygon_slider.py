@@ -5,11 +5,11 @@ import numpy as np
 from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
+from coursework.marking.drawn_polygons import Asked, Read, verdicts
+from coursework.polygons import crank_v, slider_v, velocity_polygon
 from coursework.solution import formula, judge, mistake
 
-from ._drawn import _Asked, _Read, _verdicts
 from ._drawn_velocity import *
-from ._polygons import _crank_v, _slider_v, _velocities
 
 SYMBOLS = {"way_B": r"\varepsilon_B", "turn_3": r"\varepsilon_3"}
 
@@ -97,25 +97,25 @@ def drawing(answers, r2, r3, theta2, omega2):
     bars = _bars(r2, r3, theta2)
     _, rod, _ = bars
     of_rod = {"crank_for_rod": ("a", "b", 1 / r2), "omega3_of_V_B": ("p_v", "b", 1 / r3)}
-    asked = _Asked(
+    asked = Asked(
         scale="kv",
         points={"p": "p_v", "a": "a", "b": "b"},
         lengths={"ab": ("a", "b"), "pv_b": ("p_v", "b")},
         reads={
-            "r1_dot": _Read("p_v", "b", lambda v: v.real, 1.0, sense="V_B_sense"),
-            "omega3": _Read("a", "b", lambda v: (v / (1j * rod)).real, 1 / r3, of_rod),
+            "r1_dot": Read("p_v", "b", lambda v: v.real, 1.0, sense="V_B_sense"),
+            "omega3": Read("a", "b", lambda v: (v / (1j * rod)).real, 1 / r3, of_rod),
         },
         sides={("p_v", "a"): "a", ("a", "b"): "ba", ("p_v", "b"): "vb"},
         hung=frozenset({"ba_on_p"}),
     )
-    return _verdicts(answers, _polygon(bars, omega2), asked)
+    return verdicts(answers, _polygon(bars, omega2), asked)
 
 
 def _polygon(bars, omega2, scale=None):
     crank, rod, ratio = bars
     v_B = _images(bars, omega2)[1].real
-    return _velocities(
-        _crank_v("A", "OA", crank, omega2), _slider_v("B", "A", rod, ratio * omega2, v_B), scale=scale
+    return velocity_polygon(
+        crank_v("A", "OA", crank, omega2), slider_v("B", "A", rod, ratio * omega2, v_B), scale=scale
     )
 
 

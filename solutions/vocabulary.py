@@ -7,9 +7,9 @@ chose that case.
 import tomllib
 from pathlib import Path
 
+from coursework.course.texts import constants
 from coursework.errors import BadCourse
 from coursework.solution import mistake
-from coursework.statement import constants
 
 from ..exercises.vocabulary import BANK, CASES
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import coursework
-from coursework.scaffold import new_course
+from coursework.authoring.scaffold import new_course
 
 
 @pytest.fixture(scope="session")

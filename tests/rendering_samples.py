@@ -6,7 +6,7 @@ import cmath
 from dataclasses import replace
 
 from coursework.figures import Figure, angle_mark, axes, dimension, ground_pivot, link, pin, slider, slot_link
-from coursework.handout import (
+from coursework.sheets.sheet import (
     Answer,
     AnswerSheet,
     FeedbackLine,

@@ -12,8 +12,9 @@ import pytest
 
 import coursework
 from coursework.figures import Figure, ball, contact, ground_pivot, pin, point, slider
-from coursework.motion import Animation
-from coursework.sheets import solution_figure
+from coursework.motion.animation import Animation
+from coursework.rendering.renderer import renderer_of
+from coursework.sheets.drawings import solution_figure
 
 COURSE = coursework.open_course()
 LANGS = ("fr", "en")
@@ -75,10 +76,10 @@ def test_a_statements_figure_is_told_in_every_format_without_an_answer(name, lan
     numbers = set(re.findall(r"(?<![\w.,])\d+(?:[.,]\d+)?", words))
     printed = " ".join(str(v) for v in variant.printed.values()) + str(variant.text.opening)
     assert all(number in printed for number in numbers)
-    told, *paper = Images(COURSE.renderer.html(variant.handout())).told
+    told, *paper = Images(renderer_of(COURSE.folder).html(variant.handout())).told
     assert plainly(told) == plainly(words)
     assert len(paper) == bool(COURSE[name].spec.drawing_mm)
-    notebook = json.loads(COURSE.renderer.notebook(variant.handout()))
+    notebook = json.loads(renderer_of(COURSE.folder).notebook(variant.handout()))
     shown = ["".join(c["source"]) for c in notebook["cells"] if c.get("attachments")]
     told = [re.search(r"!\[(.*?)\]\(attachment:", one)[1] for one in shown]
     assert list(map(plainly, told)) == [plainly(words)]
@@ -88,7 +89,7 @@ def test_a_statements_figure_is_told_in_every_format_without_an_answer(name, lan
 @both
 def test_a_solutions_own_figure_has_its_own_words(name, lang):
     variant = COURSE[name].variant(1, lang)
-    told, *drawings = Images(COURSE.renderer.html(variant.answer_sheet())).told
+    told, *drawings = Images(renderer_of(COURSE.folder).html(variant.answer_sheet())).told
     assert_tells(told, solution_figure(variant), lang)
     assert all(drawings)
     assert bool(drawings) == bool(variant.polygons())
@@ -117,7 +118,7 @@ def test_a_film_is_told_in_its_own_words(name, lang):
     assert_tells(plainly(told), Figure(*animation.frames[0]), lang)
     assert {point.replace("_", "") for point in animation.points} <= set(re.findall(r"[A-Z]\d?", told))
     assert plainly(told) != plainly(" ".join(variant.text.section("figure").text.split()))
-    assert plainly(told) not in plainly(COURSE.renderer.html(variant.handout()))
+    assert plainly(told) not in plainly(renderer_of(COURSE.folder).html(variant.handout()))
 
 
 def alternatives(pdf):
@@ -139,5 +140,5 @@ def alternatives(pdf):
 def test_the_pdf_carries_the_words_of_its_figure(name, lang):
     variant = COURSE[name].variant(1, lang)
     words = " ".join(variant.text.section("figure").text.split())
-    told = alternatives(COURSE.renderer.pdf(variant.handout()))
+    told = alternatives(renderer_of(COURSE.folder).pdf(variant.handout()))
     assert plainly(words) in set(map(plainly, told))

@@ -11,12 +11,14 @@ import pytest
 import typst
 from rendering_samples import answer_sheet, feedback_sheet, handout, many_given
 
-from coursework import booklets, building, issuing
-from coursework.builtin import builtin_root
-from coursework.cli import DONE, run
+from coursework.cli import run
+from coursework.cli.options import DONE
+from coursework.course.builtin import builtin_root
 from coursework.errors import BadStatement, UnknownName
-from coursework.rendering import PAPERS, Renderer
+from coursework.making import booklets, issuing
+from coursework.making import build as building
 from coursework.rendering.pdf import source
+from coursework.rendering.renderer import PAPERS, Renderer, renderer_of
 
 TEMPLATES = [builtin_root() / "templates"]
 WIDTHS = {"a4": "595.27", "letter": "612"}
@@ -69,7 +71,7 @@ def issues_of(course, count, langs=("fr",)):
 
 def test_a_large_class_has_several_booklets_named_with_their_sheets(course, monkeypatch):
     monkeypatch.setattr(booklets, "SHEETS", 4)
-    names = [str(f.path) for f in booklets.files(course, course.renderer, issues_of(course, 10))]
+    names = [str(f.path) for f in booklets.files(course, renderer_of(course.folder), issues_of(course, 10))]
     assert names == [
         "handouts/slotted_mechanism.fr.01-04.pdf",
         "instructor/slotted_mechanism.fr.01-04.solutions.pdf",
@@ -86,7 +88,7 @@ def test_the_table_of_pages_has_a_line_for_each_sheet_whichever_booklet_holds_it
 ):
     monkeypatch.setattr(booklets, "SHEETS", 2)
     issues = issues_of(course, 3, ("fr", "en"))
-    building.write(tmp_path, list(booklets.files(course, course.renderer, issues)))
+    building.write(tmp_path, list(booklets.files(course, renderer_of(course.folder), issues)))
     rows = list(csv.DictReader(io.StringIO((tmp_path / "handouts" / "pages.csv").read_text("utf-8-sig"))))
     assert [(r["lang"], int(r["seed"])) for r in rows] == [
         (lang, issue.variant.seed) for lang in ("fr", "en") for issue in issues

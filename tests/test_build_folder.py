@@ -3,13 +3,14 @@
 import pytest
 
 import coursework
-from coursework import building, demo, issuing
-from coursework.booklets import File
-from coursework.building import write_tree
-from coursework.cli import BAD, DONE, run
+from coursework.cli import demo, run
+from coursework.cli.options import BAD, DONE
 from coursework.errors import BadInput
-from coursework.issued import Issued
-from coursework.issuing import Student
+from coursework.making import build as building
+from coursework.making import issuing
+from coursework.making.issued import Issued
+from coursework.making.roster import Student
+from coursework.system.writing import File, write_tree
 
 CLASS = [Student("Ada"), Student("Bo"), Student("Cy")]
 

@@ -5,10 +5,11 @@ import pickle
 import pytest
 
 import coursework
-from coursework import building, issuing
 from coursework.errors import BadCourse, BadStatement
-from coursework.issuing import Student
-from coursework.rendering import Renderer
+from coursework.making import build as building
+from coursework.making import issuing
+from coursework.making.roster import Student
+from coursework.rendering.renderer import Renderer
 
 COURSE = coursework.open_course()
 TEXTS = ("html", "tex", "ipynb")
@@ -60,7 +61,7 @@ def test_processes_write_what_threads_write(tmp_path, monkeypatch):
 def test_a_sheet_that_a_process_cannot_make_ends_the_build_with_its_fault(tmp_path, monkeypatch):
     (tmp_path / "templates").mkdir()
     (tmp_path / "templates" / "_figure_and_data.typ.j2").write_text("#nonsense", "utf-8")
-    broken = Renderer([tmp_path / "templates", *COURSE.template_folders])
+    broken = Renderer([tmp_path / "templates", *COURSE.folder.template_folders])
     monkeypatch.setattr(building, "WORTH_PROCESSES", 1)
     monkeypatch.setitem(COURSE.__dict__, "renderer", broken)
     issues = issuing.issue(COURSE, ["slotted_mechanism"], first_seed=0, count=2, langs=["fr"])

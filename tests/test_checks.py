@@ -9,10 +9,10 @@ from collections import Counter
 import pytest
 
 import coursework
-from coursework.check_report import Report, notes, table
-from coursework.checks import agrees, check
-from coursework.language import file_of
-from coursework.printing import print_table
+from coursework.authoring.check_report import Report, notes, table
+from coursework.authoring.checks import agrees, check
+from coursework.cli.printing import print_table
+from coursework.language.words import file_of
 
 X = "return r * cos(theta)"
 

@@ -337,7 +337,7 @@ def test_what_no_font_draws_and_what_no_file_name_holds_costs_nothing(cli, tmp_p
 def test_a_build_that_fails_leaves_what_was_there(built, cli, monkeypatch):
     before = tree(built)
     from coursework.errors import BadStatement
-    from coursework.rendering import Renderer
+    from coursework.rendering.renderer import Renderer
 
     def fails(self, handout, practice=False):
         raise BadStatement("no")

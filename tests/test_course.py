@@ -18,7 +18,8 @@ from coursework.errors import (
     WrongUnit,
     WrongValue,
 )
-from coursework.scenes import LEVELS
+from coursework.motion.scenes import LEVELS
+from coursework.rendering.renderer import renderer_of
 
 PACKAGE = Path(coursework.__file__).parent
 
@@ -29,7 +30,7 @@ def test_the_built_in_course_has_the_five_chapter_exercises(course):
 
 
 def test_two_courses_with_the_same_names_do_not_clash(course, tmp_path):
-    from coursework.scaffold import new_exercise
+    from coursework.authoring.scaffold import new_exercise
 
     for root in ("a", "b"):
         new_exercise(tmp_path / root, "slotted_mechanism")
@@ -60,7 +61,7 @@ def test_a_course_overrides_one_template_and_takes_the_others_from_the_built_in_
 
 
 def test_exercises_never_import_solutions(course):
-    for path in (course.root / "exercises").glob("*.py"):
+    for path in (course.folder.root / "exercises").glob("*.py"):
         text = path.read_text("utf-8")
         assert not re.search(r"^\s*(from|import)\s.*\bsolutions?\b", text, re.MULTILINE), path.name
 
@@ -226,12 +227,12 @@ def test_an_authors_slip_names_its_file_and_what_would_do(small_course, file, ol
 
 def use(course):
     variant = course["crank_pin"].variant(0)
-    course.renderer.html(variant.handout())
-    course.renderer.pdf(variant.answer_sheet())
+    renderer_of(course.folder).html(variant.handout())
+    renderer_of(course.folder).pdf(variant.answer_sheet())
 
 
 def test_what_every_variant_says_alike_is_known_without_a_variant(tmp_path):
-    from coursework.statement import constants
+    from coursework.course.texts import constants
 
     path = tmp_path / "x.en.md.j2"
     alike = "# T\n\n{% for n in numbers %}{{ n }}{% endfor %}\n\n## a\nAlike.\n- I: one\n\n## b\n{{ r }} long.\n- I: {{ r }}\n"

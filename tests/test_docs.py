@@ -11,7 +11,9 @@ import click
 import pytest
 
 import coursework
-from coursework.cli import cli, run
+from coursework.cli import run
+from coursework.cli.options import cli
+from coursework.rendering.renderer import renderer_of
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
@@ -186,4 +188,4 @@ def test_every_picture_and_page_that_the_gallery_points_to_is_made(name):
 
 def test_the_picture_of_a_sheet_is_one_page_as_png():
     handout = COURSE["slotted_mechanism"].variant(0, "en").handout()
-    assert gallery().first_page(COURSE.renderer.typst(handout)).startswith(b"\x89PNG")
+    assert gallery().first_page(renderer_of(COURSE.folder).typst(handout)).startswith(b"\x89PNG")

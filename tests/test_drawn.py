@@ -9,9 +9,9 @@ import random
 import pytest
 
 import coursework
-from coursework.drawn import TOLERANCE_MM, judge_drawing, vector_fault
 from coursework.errors import BadCourse, UnknownName, WrongValue
 from coursework.model import Exercise, Part, drawn
+from coursework.polygons.hand_drawn import TOLERANCE_MM, judge_drawing, vector_fault
 
 COURSE = coursework.open_course()
 NAMES = ("velocity_polygon", "velocity_polygon_slider", "acceleration_polygon", "acceleration_polygon_slider")

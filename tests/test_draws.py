@@ -11,9 +11,9 @@ from golden import FOLDER, drawn
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coursework import draws
+from coursework.course import draws
 from coursework.errors import BadCourse, Starved
-from coursework.issuing import distinct_variants
+from coursework.making.issuing import distinct_variants
 from coursework.model import Exercise, Part, chosen, fixed
 from coursework.model import drawn as ranged
 

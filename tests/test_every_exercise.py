@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 import coursework
-from coursework import checks
-from coursework.check_report import Report
-from coursework.draws import BLOCK, acceptance
+from coursework.authoring import checks
+from coursework.authoring.check_report import Report
+from coursework.course.draws import BLOCK, acceptance
 from coursework.errors import NoSolution
-from coursework.language import languages
+from coursework.language.words import languages
+from coursework.rendering.renderer import renderer_of
 
 COURSE = coursework.open_course()
 VARIANTS = 30
@@ -165,7 +166,7 @@ def test_handouts_render_identically_without_solutions(name, lang, students_copy
     assert there.record == here.record
     for render in ("html", "notebook", "typst"):
         assert getattr(students_copy.renderer, render)(there.handout("A")) == getattr(
-            COURSE.renderer, render
+            renderer_of(COURSE.folder), render
         )(here.handout("A"))
     with pytest.raises(NoSolution, match="students' copy"):
         there.solution()
@@ -177,7 +178,7 @@ def students_copy(tmp_path_factory):
 
     root = tmp_path_factory.mktemp("students")
     for kind in ("exercises", "templates"):
-        shutil.copytree(COURSE.root / kind, root / kind, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copytree(COURSE.folder.root / kind, root / kind, ignore=shutil.ignore_patterns("__pycache__"))
     return coursework.open_course(root)
 
 
@@ -193,9 +194,9 @@ def test_a_handout_holds_no_answer(name, lang):
         handout = key.variant.in_language(lang).handout()
         given = {f"{abs(v):.4g}" for v in key.variant.given.values() if isinstance(v, float)}
         texts = {
-            "page": re.sub(r"<svg.*?</svg>", "", COURSE.renderer.html(handout), flags=re.DOTALL),
-            "notebook": re.sub(r'"image/png": "[^"]*"', "", COURSE.renderer.notebook(handout)),
-            "sheet": re.sub(PLACES_ON_PAPER, "", COURSE.renderer.typst(handout), flags=re.DOTALL),
+            "page": re.sub(r"<svg.*?</svg>", "", renderer_of(COURSE.folder).html(handout), flags=re.DOTALL),
+            "notebook": re.sub(r'"image/png": "[^"]*"', "", renderer_of(COURSE.folder).notebook(handout)),
+            "sheet": re.sub(PLACES_ON_PAPER, "", renderer_of(COURSE.folder).typst(handout), flags=re.DOTALL),
         }
         for part in key.variant.parts:
             value = key.reference[part.quantity]
@@ -212,7 +213,7 @@ def test_a_handout_holds_no_answer(name, lang):
 def test_a_french_page_parts_no_high_mark_from_its_word(name):
     variant = keys(name)[0].variant.in_language("fr")
     for sheet in (variant.handout(), variant.answer_sheet(polygons=False)):
-        page = COURSE.renderer.html(sheet)
+        page = renderer_of(COURSE.folder).html(sheet)
         text = re.sub(r"<style.*?</style>|<[^>]*>", "", page, flags=re.DOTALL)
         assert not re.findall(r"\S*[ \u00a0][;:!?»](?=\s|$)", text)
 

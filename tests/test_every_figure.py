@@ -11,7 +11,8 @@ import pytest
 import coursework
 from coursework.figures import Figure, link, pin
 from coursework.rendering import views
-from coursework.sheets import solution_figure
+from coursework.rendering.renderer import renderer_of
+from coursework.sheets.drawings import solution_figure
 
 COURSE = coursework.open_course()
 WITH_FIGURE = [n for n in COURSE.names if COURSE[n].spec.figure is not None]
@@ -100,7 +101,7 @@ def test_a_slender_figure_has_more_height_on_a_sheet_that_stays_one_page(name, p
     for variant in variants[:2]:
         room = views.room(variant.handout())
         assert variant.figure.fitted(*room).scale > 1.2 * variant.figure.fitted(*views.ROOM_BESIDE).scale
-        made = COURSE.renderer.on(paper).pdf(variant.handout("Zoé Martin"))
+        made = renderer_of(COURSE.folder).on(paper).pdf(variant.handout("Zoé Martin"))
         assert len(re.findall(rb"/Type ?/Page\b", made)) == 1
     assert variants
 

@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from coursework.equation_latex import latex_of_equation
-from coursework.equations import parse_equation
-from coursework.equivalence import same_equation
-from coursework.expressions import Unreadable, parse_expression
+from coursework.reading.equations import parse_equation
+from coursework.reading.equivalence import same_equation
+from coursework.reading.expressions import parse_expression
+from coursework.reading.vocabulary import Unreadable
+from coursework.sheets.equation_latex import latex_of_equation
 
 NAMES = (
     "r1", "r2", "r3", "r4", "theta2", "theta3", "theta4",

@@ -9,16 +9,17 @@ import numpy as np
 import pytest
 
 import coursework
-from coursework import checks
-from coursework.check_report import KEPT_DIGITS, Report
-from coursework.comparing import distance
+from coursework.authoring import checks
+from coursework.authoring.check_report import KEPT_DIGITS, Report
+from coursework.course.answer_key import Key
+from coursework.course.key_batch import keys_of
+from coursework.course.marking_rules import Rules
 from coursework.errors import BadCourse, Starved
-from coursework.issuing import distinct_variants
-from coursework.key import Key, keys_of
+from coursework.making.flaws import HIDDEN, SHOWN, flaws, visibility, worthy
+from coursework.making.issuing import distinct_variants
+from coursework.marking.distance import distance
 from coursework.model import Part
-from coursework.rounding import envelope, half_step, rounded, student_who_rounds
-from coursework.rules import Rules
-from coursework.worth import HIDDEN, SHOWN, flaws, visibility, worthy
+from coursework.quantities.rounding import envelope, half_step, rounded, student_who_rounds
 
 COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize("name", COURSE.names)
@@ -71,7 +72,7 @@ def test_rounding_would_cost_honest_students_the_usual_margin():
 
 def test_an_envelope_is_the_sum_of_what_each_step_can_move():
     """x = 2 a, y = x + b: by hand, half a last digit of x and half a one of y."""
-    from coursework.graph import Graph
+    from coursework.quantities.graph import Graph
 
     def x(a):
         return 2 * a
@@ -86,7 +87,7 @@ def test_an_envelope_is_the_sum_of_what_each_step_can_move():
 
 
 def test_an_envelope_takes_arrays_vectors_and_directions():
-    from coursework.graph import Graph
+    from coursework.quantities.graph import Graph
 
     def turned(theta):
         return theta + 100.0
@@ -380,7 +381,8 @@ def test_the_envelope_widens_and_never_narrows():
 @pytest.mark.parametrize("name", COURSE.names)
 def test_many_sheets_are_marked_as_each_alone(name):
     """By the column or one by one, the verdict, the points, what was read and what is said are the same."""
-    from coursework.gradebook import Line, _Job, _mark_chunk
+    from coursework.gradebook.class_marking import _Job, _mark_chunk
+    from coursework.gradebook.graded import Line
 
     exercise = COURSE[name]
     variants = exercise.variants(range(24), "en")

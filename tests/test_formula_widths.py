@@ -8,9 +8,9 @@ import pytest
 import typst
 
 import coursework
+from coursework.markup.markdown import to_typst_markup
+from coursework.markup.typst import to_typst
 from coursework.rendering import views
-from coursework.rendering.formulas import to_typst
-from coursework.rendering.markup import to_typst_markup
 
 COURSE = coursework.open_course()
 LINE = (210 - 2 * 20) / 25.4 * 72 - 1.2 * 10.5  #: points: A4 less margins, less what a chain is indented by

@@ -7,9 +7,9 @@ import pickle
 import numpy as np
 import pytest
 
-from coursework.blocks import joined
 from coursework.errors import CannotAssemble, Cycle, MissingQuantity, Undefined, UnknownName
-from coursework.graph import Graph, Replacement
+from coursework.quantities.graph import Graph, Replacement
+from coursework.system.blocks import joined
 
 
 def area(width, height):

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import coursework
-from coursework import checks, issuing
+from coursework.authoring import checks
 from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName
+from coursework.making import issuing
 
 EXERCISE = """
 from coursework.model import Exercise, Part, drawn
@@ -209,7 +210,7 @@ def test_a_judge_that_cannot_judge_is_the_authors_fault_and_says_so(course, old,
 
 
 def test_the_bulk_marker_gives_the_same_marks(course, tmp_path):
-    from coursework.gradebook import _Job, _mark_chunk
+    from coursework.gradebook.class_marking import _Job, _mark_chunk
 
     opened = coursework.open_course(course)
     variants = opened["sums"].variants(range(20), "en")

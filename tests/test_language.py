@@ -7,9 +7,9 @@ import shutil
 
 import pytest
 
-from coursework import language
 from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName
+from coursework.language import words as language
 
 
 @pytest.fixture

@@ -11,14 +11,16 @@ import pytest
 from rendering_samples import ANSWER_DIGITS, answer_sheet, handout, many_given
 from test_rendering import FORMULAS, call
 
-from coursework import building, issuing
-from coursework.builtin import builtin_root
-from coursework.cli import DONE, run
-from coursework.rendering import PAPERS, Renderer
-from coursework.rendering.formula_tree import GRIDS, MACROS
-from coursework.rendering.formulas import spoken
+from coursework.cli import run
+from coursework.cli.options import DONE
+from coursework.course.builtin import builtin_root
+from coursework.making import build as building
+from coursework.making import issuing
+from coursework.markup.formula_tree import GRIDS, MACROS
+from coursework.markup.latex import latex_text, plain_latex, to_latex
+from coursework.markup.spoken import spoken
 from coursework.rendering.latex import to_latex_markup
-from coursework.rendering.latex_formulas import latex_text, plain_latex, to_latex
+from coursework.rendering.renderer import PAPERS, Renderer
 
 RENDERER = Renderer([builtin_root() / "templates"])
 HOSTILE = (

@@ -10,9 +10,10 @@ import pytest
 import coursework
 from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName
-from coursework.language import languages
+from coursework.language.words import languages
+from coursework.making.lessons import lesson, lessons
 
-LESSONS = coursework.open_course().lessons
+LESSONS = lessons(coursework.open_course().folder)
 
 
 @pytest.mark.parametrize("lang", languages())
@@ -20,7 +21,7 @@ LESSONS = coursework.open_course().lessons
 def test_a_lesson_runs_from_top_to_bottom(course, name, lang):
     from nbclient import NotebookClient
 
-    book = nbformat.reads(course.lesson(name, lang), as_version=4)
+    book = nbformat.reads(lesson(course.folder, name, lang), as_version=4)
     NotebookClient(book, timeout=120, kernel_name="python3").execute()
     printed = [o for cell in book.cells for o in cell.get("outputs", ()) if o.output_type == "stream"]
     assert printed
@@ -30,7 +31,7 @@ def test_a_lesson_runs_from_top_to_bottom(course, name, lang):
 def test_the_french_lesson_prints_no_english(course):
     from nbclient import NotebookClient
 
-    book = nbformat.reads(course.lesson("mechanisms", "fr"), as_version=4)
+    book = nbformat.reads(lesson(course.folder, "mechanisms", "fr"), as_version=4)
     NotebookClient(book, timeout=120, kernel_name="python3").execute()
     outputs = [o for cell in book.cells for o in cell.get("outputs", ()) if o.output_type == "stream"]
     printed = "".join(output.text for output in outputs)
@@ -49,7 +50,7 @@ def test_a_lesson_computes_the_same_in_every_language(course, name):
         tree = ast.parse(source)
         return [type(node).__name__ for node in ast.walk(tree) if not isinstance(node, ast.JoinedStr)]
 
-    books = [json.loads(course.lesson(name, lang)) for lang in languages()]
+    books = [json.loads(lesson(course.folder, name, lang)) for lang in languages()]
     codes = [[shape("".join(c["source"])) for c in b["cells"] if c["cell_type"] == "code"] for b in books]
     assert all(code == codes[0] for code in codes)
 
@@ -63,11 +64,11 @@ def test_lessons_are_listed_and_written(tmp_path, capsys):
 
 def test_a_lesson_that_is_not_there_is_told(course, small_course):
     with pytest.raises(UnknownName, match="lesson"):
-        course.lesson("accurracy", "fr")
+        lesson(course.folder, "accurracy", "fr")
     folder = small_course / "exercises" / "lessons"
     folder.mkdir()
     (folder / "rods.fr.md").write_text("# Bielles\n", "utf-8")
     own = coursework.open_course(small_course)
-    assert own.lessons == ("rods",)
+    assert lessons(own.folder) == ("rods",)
     with pytest.raises(BadCourse, match="'en'"):
-        own.lesson("rods", "en")
+        lesson(own.folder, "rods", "en")

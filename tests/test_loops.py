@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 import coursework
-from coursework.check_report import Report
-from coursework.equations import parse_equation
+from coursework.authoring.check_loops import check_loops, equation_holds
+from coursework.authoring.check_report import Report
 from coursework.errors import BadCourse, UnknownName, WrongValue
-from coursework.issuing import issue
 from coursework.kinematics.chains import Chain, Vector
-from coursework.loop_checks import check_loops, equation_holds
-from coursework.loop_marking import judge_of
-from coursework.loops import Loop, stated
+from coursework.making.issuing import issue
+from coursework.marking.loop_judge import judge_of
 from coursework.model import Part, loop_equations
+from coursework.quantities.loops import Loop, stated
+from coursework.reading.equations import parse_equation
 
 COURSE = coursework.open_course()
 WITH_LOOPS = tuple(n for n in COURSE.names if COURSE[n].solution.loops)

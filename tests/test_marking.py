@@ -8,11 +8,11 @@ import re
 import numpy as np
 import pytest
 
-from coursework import marking
-from coursework.comparing import distance
 from coursework.errors import NoSolution, UnknownName, WrongValue
+from coursework.marking import marking
+from coursework.marking.distance import distance
+from coursework.markup.markdown import plain_line
 from coursework.model import Part
-from coursework.telling import plain_line
 
 GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "theta2": 135.0, "omega2": 5.0, "alpha2": 0.0}
 
@@ -20,7 +20,7 @@ GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "theta2": 135.0, "omega2": 5.
 @pytest.fixture(scope="module")
 def slotted(course):
     """The course's own numbers: rA = 319.80 mm, theta4 = 104.64 deg."""
-    from coursework.variant import Variant
+    from coursework.course.variant import Variant
 
     return Variant(course["slotted_mechanism"], 0, GIVEN, "fr")
 
@@ -153,7 +153,7 @@ def test_an_equation_is_quoted_with_its_stars(course):
 
 
 def test_both_readings_of_an_ambiguous_group_are_tried(course):
-    from coursework.variant import Variant
+    from coursework.course.variant import Variant
 
     variant = Variant(
         course["slotted_mechanism"], 0, {**GIVEN, "r1": 1000.0, "r2": 234.0, "theta2": 90.0}, "fr"
@@ -200,7 +200,7 @@ def test_a_students_copy_cannot_mark(course, tmp_path):
 
     import coursework
 
-    shutil.copytree(course.root / "exercises", tmp_path / "exercises")
+    shutil.copytree(course.folder.root / "exercises", tmp_path / "exercises")
     with pytest.raises(NoSolution):
         coursework.open_course(tmp_path)["slotted_mechanism"].variant(1).grade({"rA": "3"})
 

@@ -12,16 +12,16 @@ import numpy as np
 import pytest
 
 import coursework
-from coursework.checks import check
+from coursework.authoring.checks import check
 from coursework.cli import run
+from coursework.course.exercise import CourseExercise
 from coursework.errors import BadCourse, UnknownName, WrongValue
-from coursework.exercise import CourseExercise
 from coursework.figures import link, pin, rail, rotation_arrow
 from coursework.figures.moving import drawing
 from coursework.figures.riding import ride
 from coursework.figures.text import read
-from coursework.motion import EFFECTS, Animation
-from coursework.scenes import Scene
+from coursework.motion.animation import EFFECTS, Animation
+from coursework.motion.scenes import Scene
 
 COURSE = coursework.open_course()
 DRIVEN = [n for n in COURSE.names if COURSE[n].spec.driver is not None]

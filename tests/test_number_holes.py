@@ -5,8 +5,11 @@ from __future__ import annotations
 import pytest
 
 from coursework.errors import BadStatement
-from coursework.rendering.formulas import spoken, to_line, to_mathml, to_typst
-from coursework.rendering.number_holes import once_for_all_numbers
+from coursework.markup.line import to_line
+from coursework.markup.mathml import to_mathml
+from coursework.markup.number_holes import once_for_all_numbers
+from coursework.markup.spoken import spoken
+from coursework.markup.typst import to_typst
 
 WRITERS = (to_typst, spoken, to_line)
 NUMBERS = (

@@ -7,10 +7,10 @@ from types import SimpleNamespace
 
 import pytest
 
-from coursework.comparing import distance
 from coursework.errors import WrongUnit
-from coursework.reading import read_number
-from coursework.units import convert
+from coursework.marking.distance import distance
+from coursework.reading.numbers import read_number
+from coursework.reading.units import convert
 
 CASES = json.loads((Path(__file__).parent / "peer_cases.json").read_text(encoding="utf-8"))["cases"]
 PAGE = Path(__file__).parent.parent / "docs" / "fair_marking.md"

@@ -18,14 +18,16 @@ import pytest
 from test_figures import SVG, crossed, kinds, overlapping
 
 import coursework
-from coursework.cli import DONE, run
-from coursework.constructions import BOX_MM, Construction
+from coursework.cli import run
+from coursework.cli.options import DONE
 from coursework.errors import BadCourse, NoSolution, UnknownName
 from coursework.figures import Figure, vector
 from coursework.figures.text import SIZE, read
-from coursework.language import languages
-from coursework.polygons import Polygon, Side, normal, tangential, turning
+from coursework.language.words import languages
+from coursework.polygons.construction import BOX_MM, Construction
+from coursework.polygons.polygon import Polygon, Side, normal, tangential, turning
 from coursework.rendering.pdf import _letters as letters_to_set
+from coursework.rendering.renderer import renderer_of
 
 COURSE = coursework.open_course()
 
@@ -359,8 +361,8 @@ def test_steps_grow_to_the_whole_in_one_frame(name):
 def test_a_solution_shows_every_polygon_in_black_and_white_in_every_back_end(name, lang):
     variant = variants(name, lang)[3]
     sheet = variant.answer_sheet()
-    page, tex = COURSE.renderer.html(sheet), COURSE.renderer.tex(sheet, "f.pdf", "p.pdf")
-    assert COURSE.renderer.pdf(sheet).startswith(b"%PDF")
+    page, tex = renderer_of(COURSE.folder).html(sheet), renderer_of(COURSE.folder).tex(sheet, "f.pdf", "p.pdf")
+    assert renderer_of(COURSE.folder).pdf(sheet).startswith(b"%PDF")
     assert len(variant.polygons()) > 0
     shown = 0
     for drawn in variant.polygons():
@@ -374,13 +376,13 @@ def test_a_solution_shows_every_polygon_in_black_and_white_in_every_back_end(nam
     assert f"page={shown}]{{p.pdf}}" in tex
     handout = variant.handout()
     assert not hasattr(handout, "polygons")
-    assert COURSE.renderer.polygons_pdf(handout) is None
-    assert variant.polygons()[0].opening not in COURSE.renderer.html(handout)
+    assert renderer_of(COURSE.folder).polygons_pdf(handout) is None
+    assert variant.polygons()[0].opening not in renderer_of(COURSE.folder).html(handout)
 
 
 def test_the_pages_of_the_drawings_are_of_their_own_size():
     sheet = variants("slotted_mechanism")[0].answer_sheet()
-    made = COURSE.renderer.polygons_pdf(sheet)
+    made = renderer_of(COURSE.folder).polygons_pdf(sheet)
     boxes = re.findall(rb"/MediaBox ?\[0 0 ([\d.]+) ([\d.]+)\]", made)
     sizes = [
         figure.size_mm
@@ -405,7 +407,7 @@ def test_a_build_puts_the_drawings_beside_the_staffs_source_alone(tmp_path, caps
 
 def test_a_solution_without_polygons_has_none():
     assert COURSE["grashof"].variant(0).polygons() == ()
-    assert COURSE.renderer.polygons_pdf(COURSE["grashof"].variant(0).answer_sheet()) is None
+    assert renderer_of(COURSE.folder).polygons_pdf(COURSE["grashof"].variant(0).answer_sheet()) is None
 
 
 def test_a_course_without_solutions_has_no_polygons(small_course):

@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from coursework.processes import processes
+from coursework.system.processes import processes
 
 
 def fail_at_work(fault, tasks):

@@ -7,7 +7,7 @@ import pytest
 import coursework
 from coursework.cli import run
 from coursework.errors import BadStatement
-from coursework.proofreading import pair_dollars
+from coursework.markup.proofreading import pair_dollars
 
 STATEMENT = "exercises/crank_pin.en.md.j2"
 

@@ -18,17 +18,12 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import pytest
 
-from coursework.equations import parse_equation
-from coursework.equivalence import same_equation
-from coursework.reading import (
-    Reading,
-    read_choice,
-    read_equation,
-    read_integer,
-    read_number,
-    read_numbers,
-    read_point,
-)
+from coursework.reading.choices import read_choice
+from coursework.reading.equations import parse_equation, read_equation
+from coursework.reading.equivalence import same_equation
+from coursework.reading.numbers import read_integer, read_number, read_numbers
+from coursework.reading.points import read_point
+from coursework.reading.reading import Reading
 
 SLOW = 0.05  # seconds; a reading beyond is reported
 

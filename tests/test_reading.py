@@ -9,18 +9,13 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from coursework.equations import parse_equation
-from coursework.equivalence import same_equation
 from coursework.errors import WrongUnit
-from coursework.reading import (
-    Reading,
-    read_choice,
-    read_equation,
-    read_integer,
-    read_number,
-    read_numbers,
-    read_point,
-)
+from coursework.reading.choices import read_choice
+from coursework.reading.equations import parse_equation, read_equation
+from coursework.reading.equivalence import same_equation
+from coursework.reading.numbers import read_integer, read_number, read_numbers
+from coursework.reading.points import read_point
+from coursework.reading.reading import Reading
 
 NBSP, THIN, NARROW = "\u00a0", "\u2009", "\u202f"
 

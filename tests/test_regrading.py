@@ -11,10 +11,13 @@ import pytest
 import coursework
 from coursework.cli import run
 from coursework.errors import BadInput
-from coursework.gradebook import Line, marked, placed
-from coursework.grading import feedback_sheet
-from coursework.issued import Issued
-from coursework.submissions import read_file
+from coursework.gradebook.class_marking import marked
+from coursework.gradebook.feedback_sheets import feedback_sheet
+from coursework.gradebook.graded import Line
+from coursework.gradebook.placing import placed
+from coursework.gradebook.submissions import read_file
+from coursework.making.issued import Issued
+from coursework.rendering.renderer import renderer_of
 
 SOLUTION = "solutions/crank_pin.py"
 
@@ -280,8 +283,8 @@ def test_a_name_made_inert_is_the_same_student(small_course, named, tmp_path):
 def test_an_interrupted_marking_leaves_the_marks_that_were_there(small_course, issued, monkeypatch):
     grade(small_course, issued)
     before = {p.name: p.read_bytes() for p in (issued / "marks").iterdir()}
-    from coursework import gradebook
-    from coursework.grading import grade_files
+    from coursework.gradebook import book as gradebook
+    from coursework.gradebook.grading import grade_files
 
     def breaks(graded):
         raise KeyboardInterrupt
@@ -302,7 +305,7 @@ def test_a_table_that_cannot_be_replaced_costs_no_other(
     """Whether it is so from the start, or becomes so while the answers are marked."""
     grade(small_course, issued)
     grade(small_course, issued, "--accepted", _accepting(issued))
-    from coursework import gradebook
+    from coursework.gradebook import book as gradebook
 
     path = issued / "marks" / name
     rows = gradebook.summary_rows
@@ -359,7 +362,7 @@ def test_who_wrote_what_cannot_be_read_is_told_that_somebody_will_look(small_cou
     assert told not in said["correct"]
     course, kept = coursework.open_course(small_course), Issued.read(issued / "issued.json")
     sheets = placed(course, kept, list(read_file(issued.parent / "answers.csv")))
-    pages = [course.renderer.html(feedback_sheet(course, graded)) for graded in marked(course, kept, sheets)]
+    pages = [renderer_of(course.folder).html(feedback_sheet(course, graded)) for graded in marked(course, kept, sheets)]
     assert [told in page for page in pages] == [True, False, False]
 
 
@@ -501,7 +504,7 @@ def test_a_parquet_file_that_is_none_is_rejected_with_its_reason(small_course, i
 
 
 def test_many_answers_are_marked_by_processes_as_by_one(small_course, issued, tmp_path, monkeypatch):
-    from coursework import gradebook
+    from coursework.gradebook import book as gradebook
 
     grade(small_course, issued, "--out", tmp_path / "one")
     monkeypatch.setattr(gradebook, "WORTH_PROCESSES", 0)

@@ -17,23 +17,17 @@ import pytest
 import typst
 from rendering_samples import ANSWER_DIGITS, answer_sheet, feedback_sheet, handout, many_given
 
-from coursework import language
-from coursework.builtin import builtin_root
+from coursework.course.builtin import builtin_root
+from coursework.course.texts import Section
 from coursework.errors import BadCourse, BadStatement
-from coursework.handout import Given
-from coursework.language import words
-from coursework.rendering import Renderer
-from coursework.rendering.formula_tree import GRIDS, MACROS
-from coursework.rendering.formulas import (
-    check_formula,
-    number_text,
-    spoken,
-    to_line,
-    to_mathml,
-    to_notebook,
-    to_typst,
-)
-from coursework.rendering.markup import (
+from coursework.language import words as language
+from coursework.language.typography import typeset
+from coursework.language.words import words
+from coursework.markup.formula_tree import GRIDS, MACROS
+from coursework.markup.formulas import check_formula, number_text
+from coursework.markup.latex import to_notebook
+from coursework.markup.line import to_line
+from coursework.markup.markdown import (
     to_html,
     to_notebook_markdown,
     to_text,
@@ -41,9 +35,12 @@ from coursework.rendering.markup import (
     typst_text,
     typst_value,
 )
-from coursework.rendering.typography import typeset
+from coursework.markup.mathml import to_mathml
+from coursework.markup.spoken import spoken
+from coursework.markup.typst import to_typst
+from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.rendering.views import points_text, tolerances, verdict_word
-from coursework.statement import Section
+from coursework.sheets.sheet import Given
 
 TEMPLATES = builtin_root() / "templates"
 RENDERER = Renderer([TEMPLATES])
@@ -710,4 +707,4 @@ def test_a_solutions_text_says_what_its_own_figure_shows(course, monkeypatch):
     sheet = variant.answer_sheet()
     assert sheet.figure is not None
     assert sheet.figure_alt == "Two circles that meet."
-    assert "Two circles that meet." in course.renderer.html(sheet)
+    assert "Two circles that meet." in renderer_of(course.folder).html(sheet)

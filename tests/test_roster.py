@@ -2,8 +2,9 @@
 
 import pytest
 
-from coursework.cli import DONE, run
-from coursework.roster import Student, read_roster
+from coursework.cli import run
+from coursework.cli.options import DONE
+from coursework.making.roster import Student, read_roster
 
 
 def read(tmp_path, content):

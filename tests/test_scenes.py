@@ -10,7 +10,7 @@ import pytest
 
 from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName, WrongValue
-from coursework.scenes import Scene
+from coursework.motion.scenes import Scene
 
 GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "omega2": 5.0, "alpha2": 0.0}
 

@@ -14,9 +14,11 @@ import coursework
 from coursework.cli import run
 from coursework.errors import BadCourse, BadInput, CourseworkError, Starved, UnknownName, WrongValue
 from coursework.figures.plot import Axis, Plot, Spot
-from coursework.language import words
-from coursework.selfstudy import hints, predictions, wording
-from coursework.worth import worthy
+from coursework.language.words import words
+from coursework.making.flaws import worthy
+from coursework.rendering.renderer import renderer_of
+from coursework.study import hints, predictions
+from coursework.study import word_answers as wording
 
 COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize("name", COURSE.names)
@@ -59,7 +61,7 @@ IN_BOTH = ("assour", "four_bar_motion", "slotted_mechanism")
 
 @pytest.mark.parametrize(("name", "lang"), [(n, "fr") for n in COURSE.names] + [(n, "en") for n in IN_BOTH])
 def test_a_self_study_notebook_runs_from_top_to_bottom_twice(name, lang, here):
-    cells = code_cells(COURSE.renderer.study(COURSE[name].variant(3, lang).study_sheet()))
+    cells = code_cells(renderer_of(COURSE.folder).study(COURSE[name].variant(3, lang).study_sheet()))
     assert any("study.check(answers)" in source for source in cells)
     assert run_cells(cells) == run_cells(cells)
 
@@ -69,7 +71,7 @@ def test_a_self_study_notebook_runs_in_a_kernel(name, lang, tmp_path):
     import nbformat
     from nbclient import NotebookClient
 
-    text = COURSE.renderer.study(COURSE[name].variant(3, lang).study_sheet())
+    text = renderer_of(COURSE.folder).study(COURSE[name].variant(3, lang).study_sheet())
     book = nbformat.reads(text, as_version=4)
     resources = {"metadata": {"path": str(tmp_path)}}
     NotebookClient(book, timeout=120, kernel_name="python3", resources=resources).execute()
@@ -80,7 +82,7 @@ def test_a_self_study_notebook_runs_in_a_kernel(name, lang, tmp_path):
 
 @every_exercise
 def test_a_self_study_notebook_is_the_same_twice_and_has_one_cell_of_answers(name):
-    first, second = (COURSE.renderer.study(COURSE[name].variant(3, "fr").study_sheet()) for _ in range(2))
+    first, second = (renderer_of(COURSE.folder).study(COURSE[name].variant(3, "fr").study_sheet()) for _ in range(2))
     assert first == second
     book = json.loads(first)
     (answers,) = [c for c in book["cells"] if "answers" in c["metadata"].get("tags", ())]
@@ -94,7 +96,7 @@ def test_a_self_study_notebook_is_the_same_twice_and_has_one_cell_of_answers(nam
 def test_a_notebook_to_hand_in_holds_no_answer_and_no_way_to_one(name):
     for seed in (0, 1):
         variant = COURSE[name].variant(seed, "en")
-        text = COURSE.renderer.notebook(variant.handout("Zoé"))
+        text = renderer_of(COURSE.folder).notebook(variant.handout("Zoé"))
         words = re.sub(r'"image/png": "[^"]*"', "", text)
         assert "coursework.study" not in words
         for source in code_cells(text):
@@ -145,7 +147,7 @@ def test_a_students_copy_says_that_its_solutions_are_missing(small_course, monke
     shutil.rmtree(small_course / "solutions")
     monkeypatch.chdir(small_course.parent)
     variant = coursework.open_course(small_course)["crank_pin"].variant(0, "en")
-    shown = run_cells(code_cells(variant.exercise.course.renderer.study(variant.study_sheet())))
+    shown = run_cells(code_cells(renderer_of(variant.exercise.folder).study(variant.study_sheet())))
     session = coursework.study("crank_pin", lang="en", course="small", folder=small_course)
     for said in (
         session.check({"x": "1"}),
@@ -458,7 +460,7 @@ def test_a_question_may_be_told_by_its_number(question, lang, here):
 @every_exercise
 def test_the_name_of_a_question_stands_beside_its_number(name, here):
     variant = COURSE[name].variant(3, "fr")
-    book = json.loads(COURSE.renderer.study(variant.study_sheet()))
+    book = json.loads(renderer_of(COURSE.folder).study(variant.study_sheet()))
     text = "\n".join("".join(c["source"]) for c in book["cells"] if c["cell_type"] == "markdown")
     for number, part in enumerate(variant.parts, start=1):
         assert f"**{number}.** `{part.id}` — " in text
@@ -511,7 +513,7 @@ def test_who_works_alone_is_not_told_that_somebody_will_look(name, lang, here):
 @BOTH
 def test_the_answers_cell_of_a_self_study_notebook_is_run(lang, here):
     variant = COURSE["coriolis"].variant(3, lang)
-    books = [COURSE.renderer.study(variant.study_sheet()), COURSE.renderer.notebook(variant.handout())]
+    books = [renderer_of(COURSE.folder).study(variant.study_sheet()), renderer_of(COURSE.folder).notebook(variant.handout())]
     texts = [flat(" ".join("".join(c["source"]) for c in json.loads(book)["cells"])) for book in books]
     helps = (SAID[lang]["answers_help"], words(lang)["notebook"]["answers_help"])
     for k, text in enumerate(texts):

@@ -8,15 +8,16 @@ import json
 import numpy as np
 import pytest
 
-from coursework import charts
 from coursework.cli import run
 from coursework.errors import BadInput, BadStatement
-from coursework.gradebook import MARKS_COLUMNS, REJECTED_COLUMNS, SUMMARY_COLUMNS, VERDICTS
-from coursework.language import languages, words
-from coursework.naming import Names
-from coursework.rendering import Renderer
-from coursework.statistics import ENOUGH, WEAK, correlation, measure, read
-from coursework.statistics_page import mistake_rows, report, sheet_order
+from coursework.figures import charts
+from coursework.gradebook.book import MARKS_COLUMNS, REJECTED_COLUMNS, SUMMARY_COLUMNS, VERDICTS
+from coursework.language.words import languages, words
+from coursework.rendering.renderer import Renderer, renderer_of
+from coursework.statistics.captions import Names
+from coursework.statistics.marks import read
+from coursework.statistics.measures import ENOUGH, WEAK, correlation, measure
+from coursework.statistics.page import mistake_rows, report, sheet_order
 
 
 def line(student, exercise, part, verdict, points, out_of=1.0, answer="1"):
@@ -317,16 +318,16 @@ def test_the_page_says_it_in_every_language(course, folder, lang):
     told = measure(marks, sheet_order(course, marks.exercises))
     page = report(course, told, lang)
     assert len(page.sections) == 1 + 1 + 2 + 1
-    html = course.renderer.report_html(page)
+    html = renderer_of(course.folder).report_html(page)
     assert html.count("<figure>") == 4
     assert "<script" not in html
     assert "<b>$own$*" not in html
     assert "my &lt;b&gt;$own$*" in html
     assert "p_1|`x`" in html
-    assert course.title(lang) in html
+    assert course.folder.title(lang) in html
     assert course["slotted_mechanism"].title(lang) in html
     assert words(lang)["verdicts"]["follow_through"] in html
-    assert course.renderer.report_pdf(page).startswith(b"%PDF")
+    assert renderer_of(course.folder).report_pdf(page).startswith(b"%PDF")
     other = next(other for other in languages() if other != lang)
     assert words(other)["statistics"]["short"] not in html
 
@@ -366,8 +367,8 @@ def test_the_reading_names_what_is_hard_weak_costly_and_to_be_looked_at(course, 
 def test_any_name_in_the_marks_is_printed(course, folder, name):
     lines = [line(f"s{i}", name, name, f"mistake:{name}" if i else "correct", 0) for i in range(2)]
     page = report(course, measure(read(folder(lines))), "fr")
-    assert course.renderer.report_pdf(page).startswith(b"%PDF")
-    assert course.renderer.report_html(page).count("<figure>") == 3
+    assert renderer_of(course.folder).report_pdf(page).startswith(b"%PDF")
+    assert renderer_of(course.folder).report_html(page).count("<figure>") == 3
 
 
 def test_every_symbol_of_the_course_is_a_label_of_a_chart(course):
@@ -381,7 +382,7 @@ def test_the_reading_of_a_class_without_answers_says_so(course, folder):
     page = report(course, measure(read(folder([]))), "en")
     assert "No answer was handed in" in page.sections[0].text
     assert len(page.sections) == 1
-    assert course.renderer.report_pdf(page).startswith(b"%PDF")
+    assert renderer_of(course.folder).report_pdf(page).startswith(b"%PDF")
     perfect = read(folder(lines_of(np.ones((3, 2)), [1, 1])))
     text = reading(course, perfect)
     assert "Every question has all its points" in text
@@ -420,13 +421,13 @@ def test_questions_and_mistakes_are_called_as_the_students_know_them(course, fol
     ]
     told = measure(read(folder(lines)), sheet_order(course, ["slotted_mechanism"]))
     page = report(course, told, lang)
-    assert "coursework report" not in course.renderer.report_html(page)
+    assert "coursework report" not in renderer_of(course.folder).report_html(page)
     reading, (table,) = page.sections[0].text, page.sections[-1].tables
     assert slip in reading
     assert "sign*" not in reading.replace(slip, "")
     assert "oriolis" in "".join(row[1] for row in table.rows)
     assert slip in "".join(row[1] for row in table.rows)
-    assert "no_coriolis" not in course.renderer.report_html(page)
+    assert "no_coriolis" not in renderer_of(course.folder).report_html(page)
     (guide,) = (p for p in told.parts if p.part == "guide")
     asked = Names(course, told, lang).question(guide)
     assert " " in asked

@@ -10,7 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coursework.errors import BadInput
-from coursework.submissions import Rejected, Row, find, literal_answers, read_file
+from coursework.gradebook.notebooks import literal_answers
+from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.submissions import find, read_file
 
 HEADER = "student,exercise,seed,part,answer\n"
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from coursework.errors import WrongUnit
-from coursework.units import UnknownUnit, convert, find_unit, parse_unit, same_dimension
+from coursework.reading.units import UnknownUnit, convert, find_unit, parse_unit, same_dimension
 
 #: Spelling, canonical unit, and what one of the spelling is in it, from the definitions of the units.
 SPELLINGS = [

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coursework import sheets
 from coursework.degrees import atan2, cos, polar, sin, sqrt
+from coursework.sheets import answer_sheet as sheets
+from coursework.sheets.formula_latex import formula_latex, number_latex
 from coursework.solution import formula
-from coursework.worked import formula_latex, number_latex
 
 
 def law_of_cosines(a, b, theta):

@@ -12,9 +12,9 @@ import numpy as np
 
 from coursework.accuracy.study import Study
 from coursework.accuracy.ways import MOTION, Values, exactly, ways
+from coursework.course.exercise import CourseExercise
 from coursework.errors import BadCourse, BadInput
-from coursework.exercise import CourseExercise
-from coursework.scenes import INERTIA, Scene
+from coursework.motion.scenes import INERTIA, Scene
 
 GENERIC, HARD = "generic", "hard"
 _DIGITS = 70  #: of the reference
@@ -48,7 +48,7 @@ class Row:
 
 def study_of(exercise: CourseExercise) -> Study | None:
     """What the exercise's solution states, or None."""
-    found = exercise.course.module("solutions", exercise.name)
+    found = exercise.folder.module("solutions", exercise.name)
     study = getattr(found, "ACCURACY", None) if exercise.solution else None
     if study is not None and exercise.spec.driver is None:
         raise BadCourse(f"{exercise.name} states ACCURACY but no driver=Driver(…) to move it by")

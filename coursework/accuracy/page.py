@@ -9,10 +9,11 @@ from typing import Any
 
 from coursework.accuracy.measuring import GENERIC, HARD, Row, study_of
 from coursework.accuracy.ways import MOTION, POSITION, RATE
-from coursework.charts import scatter
-from coursework.course import Course
-from coursework.language import significant, unit_text, words
-from coursework.report import Chart, Report, Section, Table
+from coursework.course.course import Course
+from coursework.figures.charts import scatter
+from coursework.language.numbers import significant, unit_text
+from coursework.language.words import words
+from coursework.sheets.report import Chart, Report, Section, Table
 
 _LIMITS = (1e-3, 1e-6, 1e-12)
 _LEAST = 1e-20  #: what a chart shows of an error below
@@ -33,7 +34,7 @@ def report(course: Course, rows: Sequence[Row], lang: str) -> Report:
                 sections.append(section(course[name], title, chosen, said, lang))
     return Report(
         lang,
-        course.title(lang),
+        course.folder.title(lang),
         said["title"],
         "coursework accuracy",
         said["opening"].format(50),

@@ -15,7 +15,7 @@ import numpy as np
 
 from coursework.accuracy.closure import Closure
 from coursework.accuracy.study import Study
-from coursework.exercise import CourseExercise
+from coursework.course.exercise import CourseExercise
 
 POSITION, RATE, MOTION = "position", "rate", "motion"
 TOLERANCES = (1e-3, 1e-6, 1e-9, 1e-12)

@@ -54,34 +54,36 @@ Errors: WrongValue names the element whose point is not finite or whose length i
 positive, and refuses a figure without extent; UnknownName refuses an unknown label command.
 """
 
+from coursework.figures.base import Element
 from coursework.figures.elements import (
-    Element,
-    angle_mark,
-    arc,
-    axes,
     ball,
     bar,
-    centre_line,
-    circle,
     contact,
-    dimension,
     ground_pivot,
-    line,
     link,
-    note,
     pin,
     point,
     rail,
-    rotation_arrow,
-    scale_bar,
     section,
     slider,
     slot_link,
-    trace,
-    vector,
     wheel,
 )
 from coursework.figures.figure import Beginning, Figure, LabelBox
+from coursework.figures.marks import (
+    angle_mark,
+    arc,
+    axes,
+    centre_line,
+    circle,
+    dimension,
+    line,
+    note,
+    rotation_arrow,
+    scale_bar,
+    trace,
+    vector,
+)
 
 __all__ = [
     "Beginning",

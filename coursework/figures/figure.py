@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from coursework.errors import WrongValue
-from coursework.figures.elements import Element
+from coursework.figures.base import Element
 from coursework.figures.ink import MARKS, THIN, Ink, Path
 from coursework.figures.paper import Paper
 from coursework.figures.placing import Label, place

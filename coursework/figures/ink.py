@@ -10,6 +10,7 @@ from functools import lru_cache
 
 BAR, EDGE, THIN = 0.6, 0.35, 0.2  #: line widths, mm
 DASHED, CHAIN, DOTTED = "1.6 1", "4 1 0.6 1", "0.8 0.8"
+FONT = "Libertinus Serif"
 WHITE, TINT, BLACK, NONE = "#fff", "#e4e4e4", "#000", "none"
 
 # From the bottom to the top of the pile.

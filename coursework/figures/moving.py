@@ -15,7 +15,8 @@ from itertools import pairwise
 import numpy as np
 
 from coursework.errors import WrongValue
-from coursework.figures.elements import Bars, Element, centre_line, line, rail, rotation_arrow
+from coursework.figures.base import Bars, Element
+from coursework.figures.elements import rail
 from coursework.figures.ink import (
     BLACK,
     FILLS,
@@ -33,6 +34,7 @@ from coursework.figures.ink import (
     pair,
     turn,
 )
+from coursework.figures.marks import centre_line, line, rotation_arrow
 from coursework.figures.paper import Paper
 from coursework.figures.placing import NAMES, Wish
 from coursework.figures.riding import ride

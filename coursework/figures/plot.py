@@ -13,7 +13,7 @@ from coursework.errors import UnknownName, WrongValue
 from coursework.figures.ink import number
 from coursework.figures.text import SIZE, Text, read
 from coursework.figures.writing import accents, as_outlines
-from coursework.language import localise, significant
+from coursework.language.numbers import localise, significant
 
 _WIDTH, _HEIGHT = 112.0, 26.0  #: of a panel, mm
 _LEFT, _RIGHT, _TOP, _BOTTOM, _GAP = 19.0, 5.0, 7.5, 11.5, 9.5

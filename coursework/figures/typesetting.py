@@ -10,7 +10,7 @@ from functools import lru_cache
 
 import typst
 
-from coursework.figures.writing import FONT
+from coursework.figures.ink import FONT
 
 _PAGE = b"""#set page(width: auto, height: auto, margin: 0pt)
 #image(bytes(sys.inputs.svg), format: "svg", width: float(sys.inputs.width) * 1mm)"""

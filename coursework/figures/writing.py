@@ -6,11 +6,10 @@ from collections.abc import Callable, Sequence
 from html import escape
 from typing import NamedTuple, TypeAlias
 
-from coursework.figures.ink import BLACK, Ink, number, pair
+from coursework.figures.ink import BLACK, FONT, Ink, number, pair
 from coursework.figures.placing import Label
 from coursework.figures.text import SIZE, Accent, Run, Text, advance
 
-FONT = "Libertinus Serif"
 _FALLBACK = f"{FONT}, Linux Libertine O, Times New Roman, serif"
 
 #: What writes the letters of a text, given the middle of its baseline, mm, y down; accents are drawn in any case.

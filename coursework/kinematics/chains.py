@@ -14,11 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.blocks import in_blocks
 from coursework.errors import CannotAssemble, Undefined, WrongValue
 from coursework.kinematics.angles import Degrees, Heading, full_angle
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import derivative
+from coursework.system.blocks import in_blocks
 
 _STEPS = 60  #: Newton needs about six from a good start; damped steps may need more
 _HALVINGS = 12

@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from coursework.blocks import in_blocks
 from coursework.errors import CannotAssemble, CourseworkError, Undefined
 from coursework.kinematics.angles import full_angle
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import components, cross, derivative, dot, size
+from coursework.system.blocks import in_blocks
 
 OPEN, CROSSED = 1, -1  #: sides of the inner joint: left of the directed line P -> Q, or right
 

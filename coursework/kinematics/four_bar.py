@@ -22,7 +22,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.blocks import in_blocks
 from coursework.errors import Undefined, WrongValue
 from coursework.kinematics.angles import full_angle, taken_apart
 from coursework.kinematics.closing import Closing, Opening, Sweep, closing, in_time, signed_sweep, sweep
@@ -30,6 +29,7 @@ from coursework.kinematics.dyads import out_of_reach, side_of
 from coursework.kinematics.margins import grashof_margins
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import direction
+from coursework.system.blocks import in_blocks
 
 
 class FourBarMotion(NamedTuple):

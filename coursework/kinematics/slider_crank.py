@@ -15,13 +15,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.blocks import in_blocks
 from coursework.errors import CannotAssemble, Undefined, WrongValue
 from coursework.kinematics.angles import full_angle, half_angle, halves, taken_apart
 from coursework.kinematics.closing import Closing, Opening, Sweep, closing, in_time
 from coursework.kinematics.margins import exact_sum
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import direction
+from coursework.system.blocks import in_blocks
 
 
 class SliderCrankMotion(NamedTuple):

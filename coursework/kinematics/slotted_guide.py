@@ -17,12 +17,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from coursework.blocks import in_blocks
 from coursework.errors import Undefined, WrongValue
 from coursework.kinematics.angles import taken_apart
 from coursework.kinematics.closing import in_time, sweep
 from coursework.kinematics.scaling import exponent_of, scaled
 from coursework.kinematics.vectors import direction
+from coursework.system.blocks import in_blocks
 
 
 class SlottedGuideMotion(NamedTuple):

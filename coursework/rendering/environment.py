@@ -14,8 +14,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError
 from markupsafe import Markup
 
 from coursework.errors import BadCourse, BadStatement
+from coursework.markup.formulas import after_number
 from coursework.rendering import views
-from coursework.rendering.formulas import after_number
 
 Writer = Callable[[str, str], str]
 

@@ -10,12 +10,13 @@ from pathlib import Path
 
 from jinja2 import Environment
 
-from coursework.constructions import Construction
 from coursework.figures import Beginning, Figure
-from coursework.language import words
-from coursework.rendering import markup, views
+from coursework.language.words import words
+from coursework.markup import markdown as markup
+from coursework.markup.mathml import to_mathml
+from coursework.polygons.construction import Construction
+from coursework.rendering import views
 from coursework.rendering.environment import environment, render
-from coursework.rendering.formulas import to_mathml
 
 
 def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:

@@ -12,9 +12,10 @@ from markdown_it.tree import SyntaxTreeNode
 
 from coursework.errors import BadStatement
 from coursework.figures import Figure
-from coursework.rendering import markup, views
+from coursework.markup import markdown as markup
+from coursework.markup.latex import latex_text, plain_latex, to_latex
+from coursework.rendering import views
 from coursework.rendering.environment import environment, render
-from coursework.rendering.latex_formulas import latex_text, plain_latex, to_latex
 
 #: In a LaTeX template braces and percent signs are LaTeX's own.
 MARKS = {

@@ -17,13 +17,14 @@ from typing import TYPE_CHECKING
 
 from jinja2 import Environment
 
-from coursework.handout import Handout
-from coursework.rendering import markup, views
+from coursework.markup import markdown as markup
+from coursework.markup.formulas import number_text
+from coursework.rendering import views
 from coursework.rendering.environment import environment, render
-from coursework.rendering.formulas import number_text
+from coursework.sheets.sheet import Handout
 
 if TYPE_CHECKING:
-    from coursework.selfstudy.sheet import StudySheet
+    from coursework.sheets.sheet import StudySheet
 
 CELL_END = "<!-- cell -->"
 FIGURE = "figure.png"

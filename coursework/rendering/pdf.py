@@ -16,10 +16,12 @@ from coursework.errors import BadStatement
 from coursework.figures import Beginning, Figure
 from coursework.figures.text import SIZE
 from coursework.figures.writing import Letters
-from coursework.handout import FeedbackSheet
-from coursework.rendering import markup, views
+from coursework.markup import markdown as markup
+from coursework.markup.spoken import spoken
+from coursework.markup.typst import to_typst
+from coursework.rendering import views
 from coursework.rendering.environment import environment, render
-from coursework.rendering.formulas import spoken, to_typst
+from coursework.sheets.sheet import FeedbackSheet
 
 _LOCAL = threading.local()
 _FORGETTING = 40  #: documents, a third of a millisecond each

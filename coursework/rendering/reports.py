@@ -9,10 +9,11 @@ from pathlib import Path
 
 from markupsafe import Markup
 
-from coursework.language import words
-from coursework.rendering import html, markup, pdf
+from coursework.language.words import words
+from coursework.markup import markdown as markup
+from coursework.rendering import html, pdf
 from coursework.rendering.environment import render
-from coursework.report import Chart, Report
+from coursework.sheets.report import Chart, Report
 
 
 def page(folders: Sequence[Path], report: Report, paper: str = "a4") -> str:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import textwrap
 
-from coursework.handout import Given, Handout, Question
-from coursework.language import words
+from coursework.language.words import words
+from coursework.markup.line import to_line
+from coursework.markup.markdown import to_text
 from coursework.rendering import views
-from coursework.rendering.formulas import to_line
-from coursework.rendering.markup import to_text
+from coursework.sheets.sheet import Given, Handout, Question
 
 WIDTH = 88
 

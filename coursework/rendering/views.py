@@ -9,10 +9,16 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import TypeAlias
 
-from coursework.constructions import Row
 from coursework.figures import Beginning, Figure
 from coursework.figures.text import GREEK, SIZE, Run
-from coursework.handout import (
+from coursework.language.numbers import localise, plain
+from coursework.language.words import words
+from coursework.markup.formula_tree import tokens
+from coursework.markup.formulas import quantity_formula
+from coursework.markup.line import to_line
+from coursework.markup.markdown import to_text
+from coursework.polygons.construction import Row
+from coursework.sheets.sheet import (
     Answer,
     AnswerSheet,
     FeedbackLine,
@@ -22,10 +28,6 @@ from coursework.handout import (
     Question,
     Step,
 )
-from coursework.language import localise, plain, words
-from coursework.rendering.formula_tree import tokens
-from coursework.rendering.formulas import quantity_formula, to_line
-from coursework.rendering.markup import to_text
 
 Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 

@@ -7,16 +7,7 @@ from typing import NamedTuple
 
 from coursework.errors import CourseworkError
 from coursework.structure.assour import decompose, drivers
-from coursework.structure.growing import (
-    DYAD,
-    FOLLOWER,
-    STIFFENER,
-    TETRAD,
-    TRIAD,
-    Choices,
-    grow,
-    relabelled,
-)
+from coursework.structure.growing import DYAD, FOLLOWER, STIFFENER, TETRAD, TRIAD, Choices, grow, relabelled
 from coursework.structure.joints import FRAME, JointGraph, Record
 from coursework.structure.library import LIBRARY
 

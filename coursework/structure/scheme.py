@@ -24,7 +24,7 @@ from coursework.figures import (
     vector,
     wheel,
 )
-from coursework.figures.elements import BLOCK
+from coursework.figures.base import BLOCK
 from coursework.structure.joints import FRAME, Joint, JointGraph, Record
 from coursework.structure.layout import BEYOND, places, slides
 from coursework.structure.likeness import drawn_in_course

@@ -8,7 +8,7 @@ import pytest
 
 import coursework
 from coursework.figures import contact, line, point, trace, wheel
-from coursework.motion import Animation
+from coursework.motion.animation import Animation
 
 EXERCISE = coursework.open_course()["ball_reducer"]
 MOTIONS = ("30", "31", "32")
@@ -146,7 +146,7 @@ def test_no_slip_equations_are_judged_as_equations(part, text, verdict):
 
 
 def test_no_slip_equations_hold_for_the_answers():
-    from coursework.equations import parse_equation
+    from coursework.reading.equations import parse_equation
 
     variant = EXERCISE.variant(0)
     answers = variant.solution()
@@ -359,7 +359,7 @@ def test_no_copy_without_solutions_shows_the_film(tmp_path):
     import shutil
 
     for folder in ("exercises", "templates"):
-        shutil.copytree(EXERCISE.course.root / folder, tmp_path / folder)
+        shutil.copytree(EXERCISE.folder.root / folder, tmp_path / folder)
     copied = coursework.open_course(tmp_path)["ball_reducer"]
     with pytest.raises(coursework.errors.BadCourse, match="no solution at hand"):
         copied.variant(0).animation()

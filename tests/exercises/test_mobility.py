@@ -7,6 +7,7 @@ import pytest
 
 import coursework
 from coursework.errors import WrongValue
+from coursework.rendering.renderer import renderer_of
 from coursework.structure import LIBRARY, JointGraph
 
 EXERCISE = coursework.open_course()["mobility"]
@@ -76,7 +77,7 @@ def test_the_number_of_the_mechanism_is_in_the_record_and_not_on_the_sheet():
     assert variant.record["given"]["mechanism"]["value"] == variant.given["mechanism"]
     assert (
         f"{variant.given['mechanism']:g}"
-        not in variant.exercise.course.renderer.html(variant.handout()).split("</main>")[0]
+        not in renderer_of(variant.exercise.folder).html(variant.handout()).split("</main>")[0]
     )
 
 

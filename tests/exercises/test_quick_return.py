@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import coursework
-from coursework import draws
+from coursework.course import draws
 from coursework.errors import CannotAssemble, Undefined
 from coursework.kinematics.dyads import rrr
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import coursework
-from coursework.language import significant
+from coursework.language.numbers import significant
 
 EXERCISE = coursework.open_course()["quick_return_design"]
 

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 import coursework
-from coursework.equations import parse_equation
 from coursework.errors import CannotAssemble
 from coursework.kinematics.chains import Chain, Vector
+from coursework.reading.equations import parse_equation
 
 EXERCISE = coursework.open_course()["three_loop_shaper"]
 PLAIN = {

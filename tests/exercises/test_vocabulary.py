@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 import coursework
-from coursework import checks
+from coursework.authoring import checks
+from coursework.course.texts import constants
 from coursework.errors import BadCourse
-from coursework.language import languages
-from coursework.statement import constants
+from coursework.language.words import languages
 
 COURSE = coursework.open_course()
 EXERCISE = COURSE["vocabulary"]
-ROOT = COURSE.root
+ROOT = COURSE.folder.root
 THEMES = tomllib.loads((ROOT / "exercises" / "vocabulary.toml").read_text("utf-8"))
 ANSWERS = tomllib.loads((ROOT / "solutions" / "vocabulary.toml").read_text("utf-8"))
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from reference import mp
 
-from coursework.blocks import BLOCK, in_blocks
 from coursework.errors import CannotAssemble, Undefined, WrongValue
 from coursework.kinematics.angles import heading_in_degrees
 from coursework.kinematics.chains import Chain, Vector
 from coursework.kinematics.four_bar import FourBar
+from coursework.system.blocks import BLOCK, in_blocks
 
 EPS = 2.0**-52
 FOUR_BAR = Chain(

@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference import away, four_bar, mp, turned
 
-from coursework.blocks import BLOCK
 from coursework.kinematics.four_bar import FourBar
+from coursework.system.blocks import BLOCK
 
 EPS = 2.0**-52
 length = st.floats(1.0, 1000.0)

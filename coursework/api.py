@@ -1,0 +1,133 @@
+"""The public face: open a course, and what can be done with a variant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from coursework.course import variant as numbers
+from coursework.course.course import Course, opened
+
+if TYPE_CHECKING:
+    from coursework.marking.mark import Marking
+    from coursework.rendering.displayed import DisplayedAnimation, DisplayedConstruction
+    from coursework.sheets.sheet import AnswerSheet, Handout, StudySheet
+    from coursework.study.session import StudySession
+
+
+def open_course(folder: str | Path | None = None) -> Course[Variant]:
+    """Open a course folder; the built-in course unless told.
+
+    Raises
+    ------
+    BadCourse
+        The folder does not exist or has no ``exercises/``.
+    """
+    return opened(folder, Variant)
+
+
+def study(
+    exercise: str,
+    *,
+    seed: int = 0,
+    lang: str = "fr",
+    course: str | Path | None = None,
+    version: int | None = None,
+    folder: str | Path = ".",
+) -> StudySession:
+    """A study session of an exercise.
+
+    Parameters
+    ----------
+    exercise
+        Its name.
+    seed
+        Which variant.
+    lang
+        Language of all that is said.
+    course
+        The course's folder, or its name, looked for beside and above where the notebook is; the built-in
+        course unless told.
+    version
+        The version that a notebook was written for.
+    folder
+        Where answers are kept, in ``EXERCISE.study.json``.
+
+    Raises
+    ------
+    BadCourse
+        No such course.
+    BadInput
+        The course has another version of the exercise: the variant on paper would not be this one.
+    UnknownName
+        No such exercise or language.
+    """
+    from coursework.study.session import course_folder, open_session
+
+    chosen = open_course(course_folder(course, lang))
+    return open_session(chosen, exercise, seed=seed, lang=lang, named=course, version=version, folder=folder)
+
+
+class Variant(numbers.Variant):
+    """One student's version of an exercise: its numbers, its sheets, its marks.
+
+    What each verb needs is loaded when it is first used.
+    """
+
+    def grade(self, answers: Mapping[str, Any]) -> Marking:
+        """Mark a student's answers, by part id.
+
+        Raises
+        ------
+        UnknownName
+            An answer to a part that this variant does not ask.
+        """
+        from coursework.marking.marking import mark
+
+        return mark(self, answers)
+
+    def handout(self, student: str = "") -> Handout:
+        """What the student's sheet shows."""
+        from coursework.sheets.handout import handout
+
+        return handout(self, student)
+
+    def answer_sheet(self, student: str = "", *, polygons: bool = True) -> AnswerSheet:
+        """The handout with its answers and worked solution."""
+        from coursework.sheets.answer_sheet import answer_sheet
+
+        return answer_sheet(self, student, polygons=polygons)
+
+    def study_sheet(self, student: str = "") -> StudySheet:
+        """What the self-study notebook of this variant shows."""
+        from coursework.study.sheet import study_sheet
+
+        return study_sheet(self, student)
+
+    def polygons(self) -> tuple[DisplayedConstruction, ...]:
+        """The velocity and acceleration polygons that the solution states, drawn to scale.
+
+        None where it states none, and none in which nothing moves.
+
+        Raises
+        ------
+        NoSolution
+            The course folder has no solutions.
+        """
+        from coursework.rendering.displayed import displayed_polygons
+
+        return displayed_polygons(self)
+
+    def animation(self, effects: Sequence[str] = (), count: int = 72) -> DisplayedAnimation:
+        """The mechanism over the cycle of its driver; see :class:`~coursework.motion.animation.Animation`."""
+        from coursework.rendering.displayed import DisplayedAnimation
+
+        return DisplayedAnimation(self, effects, count)
+
+
+def show_motion(variant: numbers.Variant, effects: Sequence[str] = (), count: int = 72) -> DisplayedAnimation:
+    """A variant's mechanism in motion: as the last line of a notebook's cell, it is shown moving."""
+    from coursework.rendering.displayed import DisplayedAnimation
+
+    return DisplayedAnimation(variant, effects, count)

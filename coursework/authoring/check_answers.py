@@ -1,0 +1,276 @@
+"""Simulated students: exact ones, who round, who make each known mistake, who follow from an error, who write nonsense."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from coursework.authoring.check_report import KEPT_DIGITS, Report
+from coursework.course.answer_key import FOLLOWED, Key, envelopes
+from coursework.course.exercise import CourseExercise
+from coursework.course.variant import Variant
+from coursework.language.numbers import plain, significant
+from coursework.making.flaws import SHOWN, judged_wrong, visibility
+from coursework.marking.distance import distance
+from coursework.marking.judges import judged, judges_of
+from coursework.marking.marking import mark as grade
+from coursework.model import Part
+from coursework.quantities.rounding import student_who_rounds
+
+NONSENSE = ("?", "je ne sais pas", "12 +", "nan", "9**9**9", "1 = 1 = 1", "__import__('os')", "((((")
+EXTREMES = ("0", "1e308", "-1e308", "1e-320")  #: coordinates too
+
+
+# ---------------------------------------------------------------------- marking
+
+
+def check_right_answers(variant: Variant, key: Key, report: Report) -> None:
+    """Right answers mark right however they are written, and on the tolerance's edge."""
+    for spelling in spellings(variant, key):
+        marking = grade(variant, spelling)
+        for part_id in spelling:
+            mark = marking[part_id]
+            report.counts["right answers"] += 1
+            if mark.verdict != "correct":
+                report.fail(
+                    f"seed {variant.seed}: {part_id} = {spelling[part_id]!r} is right "
+                    f"but marks {mark.verdict} (read as {mark.read_as!r})"
+                )
+
+
+def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
+    """The right answers of a variant in the ways people write them."""
+    full, printed, comma, edge = {}, {}, {}, {}
+    for part in variant.parts:
+        value = key.reference[part.quantity]
+        if part.kind == "choice":
+            full[part.id] = str(value)
+            printed[part.id] = variant.label(part.id, str(value))
+        elif part.kind == "equation":
+            full[part.id] = str(value)
+            left, _, right = str(value).partition("=")
+            printed[part.id] = f"2*({right}) - 2*({left}) = 0"
+        elif isinstance(value, np.ndarray):
+            full[part.id] = "; ".join(repr(v) for v in value.tolist())
+            printed[part.id] = "(" + " ; ".join(significant(v, 6) for v in value.tolist()) + ")"
+            comma[part.id] = printed[part.id].replace(".", ",")
+        else:
+            unit = "" if part.unit == "1" else f" {part.unit}"
+            full[part.id] = value
+            printed[part.id] = significant(value, 4 if part.kind != "integer" else 9) + unit
+            comma[part.id] = printed[part.id].replace(".", ",")
+            if not part.has_margin:
+                continue
+            if part.kind == "number":
+                edge[part.id] = plain(value + part.half_width(value))
+            elif part.kind == "angle":
+                edge[part.id] = plain(value + 360.0 - part.half_width(value))
+    comma = {i: text for i, text in comma.items() if text != printed[i]}
+    # Parts that are judged together stand on a sheet together.
+    beside = {part.id: printed[part.id] for part in variant.parts if part.judge}
+    if not beside.keys().isdisjoint(comma):
+        comma = beside | comma
+    yield from filter(None, (full, printed, comma, edge))
+
+
+def check_rounding_students(
+    exercise: CourseExercise, drawn: Sequence[Variant], report: Report, digits: Sequence[int] = KEPT_DIGITS
+) -> None:
+    """Who does everything right and rounds at every step is right, by rules that expect so many digits."""
+    given = {
+        n: np.array([v.given[n] for v in drawn]) for n in exercise.spec.given if n in exercise.quantity_names
+    }
+    effects, graph = exercise.spec.effects, exercise.solution.graph
+    wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts if not p.is_exact))
+    for kept in digits if wanted else ():
+        found = student_who_rounds(graph, wanted, given, effects, kept)
+        widths = envelopes(exercise, wanted, given, effects, min(kept, exercise.folder.rules.digits))
+        for index, variant in enumerate(drawn):
+            if kept >= exercise.folder.rules.digits:
+                own_answers = {q: _at(v, index, len(drawn)) for q, v in found.items()}
+                _check_rounded_together(variant, own_answers, report)
+            for part in variant.parts:
+                if not part.has_margin:
+                    continue
+                own, width = (_at(c[part.quantity], index, len(drawn)) for c in (found, widths))
+                along = variant.key.reference.get(part.along)
+                gap = distance(part, own, variant.key.reference[part.quantity], along, float(width))
+                report.counts[f"rounding to {kept}"] += 1
+                report.counts[f"outside the usual margin at {kept}"] += bool(
+                    distance(part, own, variant.key.reference[part.quantity], along) > 1
+                )
+                if not gap <= 1:
+                    report.fail(
+                        f"seed {variant.seed}: who rounds each step to {kept} digits lands {gap:.3g} half-widths "
+                        f"from {part.id}"
+                    )
+
+
+def _check_rounded_together(variant: Variant, own: Mapping[str, Any], report: Report) -> None:
+    """The same for parts that are judged together, whose margin does not follow the rounding."""
+    parts = {part.id: part for part in variant.parts}
+    for name, ids in judges_of(variant):
+        answers = {i: own.get(parts[i].quantity, variant.key.reference[parts[i].quantity]) for i in ids}
+        for i, verdict in judged(variant, name, answers).items():
+            report.counts["rounded, judged together"] += 1
+            if verdict.share != 1:
+                report.fail(f"seed {variant.seed}: {name} refuses {i} of who rounds each step")
+
+
+def _at(column: Any, index: int, count: int) -> Any:
+    varies = isinstance(column, np.ndarray) and column.ndim and column.shape[0] == count
+    return column[index] if varies else column
+
+
+def check_mistakes(variant: Variant, key: Key, report: Report) -> None:
+    """Each named mistake that shows is marked as that mistake, and never as right.
+
+    Mistakes that show on different parts stand on one sheet, unless parts may be exchanged.
+    """
+    sheets: list[dict[str, tuple[str, Any]]] = []
+    apart = bool(variant.exercise.spec.either_order)
+    for name in key.solution.mistakes:
+        tally = report.mistakes.setdefault(name, Counter())
+        shown = {}
+        for part, seen in visibility(key, name):
+            tally[seen] += 1
+            if seen == "shown":
+                shown[part.id] = (name, _written(key.wrong[name][part.quantity]))
+        # What stands beside the shown answers where they are judged as a group.
+        beside = {i: ("", _written(v)) for _, answers in judged_wrong(key, name) for i, v in answers.items()}
+        sheet = next((s for s in sheets if not (apart or beside) and s.keys().isdisjoint(shown)), None)
+        if sheet is None:
+            sheets.append({**beside, **shown})
+        else:
+            sheet |= shown
+    for sheet in sheets:
+        _check_recognised(variant, sheet, report)
+
+
+def check_slips(variant: Variant, key: Key, report: Report) -> None:
+    """A slip that shows is recognised, and earns nothing that a right answer does.
+
+    The first slip of every part on one sheet, then the second of every part, and so on.
+    """
+    shown: list[dict[str, tuple[str, Any]]] = []
+    for part in variant.parts:
+        reference, width = key.reference[part.quantity], key.envelope.get(part.quantity, 0.0)
+        slips = [s for s in key.slips(part) if distance(part, s[1], reference, None, width) > SHOWN]
+        for place, slip in enumerate(slips):
+            shown += [{}] * (place + 1 - len(shown))
+            shown[place] = {**shown[place], part.id: slip}
+    for sheet in shown:
+        marking = grade(variant, {part_id: value for part_id, (_, value) in sheet.items()})
+        for part_id, (kind, value) in sheet.items():
+            mark = marking[part_id]
+            if mark.in_other_order:
+                continue  # it is the right answer of the other assembly
+            report.counts["slips recognised"] += 1
+            if f"slip:{kind}" not in mark.matches:
+                report.fail(
+                    f"seed {variant.seed}: slip {kind} on {part_id} ({value!r}) marks {mark.verdict}, "
+                    f"not slip:{kind}"
+                )
+
+
+def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
+    """Who errs once, much or little, and goes on rightly is marked wrong once."""
+    parts = [p for p in variant.parts if p.kind in FOLLOWED and not p.judge]
+    half = parts[variant.seed % 2 :: 2] or parts  # the other half on the next variant
+    for first, wrong in ((part, value) for part in half for value in _little_and_much(part, key)):
+        answers, expected, own = {first.id: wrong}, {}, {first.quantity: wrong}
+        for part in parts[parts.index(first) + 1 :]:
+            follows = key.followed(part, own, (first.quantity,))
+            if follows is not None:
+                answers[part.id] = expected[part.id] = own[part.quantity] = follows
+        marking = grade(variant, answers)
+        for part_id in expected:
+            report.counts["follow-through"] += 1
+            if (mark := marking[part_id]).verdict not in ("correct", "follow_through"):
+                report.fail(
+                    f"seed {variant.seed}: {part_id} follows from a wrong {first.id} but marks {mark.verdict}"
+                )
+        _check_follows_together(variant, key, first, wrong, report)
+
+
+def _little_and_much(part: Part, key: Key) -> tuple[Any, ...]:
+    """Wrong answers just beyond what is accepted, and far from it; of cases and counts, another one."""
+    value = key.reference[part.quantity]
+    if part.kind == "choice":
+        return tuple(c for c in part.choices if c != value)[:1]
+    if part.kind == "integer":
+        return (value + 1,)
+    much = value + 11.0 if part.unit == "deg" else 1.13 * value
+    return value + 1.3 * key.half_width(part), much
+
+
+def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: Any, report: Report) -> None:
+    """The same for parts that are judged together."""
+    parts = {part.id: part for part in variant.parts}
+    own = {first.quantity: wrong}
+    for name, ids in judges_of(variant):
+        follows = {i: key.followed(parts[i], own, own) for i in ids}
+        if None in follows.values() or any(
+            v.share != 1 for v in judged(variant, name, follows, own).values()
+        ):
+            continue  # what is asked cannot be had from there
+        marking = grade(variant, {first.id: wrong, **follows})
+        report.counts["follow-through"] += len(ids)
+        for i in ids:
+            if marking[i].verdict not in ("correct", "follow_through"):
+                report.fail(
+                    f"seed {variant.seed}: {i} follows from a wrong {first.id} but marks {marking[i].verdict}"
+                )
+
+
+def _written(value: Any) -> Any:
+    """A value as a student may write it: a vector by its coordinates."""
+    return "; ".join(map(repr, value.tolist())) if isinstance(value, np.ndarray) else value
+
+
+def _check_recognised(variant: Variant, sheet: Mapping[str, tuple[str, Any]], report: Report) -> None:
+    """A sheet of mistakes by part: the name of each, if any, and the answer that it gives."""
+    marking = grade(variant, {part_id: answer for part_id, (_, answer) in sheet.items()})
+    for part_id, (name, answer) in sheet.items():
+        if not name:
+            continue
+        mark = marking[part_id]
+        report.counts["mistakes recognised"] += 1
+        if name not in mark.mistakes:
+            report.fail(
+                f"seed {variant.seed}: mistake {name} on {part_id} ({answer!r}) marks {mark.verdict}, "
+                f"not mistake:{name}"
+            )
+
+
+def check_nonsense(variant: Variant, report: Report) -> None:
+    """Nonsense is unreadable or wrong, never right, and never stops the marking."""
+    for nonsense in NONSENSE:
+        marking = grade(variant, dict.fromkeys((p.id for p in variant.parts), nonsense))
+        for part_id, mark in marking.items():
+            report.counts["nonsense"] += 1
+            if mark.points and mark.verdict == "correct":
+                report.fail(f"seed {variant.seed}: {nonsense!r} marks correct on {part_id}")
+    for number in EXTREMES:
+        _check_extreme(variant, number, report)
+
+
+def _check_extreme(variant: Variant, number: str, report: Report) -> None:
+    """The same for a sheet of one absurd number, and for one such answer beside right ones to the same judge.
+
+    Where each answer stands for itself, nought may be right.
+    """
+    reference = {part.id: variant.key.reference[part.quantity] for part in variant.parts}
+    answers = {i: "; ".join([number] * np.size(value)) for i, value in reference.items()}
+    marking = grade(variant, answers)
+    report.counts["nonsense"] += len(answers)
+    for _, ids in judges_of(variant):
+        right = {i: _written(reference[i]) for i in ids}
+        for i in ids:
+            if marking[i].verdict == "correct":
+                report.fail(f"seed {variant.seed}: {i} marks correct where each answer is {number}")
+            grade(variant, {**right, i: answers[i]})
+            report.counts["nonsense"] += 1

@@ -1,0 +1,340 @@
+"""The promises that every exercise keeps, tried on many variants.
+
+Used by ``coursework check`` on any course folder, and by this project's own tests.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+from coursework.authoring.check_answers import (
+    check_follow_through,
+    check_mistakes,
+    check_nonsense,
+    check_right_answers,
+    check_rounding_students,
+    check_slips,
+)
+from coursework.authoring.check_loops import check_loops
+from coursework.authoring.check_report import RESIDUAL, Report
+from coursework.course import draws
+from coursework.course.answer_key import Key, exists
+from coursework.course.course import Course, opened
+from coursework.course.exercise import ALL, CourseExercise
+from coursework.course.variant import Variant
+from coursework.errors import CourseworkError, MissingQuantity, Starved, nearest
+from coursework.language.words import file_of, languages, words
+from coursework.making.flaws import conditioning, worthy
+from coursework.making.issuing import distinct_variants
+from coursework.model import Part
+from coursework.motion.animation import Animation
+from coursework.quantities.graph import plain_scalar
+from coursework.rendering.renderer import renderer_of
+from coursework.sheets.answer_sheet import answer_sheet
+from coursework.sheets.handout import handout as handout_of
+from coursework.sheets.handout import prompt
+from coursework.system.processes import processes, workers
+
+RENDERED = 1  #: variants whose sheets are rendered in every format and language
+NONSENSICAL = 20  #: variants that are answered by nonsense; it is read alike on all
+
+
+def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) -> Report:
+    """Try every promise on the variants of seeds 0, 1, …
+
+    Whatever breaks is reported, and the rest is tried all the same, unless no variant has an answer.
+    """
+    report = Report(exercise.name)
+    if not check_needs(exercise, report):
+        return report
+    steps: Sequence[Callable[[], None]] = (
+        lambda: check_texts(exercise, report),
+        lambda: check_symbols(exercise, report),
+        lambda: check_known(exercise, report),
+        lambda: _check_variants(exercise, variants, report),
+        lambda: check_rendering(exercise, rendered, report),
+    )
+    for step in steps:
+        try:
+            step()
+        except CourseworkError as fault:
+            report.fail(str(fault))
+        except Exception as fault:  # an author's slip in a function of the course; the check goes on
+            report.fail(f"{type(fault).__name__}: {fault}")
+    return report
+
+
+def check_all(
+    course: Course, names: Sequence[str], variants: int, progress: Callable[[], None] = lambda: None
+) -> list[Report]:
+    """A report an exercise, in this order, made by as many processes as there are processors."""
+    count = workers(len(names))
+    if count < 2 or variants < _WORTH_PROCESSES:
+        return [_told(_check_one(course, name, variants), progress) for name in names]
+    with processes(count) as submit:
+        # The longest first, so that no process waits for another at the end.
+        longest = sorted(names, key=lambda name: -_length(course, name))
+        tasks = {name: submit(_check_elsewhere, str(course.folder.root), name, variants) for name in longest}
+        for task in tasks.values():
+            task.add_done_callback(lambda _: progress())
+        return [tasks[name].result() for name in names]
+
+
+_WORTH_PROCESSES = 50  #: variants an exercise; fewer are done before a process has started
+
+
+def _length(course: Course, name: str) -> int:
+    """Roughly how long an exercise takes to check."""
+    try:
+        return len(course[name].spec.parts)
+    except CourseworkError:
+        return 0  # it says what is wrong when it is checked
+
+
+def _told(report: Report, progress: Callable[[], None]) -> Report:
+    progress()
+    return report
+
+
+def _check_elsewhere(root: str, name: str, variants: int) -> Report:
+    try:
+        course = opened(root, Variant)
+    except CourseworkError as fault:
+        report = Report(name)
+        report.fail(str(fault))
+        return report
+    return _check_one(course, name, variants)
+
+
+def _check_one(course: Course[Any], name: str, variants: int) -> Report:
+    try:
+        return check(course[name], variants)
+    except CourseworkError as fault:
+        report = Report(name)
+        report.fail(str(fault))
+        return report
+
+
+def _check_variants(exercise: CourseExercise, count: int, report: Report) -> None:
+    report.acceptance = draws.acceptance(exercise.name, exercise.spec)[0]
+    lang = exercise.languages[0]
+    try:
+        drawn = distinct_variants(exercise, 0, count, lang, report.refused, (ALL,))
+    except Starved as fault:
+        if not any(told in str(fault) for told in report.failures):
+            report.fail(str(fault))
+        drawn = worthy(exercise, exercise.variants(range(count), lang, (ALL,)))
+    report.variants = len(drawn)
+    if not drawn:
+        return
+    _describe(drawn, report)
+    check_arrays(exercise, drawn, report)
+    check_rounding_students(exercise, drawn, report)
+    for variant in drawn:
+        key = variant.key
+        check_solves(variant, key, report)
+        check_right_answers(variant, key, report)
+        check_mistakes(variant, key, report)
+        check_slips(variant, key, report)
+        check_follow_through(variant, key, report)
+    for variant in drawn[:NONSENSICAL]:
+        check_nonsense(variant, report)
+    check_loops(drawn[0], report)
+    for name in exercise.solution.mistakes:
+        tally = report.mistakes.setdefault(name, Counter())
+        if count >= 50 and not tally["shown"]:
+            report.fail(f"mistake {name} shows in none of {len(drawn)} variants")
+
+
+def _describe(drawn: Sequence[Variant], report: Report) -> None:
+    """How alike the variants are in difficulty: conditioning, and the branches that are to be chosen."""
+    shares = [conditioning(variant.key) for variant in drawn]
+    report.conditioning = float(np.median(shares)), max(shares)
+    for variant in drawn:
+        given = variant.exercise.spec.given
+        chosen = {n: v for n, v in variant.given.items() if given[n].is_choice}
+        chosen |= {p.quantity: variant.key.reference[p.quantity] for p in variant.parts if p.kind == "choice"}
+        for name, case in chosen.items():
+            report.cases.setdefault(name, Counter())[str(case)] += 1
+
+
+# ------------------------------------------------------------------------ texts
+
+
+def check_texts(exercise: CourseExercise, report: Report) -> None:
+    """Every language says every part, every case and every mistake, and nothing is written in vain."""
+    for lang, path in exercise.texts.unspoken.items():
+        report.fail(
+            f"{path.relative_to(exercise.folder.root).as_posix()} is read by nothing: the engine speaks no {lang!r}, "
+            f"whose words would be {file_of(lang)}"
+        )
+    for lang in languages():
+        words(lang)  # a file of words that cannot be used says so here
+        if lang not in exercise.languages:
+            report.fail(f"no statement in {lang!r}: exercises/{exercise.name}.{lang}.md.j2 is missing")
+            continue
+        if exercise.folder.lacks_title(lang):
+            report.fail(
+                f"exercises/course.toml has no title in {lang!r}: sheets would be headed "
+                f"{exercise.folder.title(lang)!r}; write it under [title]"
+            )
+        variant = exercise.variant(0, lang)
+        text = variant.text
+        for part in exercise.spec.parts:
+            if not prompt(variant, part):
+                report.fail(f"{text.source}: section '## {part.id}' is empty")
+            for case in part.choices:
+                text.label(part.id, case)
+        for name, spec in exercise.spec.given.items():
+            for case in spec.choices if spec.shown else ():
+                text.label(name, case)
+        if exercise.spec.figure and not text.section("figure").text:
+            report.fail(f"{text.source}: the figure has no words")
+        told = exercise.texts.text("solutions", lang, _every_name(exercise, variant))
+        if exercise.film and not told.section("motion").text:
+            report.fail(f"{told.source}: the film has no words")
+        for name in exercise.solution.mistakes:
+            if not told.section(f"mistake {name}").text:
+                report.fail(f"{told.source}: mistake {name} is told in no words")
+        report.counts["texts"] += 1
+
+
+def _every_name(exercise: CourseExercise, variant: Variant) -> dict[str, object]:
+    return {**dict.fromkeys(exercise.solution.graph.quantities, "0"), **variant.printed}
+
+
+def check_needs(exercise: CourseExercise, report: Report) -> bool:
+    """What is asked follows from what is given; False where a function needs what nothing gives."""
+    try:
+        exercise.plan([part.quantity for part in exercise.spec.parts], effects=exercise.spec.effects)
+    except MissingQuantity as fault:
+        near = nearest(fault.names[0], ({*exercise.spec.given} | exercise.quantity_names) - {*fault.names})
+        report.fail(f"solutions/{exercise.name}.py: {fault.needed}{near}")
+        return False
+    except CourseworkError:
+        pass  # it is told by what needs it
+    return True
+
+
+def check_symbols(exercise: CourseExercise, report: Report) -> None:
+    """What is given or asked bears its symbol on the sheet too, not in the solution alone."""
+    on_the_sheet = {*exercise.spec.given, *(part.quantity for part in exercise.spec.parts)}
+    for name, symbol in exercise.solution.symbols.items():
+        # Where the exercise has its own, another form in formulas, a fraction say, is the author's choice.
+        stated = name in exercise.spec.symbols
+        if name in on_the_sheet and not stated and symbol != exercise.symbol(name):
+            report.fail(
+                f"SYMBOLS of solutions/{exercise.name}.py names {name!r}, which is given or asked: its symbol belongs "
+                f"in Exercise(symbols=…), else the sheet shows it as {exercise.symbol(name)}"
+            )
+
+
+# ------------------------------------------------------------------------ known
+
+
+def check_known(exercise: CourseExercise, report: Report) -> None:
+    """The solution gives the values known without it."""
+    if not exercise.solution.known:
+        report.fail("the solution states no KNOWN case; closure alone cannot tell the branch")
+    for given, expected, *called in exercise.solution.known:
+        effects = called[0] if called else exercise.spec.effects
+        found = exercise.solve(**given, only=tuple(expected), effects=effects)
+        for name, value in expected.items():
+            if not agrees(found[name], value, is_angle=_is_orientation(exercise, name)):
+                report.fail(f"known case {dict(given)}: {name} is {found[name]!r}, not {value!r}")
+            report.counts["known values"] += 1
+
+
+def _is_orientation(exercise: CourseExercise, name: str) -> bool:
+    return any(p.quantity == name and p.kind == "angle" for p in exercise.spec.parts)
+
+
+def agrees(found: Any, expected: Any, *, is_angle: bool = False) -> bool:
+    """A printed text agrees to its last digit, a number to 1e-9 relative, a vector likewise."""
+    if isinstance(found, str):
+        return found == expected
+    if isinstance(expected, str):
+        digits = len(expected.partition(".")[2])
+        allowed = 0.5 * 10.0**-digits * (1 + 1e-9)
+    else:
+        allowed = 1e-9 * max(1.0, float(np.max(np.abs(expected))))
+    gap = np.asarray(found, dtype=float) - np.asarray(expected, dtype=float)
+    if is_angle:
+        gap = gap - 360.0 * np.rint(gap / 360.0)
+    return bool(np.all(np.abs(gap) <= allowed))
+
+
+# --------------------------------------------------------------------- solution
+
+
+def check_solves(variant: Variant, key: Key, report: Report) -> None:
+    """Every asked quantity is finite, and the governing equations hold."""
+    for name, value in key.reference.items():
+        if not exists(value):
+            report.fail(f"seed {variant.seed}: {name} is {value}")
+    for part in variant.parts:
+        value = key.reference[part.quantity]
+        if part.kind == "number" and part.has_margin and part.atol == 0 and value == 0:
+            report.fail(f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance")
+    graph = variant.exercise.solution.residual_graph
+    values = graph.evaluate(("residual",), variant.used, variant.effects, variant.computed)
+    residual = values["residual"]
+    for number, value in enumerate(residual if isinstance(residual, tuple) else (residual,), start=1):
+        worst = abs(value) if isinstance(value, float) else float(np.max(np.abs(value)))
+        report.counts["residuals"] += 1
+        if not worst < RESIDUAL:
+            report.fail(f"seed {variant.seed}: residual {number} is {worst:.3g}")
+
+
+def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: Report) -> None:
+    """One request on arrays gives what each variant gives alone."""
+    given = {n: np.array([v.given[n] for v in drawn]) for n in exercise.spec.given}
+    wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
+    together = exercise.solve(**given, only=wanted, effects=exercise.spec.effects)
+    for index, variant in enumerate(drawn):
+        alone = {name: plain_scalar(value) for name, value in variant.quantities(variant.asked_quantities).items()}
+        for part in variant.parts:
+            value = together[part.quantity]
+            one = value[index] if isinstance(value, np.ndarray) and len(value) == len(drawn) else value
+            if not _same(one, alone[part.quantity], part):
+                report.fail(
+                    f"seed {variant.seed}: {part.id} is {alone[part.quantity]} alone, {one} in an array"
+                )
+            report.counts["arrays"] += 1
+
+
+def _same(one: Any, other: Any, part: Part) -> bool:
+    if isinstance(other, str):
+        return str(one) == other
+    if isinstance(other, (int, float)):
+        gap = one - other
+        gap = math.remainder(gap, 360.0) if part.kind == "angle" else gap
+        return abs(gap) <= 1e-9 * max(1.0, abs(other))
+    gap = np.asarray(one, dtype=float) - np.asarray(other, dtype=float)
+    return bool(np.all(np.abs(gap) <= 1e-9 * np.maximum(1.0, np.abs(other))))
+
+
+# -------------------------------------------------------------------- rendering
+
+
+def check_rendering(exercise: CourseExercise, count: int, report: Report) -> None:
+    """Sheets, worked solutions and notebooks render in every language."""
+    renderer = renderer_of(exercise.folder)
+    for lang in exercise.languages:
+        for variant in exercise.variants(range(count), lang, (ALL,)):
+            handout, sheet = handout_of(variant), answer_sheet(variant)
+            for made in (
+                renderer.pdf(handout),
+                renderer.html(handout),
+                renderer.notebook(handout),
+                renderer.pdf(sheet),
+                renderer.html(sheet),
+            ):
+                report.counts["sheets rendered"] += bool(made)
+    if exercise.film and count:
+        Animation(exercise.variant(0), count=8).frames  # noqa: B018  a film that cannot be shown says so here

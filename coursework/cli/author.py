@@ -1,0 +1,57 @@
+"""TODO coursework/cli/author.py"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from coursework.cli.options import DONE, FOUND, Whole, cli, exercise_names, json_option, opened
+from coursework.cli.printing import print_json, print_note, print_table, progress_bar
+
+# ------------------------------------------------------------------------ check
+
+
+@cli.command()
+@click.argument("exercises", nargs=-1)
+@click.option("--variants", "count", type=Whole(1), default=200, show_default=True)
+@json_option
+@click.pass_context
+def check(context: click.Context, exercises: Sequence[str], count: int, as_json: bool) -> int:
+    """Prove the promises of every exercise of the course; status 1 when one is broken."""
+    from coursework.authoring import check_report, checks
+
+    course = opened(context)
+    names = exercise_names(course, exercises)
+    with progress_bar("checking", len(names)) as advance:
+        reports = checks.check_all(course, names, count, advance)
+    if as_json:
+        for report in reports:
+            print_json(report.as_json())
+    else:
+        print_table(check_report.table(reports))
+        for note in check_report.notes(reports):
+            print_note(note)
+        for report in reports:
+            for failure in report.failures[:20]:
+                click.echo(f"{report.name}: {failure}")
+            if len(report.failures) > 20:
+                click.echo(f"{report.name}: and {len(report.failures) - 20} more")
+    return DONE if all(r.passed for r in reports) else FOUND
+
+
+# -------------------------------------------------------------------------- new
+
+
+@cli.command()
+@click.argument("folder", type=click.Path(path_type=Path, file_okay=False))
+@click.argument("exercise", required=False)
+def new(folder: Path, exercise: str | None) -> None:
+    """Write a working course folder, or a working exercise in one."""
+    from coursework.authoring.scaffold import new_course, new_exercise
+
+    made = new_exercise(folder, exercise) if exercise else new_course(folder)
+    for path in made:
+        click.echo(f"wrote {path}")
+    click.echo(f"try: coursework --course {folder} check")

@@ -1,0 +1,171 @@
+"""TODO coursework/cli/look.py"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import click
+
+from coursework.cli.options import (
+    DONE,
+    FOUND,
+    Whole,
+    cli,
+    complain,
+    json_option,
+    lang_option,
+    opened,
+    parts_option,
+    seed_option,
+    settings_given,
+    split_list,
+)
+from coursework.cli.printing import print_json, print_table
+from coursework.errors import BadInput, CourseworkError, MissingQuantity, WrongValue
+from coursework.rendering.renderer import renderer_of
+
+# ------------------------------------------------------------------------- look
+
+
+@cli.command("list")
+@json_option
+@click.pass_context
+def list_exercises(context: click.Context, as_json: bool) -> int:
+    """Say which exercises the course has; status 1 when one of them is broken."""
+    course = opened(context)
+    rows, faults = [], {}
+    for name in course.names:
+        try:
+            rows.append(_listed(course[name]))
+        except CourseworkError as fault:
+            faults[name] = str(fault)
+    if as_json:
+        print_json(rows)
+    else:
+        print_table([{**r, "title": "\n".join(r["title"].values())} for r in rows])
+        if not course.names:
+            click.echo("This course has no exercise yet.")
+    for name, told in faults.items():
+        complain(f"{name} cannot be listed: {told.removeprefix(f'{name}: ')}")
+    return FOUND if faults else DONE
+
+
+def _listed(exercise: Any) -> dict[str, Any]:
+    """What ``list`` says of an exercise."""
+    return {
+        "exercise": exercise.name,
+        "title": {lang: exercise.title(lang) for lang in exercise.languages},
+        "version": exercise.version,
+        "parts": sum(not part.by_request for part in exercise.spec.parts),
+        "by_request": sum(part.by_request for part in exercise.spec.parts),
+    }
+
+
+@cli.command()
+@click.argument("exercise")
+@seed_option
+@lang_option
+@parts_option
+@click.pass_context
+def show(context: click.Context, exercise: str, seed: int, lang: str, parts: str) -> None:
+    """Print a statement."""
+    course = opened(context)
+    (drawn,) = _drawn(course[exercise], [seed], lang, parts)
+    click.echo(renderer_of(course.folder).terminal(drawn.handout()))
+
+
+def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[Any]:
+    """Variants that ask the parts named."""
+    found = exercise.variants(seeds, lang, split_list(parts) or None)
+    for one in found:
+        if not one.parts:
+            raise WrongValue(
+                f"{exercise.name}, seed {one.seed}, asks none of the parts {parts}; try another seed"
+            )
+    return found
+
+
+@cli.command()
+@click.argument("exercise")
+@seed_option
+@click.option("--count", type=Whole(1), default=1, show_default=True, help="How many, seed after seed.")
+@click.option("--solution", is_flag=True, help="With the reference answers.")
+@lang_option
+@parts_option
+@json_option
+@click.pass_context
+def variant(
+    context: click.Context,
+    exercise: str,
+    seed: int,
+    count: int,
+    solution: bool,
+    lang: str,
+    parts: str,
+    as_json: bool,
+) -> None:
+    """Print the records of variants, one JSON object a line with --json."""
+    from coursework.making.issued import record_with_answers
+
+    for drawn in _drawn(opened(context)[exercise], range(seed, seed + count), lang, parts):
+        record = record_with_answers(drawn) if solution else drawn.record
+        if as_json:
+            print_json(record)
+            continue
+        rows = [{"quantity": n, "value": g["value"], "unit": g["unit"]} for n, g in record["given"].items()]
+        rows += [
+            {"quantity": f"{part} (asked)", "value": a["value"], "unit": a["unit"]}
+            for part, a in record.get("answers", {}).items()
+        ]
+        print_table(rows, title=f"{exercise}, seed {drawn.seed}")
+
+
+@cli.command()
+@click.argument("exercise")
+@click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A given value: r1=228.6mm.")
+@click.option("--only", default="", metavar="Q,Q", help="The quantities wanted; every part's unless told.")
+@click.option("--effects", default="", metavar="E,E", help="Optional effects to call for.")
+@json_option
+@click.pass_context
+def solve(
+    context: click.Context, exercise: str, settings: Sequence[str], only: str, effects: str, as_json: bool
+) -> None:
+    """Solve an exercise for one's own numbers."""
+    from coursework.language.numbers import significant, unit_text
+    from coursework.making.issued import plain_value
+
+    one = opened(context)[exercise]
+    given = settings_given(settings)
+    try:
+        found = one.solve(**given, only=split_list(only) or None, effects=split_list(effects))
+    except MissingQuantity as fault:
+        raise BadInput(fault.advising(" ".join(f"--set {n}=…" for n in fault.names))) from fault
+    used = {n: one.spec.given[n].default for n in one.spec.given if one.spec.given[n].default is not None}
+    used |= {n: one.intake.value(n, v) for n, v in given.items()}
+    units = one.units
+    content = {
+        "exercise": exercise,
+        "given": {n: {"value": plain_value(v), "unit": units.get(n, "1")} for n, v in used.items()},
+        "quantities": {n: {"value": _json_value(v), "unit": units.get(n, "1")} for n, v in found.items()},
+    }
+    if as_json:
+        print_json(content)
+        return
+    print_table(
+        [
+            {
+                "quantity": n,
+                "value": significant(v, 6) if isinstance(v, (int, float)) else str(v),
+                "unit": unit_text(units.get(n, "1"), "en"),
+            }
+            for n, v in found.items()
+        ]
+    )
+
+
+def _json_value(value: Any) -> Any:
+    from coursework.making.issued import plain_value
+
+    value = plain_value(value)
+    return {"re": value.real, "im": value.imag} if isinstance(value, complex) else value

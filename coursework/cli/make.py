@@ -1,0 +1,265 @@
+"""TODO coursework/cli/make.py"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from coursework.cli.options import (
+    Lists,
+    Whole,
+    cli,
+    exercise_names,
+    known_formats,
+    known_languages,
+    lang_option,
+    opened,
+    parts_option,
+    replace_option,
+    seed_option,
+    split_list,
+    tell,
+    unknown_language,
+)
+from coursework.cli.printing import progress_bar
+from coursework.errors import BadInput, counted
+from coursework.rendering.renderer import renderer_of
+
+if TYPE_CHECKING:
+    from coursework.course.course import Course
+    from coursework.making.roster import Student
+
+
+# ----------------------------------------------------------------------- lesson
+
+
+@cli.command()
+@click.argument("lessons", nargs=-1)
+@lang_option
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for the notebooks.")
+@replace_option
+@click.pass_context
+def lesson(
+    context: click.Context, lessons: Sequence[str], lang: str, out: Path | None, overwrite: bool
+) -> None:
+    """Write the course's lessons as notebooks; without --out, list them."""
+    from coursework.making.lessons import lesson as lesson_notebook
+    from coursework.making.lessons import lessons as lesson_names
+    from coursework.system.writing import write_whole
+
+    course = opened(context)
+    books = {
+        name: lesson_notebook(course.folder, name, lang) for name in lessons or lesson_names(course.folder)
+    }
+    if out is None:
+        for name in books:
+            click.echo(name)
+        return
+    paths = [out / f"{name}.{lang}.ipynb" for name in books]
+    _spare(paths, overwrite)
+    for path, book in zip(paths, books.values(), strict=True):
+        write_whole(path, book.encode("utf-8"))
+        click.echo(str(path))
+
+
+def _spare(paths: Sequence[Path], overwrite: bool) -> None:
+    """Notebooks that somebody may have written in are not replaced unasked."""
+    there = [] if overwrite else [path for path in paths if path.exists()]
+    if there:
+        told = str(there[0]) if len(there) == 1 else f"{there[0]} and {len(there) - 1} more"
+        exist = "exists" if len(there) == 1 else "exist"
+        raise BadInput(
+            f"{told} {exist} already, and may hold what somebody wrote; choose another --out, or --overwrite to "
+            "replace"
+        )
+
+
+# --------------------------------------------------------------------- notebook
+
+
+@cli.command()
+@click.argument("exercises", nargs=-1)
+@seed_option
+@click.option(
+    "--lang", "langs", type=Lists(known_languages, unknown_language), default="fr", show_default=True
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    default="notebooks",
+    show_default=True,
+    help="Folder for the notebooks.",
+)
+@replace_option
+@click.pass_context
+def notebook(
+    context: click.Context,
+    exercises: Sequence[str],
+    seed: int,
+    langs: Sequence[str],
+    out: Path,
+    overwrite: bool,
+) -> None:
+    """Write self-study notebooks: predictions, instant feedback, hints, plots, fresh variants.
+
+    One for each exercise named, else for every exercise of the course.
+    """
+    from coursework.making.issuing import distinct_variants
+    from coursework.system.writing import write_whole
+
+    course = opened(context)
+    paths = {
+        (name, lang): out / f"{name}.{lang}.ipynb"
+        for name in exercise_names(course, exercises)
+        for lang in langs
+    }
+    _spare(list(paths.values()), overwrite)
+    for (name, lang), path in paths.items():
+        (variant,) = distinct_variants(course[name], seed, 1, lang)
+        write_whole(path, renderer_of(course.folder).study(variant.study_sheet()).encode("utf-8"))
+        click.echo(str(path))
+
+
+# ------------------------------------------------------------------------ build
+
+
+@cli.command()
+@click.argument("exercises", nargs=-1)
+@click.option("--variants", "count", type=Whole(1), help="How many variants; with a roster, one a student.")
+@seed_option
+@click.option(
+    "--roster",
+    type=click.Path(path_type=Path),
+    help="CSV with a column student, or surname and first name, and, if wanted, lang.",
+)
+@click.option("--formats", type=Lists(known_formats), default="pdf,ipynb,html", show_default=True)
+@click.option(
+    "--lang",
+    "langs",
+    type=Lists(known_languages, unknown_language),
+    default="fr",
+    show_default=True,
+    help="Languages of the sheets: fr, en, or both as fr,en. A student whose roster line says lang has that one.",
+)
+@parts_option
+@click.option("--practice", is_flag=True, help="Self-study notebooks, which check answers.")
+@click.option(
+    "--paper",
+    type=click.Choice(["a4", "letter"]),
+    default="a4",
+    show_default=True,
+    help="Paper of the sheets.",
+)
+@click.option("--booklet", is_flag=True, help="Also all students' sheets in one PDF, to print at once.")
+@click.option(
+    "--polygons/--no-polygons",
+    default=True,
+    help="Velocity and acceleration polygons in the worked solutions; without them a build takes half to two thirds of the time.",
+)
+@click.option(
+    "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."
+)
+@click.option(
+    "--overwrite",
+    is_flag=True,
+    help="Replace what was issued there before. Files that were filled in or changed are set aside, not lost.",
+)
+@click.pass_context
+def build(
+    context: click.Context,
+    exercises: Sequence[str],
+    count: int | None,
+    seed: int,
+    roster: Path | None,
+    formats: Sequence[str],
+    langs: Sequence[str],
+    parts: str,
+    practice: bool,
+    paper: str,
+    booklet: bool,
+    polygons: bool,
+    out: Path,
+    overwrite: bool,
+) -> None:
+    """Make sheets, notebooks and pages for a class, with the staff's half beside them."""
+    from coursework.making.roster import read_roster
+
+    if roster and count:
+        raise BadInput("--variants and --roster exclude each other: a roster has one variant a student")
+    course = opened(context)
+    names = exercise_names(course, exercises)
+    notes: list[str] = []
+    students = read_roster(roster, notes.append) if roster else []
+    own = sum(bool(student.lang) for student in students)
+    if own and context.get_parameter_source("langs") is not click.core.ParameterSource.DEFAULT:
+        notes.append(
+            f"the roster says the language of {own} of its {counted(len(students), 'student')}, which counts; "
+            f"--lang {','.join(langs)} is for those of whom it says none"
+        )
+    tell(notes)
+    written = build_files(
+        course,
+        names,
+        count or 1,
+        seed,
+        students,
+        formats,
+        langs,
+        out,
+        parts=split_list(parts) or None,
+        practice=practice,
+        paper=paper,
+        booklet=booklet,
+        polygons=polygons,
+        overwrite=overwrite,
+    )
+    click.echo(
+        f"{counted(written, 'file')} in {out}: handouts/ to give away, issued.json and answers.csv to keep"
+    )
+    if course.folder.has_solutions:
+        click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
+
+
+def build_files(
+    course: Course,
+    names: Sequence[str],
+    count: int,
+    seed: int,
+    students: Sequence[Student],
+    formats: Sequence[str],
+    langs: Sequence[str],
+    out: Path,
+    *,
+    parts: Sequence[str] | None = None,
+    practice: bool = False,
+    paper: str = "a4",
+    booklet: bool = False,
+    polygons: bool = True,
+    overwrite: bool = False,
+) -> int:
+    """Issue and write a build; gives how many files were written."""
+    from coursework.making import build as building
+    from coursework.making import issuing
+
+    issues = issuing.issue(
+        course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts
+    )
+    issued = issuing.json_text(issuing.issued_content(course, issues))
+    before = out / "issued.json"
+    if before.is_file() and before.read_bytes() != issued.encode("utf-8") and not overwrite:
+        raise BadInput(
+            f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them "
+            "(files that were filled in or changed are set aside, not lost)"
+        )
+    wanted = list(
+        building.files(
+            course, issues, formats, practice=practice, paper=paper, booklet=booklet, polygons=polygons
+        )
+    )
+    with progress_bar("building", len(wanted)) as advance:
+        notes = building.write_tree(out, wanted, advance, anew=overwrite)
+    tell(notes)
+    return len(wanted)

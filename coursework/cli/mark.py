@@ -1,0 +1,153 @@
+"""TODO coursework/cli/mark.py"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from coursework.cli.options import DONE, FOUND, cli, json_option, lang_option, opened
+from coursework.cli.printing import print_json, progress_bar
+from coursework.errors import BadInput, counted
+from coursework.rendering.renderer import renderer_of
+
+if TYPE_CHECKING:
+    from coursework.course.course import Course
+
+
+# ------------------------------------------------------------------------ grade
+
+
+@cli.command()
+@click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "--issued", type=click.Path(path_type=Path), required=True, help="The issued.json of the build."
+)
+@click.option(
+    "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder to write; marks/ beside it."
+)
+@click.option(
+    "--feedback/--no-feedback",
+    default=None,
+    help="Feedback sheets, a PDF a student; unless told, for up to 1000 students.",
+)
+@click.option(
+    "--accepted",
+    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    help="CSV of answers accepted by hand: student,exercise,seed,part and, if wanted, points,reason.",
+)
+@click.pass_context
+def grade(
+    context: click.Context,
+    submissions: Sequence[Path],
+    issued: Path,
+    out: Path | None,
+    feedback: bool | None,
+    accepted: Path | None,
+) -> int:
+    """Mark CSV, JSON, Parquet and notebooks of answers, files or folders of them.
+
+    Marked again, it says what changed and for whom.
+    """
+    if issued.is_dir():
+        inside = issued / "issued.json"
+        would_do = f"did you mean {inside}?" if inside.exists() else "name the issued.json that build wrote"
+        raise BadInput(f"--issued takes a file; {issued} is a folder: {would_do}")
+    out = out or issued.parent / "marks"
+    book = grade_with_bar(opened(context), submissions, issued, out, feedback=feedback, accepted=accepted)
+    told = f"{counted(book.rows_in, 'row')}: {book.marked} marked, {len(book.rejected)} rejected"
+    told += f", {book.blanks} blank beside another" if book.blanks else ""
+    click.echo(f"{told}; see {out}")
+    if book.unreadable:
+        what = "1 unreadable answer" if book.unreadable == 1 else f"{book.unreadable} unreadable answers"
+        click.echo(f"{what} to look at: verdict unreadable in {out / 'marks.csv'}")
+    if book.changes:
+        what = (
+            "1 mark is not what it was"
+            if book.changes == 1
+            else f"{book.changes} marks are not what they were"
+        )
+        click.echo(f"{what} before; see {out / 'changes.csv'}")
+    for warning in book.warnings:
+        click.echo(f"coursework: note: {warning}", err=True)
+    for rejected in book.rejected[:10]:
+        click.echo(f"coursework: {rejected.source}: {rejected.reason}", err=True)
+    if len(book.rejected) > 10:
+        more = len(book.rejected) - 10
+        click.echo(f"coursework: and {more} more in {out / 'rejected.csv'}", err=True)
+    return FOUND if book.needs_a_look else DONE
+
+
+def grade_with_bar(
+    course: Course,
+    submissions: Sequence[Path],
+    issued: Path,
+    out: Path,
+    *,
+    feedback: bool | None = True,
+    accepted: Path | None = None,
+):
+    """Mark files and write the tables, with a bar on a terminal."""
+    from coursework.gradebook.grading import grade_files
+
+    with progress_bar("marking", None) as advance:
+        return grade_files(
+            course, submissions, issued, out, feedback=feedback, accepted=accepted, progress=advance
+        )
+
+
+# ----------------------------------------------------------------------- report
+
+
+@cli.command()
+@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@lang_option
+@click.option(
+    "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder to write; DIR/report unless told."
+)
+@json_option
+@click.pass_context
+def report(context: click.Context, folder: Path, lang: str, out: Path | None, as_json: bool) -> None:
+    """Say how a class did, from the folder DIR that grade wrote: a page (HTML, PDF) and tables.
+
+    With --json and no --out nothing is written.
+    """
+    from coursework.language.words import words
+    from coursework.statistics import measures as statistics
+    from coursework.statistics import page as statistics_page
+
+    words(lang)  # an unknown language stops here
+    course = opened(context)
+    marks = statistics.read(folder)
+    told = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
+    if as_json:
+        print_json(told.as_json())
+    if out is not None or not as_json:
+        out = out or folder / "report"
+        _write_report(course, told, lang, out)
+    if not as_json:
+        click.echo(
+            f"{counted(told.students, 'student')}, {counted(told.answers, 'answer')}, {told.needs_a_look} to be looked at; "
+            f"see {out / 'report'}.html, .pdf, parts.csv, mistakes.csv"
+        )
+
+
+def _write_report(course: Course, told: Any, lang: str, out: Path) -> None:
+    """Everything is made before the first file is written."""
+    from coursework.statistics import measures as statistics
+    from coursework.statistics import page as statistics_page
+    from coursework.system.tables import csv_text
+    from coursework.system.writing import write_whole
+
+    page = statistics_page.report(course, told, lang)
+    mistakes = statistics_page.mistake_rows(course, told, lang)
+    files = {
+        "report.html": renderer_of(course.folder).report_html(page).encode("utf-8"),
+        "report.pdf": renderer_of(course.folder).report_pdf(page),
+        "parts.csv": csv_text((p.row() for p in told.parts), statistics.PART_COLUMNS).encode("utf-8"),
+        "mistakes.csv": csv_text(mistakes, statistics.MISTAKE_COLUMNS).encode("utf-8"),
+    }
+    for name, content in files.items():
+        write_whole(out / name, content)

@@ -1,0 +1,153 @@
+"""TODO coursework/cli/options.py"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from coursework.errors import BadInput, WrongValue
+
+if TYPE_CHECKING:
+    from coursework.course.course import Course
+
+
+DONE, FOUND, BAD = 0, 1, 2  #: exit statuses
+
+
+def named_command(arguments: Sequence[str]) -> str:
+    known = [a for a in arguments if a in cli.commands]
+    return f"{known[0]} " if known else ""
+
+
+def tell(notes: Sequence[str]) -> None:
+    """Say what is to be known and is no error."""
+    for note in notes[:10]:
+        click.echo(f"coursework: note: {note}", err=True)
+    if len(notes) > 10:
+        click.echo(f"coursework: note: and {len(notes) - 10} more such", err=True)
+
+
+def complain(message: str) -> int:
+    click.echo(f"coursework: {' '.join(message.split())}", err=True)
+    return BAD
+
+
+class Whole(click.ParamType):
+    """A whole number that is not less than the least."""
+
+    name = "whole number"
+
+    def __init__(self, least: int):
+        self.least = least
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> int:
+        try:
+            number = int(value)
+        except ValueError:
+            number = self.least - 1
+        if number < self.least:
+            self.fail(f"takes a whole number, {self.least} or more; found {value!r}", param, ctx)
+        return number
+
+
+class Lists(click.ParamType):
+    """Comma-separated words, each among those known."""
+
+    name = "list"
+
+    def __init__(self, known: Callable[[], Iterable[str]], refusal: Callable[[str], str] | None = None):
+        self.known = known
+        self.refusal = (
+            refusal  #: what is said of an unknown word, where more is to be said than what there is
+        )
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[str, ...]:
+        if isinstance(value, tuple):
+            return value
+        words = tuple(dict.fromkeys(w.strip() for w in value.split(",") if w.strip()))
+        known = tuple(self.known())
+        for word in words:
+            if word not in known:
+                told = self.refusal(word) if self.refusal else f"no {word!r}; there is {', '.join(known)}"
+                self.fail(told, param, ctx)
+        if not words:
+            self.fail(f"nothing named; there is {', '.join(known)}", param, ctx)
+        return words
+
+
+def known_languages() -> tuple[str, ...]:
+    from coursework.language.words import languages
+
+    return languages()
+
+
+def unknown_language(lang: str) -> str:
+    from coursework.language.words import no_language
+
+    return str(no_language(lang))
+
+
+def known_formats() -> tuple[str, ...]:
+    from coursework.making.build import FORMATS
+
+    return FORMATS
+
+
+json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+lang_option = click.option("--lang", default="fr", show_default=True, help="Language of the sheet.")
+parts_option = click.option(
+    "--parts",
+    default="",
+    metavar="P,P",
+    help="The parts to ask: ids, 'usual' for those asked unless told, 'all' for every one.",
+)
+replace_option = click.option(
+    "--overwrite", is_flag=True, help="Replace notebooks that are there, and what was written in them."
+)
+seed_option = click.option(
+    "--seed", type=Whole(0), default=0, show_default=True, help="Which variant (the first one)."
+)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--course", "folder", type=click.Path(), help="Course folder; the built-in course unless given."
+)
+@click.version_option(package_name="coursework", prog_name="coursework")
+@click.pass_context
+def cli(context: click.Context, folder: str | None) -> None:
+    """Parameterised exercises in plane-mechanism kinematics: draw, solve, print and mark them."""
+    context.obj = folder
+
+
+def opened(context: click.Context) -> Course:
+    from coursework.api import open_course
+
+    return open_course(context.obj)
+
+
+def exercise_names(course: Course, names: Sequence[str]) -> tuple[str, ...]:
+    for name in names:
+        course[name]  # an unknown name stops here, with the nearest one
+    if not course.names:
+        raise BadInput(
+            f"the course {course.folder.root} has no exercise; 'coursework new {course.folder.root} NAME' writes one"
+        )
+    return tuple(dict.fromkeys(names)) or course.names
+
+
+def settings_given(settings: Sequence[str]) -> dict[str, str]:
+    """The given values of ``--set NAME=VALUE``, as texts."""
+    given: dict[str, str] = {}
+    for setting in settings:
+        name, equals, value = setting.partition("=")
+        if not equals or not value.strip():
+            raise WrongValue(f"--set takes NAME=VALUE; found {setting!r}")
+        given[name.strip()] = value.strip()
+    return given
+
+
+def split_list(text: str) -> tuple[str, ...]:
+    return tuple(w.strip() for w in text.split(",") if w.strip())

@@ -1,0 +1,1 @@
+"""A course as numbers: its folder, exercises, variants, records, texts and answer keys."""

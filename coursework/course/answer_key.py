@@ -1,0 +1,225 @@
+"""What the answers to a variant are marked by: reference values, accepted widths, and the wrong values that
+are known.
+
+Everything is computed when it is first asked for, of one variant alone; or of many variants of an
+exercise at once (:class:`Batch`), which costs a hundredth each.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.course.asked import Asked
+from coursework.course.exercise import CourseExercise
+from coursework.course.marking_rules import ILL_DEGREES, ILL_SHARE, Rules
+from coursework.errors import CourseworkError
+from coursework.model import Part
+from coursework.quantities.graph import plain_scalar
+from coursework.quantities.rounding import envelope
+from coursework.reading.units import convert
+
+#: Factors by which a unit is mistaken for another.
+_UNIT_FACTORS = (1e3, 1e-3, 10.0, 0.1)
+#: Kinds of part that a student goes on from, and that follow from others.
+FOLLOWED = ("number", "angle", "integer", "choice")
+_LENGTH = re.compile(r"(?<![^\W\d_])m?m(?![^\W\d_])")
+_TURN_A_MINUTE = 60 / (2 * math.pi)
+
+
+class KeyNumbers(NamedTuple):
+    """The numbers of a key, by quantity, as another process is handed them."""
+
+    reference: dict[str, Any]
+    envelope: dict[str, float]
+
+
+class Key:
+    """The reference values of one variant, and the values each known wrong way would give."""
+
+    def __init__(self, variant: Asked, rules: Rules | None = None, numbers: KeyNumbers | None = None):
+        self.variant = variant
+        self.solution = variant.exercise.solution
+        self.rules = variant.exercise.folder.rules if rules is None else rules
+        self._known = numbers
+
+    @cached_property
+    def reference(self) -> dict[str, Any]:
+        """The asked quantities, and those that parts are judged with."""
+        return self.variant.solution() if self._known is None else self._known.reference
+
+    # ------------------------------------------------------------------ widths
+
+    @cached_property
+    def envelope(self) -> dict[str, float]:
+        """By quantity, how far a student lands at most who rounds at every step.
+
+        Where that is unbounded, as far as a variant that is issued may let them land.
+        """
+        if self._known is not None:
+            return self._known.envelope
+        variant = self.variant
+        found = envelopes(
+            variant.exercise, self._quantities, variant.used, variant.effects, self.rules.digits
+        )
+        return {name: self._bounded(name, float(np.ravel(width)[0])) for name, width in found.items()}
+
+    @property
+    def numbers(self) -> KeyNumbers:
+        """What is known without the solution's mistakes."""
+        return KeyNumbers(self.reference, self.envelope)
+
+    def half_width(self, part: Part) -> float:
+        """The largest accepted distance from the reference, in the part's unit; 0 for what is judged exactly."""
+        if not part.has_margin:
+            return 0.0
+        size = 1.0 if part.kind == "direction" else float(np.linalg.norm(self.reference[part.quantity]))
+        return max(part.half_width(size), self.envelope.get(part.quantity, 0.0))
+
+    @property
+    def _quantities(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(p.quantity for p in self.variant.parts))
+
+    def _bounded(self, name: str, width: float) -> float:
+        return width if math.isfinite(width) else ill_limit(self._part_of(name), self.reference[name])
+
+    def _part_of(self, quantity: str) -> Part:
+        return next(p for p in self.variant.parts if p.quantity == quantity)
+
+    # -------------------------------------------------------------- wrong ways
+
+    @cached_property
+    def wrong(self) -> dict[str, dict[str, Any]]:
+        """By named mistake, the asked quantities it reaches and their wrong values."""
+        return {name: self._wrong(name) for name in self.solution.mistakes}
+
+    def _wrong(self, name: str) -> dict[str, Any]:
+        reached = tuple(q for q in self.reference if q in self.solution.reached(name))
+        try:
+            return self._mistaken(name, reached)
+        except CourseworkError:
+            pass  # the wrong way leads nowhere for some quantity of this variant; the others are tried alone
+        values = {}
+        for quantity in reached:
+            with suppress(CourseworkError):
+                values |= self._mistaken(name, (quantity,))
+        return values
+
+    def _mistaken(self, name: str, quantities: tuple[str, ...]) -> dict[str, Any]:
+        graph = self.solution.mistaken(name)
+        found = graph.evaluate(quantities, self.variant.used, self.variant.effects)
+        return {quantity: plain_scalar(value) for quantity, value in found.items()}
+
+    def wrong_ways(self, quantity: str) -> Iterator[tuple[str, Any]]:
+        """The named mistakes that reach a quantity, each with its wrong value, in the solution's order."""
+        for name, values in self.wrong.items():
+            if quantity in values:
+                yield name, values[quantity]
+
+    def followed(self, part: Part, own: Mapping[str, Any], wrong: Collection[str]) -> Any:
+        """What a right method gives from a student's own earlier answers, or None.
+
+        ``own`` holds them by quantity, right ones too: a student goes on from what they wrote. None where
+        no ``wrong`` one bears on this quantity, and where nothing comes of it: the linkage does not
+        close, the value is not finite, or trivially 0. A count of 0 is not trivial.
+        """
+        quantity = part.quantity
+        exact = {p.quantity for p in self.variant.parts if p.kind in ("integer", "choice")}
+        before = {q: v for q, v in own.items() if q != quantity and (v or q in exact or q not in wrong)}
+        if not any(quantity in self.solution.depending_on(q) for q in wrong if q in before):
+            return None
+        with suppress(CourseworkError):
+            given = {**self.variant.used, **before}
+            found = self.solution.graph.evaluate((quantity,), given, self.variant.effects)
+            value = plain_scalar(found[quantity])
+            if isinstance(value, str) or (math.isfinite(value) and (value or quantity in exact)):
+                return value
+        return None
+
+    def slips(self, part: Part) -> Iterator[tuple[str, Any]]:
+        """Wrong values that need nobody to declare them, by kind of slip."""
+        reference = self.reference[part.quantity]
+        if part.kind not in ("number", "angle") or part.judge:
+            return
+        if reference:
+            yield "sign", -reference
+        if part.unit == "deg":
+            yield "radians", math.radians(reference)
+            yield "radians", math.degrees(reference)
+        elif part.unit != "1":
+            if part.unit.startswith("rad/s"):
+                yield "radians", math.degrees(reference)
+                yield "radians", math.radians(reference)
+            if part.unit == "rad/s":
+                yield "turns_a_minute", reference * _TURN_A_MINUTE
+                yield "turns_a_minute", reference / _TURN_A_MINUTE
+            metres = _metres_for_millimetres(part.unit)
+            for factor in dict.fromkeys((*_UNIT_FACTORS, metres, 1 / metres)):
+                yield "unit", reference * factor
+        for value in self._other_values(part.quantity):
+            yield "other_case", value
+
+    def _other_values(self, quantity: str) -> list[Any]:
+        """Values of a quantity when a given case of two is taken for the other one: the assembly mode, say."""
+        return self._other_cases.get(quantity, [])
+
+    @cached_property
+    def _other_cases(self) -> dict[str, list[Any]]:
+        found: dict[str, list[Any]] = {}
+        for given in with_other_cases(self.variant.exercise, self.variant.used):
+            for quantity in self._quantities:
+                with suppress(CourseworkError):
+                    value = self.solution.graph.evaluate((quantity,), given, self.variant.effects)[quantity]
+                    found.setdefault(quantity, []).append(plain_scalar(value))
+        return found
+
+
+@lru_cache(maxsize=256)
+def _metres_for_millimetres(unit: str) -> float:
+    """By how much a value in a unit grows when its metres are taken for millimetres: 10⁶ for an area."""
+    millimetres, metres = (_LENGTH.sub(length, unit) for length in ("mm", "m"))
+    return float(convert(1.0, metres, millimetres))
+
+
+def ill_limit(part: Part, reference: Any) -> float:
+    """The widest envelope of a variant that may be issued, in the part's unit."""
+    if part.unit == "deg":
+        return ILL_DEGREES
+    return ILL_SHARE * float(np.linalg.norm(reference)) if not isinstance(reference, str) else math.inf
+
+
+def envelopes(
+    exercise: CourseExercise[Any],
+    quantities: Sequence[str],
+    given: Mapping[str, Any],
+    effects: Sequence[str],
+    digits: int,
+) -> dict[str, Any]:
+    """Envelopes for given scalars or arrays: shape ``(n,)`` each, 0 for a quantity that has none."""
+    parts = {p.quantity: p for p in exercise.spec.parts}
+    numeric = tuple(q for q in quantities if parts[q].has_margin and parts[q].kind != "direction")
+    directions = {q for q in numeric if parts[q].kind == "angle"}
+    found = envelope(exercise.solution.graph, numeric, given, effects, digits, directions)
+    return {q: found.get(q, 0.0) for q in quantities}
+
+
+def with_other_cases(exercise: CourseExercise[Any], given: Mapping[str, Any]) -> Iterator[dict[str, Any]]:
+    """Given values, of one variant or of many, with one case of two exchanged for the other, case by case."""
+    for name, spec in exercise.spec.given.items():
+        if len(spec.choices) == 2 and name in given:
+            one, other = spec.choices
+            exchanged = np.where(np.asarray(given[name]) == one, other, one)
+            yield {**given, name: exchanged if exchanged.ndim else str(exchanged)}
+
+
+def exists(value: Any) -> bool:
+    """Whether a value is a case, or finite in all its coordinates."""
+    if isinstance(value, (float, int)):
+        return math.isfinite(value)
+    return isinstance(value, str) or bool(np.all(np.isfinite(value)))

@@ -1,0 +1,314 @@
+"""An exercise of an open course: draws, solves, reads its texts."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from coursework.course import draws
+from coursework.course.folder import Folder
+from coursework.course.records import Records
+from coursework.course.requests import Intake
+from coursework.course.texts import ExerciseTexts
+from coursework.errors import BadCourse, NoSolution, Undefined, WrongValue, unknown
+from coursework.model import Exercise, Part
+from coursework.quantities.graph import Graph, plain_scalar
+from coursework.solution import Film, Solution
+
+USUAL, ALL = "usual", "all"  #: what stands for several parts where parts are named
+
+
+V = TypeVar("V")
+
+
+class _Exercises(Protocol):
+    """The course that an exercise is of."""
+
+    def __getitem__(self, name: str) -> Any: ...
+
+
+class CourseExercise(Generic[V]):
+    """An exercise of an open course: draws, solves, reads its texts.
+
+    Its variants are of the class that it is handed, made of the exercise, a seed, the given values, a language, the
+    parts that are asked where they are not the usual ones, and the record that issued it, of an older version.
+    """
+
+    def __init__(self, name: str, folder: Folder, course: _Exercises, variant: Callable[..., V]):
+        self.name = name
+        self.folder = folder
+        self.course = course
+        self._variant = variant
+        spec = getattr(folder.module("exercises", name), "EXERCISE", None)
+        if not isinstance(spec, Exercise):
+            raise BadCourse(f"exercises/{name}.py states no EXERCISE = Exercise(…)")
+        self.spec: Exercise = spec
+        self.texts = ExerciseTexts(folder, name)
+        draws.check_conditions(name, spec)
+
+    def __repr__(self) -> str:
+        return f"<exercise {self.name}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """In another process it is the exercise of the course that is opened there."""
+        return operator.getitem, (self.course, self.name)
+
+    @property
+    def version(self) -> int:
+        """What records are of; see :class:`~coursework.model.Exercise`."""
+        return self.spec.version
+
+    # ------------------------------------------------------------------ solving
+
+    @cached_property
+    def solution(self) -> Solution:
+        """The reference solution.
+
+        Raises
+        ------
+        NoSolution
+            The course folder has none: it looks like a students' copy.
+        """
+        if self.folder.home("solutions", self.name) is None:
+            why = f"it lacks {self.name}.py" if self.folder.has_solutions else "it looks like a students' copy"
+            raise NoSolution(f"no solution of {self.name!r} in {self.folder.label}: {why}")
+        return Solution.of(self.name, self.folder.module("solutions", self.name))
+
+    @cached_property
+    def units(self) -> Mapping[str, str]:
+        """Canonical units of the quantities that state one."""
+        stated = {n: s.unit for n, s in self.spec.given.items()}
+        stated |= {p.quantity: p.unit for p in self.spec.parts}
+        return MappingProxyType({**self.solution.units, **stated})
+
+    def symbol(self, name: str) -> str:
+        """LaTeX of a quantity of the statement."""
+        return self.spec.symbol(name)
+
+    def plan(self, only: Sequence[str] | None = None, *, effects: Iterable[str] = ()) -> tuple[str, ...]:
+        """The quantities that a request evaluates, in order."""
+        return self.solution.graph.plan(
+            self._wanted(only), frozenset(self.spec.given) & self.quantity_names, effects
+        )
+
+    def _wanted(self, only: Sequence[str] | str | None) -> tuple[str, ...]:
+        if only is None:
+            return tuple(dict.fromkeys(p.quantity for p in self.spec.parts if not p.by_request))
+        return (only,) if isinstance(only, str) else tuple(only)
+
+    @cached_property
+    def quantity_names(self) -> frozenset[str]:
+        """Every name that a request may give: computed quantities and what they need."""
+        graph = self.solution.graph
+        return frozenset(graph.quantities) | graph.leaves
+
+    @cached_property
+    def intake(self) -> Intake:
+        """Takes in what requests give."""
+        return Intake(
+            self.name, self.spec.given, self.units, self.quantity_names, self.solution.structures
+        )
+
+    def solve(
+        self,
+        *,
+        only: Sequence[str] | str | None = None,
+        effects: Iterable[str] = (),
+        **given: Any,
+    ) -> dict[str, Any]:
+        """Quantities from given values, in canonical units (degrees for angles).
+
+        Parameters
+        ----------
+        only
+            The quantities wanted, and nothing else is computed; every part's unless told.
+        effects
+            Optional effects that the request calls for.
+        **given
+            Scalars, arrays that broadcast, or texts with a unit (``"0.2286 m"``). Any quantity may be
+            given, also one that the graph could compute: then it is used as it is. A list of mappings, such
+            as joints, is handed on as a tuple.
+
+        Returns
+        -------
+        A dict of floats, or of arrays of the shape that each quantity's own arguments broadcast to: what
+        does not vary stays a scalar, and a vector has one axis more.
+
+        Raises
+        ------
+        CannotAssemble
+            A scalar configuration that does not close. In arrays it is NaN there and only there.
+        Undefined
+            A scalar quantity that does not exist for these values.
+        UnknownName, MissingQuantity, WrongUnit, WrongValue
+            A request that makes no sense, each with what would do.
+        """
+        values = self.intake.values(given)
+        arrays = any(isinstance(v, np.ndarray) for v in values.values())
+        if only is None and not arrays:
+            only = tuple(p.quantity for p in self.usual_parts(values))
+        wanted = self._wanted(only)
+        if arrays:
+            _check_shapes(values)
+        found = self.solution.graph.evaluate(wanted, values, effects)
+        if not arrays:
+            asked = {n: values[n] for n in given if n in values}
+            found = {name: self.existing(name, value, asked) for name, value in found.items()}
+        return found
+
+    def existing(self, name: str, value: Any, given: Mapping[str, Any]) -> Any:
+        """A quantity of scalars as plain Python holds it.
+
+        Raises
+        ------
+        Undefined
+            It is not a number: it does not exist for the given values.
+        """
+        if type(value) is not float:
+            value = plain_scalar(value)
+        if isinstance(value, float) and value != value:
+            told = ", ".join(f"{n} = {v}" for n, v in given.items())
+            raise Undefined(f"{self.name}: {name} does not exist for {told}")
+        return value
+
+    @property
+    def film(self) -> Film | None:
+        """The animation that the solution states in a picture of its own; none where the course has no solutions."""
+        return self.solution.film if self.folder.has_solutions else None
+
+    @property
+    def is_animated(self) -> bool:
+        """Whether there is an animation: a film, or a figure that a driver moves."""
+        return self.film is not None or (self.spec.driver is not None and self.spec.figure is not None)
+
+    def driver_angle(self, given: Mapping[str, Any]) -> float:
+        """Where the driver stands for these given quantities, degrees.
+
+        Raises
+        ------
+        BadCourse
+            Neither a given quantity nor a helper says it.
+        """
+        name = self.spec.driver.angle
+        if name in given:
+            return float(given[name])
+        helpers = Graph({f.__name__: f for f in self.spec.helpers})
+        if self.spec.driver.poses is None or name not in helpers.quantities:
+            raise BadCourse(
+                f"{self.name}: its driver's angle {name} is no given quantity; where it is an answer, "
+                "a helper of that name says it, and Driver(poses=…) moves the mechanism"
+            )
+        return float(helpers.evaluate((name,), _known_to(helpers, given))[name])
+
+    def posed(self, given: Mapping[str, Any], angle: Any) -> dict[str, Any]:
+        """What places the mechanism with its driver at an angle, degrees, or at each of an array of angles."""
+        driver = self.spec.driver
+        if driver.poses is None:
+            return {driver.angle: angle}
+        graph = Graph({**{f.__name__: f for f in self.spec.helpers}, "poses": driver.poses})
+        values = _known_to(graph, {**given, "driven": angle})
+        return dict(graph.evaluate(("poses",), values)["poses"])
+
+    # ----------------------------------------------------------------- variants
+
+    def variant(self, seed: int, lang: str = "fr", parts: Sequence[str] | None = None) -> V:
+        """The variant of a seed: the same for ever for this exercise and version.
+
+        ``parts`` are the ids of those that it asks; ``usual`` stands for those that are asked unless told, ``all``
+        for every one.
+
+        Raises
+        ------
+        WrongValue
+            A seed that is not a whole number from 0 on.
+        UnknownName
+            A part that the exercise does not have.
+        Starved
+            The conditions refuse every draw.
+        """
+        return self.variants([seed], lang, parts)[0]
+
+    def variants(
+        self, seeds: Iterable[int], lang: str = "fr", parts: Sequence[str] | None = None
+    ) -> list[V]:
+        """The variants of many seeds, drawn together."""
+        chosen = self.chosen_parts(parts)
+        seeds = list(seeds)
+        for seed in seeds:
+            if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
+                raise WrongValue(f"a seed is a whole number from 0 on; found {seed!r}")
+        seeds = [int(seed) for seed in seeds]
+        drawn = draws.draw(self.name, self.spec, seeds)
+        return [self._variant(self, seed, given, lang, chosen) for seed, given in zip(seeds, drawn, strict=True)]
+
+    def chosen_parts(self, parts: Sequence[str] | None) -> tuple[Part, ...] | None:
+        """Parts by id, in the order of the exercise; None for the usual ones.
+
+        Raises
+        ------
+        UnknownName
+            A part that the exercise does not have.
+        """
+        if parts is None:
+            return None
+        known = [*(part.id for part in self.spec.parts), USUAL, ALL]
+        for part_id in parts:
+            if part_id not in known:
+                raise unknown("part", part_id, known, self.name)
+        return tuple(
+            p
+            for p in self.spec.parts
+            if ALL in parts or p.id in parts or (USUAL in parts and not p.by_request)
+        )
+
+    def from_record(self, record: Mapping[str, Any]) -> V:
+        """The variant that a record issued, with the values that the record holds.
+
+        A record of an older version keeps its data, its parts and their points, and is solved as the
+        exercise is solved now: so a corrected solution marks what was issued before.
+
+        Raises
+        ------
+        BadInput
+            The record is of another exercise or a later version, lacks a given quantity, or asks a
+            part that is no more.
+        """
+        seed, given, lang, parts, issued = self._records.read(record)
+        return self._variant(self, seed, given, lang, parts, issued)
+
+    @cached_property
+    def _records(self) -> Records:
+        return Records(self.name, self.spec)
+
+    def usual_parts(self, given: Mapping[str, Any]) -> tuple[Part, ...]:
+        """The parts that these given values ask unless others are named."""
+        return tuple(p for p in self.spec.parts if not p.by_request and p.is_asked(given))
+
+    # -------------------------------------------------------------------- texts
+
+    @property
+    def languages(self) -> tuple[str, ...]:
+        """The languages that this exercise has a statement in, among those the engine speaks."""
+        return self.texts.languages
+
+    def title(self, lang: str) -> str:
+        """The title; where it is not the same for every variant, that of the first."""
+        return self.texts.title(lang) or self.variant(0, lang).text.title
+
+
+def _check_shapes(values: Mapping[str, Any]) -> None:
+    shapes = {n: v.shape for n, v in values.items() if isinstance(v, np.ndarray)}
+    try:
+        np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        told = ", ".join(f"{n} {shape}" for n, shape in shapes.items())
+        raise WrongValue(f"the arrays do not broadcast together: {told}") from None
+
+
+def _known_to(graph: Graph, values: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if name in graph.leaves}

@@ -1,0 +1,187 @@
+"""A course's folder: its files, its settings, and its Python.
+
+``exercises/``, ``solutions/`` and ``templates/`` stand side by side. Nothing is registered: the stem of
+``exercises/NAME.py`` is the exercise's name everywhere. Files may stand in folders of topics,
+``exercises/TOPIC/NAME.py``; a topic is a folder without ``__init__.py``, and no part of a name.
+"""
+
+from __future__ import annotations
+
+import importlib
+import itertools
+import sys
+import tomllib
+import traceback
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from coursework.course.builtin import builtin_root
+from coursework.course.marking_rules import Rules
+from coursework.errors import BadCourse, CourseworkError
+
+_packages = itertools.count()
+
+
+class Folder:
+    """The files, settings and modules of a course.
+
+    Its Python is imported, as any is, under a private package name; ``sys.path`` is left alone.
+    """
+
+    def __init__(self, root: Path):
+        self.root = root
+        self._package = f"_coursework_course_{next(_packages)}"
+        package = ModuleType(self._package)
+        package.__path__ = [str(root)]
+        sys.modules[self._package] = package
+        self._homes: dict[tuple[str, str], Path] = {}
+
+    def __repr__(self) -> str:
+        return f"<folder {self.root.name}>"
+
+    @property
+    def label(self) -> str:
+        """What messages call the course."""
+        return "the built-in course" if self.root == builtin_root().resolve() else f"course {self.root.name}"
+
+    # -------------------------------------------------------------------- files
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The exercises' names, in alphabetical order, as the folder holds them now."""
+        return tuple(sorted(self._modules("exercises")))
+
+    def home(self, kind: str, name: str) -> Path | None:
+        """The file of ``KIND/NAME``, wherever it stands: ``NAME.py``, or ``NAME/__init__.py``; none where there is none.
+
+        Raises
+        ------
+        BadCourse
+            It stands in two places.
+        """
+        known = self._homes.get((kind, name))
+        if known is None or not known.exists():
+            self._homes |= {(kind, each): path for each, path in self._modules(kind).items()}
+            known = self._homes.get((kind, name))
+        return known if known is not None and known.exists() else None
+
+    def _modules(self, kind: str) -> dict[str, Path]:
+        """The modules of ``exercises`` or ``solutions`` by name; shared ones, whose names begin with an underscore, are none."""
+        top = self.root / kind
+        topics = [p for p in sorted(top.glob("*/")) if p.is_dir() and not (p / "__init__.py").exists()]
+        found: dict[str, Path] = {}
+        for folder in (top, *topics):
+            files = [*((p.stem, p) for p in folder.glob("*.py")), *((p.parent.name, p) for p in folder.glob("*/__init__.py"))]
+            for name, path in files:
+                if not name.isidentifier() or name.startswith("_"):
+                    continue
+                if name in found:
+                    places = " and ".join(sorted(self.relative(p) for p in (found[name], path)))
+                    raise BadCourse(f"{name} stands twice: {places}; keep one of them, or rename it")
+                found[name] = path
+        return found
+
+    def text_file(self, kind: str, name: str, lang: str) -> Path:
+        """``NAME.LANG.md.j2``, beside the module or inside the exercise's own folder; where it would stand if there is none."""
+        file = f"{name}.{lang}.md.j2"
+        folders = self._text_folders(kind, name)
+        return next((folder / file for folder in folders if (folder / file).exists()), folders[-1] / file)
+
+    def texts(self, kind: str, name: str) -> dict[str, Path]:
+        """The texts of ``KIND/NAME`` by language, whatever is spoken."""
+        return {
+            path.name.removeprefix(f"{name}.").removesuffix(".md.j2"): path
+            for folder in self._text_folders(kind, name)
+            for path in sorted(folder.glob(f"{name}.*.md.j2"))
+        }
+
+    def _text_folders(self, kind: str, name: str) -> tuple[Path, ...]:
+        home = self.home(kind, name)
+        if home is None:
+            return (self.root / kind,)
+        return (home.parent, home.parent.parent) if home.name == "__init__.py" else (home.parent / name, home.parent)
+
+    def relative(self, path: Path) -> str:
+        """What messages call a file."""
+        return path.relative_to(self.root).as_posix()
+
+    @cached_property
+    def template_folders(self) -> tuple[Path, ...]:
+        """Where templates are looked up: this course first, then the built-in one."""
+        folders = dict.fromkeys([self.root / "templates", builtin_root() / "templates"])
+        return tuple(f for f in folders if f.is_dir())
+
+    @property
+    def has_solutions(self) -> bool:
+        """False for a students' copy."""
+        return (self.root / "solutions").is_dir()
+
+    # ----------------------------------------------------------------- settings
+
+    @property
+    def _settings_file(self) -> Path:
+        return self.root / "exercises" / "course.toml"
+
+    @cached_property
+    def settings(self) -> Mapping[str, Any]:
+        """What ``exercises/course.toml`` says, or nothing."""
+        path = self._settings_file
+        if not path.exists():
+            return {}
+        try:
+            return tomllib.loads(path.read_text("utf-8-sig"))
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
+            raise BadCourse(f"{path}: {fault}") from fault
+
+    @cached_property
+    def rules(self) -> Rules:
+        """How the course marks."""
+        return Rules.of(self.settings.get("marking", {}), str(self._settings_file))
+
+    def title(self, lang: str) -> str:
+        """The course's title in a language; the folder's name when it states none."""
+        return str(self._titles(lang).get(lang, self.root.name))
+
+    def lacks_title(self, lang: str) -> bool:
+        """Whether the course states its title in other languages than this one alone."""
+        titles = self._titles(lang)
+        return bool(titles) and lang not in titles
+
+    def _titles(self, lang: str) -> Mapping[str, Any]:
+        titles = self.settings.get("title", {})
+        if not isinstance(titles, dict):
+            raise BadCourse(f'{self._settings_file}: write [title], then {lang} = "…"')
+        return titles
+
+    # ------------------------------------------------------------------ modules
+
+    def module(self, kind: str, name: str) -> ModuleType:
+        """Import the module of ``KIND/NAME``.
+
+        Raises
+        ------
+        BadCourse
+            The file cannot be imported; the message names the file, the line and the fault.
+        """
+        home = self.home(kind, name)
+        source = f"{kind}/{name}.py" if home is None else self.relative(home)
+        steps = (kind, name) if home is None else home.relative_to(self.root).with_suffix("").parts
+        dotted = ".".join((self._package, *steps)).removesuffix(".__init__")
+        try:
+            return importlib.import_module(dotted)
+        except CourseworkError as fault:
+            raise BadCourse(f"{source}: {fault}") from fault
+        except Exception as fault:
+            raise BadCourse(f"{source} cannot be used: {_where(fault, self.root)}") from fault
+
+
+def _where(fault: Exception, root: Path) -> str:
+    """The fault in one line, with the last line of the course's own code on its way."""
+    said = f"{type(fault).__name__}: {fault}"
+    if isinstance(fault, SyntaxError):
+        return f"line {fault.lineno}: {fault.msg}"
+    frames = [f for f in traceback.extract_tb(fault.__traceback__) if f.filename.startswith(str(root))]
+    return f"line {frames[-1].lineno}: {said}" if frames else said

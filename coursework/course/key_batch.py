@@ -1,0 +1,156 @@
+"""Keys to many variants of one exercise, computed together: a hundredth of the cost each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
+from functools import cached_property
+from typing import Any, Protocol
+
+import numpy as np
+
+from coursework.course.answer_key import Key, envelopes, exists, with_other_cases
+from coursework.course.asked import Asked
+from coursework.course.exercise import CourseExercise
+from coursework.errors import CourseworkError
+from coursework.quantities.graph import plain_scalar
+
+
+class Keyed(Asked, Protocol):
+    """A variant that takes a key."""
+
+    key: Key
+
+    @property
+    def given(self) -> Mapping[str, Any]: ...
+
+
+def keys_of(exercise: CourseExercise[Any], variants: Sequence[Keyed]) -> Batch:
+    """Give many variants of one exercise keys that are computed together.
+
+    A variant that has some quantity that does not exist keeps a key of its own, which says why.
+    """
+    batch = Batch(exercise, variants)
+    for index, variant in enumerate(variants):
+        if batch.is_whole(index, variant.asked_quantities):
+            variant.key = _KeyOfBatch(variant, batch, index)
+    return batch
+
+
+class Batch:
+    """What the answers to many variants of one exercise are marked by, a column a quantity.
+
+    A column is computed when the first variant asks for it.
+    """
+
+    def __init__(self, exercise: CourseExercise[Any], variants: Sequence[Keyed]) -> None:
+        self.exercise = exercise
+        self.count = len(variants)
+        names = (n for n in exercise.spec.given if n in exercise.quantity_names)
+        self.given = {n: np.array([v.given[n] for v in variants]) for n in names}
+        self.quantities = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
+        self.along = tuple(dict.fromkeys(p.along for p in exercise.spec.parts if p.along))
+
+    @cached_property
+    def reference(self) -> dict[str, list]:
+        wanted = (*self.quantities, *self.along)
+        return _rows({name: self._found[name] for name in wanted if name in self._found}, self.count)
+
+    @cached_property
+    def _found(self) -> dict[str, Any]:
+        """Every quantity met on the way to the answers; nothing where they cannot be computed together."""
+        if not self.count:
+            return {}
+        wanted, effects = (*self.quantities, *self.along), self.exercise.spec.effects
+        try:
+            given = self.exercise.intake.values(self.given)
+            return self.exercise.solution.graph.everything(wanted, given, effects)
+        except CourseworkError:
+            return {}  # each variant by itself then
+
+    @cached_property
+    def other_cases(self) -> dict[str, list[list]]:
+        """By quantity, columns of its values when a given case of two is taken for the other one."""
+        found: dict[str, list[list]] = {}
+        for given in with_other_cases(self.exercise, self.given):
+            with suppress(CourseworkError):
+                graph, effects = self.exercise.solution.graph, self.exercise.spec.effects
+                for quantity, column in _rows(
+                    graph.evaluate(self.quantities, given, effects), self.count
+                ).items():
+                    found.setdefault(quantity, []).append(column)
+        return found
+
+    def is_whole(self, index: int, quantities: Sequence[str]) -> bool:
+        """Whether a variant has all these quantities."""
+        return all(q in self.reference and exists(self.reference[q][index]) for q in quantities)
+
+    @cached_property
+    def envelope(self) -> dict[str, list]:
+        rules, effects = self.exercise.folder.rules, self.exercise.spec.effects
+        return _rows(envelopes(self.exercise, self.quantities, self.given, effects, rules.digits), self.count)
+
+    @cached_property
+    def wrong(self) -> dict[str, dict[str, list]]:
+        """Columns by mistake, of the quantities that it reaches."""
+        return {name: self._wrong(name) for name in self.exercise.solution.mistakes}
+
+    def _wrong(self, name: str) -> dict[str, list]:
+        solution = self.exercise.solution
+        reached = tuple(q for q in (*self.quantities, *self.along) if q in solution.reached(name))
+        graph = solution.mistaken(name)
+        found: dict[str, list] = {}
+        for some in (reached, *((q,) for q in reached)):
+            # Where all together lead nowhere, each is tried alone.
+            with suppress(CourseworkError):
+                values = graph.evaluate(some, self.given, self.exercise.spec.effects, self._found)
+                found |= _rows(values, self.count)
+                if len(some) == len(reached):
+                    break
+        return found
+
+
+class _KeyOfBatch(Key):
+    """The key of one variant among many."""
+
+    def __init__(self, variant: Asked, batch: Batch, index: int) -> None:
+        super().__init__(variant)
+        self._batch, self._index = batch, index
+
+    @cached_property
+    def reference(self) -> dict[str, Any]:
+        return {q: self._batch.reference[q][self._index] for q in self.variant.asked_quantities}
+
+    @cached_property
+    def envelope(self) -> dict[str, float]:
+        columns = self._batch.envelope
+        return {q: self._bounded(q, float(columns[q][self._index])) for q in self._quantities}
+
+    @cached_property
+    def wrong(self) -> dict[str, dict[str, Any]]:
+        found = {}
+        for name, columns in self._batch.wrong.items():
+            own = {q: columns[q][self._index] for q in self.reference if q in columns}
+            found[name] = {q: value for q, value in own.items() if exists(value)}
+        return found
+
+    def _other_values(self, quantity: str) -> list[Any]:
+        columns = self._batch.other_cases.get(quantity, ())
+        return [column[self._index] for column in columns if exists(column[self._index])]
+
+    def wrong_ways(self, quantity: str) -> Iterator[tuple[str, Any]]:
+        for name, columns in self._batch.wrong.items():
+            if quantity in columns and exists(columns[quantity][self._index]):
+                yield name, columns[quantity][self._index]
+
+
+def _rows(columns: Mapping[str, Any], count: int) -> dict[str, list]:
+    """A list a quantity, a value a variant; vectors as arrays."""
+    found = {}
+    for name, values in columns.items():
+        array = np.asarray(values)
+        if array.ndim == 0 or array.shape[0] != count:
+            found[name] = [plain_scalar(values)] * count
+        else:
+            found[name] = list(array) if array.ndim > 1 else array.tolist()
+    return found

@@ -1,0 +1,83 @@
+"""Records of variants: what is issued, stored and marked against; no answer is in one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from coursework.errors import BadInput
+from coursework.model import Exercise, Part
+
+
+class Recorded(NamedTuple):
+    """What a record says of its variant."""
+
+    seed: int
+    given: dict[str, Any]
+    lang: str
+    parts: tuple[Part, ...]
+    record: dict[str, Any] | None  #: as it was issued, where the exercise has a later version now
+
+
+class Records:
+    """Reads records of one exercise; remembers which parts they ask, since records of one build ask the same."""
+
+    def __init__(self, name: str, spec: Exercise):
+        self.name = name
+        self.spec = spec
+        self._parts: dict[tuple[tuple[tuple[str, float], ...], bool], tuple[Part, ...]] = {}
+
+    def read(self, record: Mapping[str, Any]) -> Recorded:
+        """What a record issued.
+
+        Raises
+        ------
+        BadInput
+            The record is of another exercise or a later version, lacks a given quantity, or asks a
+            part that is no more.
+        """
+        name, current = self.name, self.spec.version
+        if record.get("exercise") != name:
+            raise BadInput(f"a record of {record.get('exercise')!r} was given to {name!r}")
+        version = record.get("version")
+        if not isinstance(version, int) or version > current:
+            raise BadInput(
+                f"{name}: the record is of version {version}, the course has version {current}; "
+                "mark it with the course it was issued from"
+            )
+        try:
+            given = {n: record["given"][n]["value"] for n in self.spec.given}
+            seed = int(record["seed"])
+            asked = {str(part["id"]): float(part["points"]) for part in record["parts"]}
+        except (KeyError, TypeError, ValueError) as fault:
+            raise BadInput(f"{name}: a record lacks {fault}") from fault
+        for quantity, value in given.items():
+            self._check_recorded(quantity, value)
+        parts = self._parts_of(tuple(asked.items()), version < current)
+        issued = dict(record) if version < current else None
+        return Recorded(seed, given, str(record.get("lang", "fr")), parts, issued)
+
+    def _parts_of(self, asked: tuple[tuple[str, float], ...], older: bool) -> tuple[Part, ...]:
+        """The parts that a record asks, by id; those of an older version are worth what they were then."""
+        if (asked, older) not in self._parts:
+            points = dict(asked)
+            gone = [i for i in points if self.spec.part(i) is None]
+            if gone:
+                raise BadInput(
+                    f"{self.name}: a record of {'an older' if older else 'this'} version asks {gone[0]!r}, which the "
+                    f"course {'no longer has' if older else 'does not have'}; mark it with the course it was issued from"
+                )
+            found = tuple(p for p in self.spec.parts if p.id in points)
+            if older:
+                found = tuple(replace(p, points=points[p.id]) for p in found)
+            self._parts[asked, older] = found
+        return self._parts[asked, older]
+
+    def _check_recorded(self, name: str, value: Any) -> None:
+        spec = self.spec.given[name]
+        fits = value in spec.choices if spec.is_choice else isinstance(value, (int, float))
+        if not fits or isinstance(value, bool):
+            raise BadInput(
+                f"{self.name}: a record gives {name} = {value!r}, which is no value of it"
+            )

@@ -1,0 +1,300 @@
+r"""Texts of an exercise in one language: one Markdown file of named sections, through Jinja2.
+
+``exercises/NAME.LANG.md.j2``::
+
+    # Title of the exercise
+
+    The statement, in Markdown with $LaTeX$. {{ r1 }} prints a given value with its unit.
+
+    ## rA
+    What part rA asks.
+
+    ## guide
+    Does the guide oscillate?
+    - oscillates: it oscillates
+    - rotates: it turns fully
+
+    ## figure
+    What the figure shows, for those who cannot see it.
+
+``solutions/NAME.LANG.md.j2`` has the same form: opening words, a section a quantity (words before its
+formula), ``## mistake NAME`` sections (what to tell a student who made it) and, where the solution draws its
+own figure, ``## figure``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from weakref import WeakSet
+
+from coursework.course.folder import Folder
+from coursework.errors import BadCourse, BadStatement
+from coursework.language.words import languages
+from coursework.markup.proofreading import pair_dollars, read_formulas
+
+_HEADING = re.compile(r"^(#{1,2})\s+(.+?)\s*$", re.MULTILINE)
+_ENCODING = "utf-8-sig"  #: a mark of the byte order, which some editors write, is no part of the text
+_TELLING = 15  #: characters by which a line of a text is found again
+_LABEL = re.compile(r"^- ([A-Za-z][\w-]*): (.+)$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Section:
+    """A piece of text and the labels of cases listed in it."""
+
+    text: str = ""
+    labels: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Text:
+    """The sections of one file, rendered."""
+
+    title: str
+    opening: str
+    sections: Mapping[str, Section]
+    source: str  #: the file, for messages
+
+    def section(self, name: str) -> Section:
+        """The section of this name; a clear error if the file has none."""
+        if name not in self.sections:
+            is_there = f"{self.source} has no" if self.title else f"{self.source} is missing, and with it the"
+            raise BadStatement(f"{is_there} section '## {name}'")
+        return self.sections[name]
+
+    def label(self, quantity: str, case: str) -> str:
+        """What a case of a quantity is called in this language."""
+        labels = self.section(quantity).labels
+        if case not in labels:
+            raise BadStatement(f"{self.source}: section '## {quantity}' has no line '- {case}: …'")
+        return labels[case]
+
+
+def parse(markdown: str, source: str) -> Text:
+    """Split a rendered text into its sections.
+
+    Raises
+    ------
+    BadStatement
+        No title, or a section twice.
+    """
+    marks = list(_HEADING.finditer(markdown))
+    if not marks or marks[0].group(1) != "#":
+        raise BadStatement(f"{source} must begin with its title: '# …'")
+    pieces: dict[str, str] = {}
+    for mark, following in zip(marks, [*marks[1:], None], strict=True):
+        body = markdown[mark.end() : following.start() if following else len(markdown)].strip()
+        name = mark.group(2)
+        if mark is not marks[0] and mark.group(1) == "#":
+            raise BadStatement(f"{source} has a second title '# {name}'; sections begin with '##'")
+        if name in pieces:
+            raise BadStatement(f"{source} has two sections '## {name}'")
+        pieces[name] = body
+    title = marks[0].group(2)
+    opening = pieces.pop(title)
+    sections = {
+        name: Section(_LABEL.sub("", body).strip(), dict(_LABEL.findall(body)))
+        for name, body in pieces.items()
+    }
+    return Text(title, opening, sections, source)
+
+
+def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object], source: str) -> Text:
+    """Render a text file with the variables of a variant; ``source`` is what messages call the file.
+
+    Raises
+    ------
+    BadStatement
+        Unknown variable, broken template, a dollar without its partner, a formula that cannot be read: says the
+        file and, where it is known, the line.
+    """
+    import jinja2
+
+    template = _template(path, path.stat().st_mtime_ns, folders, source)
+    if isinstance(template, Text):
+        return template
+    try:
+        markdown = template.render(variables)
+    except jinja2.UndefinedError as fault:
+        names = ", ".join(sorted(variables))
+        raise BadStatement(f"{source}: {fault.message}; a text may use: {names}") from fault
+    except jinja2.TemplateError as fault:
+        raise BadStatement(f"{source}: {fault}") from fault
+    except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as fault:
+        raise BadStatement(f"{source}: an expression fails: {fault}") from fault
+    text = _text(markdown, path, source, formulas=template not in _proofread)
+    _proofread.add(template)
+    return text
+
+
+def _text(markdown: str, path: Path, source: str, *, formulas: bool) -> Text:
+    """The sections of a rendered text, once it is proofread; its formulas only where told."""
+
+    def place(piece: str) -> str:
+        first = piece.split("\n")[0]
+        lines = path.read_text(_ENCODING).split("\n")
+        whole = [n for n, line in enumerate(lines, 1) if first in line]
+        begun = [
+            n for n, line in enumerate(lines, 1) if first[:_TELLING] in line
+        ]  # a value stands further on
+        found = whole[0] if whole else begun[0] if len(begun) == 1 else None
+        return f"{source}, line {found}" if found else source
+
+    pair_dollars(markdown, place)
+    if formulas:
+        read_formulas(markdown, place)
+    return parse(markdown, source)
+
+
+#: Templates whose formulas were read as the first variant has them; those of others are read as they are printed.
+_proofread: WeakSet[object] = WeakSet()
+
+
+@dataclass(frozen=True)
+class Constants:
+    """What of a text holds no variable, and so is the same for every variant."""
+
+    texts: Mapping[str, str]  #: by section
+    labels: Mapping[tuple[str, str], str]  #: by section and case
+
+
+def constants(path: Path) -> Constants:
+    """What of a file needs no variant to be read; nothing where there is no file."""
+    source = path.read_text(_ENCODING) if path.exists() else ""
+    if not source or not all(map(_stands_alone, source.split("\n## "))):
+        return Constants({}, {})  # a block that holds whole sections may repeat or leave out some of them
+    sections = parse(source, path.name).sections
+    # A label is part of its section: a block may stand round it.
+    return Constants(
+        {name: section.text for name, section in sections.items() if not _TAG.search(section.text)},
+        {
+            (name, case): label
+            for name, section in sections.items()
+            for case, label in section.labels.items()
+            if not _TAG.search(label) and "{%" not in section.text
+        },
+    )
+
+
+_TAG = re.compile(r"\{[{%#]")
+
+
+def _stands_alone(section: str) -> bool:
+    """Whether the blocks that begin in a section end in it."""
+    import jinja2
+
+    if "{%" not in section and "{#" not in section:
+        return True
+    try:
+        jinja2.Environment().parse(section)
+    except jinja2.TemplateSyntaxError:
+        return False
+    return True
+
+
+_templates: dict[tuple, object] = {}
+
+
+def _template(path: Path, changed: int, folders: tuple[Path, ...], source: str):
+    import jinja2
+
+    key = (path, changed, folders)
+    if key not in _templates:
+        environment = jinja2.Environment(
+            loader=jinja2.FileSystemLoader([path.parent, *folders], encoding=_ENCODING),
+            undefined=jinja2.StrictUndefined,
+            autoescape=False,
+            keep_trailing_newline=True,
+        )
+        try:
+            text = path.read_text(_ENCODING)
+            # A text without a variable in it is the same for every variant.
+            plain = "{{" not in text and "{%" not in text and "{#" not in text
+            _templates[key] = (
+                _text(text, path, source, formulas=True) if plain else environment.get_template(path.name)
+            )
+        except jinja2.TemplateSyntaxError as fault:
+            raise BadStatement(f"{source}, line {fault.lineno}: {fault.message}") from fault
+        except UnicodeDecodeError as fault:
+            raise BadStatement(f"{source} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
+    return _templates[key]
+
+
+class ExerciseTexts:
+    """The texts of one exercise, in every language: of the exercise itself (``exercises``) and of its solution
+    (``solutions``)."""
+
+    def __init__(self, folder: Folder, name: str):
+        self.folder = folder
+        self.name = name
+        self._constants: dict[tuple[str, str], Constants] = {}
+        self._labels: dict[tuple[str, str], dict[str, list[str]]] = {}
+
+    @cached_property
+    def languages(self) -> tuple[str, ...]:
+        """The languages that the exercise has a statement in, among those the engine speaks."""
+        return tuple(lang for lang in languages() if self.file("exercises", lang).exists())
+
+    def file(self, kind: str, lang: str) -> Path:
+        """Where a text stands, or would stand."""
+        return self.folder.text_file(kind, self.name, lang)
+
+    @property
+    def unspoken(self) -> dict[str, Path]:
+        """By language, a text in each that the engine does not speak: nothing reads it."""
+        spoken = languages()
+        return {
+            lang: path
+            for kind in ("solutions", "exercises")
+            for lang, path in self.folder.texts(kind, self.name).items()
+            if lang not in spoken
+        }
+
+    def title(self, lang: str) -> str:
+        """The statement's title, where no variable stands in it; else, and where there is none, nothing."""
+        path = self.file("exercises", lang)
+        first = next(iter(path.read_text(_ENCODING).splitlines()), "") if path.exists() else ""
+        return first[2:].strip() if first.startswith("# ") and not _TAG.search(first) else ""
+
+    def text(self, kind: str, lang: str, variables: Mapping[str, object]) -> Text:
+        """A text, rendered. A solution need not have one: then every section is absent.
+
+        Raises
+        ------
+        BadCourse
+            The exercise has none in this language.
+        """
+        path = self.file(kind, lang)
+        source = self.folder.relative(path)
+        if not path.exists() and kind == "solutions":
+            return Text("", "", {}, source)
+        if not path.exists():
+            raise BadCourse(f"{self.name} has no text in {lang!r}: {source} is missing")
+        shared = (self.folder.root / kind, *self.folder.template_folders)
+        return render(path, shared, variables, source)
+
+    def constants(self, kind: str, lang: str) -> Constants:
+        """What of a text is the same for every variant; read once."""
+        if (kind, lang) not in self._constants:
+            self._constants[kind, lang] = constants(self.file(kind, lang))
+        return self._constants[kind, lang]
+
+    def is_constant(self, quantity: str, case: str) -> bool:
+        """Whether a case is called the same in every variant, in all languages."""
+        return all((quantity, case) in self.constants("exercises", one).labels for one in self.languages)
+
+    def labels(
+        self, part: str, cases: Sequence[str], lang: str, called: Callable[[str], Iterable[str]]
+    ) -> dict[str, list[str]]:
+        """What each case of a part is ``called``; asked once where that is the same for every variant."""
+        place = (part, lang)
+        if place not in self._labels:
+            found = {case: [*called(case)] for case in cases}
+            if not all(self.is_constant(part, case) for case in cases):
+                return found
+            self._labels[place] = found
+        return self._labels[place]

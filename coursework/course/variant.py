@@ -1,0 +1,248 @@
+"""One student's version of an exercise: its numbers, its words, its answer key."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from types import MappingProxyType
+from typing import Any, Self
+
+from coursework.course.answer_key import Key, KeyNumbers
+from coursework.course.exercise import CourseExercise
+from coursework.course.texts import Text
+from coursework.figures import Figure
+from coursework.language.numbers import localise, plain, significant, with_unit
+from coursework.language.words import languages, no_language, words
+from coursework.markup.markdown import plain_line
+from coursework.model import Part
+from coursework.quantities.graph import call_on_quantities, plain_scalar
+
+
+class Variant:
+    """One student's version of an exercise."""
+
+    def __init__(
+        self,
+        exercise: CourseExercise[Any],
+        seed: int,
+        given: Mapping[str, Any],
+        lang: str,
+        parts: Sequence[Part] | None = None,
+        issued: Mapping[str, Any] | None = None,
+    ):
+        if lang not in languages():
+            raise no_language(lang)
+        self.exercise = exercise
+        self.seed = seed
+        self.lang = lang
+        self.chosen = parts  #: the parts to ask, where they are not the usual ones
+        self.given: Mapping[str, Any] = MappingProxyType(dict(given))  #: canonical units, as printed
+        self._issued = issued  #: the record of an older version
+        self._found: dict[str, Any] = {}
+        self._key: Key | None = None
+
+    def __repr__(self) -> str:
+        return f"<variant {self.exercise.name} {self.seed}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """In another process it is made anew of the exercise there; what its key has computed goes along."""
+        chosen = None if self.chosen is None else tuple(part.id for part in self.chosen)
+        numbers = None if self._key is None else self._key.numbers
+        return _made_anew, (
+            type(self), self.exercise, self.seed, dict(self.given), self.lang, chosen, self._issued, numbers,
+        )  # fmt: skip
+
+    @cached_property
+    def parts(self) -> tuple[Part, ...]:
+        """The parts that this variant asks."""
+        if self.chosen is None:
+            return self.exercise.usual_parts(self.given)
+        return tuple(part for part in self.chosen if part.is_asked(self.given))
+
+    @property
+    def part_ids(self) -> tuple[str, ...]:
+        return tuple(part.id for part in self.parts)
+
+    @cached_property
+    def record(self) -> dict[str, Any]:
+        """The JSON record: what is issued, stored and marked against; no answer in it."""
+        if self._issued is not None:
+            return dict(self._issued)
+        spec = self.exercise.spec
+        return {
+            "exercise": self.exercise.name,
+            "version": spec.version,
+            "seed": self.seed,
+            "lang": self.lang,
+            "given": {n: {"value": v, "unit": spec.given[n].unit} for n, v in self.given.items()},
+            "parts": [
+                {"id": p.id, "quantity": p.quantity, "unit": p.unit, "kind": p.kind, "points": p.points}
+                for p in self.parts
+            ],
+        }
+
+    def in_language(self, lang: str) -> Self:
+        """The same variant on a sheet in another language."""
+        variant = type(self)(self.exercise, self.seed, self.given, lang, self.chosen, self._issued)
+        variant._key = self._key  # it speaks no language
+        return variant
+
+    def quantities(self, names: Iterable[str]) -> dict[str, Any]:
+        """Quantities of this variant alone, as the solution gives them; each is computed once.
+
+        Raises
+        ------
+        NoSolution
+            The course folder has no solutions.
+        """
+        names = tuple(names)
+        missing = tuple(n for n in names if n not in self._found and n not in self.used)
+        if missing:
+            graph = self.exercise.solution.graph
+            self._found |= graph.everything(missing, self.used, self.effects, self._found)
+        return {n: self.used[n] if n in self.used else self._found[n] for n in names}
+
+    @property
+    def computed(self) -> Mapping[str, Any]:
+        """What has been computed of this variant so far, hidden quantities too."""
+        return MappingProxyType(self._found)
+
+    def solution(self) -> dict[str, Any]:
+        """The asked quantities in canonical units and full precision.
+
+        Raises
+        ------
+        NoSolution
+            The course folder has no solutions.
+        Undefined
+            One of them does not exist for the given values.
+        """
+        found = self.quantities(self.asked_quantities)
+        return {name: self.exercise.existing(name, value, self.used) for name, value in found.items()}
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """The optional effects that the parts call for."""
+        return self.exercise.spec.effects
+
+    @property
+    def asked_quantities(self) -> tuple[str, ...]:
+        """The quantities of the parts, and those that parts are judged with."""
+        along = (p.along for p in self.parts if p.along)
+        return tuple(dict.fromkeys([*(p.quantity for p in self.parts), *along]))
+
+    @cached_property
+    def text(self) -> Text:
+        """The statement's sections in this variant's language."""
+        return self.exercise.texts.text("exercises", self.lang, self.printed)
+
+    @property
+    def printed(self) -> dict[str, Any]:
+        """Given values as running text, for the texts: ``228,6 mm``; then what the exercise tells besides."""
+        spec = self.exercise.spec
+        shown: dict[str, Any] = {
+            n: str(v) if spec.given[n].is_choice else with_unit(plain(v), spec.given[n].unit, self.lang)
+            for n, v in self.given.items()
+        }
+        return {**shown, **spec.told(self.given)}
+
+    @cached_property
+    def used(self) -> dict[str, Any]:
+        """The given quantities that the solution knows."""
+        return {n: v for n, v in self.given.items() if n in self.exercise.quantity_names}
+
+    @cached_property
+    def walk(self) -> dict[str, Any]:
+        """The given quantities, then every one met on the way to the asked ones, in order.
+
+        Raises
+        ------
+        NoSolution
+            The course folder has no solutions.
+        """
+        met = self.exercise.solution.graph.walk(self.asked_quantities, self.used, self.effects)
+        return {**self.used, **{n: plain_scalar(v) for n, v in self.quantities(met).items()}}
+
+    @cached_property
+    def solution_text(self) -> Text:
+        """The sections of the solution's words; any quantity of the walk may stand in them, rounded."""
+        rounded = {n: _rounded(v, self.lang) for n, v in self.walk.items()}
+        return self.exercise.texts.text("solutions", self.lang, {**rounded, **self.printed})
+
+    def labels(self, part: Part) -> dict[str, list[str]]:
+        """What each case of a choice is called, in every language; nothing for another kind."""
+        return self.exercise.texts.labels(
+            part.id, part.choices, self.lang, lambda case: self._called(part.id, case)
+        )
+
+    def _called(self, part: str, case: str) -> Iterator[str]:
+        """The labels of a case, and each without its article."""
+        for lang in self._langs:
+            yield (label := self.label(part, case, lang))
+            if "$" in label:
+                yield plain_line(label, lang)  # what is offered is read
+            for article in words(lang)["choices"]["articles"]:
+                start = article if article.endswith("'") else f"{article} "
+                if label.replace("’", "'").lower().startswith(start):
+                    yield label[len(start) :]
+
+    @property
+    def _langs(self) -> tuple[str, ...]:
+        """Every language of the exercise, this variant's first."""
+        return (self.lang, *(lang for lang in self.exercise.languages if lang != self.lang))
+
+    def label(self, quantity: str, case: str, lang: str = "") -> str:
+        """What a case is called, in this variant's language unless told."""
+        lang = lang or self.lang
+        label = self.exercise.texts.constants("exercises", lang).labels.get((quantity, case))
+        if label is not None:
+            return label
+        return (self.text if lang == self.lang else self.in_language(lang).text).label(quantity, case)
+
+    def told(self, mistake: str) -> str:
+        """What to say to who made a named mistake."""
+        name = f"mistake {mistake}"
+        text = self.exercise.texts.constants("solutions", self.lang).texts.get(name)
+        return self.solution_text.section(name).text if text is None else text
+
+    @property
+    def key(self) -> Key:
+        """What the variant's answers are marked by: made when it is first asked for, unless one was given."""
+        if self._key is None:
+            self._key = Key(self)
+        return self._key
+
+    @key.setter
+    def key(self, key: Key) -> None:
+        self._key = key
+
+    @cached_property
+    def figure(self) -> Figure | None:
+        """The figure to scale: laid out once, shown on every sheet of the variant."""
+        spec = self.exercise.spec
+        return None if spec.figure is None else call_on_quantities(spec.figure, self.given, tuple(spec.helpers))
+
+
+def _made_anew(
+    kind: type[Variant],
+    exercise: CourseExercise[Any],
+    seed: int,
+    given: Mapping[str, Any],
+    lang: str,
+    chosen: Sequence[str] | None,
+    issued: Mapping[str, Any] | None,
+    numbers: KeyNumbers | None,
+) -> Variant:
+    parts = {part.id: part for part in exercise.spec.parts}
+    variant = kind(exercise, seed, given, lang, None if chosen is None else [parts[i] for i in chosen], issued)
+    if numbers is not None:
+        variant.key = Key(variant, numbers=numbers)
+    return variant
+
+
+def _rounded(value: Any, lang: str) -> Any:
+    """A number as running text; a list of records as it is, for the text to go through."""
+    if isinstance(value, tuple):
+        return value
+    return localise(significant(value), lang) if isinstance(value, (int, float)) else str(value)
+

@@ -1,0 +1,117 @@
+"""TODO coursework/figures/base.py"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from dataclasses import fields
+from functools import lru_cache
+
+from coursework.errors import CourseworkError, WrongValue
+from coursework.figures.ink import EDGE, PINS, WHITE, Disc, turn
+from coursework.figures.paper import Paper
+from coursework.figures.text import read
+
+PIN = 1.1  #: radius of a pin, mm on paper
+BLOCK = complex(3.2, 1.7)  #: half-length and half-height of a slider's block
+SLOT = 2.2  #: half-width of a slotted guide
+NEAR = 1.4  #: where a label starts, from the centre of a pin
+AWAY = 1.15  #: where a label starts, from a line
+
+Bars = tuple[tuple[complex, complex], ...]
+
+
+class Element:
+    """A part of a figure, in mechanism coordinates: complex numbers, mm, y up; degrees from +x."""
+
+    def __post_init__(self) -> None:
+        for name, kind in _fields(type(self)):
+            object.__setattr__(self, name, self._checked(name, kind))
+
+    def _checked(self, name: str, kind: str) -> object:
+        value = getattr(self, name)
+        try:
+            value = _READ[kind](value)
+        except CourseworkError:  # a label says itself what is wrong with it
+            raise
+        except (TypeError, ValueError) as error:
+            raise WrongValue(f"{type(self).__name__}: {name} is {value!r}, not {_ASKED[kind]}") from error
+        numbers = value if isinstance(value, tuple) else (value,)
+        if any(isinstance(x, (float, complex)) and not cmath.isfinite(x) for x in numbers):
+            raise WrongValue(f"{type(self).__name__}: {name} is {value!r}, not finite")
+        return value
+
+    def reach(self) -> tuple[complex, ...]:
+        """Points that bound the element."""
+        return tuple(z for name, _ in _fields(type(self)) for z in _points(getattr(self, name)))
+
+    def bars(self) -> Bars:
+        """Segments of the links, which labels and supports of pins keep away from."""
+        return ()
+
+    def draw(self, paper: Paper) -> None:
+        raise NotImplementedError
+
+
+@lru_cache(maxsize=128)
+def _fields(element: type[Element]) -> tuple[tuple[str, str], ...]:
+    """What a kind of element is told: the name of each value and its type, as written."""
+    return tuple((item.name, str(item.type)) for item in fields(element))
+
+
+def _points(value: object) -> tuple[complex, ...]:
+    if isinstance(value, complex):
+        return (value,)
+    return value if isinstance(value, tuple) and all(isinstance(z, complex) for z in value) else ()
+
+
+def _label(value: object) -> str:
+    if value is None:
+        return ""
+    if not isinstance(value, str):
+        raise TypeError
+    return value if not value or read(value) else ""
+
+
+def _positive(value: float) -> float:
+    if not float(value) > 0:
+        raise ValueError
+    return float(value)
+
+
+_READ = {
+    "complex": complex,
+    "float": float,
+    "Positive": _positive,
+    "Positive | None": lambda value: None if value is None else _positive(value),
+    "float | None": lambda value: None if value is None else float(value),
+    "bool": bool,
+    "str | None": _label,
+    "tuple[str, str]": lambda value: tuple(map(_label, value)),
+    "tuple[complex, ...]": lambda value: tuple(map(complex, value)),
+}
+_ASKED = {
+    "complex": "a point (a complex number)",
+    "float": "a number",
+    "Positive": "a positive number",
+    "Positive | None": "a positive number",
+    "float | None": "a number",
+    "bool": "true or false",
+    "str | None": "a label",
+    "tuple[str, str]": "two labels",
+    "tuple[complex, ...]": "points (complex numbers)",
+}
+Positive = float
+
+
+def circle_points(center: complex, radius: float) -> tuple[complex, ...]:
+    return tuple(center + radius * way for way in (1, 1j, -1, -1j))
+
+
+def arc_points(center: complex, radius: float, start: float, end: float) -> tuple[complex, ...]:
+    steps = max(2, math.ceil(abs(end - start) / 15))
+    return tuple(center + radius * turn(start + (end - start) * k / steps) for k in range(steps + 1))
+
+
+def ring(paper: Paper, p: complex) -> None:
+    paper.draw(Disc(p, PIN, EDGE, WHITE, layer=PINS))

@@ -1,0 +1,116 @@
+"""Marking again: what changed and for whom, and answers that a person accepts by hand."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from coursework.errors import BadInput
+from coursework.gradebook.book import VERDICTS
+from coursework.making.students import folded
+from coursework.system.tables import as_written, delimiter_of, open_csv
+
+CHANGES_COLUMNS = (
+    "student", "exercise", "seed", "part", "answer",
+    "verdict_before", "verdict_now", "points_before", "points_now",
+)  # fmt: skip
+_PLACE = ("student", "exercise", "seed", "part")
+
+
+def _number(text: str) -> float:
+    """Points of a file that anybody may have edited."""
+    try:
+        return float(text.replace(",", ".") or 0)
+    except ValueError:
+        return math.nan
+
+
+_ROUNDING = 1e-4  #: of points, as both tables print them
+#: Verdicts that have a line in the marks for each in the summary.
+_IN_BOTH = tuple(v for v in VERDICTS if v not in ("unreadable", "missing"))
+
+
+class Before:
+    """The marks that were there before."""
+
+    def __init__(self, path: Path) -> None:
+        self._marks: dict[str, tuple[str, str]] = {}
+        self._names: dict[str, str] = {}  #: as they are written
+        self._points: dict[str, float] = {}
+        self._verdicts: Counter[str] = Counter()
+        self.exists = path.exists()
+        if self.exists:
+            alike: dict[tuple[str, str], tuple[str, str]] = {}
+            for row in rows_of(path):
+                mark = (row.get("verdict", ""), row.get("points", ""))
+                name = folded(row.get("student", ""))
+                self._names.setdefault(name, row.get("student", ""))
+                self._points[name] = self._points.get(name, 0.0) + _number(mark[1])
+                self._verdicts[mark[0].partition(":")[0]] += 1
+                self._marks[_place(row)] = alike.setdefault(mark, mark)
+
+    @property
+    def students(self) -> tuple[str, ...]:
+        """Those who had marks, in the order of the file."""
+        return tuple(self._names.values())
+
+    def edited(self, summary: Path) -> bool:
+        """Whether the marks are no longer those of the summary that was written with them."""
+        if not (self.exists and summary.exists()):
+            return False
+        told: Counter[str] = Counter()
+        for row in rows_of(summary):
+            points = self._points.get(folded(row.get("student", "")), 0.0)
+            if not abs(_number(row.get("points", "")) - points) < _ROUNDING * max(1.0, points):
+                return True
+            told.update({v: int(row[v]) for v in _IN_BOTH if row.get(v, "").isdecimal()})
+        return any(told[verdict] != self._verdicts[verdict] for verdict in _IN_BOTH)
+
+    def changed(self, row: Mapping[str, Any]) -> dict[str, Any] | None:
+        """What changed in a row of the new marks; None when nothing did."""
+        now = (row["verdict"], row["points"])
+        before = self._marks.pop(_place(row), ("", ""))
+        return None if before == now else _change(row, before, now)
+
+    def gone(self) -> Iterator[dict[str, Any]]:
+        """Marks that are no more."""
+        for place, before in self._marks.items():
+            row = dict(zip(_PLACE, place.split("\0"), strict=True))
+            yield _change({**row, "student": self._names[row["student"]], "answer": ""}, before, ("", ""))
+
+
+def _place(row: Mapping[str, Any]) -> str:
+    """Which answer a row of marks is of; one text, of which a large class has many."""
+    student, *rest = (str(row.get(c, "")) for c in _PLACE)
+    return "\0".join((folded(student), *rest))
+
+
+def _change(row: Mapping[str, Any], before: tuple[str, str], now: tuple[str, str]) -> dict[str, Any]:
+    return {
+        **{c: row[c] for c in (*_PLACE, "answer")},
+        "verdict_before": before[0],
+        "verdict_now": now[0],
+        "points_before": before[1],
+        "points_now": now[1],
+    }
+
+
+def rows_of(path: Path) -> Iterator[dict[str, str]]:
+    try:
+        with open_csv(path) as file:
+            delimiter = delimiter_of(file.readline())
+            file.seek(0)
+            for row in csv.DictReader(file, delimiter=delimiter):
+                yield {
+                    (k or "").strip().casefold(): as_written(v.strip())
+                    for k, v in row.items()
+                    if isinstance(v, str)
+                }
+    except OSError as fault:
+        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+    except csv.Error as fault:
+        raise BadInput(f"{path} is not CSV: {fault}") from fault

@@ -1,0 +1,119 @@
+"""The job of Monday: files of answers in; marks, summary, rejected rows and feedback sheets out.
+
+The tables appear together, whole, in place of those before, or not at all: none takes its place before all are written
+and each is seen to be replaceable.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from coursework.course.course import Course
+from coursework.errors import BadInput
+from coursework.gradebook.accepted import Accepted
+from coursework.gradebook.book import Gradebook
+from coursework.gradebook.book import book as gradebook
+from coursework.gradebook.changes import CHANGES_COLUMNS, Before
+from coursework.gradebook.feedback_sheets import write_feedback
+from coursework.gradebook.graded import Graded
+from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.submissions import find, read_file
+from coursework.making.issued import Issued
+from coursework.making.students import file_stems
+from coursework.system.build_folder import free_name
+from coursework.system.writing import Progress, Tables, write_whole
+
+#: For so many students at most, feedback sheets are printed unless told.
+FEEDBACK_STUDENTS = 1000
+
+
+def grade_files(
+    course: Course,
+    submissions: Sequence[Path],
+    issued_path: Path,
+    out: Path,
+    *,
+    feedback: bool | None,
+    accepted: Path | None = None,
+    progress: Progress = lambda done, of: None,
+) -> Gradebook:
+    """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets.
+
+    Where marks were there before, ``changes.csv`` says what differs now. ``accepted`` names answers that
+    a person accepts; unless told, those of ``accepted.csv`` in ``out``. ``feedback`` None prints sheets for a
+    class of usual size.
+
+    Raises
+    ------
+    BadInput
+        A file that is not there, or nothing that can be marked: then nothing is written.
+    """
+    issued = Issued.read(issued_path)
+    if feedback is None:
+        feedback = max(len(issued.students), len(issued.records)) <= FEEDBACK_STUDENTS
+    kept = out / "accepted.csv"
+    by_hand = Accepted(accepted if accepted is not None else kept if kept.exists() else None)
+    before = Before(out / "marks.csv")
+
+    def rows() -> Iterator[Row | Rejected]:
+        for found in find(submissions):
+            yield from [found] if isinstance(found, Rejected) else read_file(found)
+
+    sheets = gradebook.placed(course, issued, rows())
+    if not sheets.sheets:
+        raise BadInput(_nothing(submissions, sheets.rejected))
+    book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
+    shown: list[Graded] = []
+    with Tables(out) as tables:
+        marks = tables.open("marks.csv", gradebook.MARKS_COLUMNS)
+        summary = tables.open("summary.csv", gradebook.SUMMARY_COLUMNS)
+        rejected = tables.open("rejected.csv", gradebook.REJECTED_COLUMNS)
+        changes = tables.open("changes.csv", CHANGES_COLUMNS) if before.exists else None
+        for done, graded in enumerate(gradebook.marked(course, issued, sheets, printed=feedback), start=1):
+            graded = by_hand.apply(graded, str(graded.record.get("lang", "fr")))
+            book.add(graded)
+            for row in gradebook.marks_rows(graded):
+                marks.write(row)
+                change = before.changed(row) if changes is not None else None
+                if change is not None:
+                    changes.write(change)
+            if feedback:
+                shown.append(graded)
+            progress(done, len(sheets.sheets))
+        if changes is not None:
+            for change in before.gone():
+                changes.write(change)
+            book.changes = changes.rows
+        book.warnings += [f"accepted by hand, but never answered: {place}" for place in by_hand.unused]
+        for row in gradebook.summary_rows(book):
+            summary.write(row)
+        for row in gradebook.rejected_rows(book.rejected):
+            rejected.write(row)
+        if book.changes and before.edited(out / "summary.csv"):
+            book.warnings.insert(0, _kept(out / "marks.csv"))
+        tables.keep()
+    if feedback:
+        made = file_stems(dict.fromkeys((*issued.students, *before.students)))
+        write_feedback(course, book, shown, out / "feedback", made, progress)
+    return book
+
+
+def _kept(marks: Path) -> str:
+    """Keep marks that were edited, beside those that take their place; says so."""
+    kept = free_name(marks)
+    write_whole(kept, marks.read_bytes())
+    return (
+        f"{marks.name} had been edited, and is written anew: the edited one is kept as {kept}; a mark that is to last is "
+        f"named in {marks.with_name('accepted.csv')}"
+    )
+
+
+def _nothing(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str:
+    """That nothing can be marked, and why."""
+    where = ", ".join(map(str, submissions[:3])) + (", …" if len(submissions) > 3 else "")
+    told = f"nothing in {where} can be marked, so nothing is written"
+    if not rejected:
+        return f"{told}; a file of answers has a line of headings, then a line an answer"
+    count = "" if len(rejected) == 1 else f" ({len(rejected)} rows rejected; the first is told)"
+    return f"{told}{count}: {rejected[0].source}: {rejected[0].reason}"

@@ -1,0 +1,179 @@
+"""TODO coursework/gradebook/notebooks.py"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+from coursework.gradebook.rows import (
+    Rejected,
+    Row,
+    decoded_text,
+    load_json,
+    name_in,
+    object_once,
+    sheet_rows,
+    short_fault,
+)
+
+# --------------------------------------------------------------------- notebook
+
+
+def read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
+    text, warning = decoded_text(data, source)
+    try:
+        notebook = load_json(text)
+    except (ValueError, RecursionError) as fault:
+        yield Rejected(source, f"not a notebook: {short_fault(fault)}")
+        return
+    about = notebook.get("metadata", {}) if isinstance(notebook, dict) else {}
+    about = about.get("coursework") if isinstance(about, dict) else None
+    cells = notebook.get("cells") if isinstance(notebook, dict) else None
+    if not isinstance(about, dict) or not isinstance(cells, list):
+        yield Rejected(source, "not a notebook of ours: its metadata names no exercise")
+        return
+    tagged = [c for c in cells if isinstance(c, dict) and "answers" in _tags(c)]
+    if len(tagged) != 1:
+        found = "\n".join(_code(c) for c in cells if isinstance(c, dict) and c.get("cell_type") == "code")
+        row = _about(about, source) | {"answer": found.strip()[:200]}
+        yield Rejected(source, f"one cell must be tagged 'answers'; found {len(tagged)}", row)
+        return
+    code = _code(tagged[0])
+    answers = literal_answers(code)
+    if isinstance(answers, str):
+        yield Rejected(source, answers, _about(about, source) | {"answer": code[:200]})
+        return
+    about, warning = _with_name(about, answers, source, warning)
+    yield from sheet_rows(about, answers, source, warning)
+
+
+def _with_name(
+    about: dict[str, Any], answers: dict[Any, Any], source: str, warning: str
+) -> tuple[dict[str, Any], str]:
+    """A notebook that was nobody's: the name its reader wrote among the answers, or else the file's."""
+    written = name_in(answers.pop("student", None))
+    if name_in(about.get("student")):
+        return about, warning
+    if written:
+        return {**about, "student": written}, warning
+    note = "a notebook holds no name; its file's name stands for it"
+    return {**about, "student": Path(source).stem}, warning or note
+
+
+def _about(about: dict[str, Any], source: str) -> dict[str, str]:
+    """What a notebook says of itself; one that was nobody's is called as its file."""
+    named = {c: name_in(about.get(c)) for c in ("student", "exercise", "seed")}
+    return {**named, "student": named["student"] or Path(source).stem, "part": "", "answer": ""}
+
+
+def _code(cell: dict[str, Any]) -> str:
+    code = cell.get("source", "")
+    return "".join(map(str, code)) if isinstance(code, list) else str(code)
+
+
+def _tags(cell: dict[str, Any]) -> list[Any]:
+    metadata = cell.get("metadata")
+    tags = metadata.get("tags") if isinstance(metadata, dict) else None
+    return tags if isinstance(tags, list) else []
+
+
+def literal_answers(code: str) -> dict[Any, Any] | str:
+    """The dict that an answers cell holds, or what is wrong with the cell. Nothing is run.
+
+    ``answers = {…}`` or a bare ``{…}`` of texts, numbers, None, and lists or tuples of these. A value that is none of
+    them is the text that stands there; a cell that is no Python is read line by line.
+    """
+    if len(code) > 200_000:
+        return "the answers cell is too long to be read"
+    code = re.sub(r"\r\n?", "\n", code)
+    try:
+        statements = ast.parse(code).body
+    except _NO_PYTHON:
+        return _answers_by_line(code)
+    if len(statements) != 1:
+        return f"the answers cell must hold one dict and nothing else; found {len(statements)} statements"
+    statement = statements[0]
+    value = statement.value if isinstance(statement, (ast.Assign, ast.AnnAssign, ast.Expr)) else None
+    if not isinstance(value, ast.Dict):
+        return "the answers cell must hold one dict and nothing else; found code, which is never run"
+    try:
+        return object_once(_pairs(value, code))
+    except _NO_PYTHON:
+        return "the answers cell must hold texts and numbers only; found code, which is never run"
+
+
+_NO_PYTHON = (SyntaxError, ValueError, TypeError, RecursionError, MemoryError)
+
+
+def _pairs(found: ast.Dict, code: str) -> list[tuple[Any, Any]]:
+    lines = [line.encode("utf-8", "replace") for line in code.split("\n")]
+
+    def value(node: ast.expr) -> Any:
+        try:
+            return ast.literal_eval(node)
+        except _NO_PYTHON:
+            taken = lines[node.lineno - 1 : node.end_lineno]
+            taken[-1] = taken[-1][: node.end_col_offset]
+            taken[0] = taken[0][node.col_offset :]
+            return b"\n".join(taken).decode("utf-8", "replace")
+
+    if None in found.keys:
+        raise ValueError("** is code")
+    return [(value(key), value(item)) for key, item in zip(found.keys, found.values, strict=True)]
+
+
+_OPENS = re.compile(r"(?:\w+\s*=\s*)?\{\s*")
+_KEY = re.compile(r"""(["'])([^"']+)\1\s*:\s*""")
+_QUOTED = re.compile(r"""(["'])([^"']*)\1""")
+
+
+def _answers_by_line(code: str) -> dict[Any, Any] | str:
+    """The answers of a cell that is no Python, each on its line as in the notebook, or which line is not."""
+    pairs: list[tuple[Any, Any]] = []
+    is_open = is_closed = False
+    line = number = 0
+    for number, line in enumerate(map(str.strip, code.split("\n")), start=1):
+        text = line
+        if not is_open and (opening := _OPENS.match(text)):
+            is_open, text = True, text[opening.end() :]
+        if not text or text.startswith("#"):
+            continue
+        found = None if is_closed or not is_open else _pairs_of_line(text)
+        if found is None and is_open and not is_closed and text.endswith("}"):
+            is_closed, text = True, text[:-1].rstrip()
+            found = _pairs_of_line(text) if text else []
+        if found is None:
+            return _not_as_written(number, line)
+        pairs += found
+    return object_once(pairs) if pairs else _not_as_written(number, str(line))
+
+
+def _pairs_of_line(line: str) -> list[tuple[Any, Any]] | None:
+    """The answers of a line; None where they cannot be told apart."""
+    code = f"{{{line}\n}}"
+    with suppress(*_NO_PYTHON):
+        found = ast.parse(code, mode="eval").body
+        return _pairs(found, code) if isinstance(found, ast.Dict) else None
+    key = _KEY.match(line)
+    if key is None:
+        return None
+    quoted = _QUOTED.match(line, key.end())
+    rest = line[quoted.end() if quoted else key.end() :].partition("#")[0].strip().removesuffix(",").rstrip()
+    if quoted:
+        return [(key[2], quoted[2])] if not rest else None
+    bare = rest[1:] if rest[:1] in ("'", '"') else rest
+    bare = bare[:-1] if bare[-1:] in ("'", '"') else bare
+    return [(key[2], bare.strip())] if not set(bare) & set("\"'{}:") else None
+
+
+def _not_as_written(number: int, line: str) -> str:
+    key = _KEY.match(line)
+    part = f", part {key[2][:40]}" if key else ""
+    return (
+        f"the answers cell, line {number}{part}, is not written as in the notebook: quotes around text, "
+        f"a comma after each answer; found {line[:40]!r}"
+    )

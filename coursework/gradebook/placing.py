@@ -1,0 +1,150 @@
+"""TODO coursework/gradebook/placing.py"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+from coursework.course.course import Course
+from coursework.errors import UnknownName, nearest
+from coursework.gradebook.rows import Rejected, Row
+from coursework.making.issued import Issued
+
+_LISTED = 8  #: names that a message lists
+
+
+@dataclass
+class Sheets:
+    """Rows of answers in their places, before they are marked."""
+
+    sheets: dict[tuple[str, str, int], dict[str, Row]] = field(default_factory=dict)
+    rejected: list[Rejected] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+    rows_in: int = 0
+    blanks: int = 0  #: rows without an answer where another row answers to the same part, or is blank too
+    langs: dict[tuple[str, str, int], str] = field(default_factory=dict)  #: of the sheets that tell theirs
+
+    @property
+    def answers(self) -> int:
+        return sum(map(len, self.sheets.values()))
+
+
+# ------------------------------------------------------------------------ placing
+
+
+class _Refused(Exception):
+    """Why a row cannot be marked."""
+
+
+def _place(issued: Issued, row: Row) -> tuple[str, str, int]:
+    """Student, exercise and seed of a row, or why it has none."""
+    student = issued.student(row.student)
+    if not row.student:
+        raise _Refused("no student's name")
+    if student is None:
+        raise _Refused(f"no student {row.student!r} on the roster{_near(row.student, issued.students)}")
+    if row.exercise not in issued.exercises:
+        raise _Refused(
+            f"no exercise {row.exercise!r} was issued{_near_or_all(row.exercise, issued.exercises)}"
+        )
+    mine = issued.seeds.get((student, row.exercise))
+    if not row.seed and mine is not None:
+        return student, row.exercise, mine
+    if not re.fullmatch(r"[0-9]{1,30}(\.0)?", row.seed):
+        raise _Refused(f"a seed is a whole number; found {row.seed[:40]!r}")
+    seed = int(row.seed.removesuffix(".0"))
+    theirs = f"; {student} has seed {mine}" if mine is not None else f"; {student} was issued none"
+    theirs = theirs if issued.has_roster else ""
+    if (row.exercise, seed) not in issued.records:
+        raise _Refused(f"seed {seed} of {row.exercise} was not issued{theirs}")
+    if issued.has_roster and mine != seed:
+        raise _Refused(f"seed {seed} of {row.exercise} is another student's{theirs}")
+    return student, row.exercise, seed
+
+
+def _near(name: str, known: Iterable[str]) -> str:
+    hint = nearest(name[:60], known)
+    return hint if "did you mean" in hint else ""
+
+
+def _near_or_all(name: str, known: Sequence[str]) -> str:
+    if hint := _near(name, known):
+        return hint
+    return f"; issued: {', '.join(known[:_LISTED])}{', …' if len(known) > _LISTED else ''}"
+
+
+def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sheets:
+    """Rows by sheet; those that belong nowhere are rejected with their reason.
+
+    Raises
+    ------
+    CourseworkError
+        The course cannot mark: no solutions, an exercise that the records do not fit.
+    """
+    found = Sheets()
+    for exercise, one in {key[0]: record for key, record in issued.records.items()}.items():
+        if exercise not in course:
+            raise UnknownName(
+                f"no exercise {exercise!r} in {course.folder.label}, though it was issued: name the course that it was built "
+                "from, coursework --course FOLDER grade …"
+            )
+        _ = course[exercise].solution
+        course[exercise].from_record(one)
+    asked: dict[tuple[str, int], frozenset[str]] = {}
+    places: dict[tuple[str, str, str], tuple[str, str, int] | str] = {}
+    for row in rows:
+        found.rows_in += 1
+        if isinstance(row, Rejected):
+            found.rejected.append(row)
+            continue
+        if row.warning and row.warning not in found.warnings:
+            found.warnings.append(row.warning)
+        named = row.student, row.exercise, row.seed
+        if named not in places:
+            try:
+                places[named] = _place(issued, row)
+            except _Refused as why:
+                places[named] = str(why)
+        place = places[named]
+        reason = place if isinstance(place, str) else ""
+        if not reason:
+            key = place[1:]
+            if key not in asked:
+                asked[key] = frozenset(str(part["id"]) for part in issued.records[key]["parts"])
+            sheet = found.sheets.setdefault(place, {})
+            if row.part not in asked[key]:
+                near = nearest(row.part[:60], sorted(asked[key]))
+                reason = f"{row.exercise} has no part {row.part[:60]!r}{near}"
+            elif row.part in sheet:
+                before = sheet[row.part]
+                if _is_blank(row):
+                    found.blanks += 1
+                    continue
+                if _is_blank(before):
+                    found.blanks += 1
+                else:
+                    reason = f"repeats {before.source}, which is marked"
+        if reason:
+            found.rejected.append(Rejected(row.source, reason, as_texts(row)))
+        else:
+            sheet[row.part] = row
+            if row.lang and place not in found.langs and row.lang in course[place[1]].languages:
+                found.langs[place] = row.lang
+    found.sheets = {place: sheet for place, sheet in found.sheets.items() if sheet}
+    return found
+
+
+def _is_blank(row: Row) -> bool:
+    return row.answer is None or (isinstance(row.answer, str) and not row.answer.strip())
+
+
+def as_texts(row: Row) -> dict[str, str]:
+    answer = "" if row.answer is None else str(row.answer)
+    return {
+        "student": row.student,
+        "exercise": row.exercise,
+        "seed": row.seed,
+        "part": row.part,
+        "answer": answer,
+    }

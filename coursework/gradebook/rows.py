@@ -1,0 +1,116 @@
+"""TODO coursework/gradebook/rows.py"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from coursework.system.tables import decode
+
+
+class Row(NamedTuple):
+    """One answer as it came."""
+
+    student: str
+    exercise: str
+    seed: str
+    part: str
+    answer: Any  #: a text, a number, or None
+    source: str  #: file and place, for reports
+    warning: str = ""
+    lang: str = ""  #: of the sheet that it was written on, where that is told
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """One row, or one file, that cannot be marked, and why."""
+
+    source: str
+    reason: str
+    row: dict[str, str] = field(default_factory=dict)
+
+
+def decoded_text(data: bytes, source: str) -> tuple[str, str]:
+    """The text, and a warning that names its file."""
+    text, warning = decode(data)
+    return text, f"{source}: {warning}" if warning else ""
+
+
+def _whole(text: str) -> str:
+    """The text without halves of characters, which no file can hold."""
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
+class _Repeated(dict):
+    """A JSON object and the pairs that repeat a key of it."""
+
+    repeats: tuple[tuple[Any, Any], ...] = ()
+
+
+def load_json(text: str) -> Any:
+    """JSON whose objects remember the keys that they repeat; numbers of absurd length stay texts."""
+    return json.loads(text, object_pairs_hook=object_once, parse_int=_whole_number)
+
+
+def _whole_number(digits: str) -> Any:
+    return int(digits) if len(digits) < 400 else digits
+
+
+def object_once(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
+    first: dict[Any, Any] = {}
+    repeats = []
+    for key, value in pairs:
+        if key in first:
+            repeats.append((key, value))
+        else:
+            first[key] = value
+    if not repeats:
+        return first
+    found = _Repeated(first)
+    found.repeats = tuple(repeats)
+    return found
+
+
+def sheet_rows(
+    about: dict[str, Any], answers: dict[Any, Any], place: str, warning: str
+) -> Iterator[Row | Rejected]:
+    names = {c: name_in(about.get(c)) for c in ("student", "exercise", "seed")}
+    if not answers:
+        yield Rejected(place, "the sheet holds no answer", {**names, "part": "", "answer": ""})
+    for key, value in [*answers.items(), *getattr(answers, "repeats", ())]:
+        part, answer = name_in(key), as_answer(value)
+        where = f"{place}, part {part[:40]}"
+        if isinstance(answer, (dict, set, bytes)):
+            row = {**names, "part": part, "answer": _text_of(answer)[:200]}
+            yield Rejected(where, "an answer is a text or a number", row)
+            continue
+        lang = name_in(about.get("lang"))
+        yield Row(**names, part=part, answer=answer, source=where, warning=warning, lang=lang)
+
+
+def as_answer(answer: Any) -> Any:
+    """An answer as it is marked: coordinates joined, numbers too long for any reader as texts."""
+    if isinstance(answer, (list, tuple)):
+        return "; ".join(_text_of(a) for a in answer)
+    if isinstance(answer, str):
+        return _whole(answer)
+    if isinstance(answer, int) and not isinstance(answer, bool) and abs(answer) >= 10**400:
+        return _text_of(answer)
+    return answer
+
+
+def _text_of(value: Any) -> str:
+    try:
+        return _whole(str(value))
+    except ValueError:  # an integer of too many digits
+        return "a number of very many digits"
+
+
+def name_in(value: Any) -> str:
+    return "" if value is None else _text_of(value).strip()
+
+
+def short_fault(fault: BaseException) -> str:
+    return str(fault).split("\n")[0][:120]

@@ -1,0 +1,31 @@
+"""How a language sets its running text: apostrophes, and the spaces that must not break."""
+
+from __future__ import annotations
+
+import re
+
+from coursework.language.numbers import NARROW_SPACE
+
+_APOSTROPHE = re.compile(r"(?<=\w)'(?=\w)")
+_UNIT = re.compile(
+    r"(?<=\d)[ \u00a0](?=%|(?:[kcmµ]?m|k?g|[kmM]?N|[kMm]?W|[kMm]?J|Hz|m?s|min|h|rad|tr|rev|rpm)"
+    r"(?:[²³/·.,;:)\s]|$))"
+)
+_HIGH_MARKS = re.compile(
+    r"(?<!\s)[ \u00a0](?=[;:!?»](?:\W|$))"
+)  # also at the head, where a formula stands before
+_MISSING_SPACE = re.compile(r"(?<=[\w)\]])(?=[;!?»](?:\s|$))")
+_OPENING_QUOTE = re.compile(r"«[ \u00a0\u202f]?")
+
+
+def typeset(text: str, lang: str) -> str:
+    """The same words with the language's own apostrophes and unbreakable spaces.
+
+    French has a narrow space before ``; : ! ? »``, after ``«``, and between a number and its unit.
+    """
+    text = _APOSTROPHE.sub("’", text)
+    if lang != "fr":
+        return _UNIT.sub("\N{NO-BREAK SPACE}", text)
+    for pattern in (_UNIT, _HIGH_MARKS, _MISSING_SPACE):
+        text = pattern.sub(NARROW_SPACE, text)
+    return _OPENING_QUOTE.sub("«" + NARROW_SPACE, text)

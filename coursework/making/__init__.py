@@ -1,0 +1,1 @@
+"""Making a build: who gets what, and every file of it."""

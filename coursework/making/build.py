@@ -1,0 +1,126 @@
+"""The main job: issued variants become sheets, notebooks and pages, with the staff's half beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from coursework.course.course import Course
+from coursework.making import booklets
+from coursework.making.issued import COLUMNS, form_rows, issued_content, key_content, key_rows
+from coursework.making.issuing import Issue
+from coursework.rendering.renderer import Renderer, renderer_of
+from coursework.sheets.sheet import AnswerSheet, Handout
+from coursework.system.tables import csv_file, json_text
+from coursework.system.writing import File
+
+FORMATS = ("pdf", "ipynb", "html", "tex")
+KEY_COLUMNS = ("student", "exercise", "seed", "part", "value", "unit", "tolerance")
+
+
+Made: TypeAlias = str | bytes | None
+
+
+def _text(make: Callable[[], str]) -> Callable[[], bytes]:
+    return lambda: make().encode("utf-8")
+
+
+def files(
+    course: Course,
+    issues: Sequence[Issue],
+    formats: Sequence[str],
+    *,
+    practice: bool = False,
+    paper: str = "a4",
+    booklet: bool = False,
+    polygons: bool = True,
+) -> Iterator[File]:
+    """Every file of a build, in order.
+
+    ``practice`` makes the notebooks self-study notebooks, which check answers with the installed package. ``paper`` is
+    ``a4`` or ``letter``. ``booklet`` adds the sheets of all students in one PDF for each exercise and
+    language. Without ``polygons`` the worked solutions leave out the drawn velocity and acceleration polygons. A
+    students' copy of the course gives the handouts alone.
+    """
+    renderer = renderer_of(course.folder).on(paper)
+    for issue in issues:
+        for lang in issue.langs:
+            yield from _sheets(course, renderer, issue, lang, formats, practice, polygons)
+    if booklet:
+        yield from booklets.files(course, renderer, issues, polygons=polygons)
+    content = issued_content(course, issues)
+    yield File(Path("issued.json"), _text(lambda: json_text(content)))
+    yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS))
+    if course.folder.has_solutions:
+        key = key_content(issues)
+        folder = Path("instructor")
+        yield File(folder / "key.json", _text(lambda: json_text(key)))
+        yield File(folder / "key.csv", lambda: csv_file(key_rows(key), KEY_COLUMNS))
+
+
+def _sheets(
+    course: Course,
+    renderer: Renderer,
+    issue: Issue,
+    lang: str,
+    formats: Sequence[str],
+    practice: bool,
+    polygons: bool,
+) -> Iterator[File]:
+    variant = issue.variant.in_language(lang)
+    name = variant.exercise.name
+    for_student = Path("handouts") / name / f"{issue.stem}.{lang}"
+    for_staff = Path("instructor") / name / f"{issue.stem}.{lang}"
+    handout = partial(variant.handout, issue.student)
+    solution = partial(variant.answer_sheet, issue.student, polygons=polygons)
+
+    def file(path: Path, ending: str, render: Callable[[Any], Made], sheet: Callable[[], Any]) -> File:
+        return File(_with(path, ending), partial(_rendered, render, sheet), anywhere=True)
+
+    if "pdf" in formats:
+        yield file(for_student, ".pdf", renderer.pdf, handout)
+    if "html" in formats:
+        yield file(for_student, ".html", renderer.html, handout)
+    if "ipynb" in formats and practice:
+        yield file(for_student, ".ipynb", renderer.study, partial(variant.study_sheet, issue.student))
+    elif "ipynb" in formats:
+        yield file(for_student, ".ipynb", renderer.notebook, handout)
+    if "tex" in formats:
+        yield from _tex(renderer, for_student, ".tex", "figure", handout)
+    if course.folder.has_solutions and "pdf" in formats:
+        yield file(for_staff, ".solution.pdf", renderer.pdf, solution)
+    if course.folder.has_solutions and "html" in formats:
+        yield file(for_staff, ".solution.html", renderer.html, solution)
+    if course.folder.has_solutions and "tex" in formats:
+        drawn = polygons and variant.exercise.solution.polygons is not None
+        yield from _tex(renderer, for_staff, ".solution.tex", "solution-figure", solution, polygons=drawn)
+
+
+def _tex(
+    renderer: Renderer,
+    path: Path,
+    ending: str,
+    what: str,
+    sheet: Callable[[], Handout | AnswerSheet],
+    *,
+    polygons: bool = False,
+) -> Iterator[File]:
+    """A source and its drawings beside it; one dot in their names, as every LaTeX reads it."""
+    stem = path.name.replace(".", "-")
+    figure, pages = f"{stem}-{what}.pdf", f"{stem}-polygons.pdf"
+    source = partial(renderer.tex, figure=figure, polygons=pages)
+    yield File(_with(path, ending), partial(_rendered, source, sheet), anywhere=True)
+    yield File(path.with_name(figure), partial(_rendered, renderer.figure_pdf, sheet), anywhere=True)
+    if polygons:
+        yield File(path.with_name(pages), partial(_rendered, renderer.polygons_pdf, sheet), anywhere=True)
+
+
+def _rendered(render: Callable[[Any], Made], sheet: Callable[[], Any]) -> bytes | None:
+    made = render(sheet())
+    return made.encode("utf-8") if isinstance(made, str) else made
+
+
+def _with(path: Path, ending: str) -> Path:
+    return path.with_name(path.name + ending)

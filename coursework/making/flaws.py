@@ -1,0 +1,151 @@
+"""Which variants are worth issuing: those on which an honest student and a known mistake can be told apart.
+
+A variant is *ill-conditioned* where rounding alone may cost a student an answer, and *murky* where a known
+mistake moves an answer too little to be told from a right one and too much to be let pass. A seed draws the
+same variant for everybody; who issues variants passes such seeds over.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from coursework.course.answer_key import Key, exists, ill_limit
+from coursework.course.exercise import CourseExercise
+from coursework.course.key_batch import keys_of
+from coursework.course.variant import Variant
+from coursework.errors import CourseworkError
+from coursework.marking.distance import distance
+from coursework.marking.judges import judged, judges_of
+from coursework.model import Part
+from coursework.reading.equations import parse_equation
+from coursework.solution import Judged
+
+SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
+HIDDEN = 0.25  #: half-widths within which nothing can tell it
+
+ILL, MURKY, UNSOLVED = "ill-conditioned", "murky", "unsolved"
+
+
+def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
+    """For each part that a mistake reaches: ``shown``, ``murky`` or ``hidden``.
+
+    Not for parts that are judged together and whose quantities the mistake is not about: they follow from
+    what is wrong before them.
+    """
+    together = dict(_judged_wrong(key, mistake))
+    for part, wrong in _reached(key, mistake):
+        if not part.judge:
+            yield part, _seen(key, part, wrong)
+        elif part.id in together:
+            yield part, "hidden" if together[part.id].share == 1 else "shown"
+
+
+def _reached(key: Key, mistake: str) -> Iterator[tuple[Part, Any]]:
+    """The parts that a mistake reaches, each with the value that it gives."""
+    values = key.wrong[mistake]
+    for part in key.variant.parts:
+        wrong = values.get(part.quantity)
+        if wrong is not None and exists(wrong):
+            yield part, wrong
+
+
+def _seen(key: Key, part: Part, wrong: Any) -> str:
+    along, width = key.reference.get(part.along), key.envelope.get(part.quantity, 0.0)
+    reference = key.reference[part.quantity]
+    if part.kind == "equation":
+        gap = _equation_gap(part, wrong, reference)
+    else:
+        gap = distance(part, wrong, reference, along, width)
+    return "shown" if gap > SHOWN else "hidden" if gap <= HIDDEN else "murky"
+
+
+def judged_wrong(key: Key, mistake: str) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """The judges of the quantities that a mistake is about, each with the answers by part that it gives."""
+    values, about = key.wrong[mistake], key.solution.mistakes[mistake].targets
+    parts = {part.id: part for part in key.variant.parts}
+    for name, ids in judges_of(key.variant):
+        quantities = {i: parts[i].quantity for i in ids}
+        if not set(about).isdisjoint(quantities.values()):
+            yield name, {i: values.get(q, key.reference[q]) for i, q in quantities.items()}
+
+
+def _judged_wrong(key: Key, mistake: str) -> Iterator[tuple[str, Judged]]:
+    for name, answers in judged_wrong(key, mistake):
+        yield from judged(key.variant, name, answers).items()
+
+
+@lru_cache(maxsize=1024)
+def _equation_gap(part: Part, wrong: str, reference: str) -> float:
+    """Equations are the same for every variant, and dear to compare."""
+    return distance(part, parse_equation(wrong, part.variables), reference)
+
+
+def conditioning(key: Key) -> float:
+    """The widest envelope of a variant's answers, in what a variant may have at most."""
+    shares = [
+        key.envelope.get(part.quantity, 0.0) / limit
+        for part in key.variant.parts
+        if part.has_margin and (limit := ill_limit(part, key.reference[part.quantity])) > 0
+    ]
+    return max(shares, default=0.0)
+
+
+def flaws(key: Key) -> Iterator[str]:
+    """Why a variant is not worth issuing: ``ill-conditioned: PART``, ``murky: MISTAKE on PART``."""
+    try:
+        reference = key.reference
+    except CourseworkError as fault:
+        yield f"{UNSOLVED}: {fault}"
+        return
+    for part in key.variant.parts:
+        if part.has_margin and key.envelope.get(part.quantity, 0.0) > ill_limit(
+            part, reference[part.quantity]
+        ):
+            yield f"{ILL}: {part.id}"
+    for name, mistake in key.solution.mistakes.items():
+        if not mistake.approximation:
+            # What is judged together is right or wrong, never murky.
+            for part, wrong in _reached(key, name):
+                if not part.judge and _seen(key, part, wrong) == "murky":
+                    yield f"{MURKY}: {name} on {part.id}"
+
+
+def try_judges(key: Key) -> None:
+    """Lets every judge judge the right answers, some wrong ones, one missing, and the known mistakes: a broken one is
+    found before sheets are issued.
+
+    Raises
+    ------
+    BadCourse
+        As :func:`coursework.judging.judged`.
+    """
+    quantity_of = {part.id: part.quantity for part in key.variant.parts}
+    for name, ids in judges_of(key.variant):
+        right = {i: key.reference[quantity_of[i]] for i in ids}
+        off = {i: value if isinstance(value, str) else 0.85 * np.asarray(value) for i, value in right.items()}
+        judged(key.variant, name, right)
+        for missing in ids:
+            for answers in (right, off):
+                judged(key.variant, name, {i: value for i, value in answers.items() if i != missing})
+    for mistake in key.solution.mistakes:
+        dict(_judged_wrong(key, mistake))
+
+
+def worthy(
+    exercise: CourseExercise, variants: Sequence[Variant], refused: Counter[str] | None = None
+) -> list[Variant]:
+    """Those of the variants that are worth issuing; ``refused`` counts the others by their first flaw."""
+    keys_of(exercise, variants)
+    found = []
+    for variant in variants:
+        flaw = next(flaws(variant.key), None)
+        if flaw is None:
+            found.append(variant)
+        elif refused is not None:
+            refused[flaw] += 1
+    return found

@@ -1,0 +1,147 @@
+"""What was issued: ``issued.json``, read back to mark against."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coursework.course.course import Course
+from coursework.course.variant import Variant
+from coursework.errors import BadInput
+from coursework.making.issuing import Issue
+from coursework.making.students import folded
+
+ISSUED_FORMAT = 1
+
+
+class Issued:
+    """What was issued: records by exercise and seed, and to whom when there was a roster."""
+
+    def __init__(self, content: Mapping[str, Any], source: str):
+        records = content.get("issued") if isinstance(content, Mapping) else None
+        if not isinstance(records, list) or not records:
+            raise BadInput(f"{source} is no list of issued records; 'coursework build' writes issued.json")
+        self.has_roster = bool(content.get("roster"))
+        self.records: dict[tuple[str, int], Mapping[str, Any]] = {}
+        self.owner: dict[tuple[str, int], str] = {}
+        self.seeds: dict[tuple[str, str], int] = {}
+        alike: dict[tuple[str, str], Any] = {}
+        for item in records:
+            try:
+                record, student = item["record"], str(item.get("student", ""))
+                key = (str(record["exercise"]), int(record["seed"]))
+                sum(part["points"] for part in record["parts"])
+                # Records of an exercise ask the same; once is enough for all of them.
+                usual = alike.setdefault((key[0], str(record["version"])), record["parts"])
+                if usual == record["parts"]:
+                    record["parts"] = usual
+            except (KeyError, TypeError, ValueError, AttributeError) as fault:
+                raise BadInput(f"{source}: an item is no issued record ({fault})") from fault
+            self.records[key] = record
+            if student:
+                self.owner[key] = student
+                self.seeds[student, key[0]] = key[1]
+        self.exercises = tuple(dict.fromkeys(exercise for exercise, _ in self.records))
+        self.students = tuple(dict.fromkeys(self.owner.values()))
+        self._named = frozenset(self.students)
+        self._known = {folded(s): s for s in self.students}
+
+    @staticmethod
+    def read(path: Path) -> Issued:
+        """Read ``issued.json``.
+
+        Raises
+        ------
+        BadInput
+            The file is not there, or is not what ``build`` writes.
+        """
+        try:
+            return Issued(json.loads(path.read_text("utf-8")), str(path))
+        except OSError as fault:
+            raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+        except (json.JSONDecodeError, UnicodeDecodeError) as fault:
+            raise BadInput(f"{path} is not JSON: {str(fault)[:100]}") from fault
+
+    def student(self, name: str) -> str | None:
+        """The student's name as issued, or without a roster as it came first; None for a stranger to the roster."""
+        if name in self._named:
+            return name
+        if not self.has_roster:
+            return self._known.setdefault(folded(name), name)
+        return self._known.get(folded(name))
+
+    def issued_to(self, student: str) -> dict[str, int]:
+        """The seeds that a student of the roster was issued, by exercise."""
+        return {e: self.seeds[student, e] for e in self.exercises if (student, e) in self.seeds}
+
+
+def issued_content(course: Course, issues: Sequence[Issue]) -> dict[str, Any]:
+    """What ``issued.json`` says: who got which record. No answers."""
+    return {
+        "format": ISSUED_FORMAT,
+        "roster": any(i.student for i in issues),
+        "issued": [{"student": i.student, "record": i.variant.record} for i in issues],
+    }
+
+
+def plain_value(value: Any) -> Any:
+    """A quantity as JSON holds it."""
+    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
+
+
+def record_with_answers(variant: Variant) -> dict[str, Any]:
+    """The record and, by part, the reference answer with its unit and accepted half-width.
+
+    Raises
+    ------
+    NoSolution
+        The course folder has no solutions.
+    """
+    key = variant.key
+    answers = {}
+    for part in variant.parts:
+        value = key.reference[part.quantity]
+        tolerance = key.half_width(part) if part.has_margin else None
+        answers[part.id] = {"value": plain_value(value), "unit": part.unit, "tolerance": tolerance}
+    return {**variant.record, "answers": answers}
+
+
+def key_content(issues: Iterable[Issue]) -> list[dict[str, Any]]:
+    """What ``key.json`` says: the issued records with their answers."""
+    return [{"student": i.student, **record_with_answers(i.variant)} for i in issues]
+
+
+def key_rows(key: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+    """The lines of ``key.csv``."""
+    for record in key:
+        for part, answer in record["answers"].items():
+            value = answer["value"]
+            shown = "; ".join(f"{v!r}" for v in value) if isinstance(value, list) else value
+            yield {
+                "student": record["student"],
+                "exercise": record["exercise"],
+                "seed": record["seed"],
+                "part": part,
+                "value": shown,
+                "unit": answer["unit"],
+                "tolerance": "" if answer["tolerance"] is None else answer["tolerance"],
+            }
+
+
+def form_rows(issues: Iterable[Issue]) -> Iterator[dict[str, Any]]:
+    """The lines of ``answers.csv``: an empty form to fill."""
+    for issued in issues:
+        for part in issued.variant.parts:
+            yield {
+                "student": issued.student,
+                "exercise": issued.variant.exercise.name,
+                "seed": issued.variant.seed,
+                "part": part.id,
+                "answer": "",
+            }
+
+COLUMNS = ("student", "exercise", "seed", "part", "answer")

@@ -1,0 +1,148 @@
+"""Who gets which variant: distinct draws, what was issued, and the key to it."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from coursework.course import draws
+from coursework.course.course import Course
+from coursework.course.exercise import ALL, USUAL, CourseExercise
+from coursework.course.variant import Variant
+from coursework.errors import BadInput, Starved, counted, unknown
+from coursework.making.flaws import try_judges, worthy
+from coursework.making.roster import Student
+from coursework.making.students import file_stems
+
+
+def distinct_variants(
+    exercise: CourseExercise,
+    first_seed: int,
+    count: int,
+    lang: str,
+    refused: Counter[str] | None = None,
+    parts: Sequence[str] | None = None,
+) -> list[Variant]:
+    """``count`` variants of different given values that are worth issuing, from the first seed on.
+
+    ``parts`` are the ids of those to ask; a variant that asks none of them is passed over.
+
+    Equal ones are passed over, and so are those that mark badly (:mod:`coursework.worth`), if the course
+    folder has solutions to tell; ``refused`` counts these by their flaw.
+
+    Raises
+    ------
+    Starved
+        Fewer exist, or so few that they are not found; says how many, and what refuses most.
+    """
+    found: dict[tuple, Variant] = {}
+    refused = Counter() if refused is None else refused
+    seed = first_seed
+    limit = first_seed + 30 * count + 300
+    while len(found) < count and seed < limit:
+        # As many as are missing, should as many of these be good as of those before.
+        good = (len(found) + 1) / (seed - first_seed + 1)
+        batch = range(seed, min(limit, seed + max(16, math.ceil((count - len(found)) / good))))
+        drawn = exercise.variants(batch, lang, parts)
+        asking = [variant for variant in drawn if variant.parts]
+        if len(asking) < len(drawn):
+            refused["asks none of the parts"] += len(drawn) - len(asking)
+            drawn = asking
+        if exercise.folder.has_solutions:
+            drawn = worthy(exercise, drawn, refused)
+        for variant in drawn:
+            found.setdefault(tuple(variant.given.values()), variant)
+            if len(found) == count:
+                break
+        seed = batch.stop
+    if len(found) < count:
+        exist = draws.population(exercise.spec)
+        told = f"{len(found)} found" if exist is None or refused else f"only {exist} exist"
+        flaws = ", ".join(f"{flaw} ({counted(n, 'time')})" for flaw, n in refused.most_common(3))
+        told += f"; passed over as {flaws}" if flaws else ""
+        raise Starved(
+            f"{exercise.name}: {counted(count, 'different variant')} asked, {told}; "
+            "ask for fewer, widen a range or make a step finer"
+        )
+    return list(found.values())
+
+
+@dataclass(frozen=True)
+class Issue:
+    """One variant for one student, in the languages it is printed in."""
+
+    student: str
+    variant: Variant
+    langs: tuple[str, ...]
+    stem: str  #: what its files are called
+
+
+def issue(
+    course: Course,
+    names: Sequence[str],
+    *,
+    first_seed: int,
+    count: int,
+    langs: Sequence[str],
+    roster: Sequence[Student] = (),
+    parts: Sequence[str] | None = None,
+) -> list[Issue]:
+    """One variant of each exercise for each student; or ``count`` variants when there is no roster.
+
+    ``parts`` are ids of parts to ask instead of the usual ones: of each exercise those that it has.
+
+    Raises
+    ------
+    UnknownName
+        A part that none of the exercises has.
+    Starved
+        An exercise has not enough different variants.
+    BadInput
+        An exercise has no text in one of the languages.
+    """
+    issues = []
+    students = list(roster) or [Student("")] * count
+    stems = file_stems(s.name for s in students)
+    asked = chosen_parts(course, names, parts)
+    for name in names:
+        exercise = course[name]
+        for lang in {*langs, *(s.lang for s in students if s.lang)}:
+            if lang not in exercise.languages:
+                have = ", ".join(exercise.languages) or "none"
+                raise BadInput(f"{name} has no text in {lang!r}; it has {have}")
+        variants = distinct_variants(exercise, first_seed, len(students), langs[0], parts=asked[name])
+        if course.folder.has_solutions and variants:
+            try_judges(variants[0].key)
+        for student, stem, variant in zip(students, stems, variants, strict=True):
+            own = (student.lang,) if student.lang else tuple(langs)
+            stem = stem or f"{variant.seed:05d}"
+            issues.append(Issue(student.name, variant.in_language(own[0]), own, stem))
+    return issues
+
+
+def chosen_parts(
+    course: Course, names: Sequence[str], parts: Sequence[str] | None
+) -> dict[str, tuple[str, ...] | None]:
+    """For each exercise, those of the parts that it has; None for the usual ones.
+
+    Raises
+    ------
+    UnknownName
+        A part that none of the exercises has.
+    BadInput
+        An exercise has none of the parts.
+    """
+    if parts is None:
+        return dict.fromkeys(names)
+    own = {name: {USUAL, ALL, *(p.id for p in course[name].spec.parts)} for name in names}
+    for part in parts:
+        if not any(part in ids for ids in own.values()):
+            known = dict.fromkeys(p.id for name in names for p in course[name].spec.parts)
+            raise unknown("part", part, [*known, USUAL, ALL], ", ".join(names))
+    found = {name: tuple(p for p in parts if p in own[name]) for name in names}
+    for name, some in found.items():
+        if not some:
+            raise BadInput(f"{name} has none of the parts {', '.join(parts)}; build it by itself")
+    return found

@@ -1,0 +1,123 @@
+"""The roster: a CSV of students, as an instructor writes it or a school exports it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from coursework.errors import BadInput, counted
+from coursework.language.words import languages
+from coursework.making.students import folded
+from coursework.system.tables import decode, delimiter_of, record
+
+_WHOLE = (
+    "student", "étudiant", "etudiant", "élève", "eleve", "full name", "nom complet", "nom et prénom", "nom prénom",
+)  # fmt: skip
+_SURNAME = (
+    "nom", "name", "surname", "last name", "lastname", "family name", "nom de famille", "nom usuel",
+)  # fmt: skip
+_FIRST_NAME = (
+    "prénom", "prenom", "prénoms", "prenoms", "first name", "firstname", "given name", "forename",
+)  # fmt: skip
+_LANG = ("lang", "language", "langue")
+
+
+@dataclass(frozen=True)
+class Student:
+    """A line of the roster; ``lang`` is empty where it does not say."""
+
+    name: str
+    lang: str = ""
+
+
+def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> list[Student]:
+    """The students of a CSV with a column ``student``, or with surname and first name, and, if wanted, ``lang``.
+
+    ``tell`` is called with what should be known and is no error: a column that is not used, an odd encoding.
+
+    Raises
+    ------
+    BadInput
+        The file cannot be read, has a row without a name or with too many cells, names no student, or one twice.
+    """
+    header, *rows = _rows(path, tell) or [(1, [])]
+    titles = [" ".join(re.split(r"[\s_]+", cell.strip())).casefold() for cell in header[1]]
+    named = _name_columns(titles)
+    if not named:
+        found = ", ".join(cell.strip() for cell in header[1] if cell.strip()) or "nothing"
+        raise BadInput(f"the roster {path} needs a column named student; found {found}")
+    lang_column = next((titles.index(c) for c in _LANG if c in titles), None)
+    students: list[Student] = []
+    seen: dict[str, int] = {}
+    for number, cells in rows:
+        place = f"the roster {path}, line {number}"
+        if any(cell.strip() for cell in cells[len(titles) :]):
+            raise BadInput(
+                f"{place}: {counted(len(cells), 'cell')} where the header has {len(titles)}; "
+                "put a name that holds a comma or a semicolon between quotation marks, or give the column a title"
+            )
+        cells += [""] * (len(titles) - len(cells))
+        name = " ".join(" ".join(cells[column] for column in named).split())
+        lang = cells[lang_column].strip().lower() if lang_column is not None else ""
+        if not name:
+            raise BadInput(f"{place}: no name; write it, or take the line away")
+        if lang and lang not in languages():
+            raise BadInput(f"{place}: no language {lang!r}; there is {', '.join(languages())}")
+        if folded(name) in seen:
+            raise BadInput(
+                f"{place}: {name} stands on line {seen[folded(name)]} already; "
+                "tell them apart, by a number for instance"
+            )
+        seen[folded(name)] = number
+        students.append(Student(name, lang))
+    if not students:
+        raise BadInput(f"the roster {path} names no student")
+    used = [*named, *([] if lang_column is None else [lang_column])]
+    unused = [
+        header[1][column].strip() or "one without a title"
+        for column in range(len(titles))
+        if column not in used and any(cells[column].strip() for _, cells in [header, *rows])
+    ]
+    if unused:
+        told = ", ".join(header[1][column].strip() for column in used)
+        tell(f"columns of the roster {path} that are not used: {', '.join(unused)}; used: {told}")
+    return students
+
+
+def _name_columns(titles: list[str]) -> list[int]:
+    """The column of whole names; or those of surnames and first names, in the file's order."""
+    for column, title in enumerate(titles):
+        if title in _WHOLE:
+            return [column]
+    surname = next((titles.index(c) for c in _SURNAME if c in titles), None)
+    first_name = next((titles.index(c) for c in _FIRST_NAME if c in titles), None)
+    if surname is None:
+        return []
+    return sorted({surname, surname if first_name is None else first_name})
+
+
+def _rows(path: Path, tell: Callable[[str], None]) -> list[tuple[int, list[str]]]:
+    """The lines that are not blank, each with its number."""
+    try:
+        data = path.read_bytes()
+    except OSError as fault:
+        raise BadInput(f"the roster {path} cannot be read: {fault.strerror}") from fault
+    text, warning = decode(data)
+    if "\0" in text:
+        raise BadInput(f"the roster {path} is no CSV; save it as “CSV UTF-8”")
+    if warning:
+        tell(f"the roster {path}: {warning}")
+    return list(_records(re.split(r"\r\n|\n|\r", text)))
+
+
+def _records(lines: list[str]) -> Iterator[tuple[int, list[str]]]:
+    first = next((line for line in lines if line.strip()), "")
+    delimiter, width, start = delimiter_of(first), 0, 0
+    while start < len(lines):
+        cells, taken = record(lines, start, delimiter, width)
+        if any(cell.strip() for cell in cells):
+            yield start + 1, cells
+            width = width or len(cells)
+        start += taken

@@ -1,0 +1,40 @@
+"""Names of students as they are compared; they are shown as they were written."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable
+from functools import lru_cache
+
+_APOSTROPHES = "’‘‛ʼʻʹ′`´＇"
+_DASHES = "‐‑‒–—―−﹣－"
+_ALIKE = str.maketrans({**dict.fromkeys(_APOSTROPHES, "'"), **dict.fromkeys(_DASHES, "-")})
+
+
+@lru_cache(maxsize=65_536)
+def folded(name: str) -> str:
+    """A name whatever its case, spaces, apostrophes and dashes, and however its accents are encoded."""
+    plain = unicodedata.normalize("NFKC", name.translate(_ALIKE))
+    seen = "".join(c for c in plain if unicodedata.category(c) != "Cf")  # what has no width is not seen
+    return unicodedata.normalize("NFKC", " ".join(seen.split()).casefold())
+
+_DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
+
+
+def file_stems(names: Iterable[str]) -> list[str]:
+    """File names from students' names: ASCII, short, all different, stable; empty where there is no name."""
+    used: set[str] = set()
+    stems = []
+    for name in names:
+        plain = unicodedata.normalize("NFKD", name.casefold()).encode("ascii", "ignore").decode()
+        plain = re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:60].strip("-")
+        if plain in _DEVICES or (name and not plain):
+            plain = f"student-{plain}".strip("-")
+        stem, number = plain, 1
+        while plain and stem in used:
+            number += 1
+            stem = f"{plain}-{number}"
+        used.add(stem)
+        stems.append(stem)
+    return stems

@@ -1,0 +1,228 @@
+"""What the drawn polygons have in common: points on paper, and the judge's words for what is wrong with them."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+
+from coursework.polygons.hand_drawn import HUNG, SENSE, ancestors, is_scale, judge_drawing
+from coursework.solution import Judged
+
+_BOX_MM = (130.0, 80.0)  #: in which the reference drawing fits
+
+
+_NOTHING_MM = 1e-9 * max(_BOX_MM)  #: what rounding leaves of a coordinate that is zero
+
+
+def to_paper(image, scale):
+    """An image point as coordinates on paper, mm from the pole, shape (..., 2)."""
+    return _coordinates(np.asarray(image / scale, dtype=complex))
+
+
+def _coordinates(on_paper):
+    """Of complex points on paper, along a last axis."""
+    found = np.stack([on_paper.real, on_paper.imag], axis=-1)
+    return np.where(abs(found) < _NOTHING_MM, 0.0, found)
+
+
+def scale_for(*images):
+    """The least of 1, 2 and 5 times a power of ten at which the pole and these images fit the box."""
+    images = (np.zeros_like(images[0]), *images)
+    least = np.maximum(
+        (np.maximum.reduce([z.real for z in images]) - np.minimum.reduce([z.real for z in images]))
+        / _BOX_MM[0],
+        (np.maximum.reduce([z.imag for z in images]) - np.minimum.reduce([z.imag for z in images]))
+        / _BOX_MM[1],
+    )
+    decade = 10.0 ** np.ceil(np.log10(least))
+    return decade * np.select([5 * least <= decade, 2 * least <= decade], [0.2, 0.5], 1.0)
+
+
+_MOST = 0.1  #: of a value, by which it may be off where it does not come from a drawing
+
+
+class Read(NamedTuple):
+    """A value that is read off a drawing: of which vector, and how it follows from it."""
+
+    start: str
+    end: str
+    value: object  #: function of the vector, in the polygon's unit
+    gain: float  #: what a unit of its length is worth
+    wrong: Mapping = MappingProxyType(
+        {}
+    )  #: by mistake: the ends of the vector that is taken instead, and its gain
+    sense: str = "value_sense"  #: the mistake of its sign
+
+
+class Asked(NamedTuple):
+    """What is asked of a drawing, each by part id."""
+
+    scale: str
+    points: dict  #: to the image points, the pole among them
+    lengths: dict  #: to the ends of the segment
+    reads: dict  #: to what is read off
+    sides: dict  #: by ends, what a vector is called in the names of mistakes
+    hung: frozenset = frozenset()  #: names of mistakes that tell on what a vector hangs
+
+
+def verdicts(answers, polygon, asked):
+    """A :class:`Judged` for each answer that can be judged."""
+    stated = float(answers[asked.scale]) if asked.scale in answers else None
+    points = {asked.points[i]: complex(*answers[i]) for i in asked.points if i in answers}
+    scale = stated if stated is not None and is_scale(polygon, stated) else None
+    if polygon.pole not in points or len(points) < 2:
+        if scale is None:
+            return {}
+        # Lengths alone: nothing is drawn, and they are what they should be or not.
+        bare = judge_drawing(polygon, {polygon.pole: 0j}, scale)
+        said = {asked.scale: Judged()} if bare.is_legible else {asked.scale: Judged(0.0, "too_small")}
+        return said | _lengths(answers, bare, asked) | _reads(answers, bare, asked)
+    drawing = judge_drawing(polygon, points, scale)
+    upside_down = False
+    if scale is not None and is_scale(polygon, 1 / scale):
+        other = judge_drawing(polygon, points, 1 / scale)
+        upside_down = _fits(other) and not _fits(drawing)
+        drawing = other if upside_down else drawing
+    if not drawing.is_legible:
+        drawn = (*asked.points, *asked.lengths, asked.scale)
+        return {i: Judged(0.0, "too_small") for i in drawn if i in answers} | _reads(answers, drawing, asked)
+    said = {asked.scale: _of_scale(scale, upside_down, drawing)} if stated is not None else {}
+    for part, point in asked.points.items():
+        if part in answers:
+            said[part] = _of_point(point, drawing, asked)
+    return said | _lengths(answers, drawing, asked) | _reads(answers, drawing, asked)
+
+
+def _fits(drawing):
+    """Whether the drawing is at the stated scale, and the first vector from the pole right at it."""
+    return drawing.fits_stated_scale and drawing.is_right(next(iter(drawing.polygon.hangs)))
+
+
+def _of_scale(scale, upside_down, drawing):
+    if scale is None:
+        return Judged(0.0)
+    if upside_down:
+        return Judged(0.5, "scale_upside_down")
+    return Judged() if drawing.fits_stated_scale else Judged(0.0, "scale_not_drawn")
+
+
+def _of_point(point, drawing, asked):
+    if point == drawing.polygon.pole:
+        others = [q for q in drawing.points if q != point]
+        # A pole is right where some vector is: any pole is. Otherwise it shares the fault of the first.
+        return Judged() if any(map(drawing.is_right, others)) else _of_fault(others[0], drawing, asked)
+    if drawing.is_right(point):
+        return Judged(follows=drawing.follows(point))
+    return _of_fault(point, drawing, asked)
+
+
+def _of_fault(point, drawing, asked):
+    fault = drawing.faults[point]
+    names = [_named(point, f, asked) for f in fault.explanations]
+    known = [name for name in names if name]
+    return Judged(0.5 if fault.kind == SENSE else 0.0, known[0], also=tuple(known[1:]))
+
+
+def _named(point, fault, asked):
+    """The mistake that a fault is; none where a vector hangs on a point of which no mistake tells."""
+    parts = {image: i for i, image in asked.points.items()}
+    if fault.side is None:
+        return f"{parts[point]}_{fault.kind}"
+    side = asked.sides[fault.side.start, fault.side.end]
+    if fault.kind != HUNG:
+        return f"{side}_{fault.kind}"
+    name = f"{side}_on_{parts[fault.on]}"
+    return name if name in asked.hung else ""
+
+
+def _lengths(answers, drawing, asked):
+    said = {}
+    for part, (start, end) in asked.lengths.items():
+        if part not in answers:
+            continue
+        length = float(answers[part])
+        fault = drawing.length_fault(start, end, length)
+        if fault == "length":
+            others = [ends for other, ends in asked.lengths.items() if other != part]
+            exchanged = any(not drawing.length_fault(*ends, length) for ends in others)
+            said[part] = Judged(0.0, "lengths_exchanged" if exchanged else "")
+        else:
+            said[part] = Judged(follows=fault == "own")
+    return said
+
+
+def _reads(answers, drawing, asked):
+    """Right to the millimetres that the drawing may be off, a tenth at most; or as read off the student's own
+    drawing, or from the student's own length."""
+    said = {}
+    for part, read in asked.reads.items():
+        if part in answers:
+            said[part] = _of_value(float(answers[part]), read, drawing, answers, asked)
+    return said
+
+
+def _of_value(found, read, drawing, answers, asked):
+    ends, scale, images = (read.start, read.end), drawing.scale, drawing.polygon.points
+    right = read.value(images[read.end] - images[read.start])
+    millimetre = scale * read.gain
+    if abs(found - right) <= min(2 * drawing.tolerance * millimetre, _MOST * abs(right)):
+        return Judged()
+    own = []
+    if drawing.is_legible and all(q in drawing.points for q in ends):
+        own.append(read.value((drawing.points[read.end] - drawing.points[read.start]) * scale))
+    sense = np.sign(own[0] if own else right)
+    own += [
+        sense * float(answers[i]) * millimetre
+        for i, segment in asked.lengths.items()
+        if segment == ends and i in answers and drawing.is_legible
+    ]
+    if any(abs(found - value) <= drawing.tolerance * millimetre + 0.01 * abs(value) for value in own):
+        at_fault = {*ends, *ancestors(drawing.polygon, read.end)} & drawing.faults.keys()
+        wrong_length = any(
+            segment == ends and i in answers and drawing.length_fault(*ends, float(answers[i]))
+            for i, segment in asked.lengths.items()
+        )
+        return Judged(follows=bool(at_fault) or wrong_length)
+    names = list(_wrong_ways(found, read, [right, *own], drawing))
+    first = names[0] if names else ""
+    return Judged(0.5 if first == read.sense else 0.0, first, also=tuple(names[1:]))
+
+
+def _wrong_ways(found, read, values, drawing):
+    """The mistakes that explain a value, from the right drawing or the student's own."""
+    near = 2 * drawing.tolerance * drawing.scale * read.gain
+    if any(abs(found + value) <= min(near, _MOST * abs(value)) for value in values):
+        yield read.sense
+    if any(abs(found * drawing.scale - value) <= min(near, _MOST * abs(value)) for value in values):
+        yield "scale_forgotten"
+    for name, (start, end, gain) in read.wrong.items():
+        images = drawing.polygon.points
+        lengths = [abs(images[end] - images[start])]
+        if start in drawing.points and end in drawing.points:
+            lengths.append(abs(drawing.points[end] - drawing.points[start]) * drawing.scale)
+        off = 2 * drawing.tolerance * drawing.scale * gain
+        if any(abs(abs(found) - n * gain) <= min(off, _MOST * n * gain) for n in lengths):
+            yield name
+
+
+def turned(p, a, degrees):
+    """A point turned about another, coordinates on paper."""
+    turn = np.exp(1j * np.radians(degrees))
+    vector = (a[..., 0] - p[..., 0] + 1j * (a[..., 1] - p[..., 1])) * turn
+    return p + np.stack([vector.real, vector.imag], axis=-1)
+
+
+def met(through, along, other, other_along):
+    """Where two lines meet on paper; directions as complex numbers."""
+    z, w = (q[..., 0] + 1j * q[..., 1] for q in (through, other))
+    slope = (np.conj(along) * other_along).imag
+    return _coordinates(z + along * (np.conj(w - z) * other_along).imag / slope)
+
+
+def off_both(b, lines, end):
+    """A point off both the lines that cross at b by as much, nearly half as far as b is from ``end``."""
+    first, second = (line / abs(line) for line in lines)
+    between = np.where(abs(first + second) < abs(first - second), first + second, first - second)
+    step = 0.4 * np.hypot(*np.moveaxis(b - end, -1, 0)) * between / abs(between)
+    return b + np.stack([step.real, step.imag], axis=-1)

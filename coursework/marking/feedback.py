@@ -1,0 +1,209 @@
+"""What a student is told of an answer: sentences of the engine, in the sheet's language.
+
+The reference value is never told.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple
+
+from coursework.language.numbers import localise, significant, unit_text, with_unit
+from coursework.language.words import listed, quoted, words
+from coursework.markup.markdown import plain_line
+from coursework.model import Part
+from coursework.reading.choices import head, read_choice
+from coursework.reading.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.course.exercise import CourseExercise
+    from coursework.course.variant import Variant
+
+
+ECHO = 60  #: characters of an answer quoted back
+QUOTED = 40  #: characters of one that could not be read
+
+
+class Said(NamedTuple):
+    """A sentence of the engine, and the Markdown that fills it: ``{name}: {read} is right.``"""
+
+    sentence: str
+    pieces: Mapping[str, str]
+
+    def markdown(self) -> str:
+        """The sentence with its pieces, Markdown."""
+        return self.sentence.format(**self.pieces)
+
+    def plain(self, lang: str) -> str:
+        """One line of plain text. Sentences and most pieces recur: each is made plain once."""
+        pieces = {n: text if _is_plain(text) else plain_line(text, lang) for n, text in self.pieces.items()}
+        return " ".join(_plain_sentence(self.sentence, lang).format(**pieces).split())
+
+
+_BARE = re.compile(r"[\w\s.,;:()=/°%·²³−…+^?!-]*")
+_is_plain = _BARE.fullmatch
+
+
+@lru_cache(maxsize=1024)
+def _plain_sentence(sentence: str, lang: str) -> str:
+    """A sentence with its places still open. Braces are no markup, and come through."""
+    return plain_line(sentence, lang)
+
+
+def part_name(variant: Variant, part: Part) -> str:
+    """What a part is called in feedback: its symbol, or its number when a symbol says nothing."""
+    if part.kind in ("choice", "equation", "direction", "point_on_line"):
+        number = 1 + [p.id for p in variant.parts].index(part.id)
+        return f"{words(variant.lang)['sheet']['question']['one']} {number}"
+    return f"${variant.exercise.symbol(part.quantity)}$"
+
+
+def echo(text: str, lang: str) -> str:
+    """What was read, shortened, as the language writes numbers; safe inside Markdown."""
+    shown = text if len(text) <= ECHO else text[: ECHO - 1] + "…"
+    if "=" in shown:
+        return "`" + "".join(c for c in shown if c.isprintable() and c not in "`$") + "`"
+    return _harmless(localised(shown, lang))
+
+
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+
+
+def localised(read_as: str, lang: str) -> str:
+    """What was read, as the language writes numbers; an equation is left as it is."""
+    if "=" in read_as:
+        return read_as
+    if _NUMBER.fullmatch(read_as):
+        return localise(read_as, lang)
+    number = re.sub(r"(?<![A-Za-z.])-?\d+(?:\.\d+)?", lambda m: localise(m.group(), lang), read_as)
+    return number.replace(" °", "°")
+
+
+def say(variant: Variant, part: Part, sentence: str, **pieces: str) -> Said:
+    """A sentence of the engine about a part."""
+    return Said(words(variant.lang)["marking"][sentence], {"name": _opening(variant, part), **pieces})
+
+
+def _opening(variant: Variant, part: Part) -> str:
+    """The part's name at the head of a sentence."""
+    name = part_name(variant, part)
+    return name[:1].upper() + name[1:]
+
+
+def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
+    """Why an answer could not be read, or that there is none."""
+    table = words(variant.lang)["marking"]
+    unit = unit_text(part.unit, variant.lang)
+    of_piece = ("unknown_unit", "unknown_symbol") if part.kind == "equation" else ("unknown_unit",)
+    is_piece = reading.found and (reading.status == "wrong_unit" or reading.code in of_piece)
+    found = shortened(reading.found if is_piece else reading.text)
+    pieces = {"name": _opening(variant, part), "found": _harmless(found), "unit": unit or "1"}
+    unitless = "wrong_unit_integer" if part.kind == "integer" else "wrong_unit_ratio"
+    if reading.status == "unreadable":
+        kinds = table["unreadable"]
+        in_equation = part.kind == "equation"
+        code = "not_a_number" if reading.code == "unknown_symbol" and not in_equation else reading.code
+        if part.kind == "choice" and code in _OF_CHOICES:
+            code = _OF_CHOICES[code]
+            pieces["offered"] = _offered(variant, part)
+        sentence = kinds.get(code, kinds["otherwise"])
+        if code == "unknown_unit" and not unit:
+            sentence = table[unitless]
+    elif reading.status == "wrong_unit":
+        sentence = table["wrong_unit" if unit else unitless]
+    else:
+        sentence = table["missing"]
+    return Said(sentence, pieces)
+
+
+def shortened(answer: str) -> str:
+    """An answer on one line, its end left out where it is long."""
+    line = " ".join(str(answer).split())
+    return line if len(line) <= QUOTED else line[: QUOTED - 1] + "…"
+
+
+_OF_CHOICES = {"not_a_choice": "not_a_choice", "two_values": "two_choices"}
+_OFFERED = 200  #: characters of all that is offered
+_SAYING = 4  #: words of a beginning that says something
+
+
+def _offered(variant: Variant, part: Part) -> str:
+    """What may be written for a choice, quoted: every label, or its head, or the shortest beginning that will do."""
+    shown = [variant.label(part.id, case) for case in part.choices]
+    known = variant.labels(part)
+    if sum(map(len, shown)) > _OFFERED:
+        heads = [head(label) for label in shown]
+        shown = [
+            s if _means(s, case, known) else whole
+            for s, whole, case in zip(heads, shown, part.choices, strict=True)
+        ]
+    if sum(map(len, shown)) > _OFFERED:
+        shown = [_shortest(s, case, known, variant.lang) for s, case in zip(shown, part.choices, strict=True)]
+    return listed((quoted(label, variant.lang) for label in shown), variant.lang, "or")
+
+
+def _means(text: str, case: str, known: Mapping[str, Sequence[str]]) -> bool:
+    return read_choice(text, known).values == (case,)
+
+
+def _shortest(label: str, case: str, known: Mapping[str, Sequence[str]], lang: str) -> str:
+    """What is short of a label, its article and noun left out, and means its case: its head, or a few words."""
+    table, pieces = words(lang)["choices"], label.split()
+    for small in (table["articles"], table["nouns"]):
+        pieces = pieces[1:] if len(pieces) > 1 and pieces[0].lower() in small else pieces
+    core = head(" ".join(pieces))
+    starts = (
+        [core] if len(core) <= _OFFERED // 5 else [" ".join(pieces[:n]) for n in range(_SAYING, len(pieces))]
+    )
+    return next((s for s in starts if s.count("$") % 2 == 0 and _means(s, case, known)), label)
+
+
+def questions(variant: Variant, parts: Sequence[str], joint: str) -> str:
+    """Parts by the numbers of their questions: ``questions 3, 4 and 6``, ``question 3 or 4``."""
+    numbers = [str(n) for n, asked in enumerate(variant.parts, start=1) if asked.id in parts]
+    is_one = len(numbers) == 1 or joint == "or"
+    said = words(variant.lang)["sheet"]["question"]["one" if is_one else "many"]
+    return f"{said} {listed(numbers, variant.lang, joint)}"
+
+
+_LOOSE_UNDERSCORE = re.compile(r"(?<![^\W_])_|_(?![^\W_])")
+
+
+def _harmless(text: str) -> str:
+    """A quotation that no Markdown reader takes for markup; an underscore within a name is none, a star is a factor's."""
+    text = _LOOSE_UNDERSCORE.sub("", text)
+    return "".join(c for c in text if c.isprintable() and c not in "$`\\<>[]#|").replace("*", r"\*")
+
+
+def amount(variant: Variant, name: str, value: float) -> str:
+    """A quantity and its value as Markdown: ``$r_3$ = 120,4 mm``."""
+    unit = variant.exercise.units.get(name, "1")
+    return f"${_symbol(variant, name)}$ = {with_unit(significant(value), unit, variant.lang)}"
+
+
+def either_symbol(variant: Variant, names: Sequence[str], *, both: bool) -> str:
+    """Names of quantities as they are printed: ``$r_2$ or $r_3$``; ``and`` where ``both`` are meant."""
+    joint = words(variant.lang)["marking"]["and" if both else "or"]
+    return f" {joint} ".join(f"${_symbol(variant, name)}$" for name in names)
+
+
+def _symbol(variant: Variant, name: str) -> str:
+    return variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)
+
+
+def right_feedback(variant: Variant, part: Part, read_as: str) -> str:
+    """What is said of a right answer, as one line of plain text."""
+    sentence = _plain_right(variant.exercise, part, variant.lang)
+    return sentence.replace(_READ, echo(read_as, variant.lang))
+
+
+_READ = "\N{OBJECT REPLACEMENT CHARACTER}"
+
+
+@lru_cache(maxsize=4096)
+def _plain_right(exercise: CourseExercise, part: Part, lang: str) -> str:
+    name = f"${exercise.symbol(part.quantity)}$"
+    pieces = {"name": name[:1].upper() + name[1:], "read": _READ}
+    return Said(words(lang)["marking"]["correct"], pieces).plain(lang)

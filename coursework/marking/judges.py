@@ -1,0 +1,132 @@
+"""Parts that are judged together, where many answers are right: drawn points, lengths that meet demands.
+
+An exercise's part names a judge, and its solution defines it: :func:`coursework.solution.judge`.
+"""
+
+from __future__ import annotations
+
+import inspect
+import itertools
+from collections.abc import Callable, Collection, Iterator, Mapping
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from coursework.errors import BadCourse, CannotAssemble, Undefined
+from coursework.reading.reading import Reading
+from coursework.solution import Judged
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+
+
+SHEETS = 64  #: ways at most to read one student's answers to the parts of one judge
+
+
+def judges_of(variant: Variant) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """The judges of a variant, each with the ids of its parts."""
+    names = dict.fromkeys(part.judge for part in variant.parts if part.judge)
+    for name in names:
+        yield name, tuple(part.id for part in variant.parts if part.judge == name)
+
+
+def judged(
+    variant: Variant, name: str, answers: Mapping[str, Any], own: Mapping[str, float] | None = None
+) -> dict[str, Judged]:
+    """What a judge says of answers by part id, each a number or coordinates in the part's unit.
+
+    Nothing of an answer that cannot be judged because others are missing. ``own`` holds quantities that a
+    student has answered before, to be judged from in place of the right ones.
+
+    Raises
+    ------
+    BadCourse
+        The judge takes no ``answers``, says nothing of one though none is missing, or names a mistake that
+        is none.
+    """
+    solution, source = variant.exercise.solution, f"solutions/{variant.exercise.name}.py: judge {name!r}"
+    computed = [n for n in _needs(variant, name) if n in variant.exercise.quantity_names]
+    values = {
+        **variant.given,
+        **solution.graph.evaluate(computed, {**variant.used, **(own or {})}, variant.effects),
+    }
+    needed = {n: values[n] for n in _needs(variant, name)}
+    with np.errstate(all="ignore"):  # what is computed from an absurd answer is not finite, and not right
+        found = dict(solution.judge(name)(dict(answers), **needed))
+    complete = all(part in answers for part in dict(judges_of(variant))[name])
+    if complete and (unsaid := sorted(answers.keys() - found.keys())):
+        raise BadCourse(f"{source} says nothing of {unsaid[0]!r}")
+    for verdict in found.values():
+        for mistake in (verdict.mistake, *verdict.also):
+            if mistake and mistake not in solution.mistakes:
+                raise BadCourse(f"{source} names a mistake {mistake!r}, which is not among its mistakes")
+    return {part: found[part] for part in answers if part in found}
+
+
+def _needs(variant: Variant, name: str) -> list[str]:
+    """The quantities that a judge takes."""
+    first, *needs = _parameters(variant.exercise.solution.judge(name))
+    if first != "answers":
+        raise BadCourse(
+            f"solutions/{variant.exercise.name}.py: judge {name!r}: its first parameter must be 'answers'; "
+            f"found {first!r}"
+        )
+    return needs
+
+
+@lru_cache(maxsize=256)
+def _parameters(function: Callable[..., Any]) -> tuple[str, ...]:
+    """Their names; Python takes longer to tell them than most judges to judge."""
+    return tuple(inspect.signature(function).parameters)
+
+
+class Verdict(NamedTuple):
+    """What became of one answer of a group: parts of a judge of the solution, or equations of a loop."""
+
+    reading: int  #: which of its honest readings was taken
+    said: Judged | None  #: None where it cannot be judged because others are missing
+    followed: bool = False  #: judged from the student's own earlier answers
+    slip: str = ""  #: what is missed, where that needs no naming by the solution
+    about: tuple[str, ...] = ()  #: the quantities that the slip may be about
+
+
+def best_judged(
+    variant: Variant,
+    name: str,
+    readings: Mapping[str, Reading],
+    own: Mapping[str, float],
+    wrong: Collection[str],
+) -> dict[str, Verdict]:
+    """The verdicts of a judge on what was read.
+
+    Where answers may honestly be read in several ways, those are taken that together earn most. Where some
+    quantity that a student has answered before is ``wrong``, the answers may follow from the student's ``own``.
+    """
+    points = {part.id: part.points for part in variant.parts}
+    read = [i for i in dict(judges_of(variant))[name] if i in readings and readings[i].status == "read"]
+    full = sum(points[i] for i in read)
+    best, most = {}, -1.0
+    for own_ones in (None, own):
+        if own_ones is not None and (most == full or not _bears_on(variant, name, wrong)):
+            break
+        ways = itertools.product(*(range(len(readings[i].values)) for i in read))
+        for way in itertools.islice(ways, SHEETS):
+            chosen = dict(zip(read, way, strict=True))
+            answers = {i: readings[i].values[place] for i, place in chosen.items()}
+            try:
+                said = judged(variant, name, answers, own_ones)
+            except (CannotAssemble, Undefined):
+                if own_ones is None:
+                    raise
+                continue  # nothing follows from the student's own answers
+            earned = sum(points[i] * float(verdict.share) for i, verdict in said.items())
+            if earned > most:
+                followed = own_ones is not None
+                best, most = {i: Verdict(chosen[i], said.get(i), followed) for i in read}, earned
+    return best
+
+
+def _bears_on(variant: Variant, name: str, wrong: Collection[str]) -> bool:
+    solution, needs = variant.exercise.solution, set(_needs(variant, name))
+    return any(q in needs or needs & solution.depending_on(q) for q in wrong)

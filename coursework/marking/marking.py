@@ -1,0 +1,170 @@
+"""Marking: a student's texts against the reference, part by part.
+
+Answers are data: they are read, never run. What is not right is looked up, in this order, among what
+follows rightly from the student's own earlier answers, the named mistakes of the solution, and the slips that
+need no naming; nothing of that is computed for an answer that is right.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from coursework.course.answer_key import FOLLOWED, Key
+from coursework.errors import WrongValue, unknown
+from coursework.language.words import quoted
+from coursework.marking.answers import read
+from coursework.marking.explaining import Before, explanations, is_likely, nearest_reading
+from coursework.marking.feedback import Said, echo, say, say_not_read
+from coursework.marking.judges import best_judged
+from coursework.marking.loop_judge import loop_verdicts
+from coursework.marking.mark import SENTENCE_OF_WRONG, Mark, Marking, made_mark
+from coursework.marking.together import is_scale, is_told_with, mark_judged, waits_for
+from coursework.markup.markdown import plain_line
+from coursework.model import Part
+from coursework.reading.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+
+
+def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] | None = None) -> Marking:
+    """Mark the answers to a variant; a part left out is missing.
+
+    Parts that are ``known`` to be right, with their numbers as read, are not marked again, and are not in
+    the marking.
+
+    Raises
+    ------
+    UnknownName
+        An answer to a part that the variant does not ask.
+    NoSolution
+        The course folder has no solutions.
+    """
+    asked = {p.id: p for p in variant.parts}
+    if not isinstance(answers, Mapping):
+        raise WrongValue(
+            f"answers are given by part: {{'{next(iter(asked))}': '12 mm'}}; found {type(answers).__name__}"
+        )
+    for part_id in answers:
+        if part_id not in asked:
+            raise unknown("part", part_id, asked, f"{variant.exercise.name} {variant.seed}")
+    key, known = variant.key, known or {}
+    readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
+    target = _targets(variant, readings, key)
+    together = loop_verdicts(variant, readings)
+    before = Before({}, set(), set(), set(), [])
+    marks, no_scale = {}, set()
+    waiting: dict[str, dict[str, frozenset[str]]] = {}
+    for i, part in asked.items():
+        if i in known:
+            before.own[part.quantity] = known[i] if part.kind == "choice" else float(known[i])
+            before.right.add(part.quantity)
+            continue
+        judged_by, reading = asked[target[i]], readings[i]
+        if part.judge and i not in together:
+            together |= best_judged(variant, part.judge, readings, before.own, before.wrong)
+        if i in together:
+            nearest = together[i].reading, math.inf
+            tellers = (p for j, p in asked.items() if j in marks and j not in no_scale)
+            told = next((p for p in tellers if is_told_with(p, part, together)), None)
+            missed = partial(waits_for, variant, part, readings, waiting)
+            marks[i] = mark_judged(variant, key, part, reading, together[i], told, missed)
+            if is_scale(part) and reading.values[nearest[0]] <= 0:
+                no_scale.add(i)
+                read_as = echo(marks[i].read_as, variant.lang)
+                marks[i] = replace(marks[i], _tell=partial(say, variant, part, "scale", read=read_as))
+        else:
+            nearest = nearest_reading(part, reading, key, judged_by)
+            marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
+        before.shown.update(marks[i].matches)
+        if marks[i].verdict == "correct":
+            before.right.add(judged_by.quantity)
+        if reading.status == "read" and part.kind in FOLLOWED:
+            before.read.append((judged_by, reading))
+            before.own[judged_by.quantity] = reading.values[nearest[0]]
+            if marks[i].verdict != "correct":
+                before.wrong.add(judged_by.quantity)
+    for i in marks:
+        if target[i] != i and marks[i].verdict == "correct":
+            marks[i] = replace(marks[i], in_other_order=True)
+    return Marking(marks)
+
+
+def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dict[str, str]:
+    """For each part id, the part whose reference it is judged by.
+
+    Itself, save where the exercise lets whole groups be exchanged and the exchange fits better.
+    """
+    own = {p.id: p.id for p in variant.parts}
+    parts = {p.id: p for p in variant.parts}
+    groups = [g for g in variant.exercise.spec.either_order if all(i in readings for i in g)]
+    if not groups:
+        return own
+
+    def fitting(target: Mapping[str, str]) -> int:
+        members = itertools.chain(*groups)
+        return sum(nearest_reading(parts[i], readings[i], key, parts[target[i]])[1] <= 1 for i in members)
+
+    answered = sum(readings[i].status == "read" for i in itertools.chain(*groups))
+    # An exchange is meant where most of what is answered fits it: one answer may fit by chance.
+    best, best_score = own, max(fitting(own), answered / 2)
+    for order in itertools.permutations(groups):
+        target = {
+            **own,
+            **{i: j for g, h in zip(groups, order, strict=True) for i, j in zip(g, h, strict=True)},
+        }
+        score = fitting(target)
+        if score > best_score:
+            best, best_score = target, score
+    return best
+
+
+def _mark_part(
+    variant: Variant,
+    key: Key,
+    part: Part,
+    reading: Reading,
+    judged_by: Part,
+    nearest: tuple[int, float],
+    before: Before,
+) -> Mark:
+    made = partial(made_mark, variant, part, reading)
+    if reading.status != "read":
+        return made(reading.status, 0.0, "", lambda: say_not_read(variant, part, reading))
+    index, gap = nearest
+    explained = {} if gap <= 1 else dict(explanations(key, part, reading, judged_by, before))
+    matches = tuple(explained)
+    likely = {m for m in matches if is_likely(m, key, judged_by, before)}
+    matches = tuple(sorted(matches, key=lambda m: m not in likely))
+    verdict = matches[0] if likely else "wrong"
+    if gap > 1:
+        # What is told is told of the reading that it explains, else of the text as it stands.
+        index = explained[verdict] if likely else 0
+    read_as = reading.read_as[index]
+    if part.kind == "choice":
+        read_as = plain_line(variant.label(part.id, str(reading.values[index])), variant.lang)
+
+    def told(sentence: str, **pieces: str) -> Said:
+        read = echo(read_as, variant.lang)
+        if part.kind == "choice":
+            read = quoted(read, variant.lang)
+        return say(variant, part, sentence, read=read, **pieces)
+
+    if gap <= 1:
+        if part.asks_unit and not reading.unit_given:
+            return made("missing_unit", 0.0, read_as, lambda: told("missing_unit"))
+        return made("correct", 1.0, read_as, lambda: told("correct"))
+    kind, _, name = verdict.partition(":")
+    if kind == "mistake":
+        share = key.solution.mistakes[name].share
+        return made(verdict, share, read_as, lambda: told("mistake", says=variant.told(name)), matches)
+    if kind == "slip":
+        return made(verdict, key.rules.slip, read_as, lambda: told(f"slip_{name}"), matches)
+    if kind == "follow_through":
+        return made(verdict, key.rules.follow_through, read_as, lambda: told("follow_through"), matches)
+    return made("wrong", 0.0, read_as, lambda: told(SENTENCE_OF_WRONG.get(part.kind, "wrong")), matches)

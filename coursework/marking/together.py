@@ -1,0 +1,109 @@
+"""TODO coursework/marking/together.py"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from functools import partial
+from typing import TYPE_CHECKING
+
+from coursework.course.answer_key import Key
+from coursework.errors import CourseworkError
+from coursework.language.words import words
+from coursework.marking.explaining import mistakes_that_fit
+from coursework.marking.feedback import Said, amount, echo, either_symbol, part_name, questions, say
+from coursework.marking.judges import Verdict, judged
+from coursework.marking.mark import SENTENCE_OF_WRONG, Mark, made_mark
+from coursework.model import Part
+from coursework.reading.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+
+
+def is_told_with(earlier: Part, part: Part, together: Mapping[str, Verdict]) -> bool:
+    """Whether what is to be said of a judged part has been said of an earlier one of its group."""
+    same_group = part.judge and earlier.judge == part.judge and earlier.id in together
+    return bool(same_group) and together[earlier.id][1:] == together[part.id][1:]
+
+
+def mark_judged(
+    variant: Variant,
+    key: Key,
+    part: Part,
+    reading: Reading,
+    found: Verdict,
+    told_with: Part | None,
+    missed: Callable[[], str],
+) -> Mark:
+    """The mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
+    read_as, verdict = reading.read_as[found.reading], found.said
+    made = partial(made_mark, variant, part, reading)
+    if verdict is None:
+
+        def alone() -> Said:
+            return say(variant, part, "incomplete", read=echo(read_as, variant.lang), missing=missed())
+
+        return made("wrong", 0.0, read_as, alone)
+    share = min(1.0, max(0.0, float(verdict.share)))
+
+    def told(sentence: str, **pieces: str) -> Said:
+        """A sentence, then what follows from the student's own answers."""
+        said = say(variant, part, sentence, read=echo(read_as, variant.lang), **pieces)
+        tells = {} if told_with else verdict.found
+        own = {f"found{n}": amount(variant, q, v) for n, (q, v) in enumerate(tells.items())}
+        if not own:
+            return said
+        listed = ", ".join("{" + name + "}" for name in own)
+        follows = words(variant.lang)["marking"]["found"].format(listed)
+        return Said(f"{said.sentence} {follows}", {**said.pieces, **own})
+
+    if share == 1.0:
+        is_followed = found.followed or verdict.follows
+        kind, share = ("follow_through", key.rules.follow_through) if is_followed else ("correct", 1.0)
+        return made(kind, share, read_as, lambda: told(kind))
+    shown = [verdict.mistake, *verdict.also] if verdict.mistake else mistakes_that_fit(key, part, reading)
+    matches = tuple(f"mistake:{name}" for name in shown) + ((f"slip:{found.slip}",) if found.slip else ())
+    if shown:
+        share = share if verdict.mistake and share else key.solution.mistakes[shown[0]].share
+
+        def tell() -> Said:
+            if told_with and verdict.mistake:
+                return told("told_with", first=part_name(variant, told_with))
+            return told("mistake", says=variant.told(shown[0]))
+
+        return made(matches[0], share, read_as, tell, matches)
+    if found.slip:
+        about = either_symbol(variant, found.about, both=found.slip == "frame_missing")
+        return made(
+            matches[0], key.rules.slip, read_as, lambda: told(f"slip_{found.slip}", about=about), matches
+        )
+    return made("wrong", share, read_as, lambda: told(SENTENCE_OF_WRONG.get(part.kind, "wrong")))
+
+
+def is_scale(part: Part) -> bool:
+    """Whether a part asks for the scale of a drawing: so much for a millimetre of paper."""
+    return bool(part.judge) and part.kind == "number" and part.unit.endswith("/mm")
+
+
+def waits_for(
+    variant: Variant,
+    part: Part,
+    readings: Mapping[str, Reading],
+    waiting: dict[str, dict[str, frozenset[str]]],
+) -> str:
+    """What an answer waits for to be judged, by questions: any of those that would do alone, else all of its group.
+
+    ``waiting`` remembers by judge what could be judged with each missing answer.
+    """
+    group = {p.id: p.quantity for p in variant.parts if p.judge == part.judge}
+    read = {i: readings[i].values[0] for i in group if readings[i].status == "read"}
+    unread = [i for i in group if i not in read]
+    if part.judge not in waiting:
+        waiting[part.judge] = {}
+        for i in unread:
+            with suppress(CourseworkError):
+                right = variant.key.reference[group[i]]
+                waiting[part.judge][i] = frozenset(judged(variant, part.judge, {**read, i: right}))
+    enough = [i for i, would_be in waiting[part.judge].items() if part.id in would_be]
+    return questions(variant, enough, "or") if enough else questions(variant, unread, "and")

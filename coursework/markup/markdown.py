@@ -1,0 +1,349 @@
+"""The Markdown of statements, for every back end.
+
+Markdown here is CommonMark with tables and ``$formulas$``; raw HTML is text like any other. Each
+writer escapes whatever the text holds for its back end, so a ``#`` or a ``<`` prints as itself.
+"""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from collections.abc import Callable, Sequence
+from functools import cache, lru_cache
+from html import escape
+
+from markdown_it import MarkdownIt
+from markdown_it.renderer import RendererHTML
+from markdown_it.tree import SyntaxTreeNode
+from mdit_py_plugins.dollarmath import dollarmath_plugin
+
+from coursework.errors import BadStatement
+from coursework.language.typography import typeset
+from coursework.language.words import words
+from coursework.markup.latex import to_notebook
+from coursework.markup.line import to_line
+from coursework.markup.mathml import to_mathml
+from coursework.markup.spoken import spoken
+from coursework.markup.typst import to_typst
+
+
+@cache
+def _reader() -> MarkdownIt:
+    reader = MarkdownIt("commonmark", {"html": False}).enable("table")
+    # A dollar beside a letter or a digit still opens a formula: $r_1$-$r_2$.
+    return reader.use(dollarmath_plugin, allow_digits=True, double_inline=True)
+
+
+@lru_cache(maxsize=1024)
+def tree(markdown: str) -> SyntaxTreeNode:
+    """The tree of a text."""
+    return SyntaxTreeNode(_reader().parse(markdown))
+
+
+def no_image(source: str) -> BadStatement:
+    """What is said of a text that shows an image."""
+    return BadStatement(
+        f"the text shows the image {source!r}: a sheet has one figure, drawn by its exercise, and no other"
+    )
+
+
+# -- Typst ------------------------------------------------------------------------------------------
+
+_TYPST_MARKS = re.compile(r"([\\`*_$#<>@~=+/\[\]{}\"'|-])")
+
+
+#: Scripts and signs that the typesetter's own fonts draw: Latin, Greek, Cyrillic, punctuation, mathematics.
+_UNDRAWN = re.compile(
+    "[^ -~\u00a0-\u024f\u02b0-\u03ff\u0400-\u045f\u1e00-\u1eff\u2000-\u2040\u2070-\u209f\u20a0-\u20bf"
+    "\u2100-\u211e\u2126-\u214f\u2190-\u22ff\u2500-\u25ff\n\t]"
+)
+SUBSTITUTE = "\N{WHITE SQUARE}"  #: stands for a character that no font at hand draws
+
+
+def drawable(text: str) -> str:
+    """The text with a square for each character that a PDF sheet cannot draw."""
+    return _UNDRAWN.sub(SUBSTITUTE, text)
+
+
+def typst_text(text: str, lang: str) -> str:
+    """Plain text as Typst markup that prints exactly these characters."""
+    escaped = _TYPST_MARKS.sub(r"\\\1", typeset(drawable(text), lang))
+    # A number with a dot at the head of a line would start a list; three dots would become one sign.
+    return re.sub(r"(?<=[\d.])\.(?=\s|\.|$)", r"\\.", escaped)
+
+
+def typst_string(text: str) -> str:
+    """A Typst string literal."""
+    return '"' + drawable(text).replace("\\", r"\\").replace('"', r"\"").replace("\n", r"\n") + '"'
+
+
+_WHOLE = 24  #: characters of a formula written out that a line of text does not cut
+
+
+@lru_cache(maxsize=4096)
+def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
+    """A formula as Typst markup, with its words as alternative text.
+
+    The semicolon ends the call: a parenthesis that follows it in the text is text.
+    """
+    call = "display-formula" if display else "formula"
+    whole = ", whole: true" if not display and len(to_line(tex, lang)) <= _WHOLE else ""
+    return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${whole});"
+
+
+#: A text that is one formula, as most answers are, is read at a glance.
+_ONE_FORMULA = re.compile(r"\$([^$`\n]+)(?<![\\\s])\$")
+
+
+@lru_cache(maxsize=1024)
+def to_typst_markup(markdown: str, lang: str) -> str:
+    """Markdown as Typst markup."""
+    if formula := _ONE_FORMULA.fullmatch(markdown):
+        return typst_formula(formula[1].strip(), lang)
+    return _typst(tree(markdown), lang).strip()
+
+
+#: A number and its unit.
+_VALUE = re.compile(r"\$\\num\{[^{}]*\}(?:\^\{\\circ\}|\\ \\mathrm\{(?:[^{}]|\{\d\})*\})?\$")
+
+
+def typst_value(markdown: str, lang: str) -> str:
+    """An answer as Typst markup: a number with its unit as text, which is set far faster than a formula."""
+    if _VALUE.fullmatch(markdown):
+        return typst_text(to_text(markdown, lang), lang)
+    return to_typst_markup(markdown, lang)
+
+
+def _typst(node: SyntaxTreeNode, lang: str) -> str:
+    def inside() -> str:
+        return "".join(_typst(child, lang) for child in node.children)
+
+    def items(mark: str) -> str:
+        lines = (_typst(item, lang).strip() for item in node.children)
+        return "\n".join(f"{mark} " + textwrap.indent(line, "  ").lstrip() for line in lines) + "\n\n"
+
+    match node.type:
+        case "root" | "inline" | "list_item" | "thead" | "tbody":
+            return inside()
+        case "paragraph":
+            return inside() + "\n\n"
+        case "text":
+            return typst_text(node.content, lang)
+        case "softbreak":
+            return "\n"
+        case "hardbreak":
+            return " \\\n"
+        case "em" | "strong":
+            # The function call, not the mark: a mark inside a word would print as itself.
+            return f"#{'emph' if node.type == 'em' else 'strong'}[{inside()}];"
+        case "code_inline":
+            return f"#raw({typst_string(node.content)});"
+        case "fence" | "code_block":
+            return f"#raw(block: true, {typst_string(node.content.rstrip())})\n\n"
+        case "math_inline":
+            return typst_formula(node.content.strip(), lang)
+        case "math_inline_double" | "math_block" | "math_block_label":
+            return typst_formula(node.content.strip(), lang, display=True) + "\n\n"
+        case "bullet_list":
+            return items("-")
+        case "ordered_list":
+            return items("+")
+        case "blockquote":
+            return f"#remark[{inside().strip()}]\n\n"
+        case "heading":
+            return f"#heading(level: {min(int(node.tag[1]) + 2, 6)})[{inside()}]\n\n"
+        case "hr":
+            return "#line(length: 100%, stroke: 0.4pt + luma(60%))\n\n"
+        case "link":
+            return f"#link({typst_string(str(node.attrs['href']))})[{inside()}];"
+        case "image":
+            raise no_image(str(node.attrs.get("src", "")))
+        case "table":
+            return _typst_table(node, lang)
+    raise BadStatement(f"the text holds a {node.type}, which a sheet cannot print")
+
+
+def _typst_table(node: SyntaxTreeNode, lang: str) -> str:
+    rows = [row.children for part in node.children for row in part.children]
+    sides = [str(c.attrs.get("style", "")).removeprefix("text-align:") or "left" for c in rows[0]]
+    cells = [["[" + "".join(_typst(c, lang) for c in cell.children) + "]" for cell in row] for row in rows]
+    head, *body = (", ".join(row) for row in cells)
+    lines = "".join(f"  {row},\n" for row in body)
+    return f"#data-table(({', '.join(sides)},),\n  ({head},),\n{lines})\n\n"
+
+
+# -- HTML -------------------------------------------------------------------------------------------
+
+
+def html_text(text: str, lang: str) -> str:
+    """Plain text as HTML."""
+    return escape(typeset(text, lang))
+
+
+# A browser would send the mark that follows a formula to the next line.
+_MARK_AFTER_FORMULA = re.compile(
+    r'(<math display="inline"(?:(?!</math>).)*</math>)([\u00a0\u202f]?[,.;:!?)]+)', re.DOTALL
+)
+
+
+def to_html(markdown: str, lang: str) -> str:
+    """Markdown as an HTML fragment; its headings stand below those of the page."""
+    return _MARK_AFTER_FORMULA.sub(
+        r'<span class="kept">\1\2</span>', _html_reader(lang).render(markdown).strip()
+    )
+
+
+def html_inline(markdown: str, lang: str) -> str:
+    """Markdown of one paragraph as HTML without the ``<p>``; more than one paragraph keeps them."""
+    shown = to_html(markdown, lang)
+    one = shown.startswith("<p>") and shown.endswith("</p>") and shown.count("<p>") == 1
+    return shown.removeprefix("<p>").removesuffix("</p>") if one else shown
+
+
+def formula_words(markdown: str, lang: str) -> str:
+    """How a text that is one formula is read aloud; of any other, nothing."""
+    formula = _ONE_FORMULA.fullmatch(markdown)
+    return spoken(formula[1].strip(), lang) if formula else ""
+
+
+@cache
+def _html_reader(lang: str) -> MarkdownIt:
+    def formula(display: bool) -> Callable[..., str]:
+        return lambda renderer, tokens, at, *_: to_mathml(tokens[at].content.strip(), lang, display)
+
+    def text(renderer: RendererHTML, tokens: Sequence, at: int, *_: object) -> str:
+        return html_text(tokens[at].content, lang)
+
+    def heading(renderer: RendererHTML, tokens: Sequence, at: int, *_: object) -> str:
+        token = tokens[at]
+        level = min(int(token.tag[1]) + 2, 6)
+        return f"<h{level}>" if token.nesting == 1 else f"</h{level}>\n"
+
+    def image(renderer: RendererHTML, tokens: Sequence, at: int, *_: object) -> str:
+        raise no_image(str(tokens[at].attrs.get("src", "")))
+
+    reader = MarkdownIt("commonmark", {"html": False}).enable("table")
+    reader.use(dollarmath_plugin, allow_digits=True, double_inline=True)
+    for name in ("math_block", "math_block_label", "math_inline_double"):
+        reader.add_render_rule(name, formula(True))
+    reader.add_render_rule("math_inline", formula(False))
+    reader.add_render_rule("text", text)
+    reader.add_render_rule("image", image)
+    reader.add_render_rule("heading_open", heading)
+    reader.add_render_rule("heading_close", heading)
+    # A table wider than a telephone scrolls in a box that a keyboard reaches.
+    name = escape(words(lang)["sheet"]["table"])
+    opening = f'<div class="wide-table" tabindex="0" role="region" aria-label="{name}">\n<table>\n'
+    reader.add_render_rule("table_open", lambda *_: opening)
+    reader.add_render_rule("table_close", lambda *_: "</table>\n</div>\n")
+    return reader
+
+
+# -- notebooks --------------------------------------------------------------------------------------
+
+_NOTEBOOK_PIECES = re.compile(
+    r"(?P<code>```.*?```|`[^`\n]*`)|\$\$(?P<block>.+?)\$\$|(?<!\\)\$(?P<inline>[^$]+?)(?<!\\)\$", re.DOTALL
+)
+_TABLE_RULE = re.compile(r"[|:\- ]*-[|:\- ]*")
+_MARKDOWN_MARKS = re.compile(r"([\\`*_$\[\]|#~])")
+
+
+def notebook_text(text: str, lang: str) -> str:
+    """Plain text as Markdown that shows exactly these characters."""
+    one_line = " ".join(typeset(text, lang).split(" "))
+    return _MARKDOWN_MARKS.sub(r"\\\1", one_line.replace("\n", " ").replace("<", "&lt;"))
+
+
+def to_notebook_markdown(markdown: str, lang: str) -> str:
+    """Markdown as a notebook shows it: numbers written out in formulas, no HTML."""
+
+    def prose(text: str) -> str:
+        lines = text.split("\n")
+        set_lines = (line if _TABLE_RULE.fullmatch(line) else typeset(line, lang) for line in lines)
+        return "\n".join(set_lines).replace("<", "&lt;")
+
+    shown, end = [], 0
+    for piece in _NOTEBOOK_PIECES.finditer(markdown):
+        shown.append(prose(markdown[end : piece.start()]))
+        if piece["code"]:
+            shown.append(piece["code"])
+        elif piece["block"]:
+            shown.append(f"$${to_notebook(piece['block'].strip(), lang)}$$")
+        else:
+            shown.append(f"${to_notebook(piece['inline'].strip(), lang)}$")
+        end = piece.end()
+    return "".join(shown) + prose(markdown[end:])
+
+
+# -- plain text -------------------------------------------------------------------------------------
+
+
+def to_text(markdown: str, lang: str, width: int = 88) -> str:
+    """Markdown as plain text for a terminal, its lines at most ``width`` wide where words allow."""
+    if formula := _ONE_FORMULA.fullmatch(markdown):
+        line = _on_a_line(formula[1], lang)
+        if len(line) <= width:
+            return line
+    return _text(tree(markdown), lang, width).strip("\n")
+
+
+def _on_a_line(tex: str, lang: str) -> str:
+    return to_line(tex.strip(), lang).replace("\n", "; ")
+
+
+def _text(node: SyntaxTreeNode, lang: str, width: int) -> str:
+    def inside(narrower: int = 0) -> str:
+        return "".join(_text(child, lang, width - narrower) for child in node.children)
+
+    match node.type:
+        case "root" | "inline" | "list_item" | "thead" | "tbody" | "em" | "strong" | "td" | "th":
+            return inside()
+        case "paragraph" | "heading":
+            return textwrap.fill(inside(), width, break_long_words=False, break_on_hyphens=False) + "\n\n"
+        case "text":
+            return typeset(node.content, lang)
+        case "softbreak" | "hardbreak":
+            return " "
+        case "code_inline":
+            return node.content
+        case "fence" | "code_block":
+            return textwrap.indent(node.content, "    ") + "\n"
+        case "math_inline":
+            return _on_a_line(node.content, lang)
+        case "math_inline_double" | "math_block" | "math_block_label":
+            return textwrap.indent(to_line(node.content.strip(), lang), "    ") + "\n\n"
+        case "bullet_list" | "ordered_list":
+            return _text_list(node, lang, width)
+        case "blockquote":
+            return textwrap.indent(inside(2).strip(), "| ") + "\n\n"
+        case "hr":
+            return "-" * width + "\n\n"
+        case "link":
+            return inside()
+        case "image":
+            raise no_image(str(node.attrs.get("src", "")))
+        case "table":
+            rows = [
+                [_text(c, lang, width) for c in row.children]
+                for part in node.children
+                for row in part.children
+            ]
+            return "\n".join("  ".join(row) for row in rows) + "\n\n"
+    raise BadStatement(f"the text holds a {node.type}, which a sheet cannot print")
+
+
+def _text_list(node: SyntaxTreeNode, lang: str, width: int) -> str:
+    lines = []
+    for number, item in enumerate(node.children, start=int(node.attrs.get("start", 1))):
+        mark = f"{number}. " if node.type == "ordered_list" else "- "
+        body = "".join(_text(child, lang, width - len(mark)) for child in item.children).strip("\n")
+        lines.append(mark + textwrap.indent(body, " " * len(mark)).lstrip())
+    return "\n".join(lines) + "\n\n"
+
+
+@lru_cache(maxsize=8192)
+def plain_line(markdown: str, lang: str) -> str:
+    """Markdown as one line of plain text."""
+    from coursework.markup.markdown import to_text
+
+    return " ".join(to_text(markdown, lang).split())

@@ -1,0 +1,55 @@
+"""What of a text no sheet could print as it was meant: a dollar without its partner, a formula that cannot be read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+
+from coursework.errors import BadStatement
+
+_FENCE = re.compile(r"^(```|~~~).*?^\1", re.MULTILINE | re.DOTALL)
+_HEADING = re.compile(r"^#{1,6}[ \t].*$", re.MULTILINE)
+_CODE = re.compile(r"(`+)(?!`).*?(?<!`)\1(?!`)", re.DOTALL)
+#: Between two paragraphs; an item of a list and a heading are paragraphs of their own.
+_BETWEEN = re.compile(r"\n\s*\n|\n(?=[ \t]*(?:[-*+]|\d+[.)]|#{1,6})[ \t])")
+_DOLLAR = re.compile(r"\\.|(\$)", re.DOTALL)
+_SHOWN = 40  #: characters of a paragraph that a message quotes
+
+
+def pair_dollars(markdown: str, place: Callable[[str], str]) -> None:
+    r"""Refuse a paragraph with an odd number of dollars; one that is written ``\$`` is none, nor one in code.
+
+    ``place`` says where a piece of the text stands: the file, and the line if it is known.
+    """
+    if markdown.count("$") == 0:
+        return
+    alone = _HEADING.sub(r"\g<0>\n", _FENCE.sub("", markdown))
+    for paragraph in _BETWEEN.split(alone):
+        if _dollars(paragraph) % 2 and (count := _dollars(_CODE.sub("", paragraph))) % 2:
+            line = paragraph.strip().split("\n")[0]
+            quoted = line if len(line) <= _SHOWN else f"{line[:_SHOWN]}…"
+            raise BadStatement(
+                f"{place(line)}: the paragraph “{quoted}” has {count} $, and a formula stands between two; "
+                r"the sign itself is written \$"
+            )
+
+
+def _dollars(text: str) -> int:
+    return sum(bool(found[1]) for found in _DOLLAR.finditer(text))
+
+
+def read_formulas(markdown: str, place: Callable[[str], str]) -> None:
+    """Refuse a text with a formula that cannot be read, and say where it stands."""
+    from coursework.markup.formula_tree import parse
+
+    for tex in _formulas(markdown):
+        try:
+            parse(tex.strip())
+        except BadStatement as fault:
+            raise BadStatement(f"{place(tex.strip())}: {fault}") from fault
+
+
+def _formulas(markdown: str) -> Iterator[str]:
+    from coursework.markup.markdown import tree
+
+    return (node.content for node in tree(markdown).walk() if node.type.startswith("math_"))

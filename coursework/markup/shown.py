@@ -1,0 +1,80 @@
+"""What a cell shows: Markdown and pictures in a notebook, plain text anywhere else."""
+
+from __future__ import annotations
+
+import base64
+from dataclasses import dataclass
+from html import escape
+from typing import Any
+
+from coursework.language.words import words
+from coursework.markup.markdown import to_notebook_markdown, to_text
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A drawing as SVG, and what it shows, for who does not see it."""
+
+    svg: str
+    said: str
+
+    @property
+    def html(self) -> str:
+        """The drawing as an image: front ends show it as well in a notebook that they do not trust."""
+        data = base64.b64encode(self.svg.encode()).decode()
+        return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(self.said)}">'
+
+
+class Shown:
+    """Pieces of one answer, in order: texts in the Markdown of statements, and pictures.
+
+    As the last line of a notebook's cell it is displayed, each piece by itself: formulas are set there, which
+    inside HTML not every front end does. ``str()`` gives plain text.
+    """
+
+    def __init__(self, lang: str, *pieces: str | Picture):
+        self.lang = lang
+        self.pieces = tuple(p for p in pieces if p)
+
+    @property
+    def markdown(self) -> str:
+        """The texts as a notebook reads them, without the pictures."""
+        texts = (p for p in self.pieces if isinstance(p, str))
+        return "\n\n".join(to_notebook_markdown(text, self.lang) for text in texts)
+
+    def __str__(self) -> str:
+        return "\n\n".join(self._plain(piece) for piece in self.pieces)
+
+    __repr__ = __str__
+
+    def _plain(self, piece: str | Picture) -> str:
+        if isinstance(piece, str):
+            return to_text(piece, self.lang)
+        said = words(self.lang)["sheet"]
+        return f"[{said['figure']}{said['colon']} {piece.said}]"
+
+    def bundles(self) -> list[dict[str, str]]:
+        """Each piece by MIME type."""
+        out = []
+        for piece in self.pieces:
+            bundle = {"text/plain": self._plain(piece)}
+            if isinstance(piece, str):
+                bundle["text/markdown"] = to_notebook_markdown(piece, self.lang)
+            else:
+                bundle["text/html"] = piece.html
+            out.append(bundle)
+        return out
+
+    def _ipython_display_(self) -> None:
+        from IPython.display import display
+
+        for bundle in self.bundles():
+            display(bundle, raw=True)
+
+    def _repr_markdown_(self) -> str:
+        return self.markdown
+
+    def __add__(self, other: Any) -> Shown:
+        if not isinstance(other, Shown):
+            return NotImplemented
+        return Shown(self.lang, *self.pieces, *other.pieces)

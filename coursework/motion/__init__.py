@@ -1,0 +1,1 @@
+"""What moves: scenes over a cycle or in time, and animations."""

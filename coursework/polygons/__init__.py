@@ -1,0 +1,35 @@
+"""Velocity and acceleration polygons: stated by their sides, constructed step by step, judged where drawn by hand."""
+
+from coursework.polygons.pieces import (
+    acceleration_polygon,
+    crank_a,
+    crank_v,
+    guide_a,
+    guide_v,
+    slider_a,
+    slider_v,
+    two_bars_a,
+    two_bars_v,
+    velocity_polygon,
+)
+from coursework.polygons.polygon import UNITS, Polygon, Side, Stage, normal, tangential, turning
+
+__all__ = [
+    "UNITS",
+    "Polygon",
+    "Side",
+    "Stage",
+    "acceleration_polygon",
+    "crank_a",
+    "crank_v",
+    "guide_a",
+    "guide_v",
+    "normal",
+    "slider_a",
+    "slider_v",
+    "tangential",
+    "turning",
+    "two_bars_a",
+    "two_bars_v",
+    "velocity_polygon",
+]

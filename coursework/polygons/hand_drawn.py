@@ -1,0 +1,349 @@
+"""Vector polygons that a student has drawn: which vector is wrong, and how.
+
+A drawing comes as points in millimetres on paper, x to the right, y up, from any origin; the pole may stand
+anywhere, and the scale may be any. Directions are absolute: a sheet that is turned is another drawing.
+
+What is judged is the construction, as somebody would with ruler and set-square: each vector by what must hold of
+it **from the student's own points**. A known vector has its length, its direction and its sense, and hangs on its
+point; a line of known direction passes through its point; a point found by two lines lies on both. So an error
+costs the vector that it is made on, and nothing of what is drawn rightly from there.
+
+Each point may be off by ``tolerance`` mm, so a vector by twice that at its end, and a line by twice that across.
+A direction is thus right to :math:`\\arcsin(2\\,\\mathrm{tolerance} / \\mathrm{length})`: 1.1 degrees for 100 mm, 6 for
+20 mm, and anything for a vector of 2 mm, whose direction no ruler shows.
+"""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from coursework.errors import WrongValue, unknown
+from coursework.polygons.polygon import Polygon, Side
+
+TOLERANCE_MM = 1.0  #: by which each drawn point may be off
+LEAST_MM = 20.0  #: of the longest vector, for tolerances of a millimetre; below, directions tell nothing
+MOST_MM = 1e9  #: from any pole; no paper is so wide, and what is drawn farther off is as wrong as there
+
+_SAME_SCALE = 0.05  #: by which two scales may differ and be one, drawn inexactly
+
+LENGTH, DIRECTION, SENSE, VECTOR, HUNG, MISSING = KINDS = (
+    "length", "direction", "sense", "vector", "hung", "missing",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What is wrong with a drawn point.
+
+    ``length``, ``direction``, ``sense``: of the vector that should end there; ``vector``: nothing of it is right;
+    ``hung``: it is right, but starts from another point; ``missing``: the point is not drawn. A point found by two lines
+    has a wrong ``direction`` when it is off one of them, a wrong ``sense`` when a vector is laid off backwards
+    along its line, and ``vector`` when it is on neither.
+    """
+
+    kind: str
+    side: Side | None = None  #: the vector at fault; None where the point is missing, or off both its lines
+    on: str = ""  #: of ``hung``: the point on which the vector hangs instead
+    plainer: Fault | None = None  #: what else explains the point, and says less of it
+
+    @property
+    def explanations(self) -> Iterator[Fault]:
+        """Itself, then what else explains the point."""
+        fault: Fault | None = self
+        while fault:
+            yield fault
+            fault = fault.plainer
+
+    def __str__(self) -> str:
+        told = f" on {self.on}" if self.on else ""
+        return f"{self.side}: {self.kind}{told}" if self.side else self.kind
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A judged drawing."""
+
+    polygon: Polygon
+    points: Mapping[str, complex]  #: those drawn, mm on paper
+    scale: float  #: mm/s or mm/s^2 for a mm, at which it is judged
+    faults: Mapping[str, Fault]  #: by point, of those that are wrong or missing
+    is_legible: bool  #: large enough to tell directions
+    fits_stated_scale: bool  #: False where it is consistent at another scale than the stated one
+    tolerance: float = TOLERANCE_MM
+    ideal: Mapping[str, complex] = field(
+        default_factory=dict
+    )  #: mm on paper: each point from those before it
+
+    def is_right(self, point: str) -> bool:
+        """Whether the point is drawn and its vectors are right."""
+        return point not in self.faults
+
+    def follows(self, point: str) -> bool:
+        """Whether it is right only as it follows from an earlier point that is not."""
+        return self.is_right(point) and any(q in self.faults for q in ancestors(self.polygon, point))
+
+    def length_fault(self, start: str, end: str, measured: float) -> str:
+        """What is wrong with a length measured on paper, mm: nothing (``""``), ``own``, ``length``.
+
+        ``own``: it is that of the student's own drawing, which is wrong there. Where both points are drawn, a length is
+        measured between them, to a millimetre; where they are not, it is what it should be at the scale, to two.
+        """
+        right = abs(self.polygon.points[end] - self.polygon.points[start]) / self.scale
+        if abs(measured - right) <= 2 * self.tolerance:
+            return ""
+        if start in self.points and end in self.points:
+            there = {start, end, *ancestors(self.polygon, start), *ancestors(self.polygon, end)}
+            if abs(measured - abs(self.points[end] - self.points[start])) <= self.tolerance:
+                return "own" if there & self.faults.keys() else ""
+        return "length"
+
+
+def is_scale(polygon: Polygon, scale: float) -> bool:
+    """Whether the polygon can be drawn at a scale: a positive one, at which it is not beyond any paper."""
+    return 0 < scale < float("inf") and polygon.size <= MOST_MM * scale
+
+
+def on_paper(x: float, y: float) -> complex:
+    """A drawn point or arrow, brought back to the widest of papers, so that it can be computed with."""
+    return complex(*(max(-MOST_MM, min(MOST_MM, float(c))) for c in (x, y)))
+
+
+def judge_drawing(
+    polygon: Polygon,
+    points: Mapping[str, complex],
+    scale: float | None = None,
+    tolerance: float = TOLERANCE_MM,
+) -> Drawing:
+    """Judge drawn points against the polygon that they should make.
+
+    Parameters
+    ----------
+    polygon
+        The right one.
+    points
+        By the polygon's names, mm on paper; the pole is among them, others may be missing.
+    scale
+        mm/s or mm/s^2 for a mm, as the student states it. Unless stated, and where most of what is drawn agrees
+        on another, it is the one at which most of the known vectors are right.
+    tolerance
+        mm by which each point may be off.
+
+    Raises
+    ------
+    WrongValue
+        The pole is missing, a coordinate is not finite, or the scale is none: see :func:`is_scale`.
+    UnknownName
+        A point that the polygon does not have.
+    """
+    for name, z in points.items():
+        if name not in polygon.points:
+            raise unknown("point", name, polygon.points, "polygon")
+        if not cmath.isfinite(z):
+            raise WrongValue(f"point {name} of a drawing is {z}, not finite")
+    if polygon.pole not in points:
+        raise WrongValue(f"a drawing is judged from its pole {polygon.pole}, which is not among its points")
+    if scale is not None and not is_scale(polygon, scale):
+        raise WrongValue(
+            f"a scale of a drawing is positive, and so large that it fits on paper; found {scale}"
+        )
+    points = {name: on_paper(z.real, z.imag) for name, z in points.items()}
+    width = 2 * tolerance
+    used, fits = _scale(polygon, points, scale, width)
+    faults: dict[str, Fault] = {}
+    ideal = {polygon.pole: points[polygon.pole]}
+    for point, sides in polygon.hangs.items():
+        # The points before it, as drawn; one that is missing stands where it follows from those before it.
+        here = {q: points.get(q, z) for q, z in ideal.items()}
+        if len(sides) == 1:
+            ideal[point], fault = _known(point, sides[0], here, points, used, width)
+        else:
+            ideal[point], fault = _crossing(point, sides, here, points, polygon, used, width)
+        if fault:
+            faults[point] = fault
+    legible = polygon.size / used >= LEAST_MM * tolerance
+    return Drawing(polygon, points, used, faults, legible, fits, tolerance, ideal)
+
+
+def vector_fault(drawn: complex, right: complex, width: float) -> str:
+    """What is wrong with one vector, all mm on paper: nothing (``""``), or a kind of :class:`Fault`.
+
+    Its end may be ``width`` off.
+    """
+    size, length = abs(drawn), abs(right)
+    if abs(drawn - right) <= width:
+        return ""
+    if length <= width or size <= width:
+        return LENGTH
+    if abs(drawn + right) <= width:
+        return SENSE
+    along, across = _split(drawn, right / length)
+    # A vector drawn too long is off its line in proportion.
+    if abs(across) <= width * max(1.0, size / length):
+        return LENGTH if along > 0 else SENSE
+    return DIRECTION if abs(size - length) <= width else VECTOR
+
+
+def ancestors(polygon: Polygon, point: str) -> frozenset[str]:
+    """The points, but for the pole, that a point is found from."""
+    found: set[str] = set()
+    waiting = [point]
+    while waiting:
+        here = waiting.pop()
+        for side in polygon.hangs.get(here, ()):
+            anchor = _anchor(side, here)
+            if anchor != polygon.pole and anchor not in found:
+                found.add(anchor)
+                waiting.append(anchor)
+    return frozenset(found)
+
+
+def _anchor(side: Side, point: str) -> str:
+    return side.start if side.end == point else side.end
+
+
+def _split(vector: complex, along: complex) -> tuple[float, float]:
+    """Its components along a unit vector, and 90 degrees ahead."""
+    turned = vector * along.conjugate()
+    return turned.real, turned.imag
+
+
+def _known(
+    point: str,
+    side: Side,
+    here: Mapping[str, complex],
+    drawn: Mapping[str, complex],
+    scale: float,
+    width: float,
+) -> tuple[complex, Fault | None]:
+    """Where a vector of known length leads from the student's own point, and what is wrong with the one drawn."""
+    anchor = _anchor(side, point)
+    right = (side.value if side.end == point else -side.value) / scale
+    ideal = here[anchor] + right
+    if point not in drawn:
+        return ideal, Fault(MISSING)
+    kind = vector_fault(drawn[point] - here[anchor], right, width)
+    if not kind:
+        return ideal, None
+    for other in here:
+        if other != anchor and abs(drawn[point] - here[other] - right) <= width:
+            return ideal, Fault(HUNG, side, other, Fault(kind, side))
+    return ideal, Fault(kind, side)
+
+
+def _crossing(
+    point: str, sides: tuple[Side, ...], here: Mapping[str, complex], drawn: Mapping[str, complex],
+    polygon: Polygon, scale: float, width: float,
+) -> tuple[complex, Fault | None]:  # fmt: skip
+    """Where two lines meet that are drawn from the student's own points, and what is wrong with the point drawn."""
+    anchors = tuple(_anchor(side, point) for side in sides)
+    ideal = _meeting(sides, [here[a] for a in anchors])
+    if ideal is None:  # as one line: where it should be, from the first
+        ideal = here[anchors[0]] + (polygon.points[point] - polygon.points[anchors[0]]) / scale
+    if point not in drawn:
+        return ideal, Fault(MISSING)
+    there = drawn[point]
+    good = [_off(side, there, here[a]) <= width for side, a in zip(sides, anchors, strict=True)]
+    if all(good):
+        # Lines that are drawn from one point meet there, whatever their directions.
+        collapsed = all(
+            abs(there - here[a]) <= width < abs(s.value) / scale for s, a in zip(sides, anchors, strict=True)
+        )
+        return ideal, Fault(VECTOR) if collapsed else None
+    others = [[q for q in here if q != a] for a in anchors]
+    elsewhere = [_through(side, there, some, here, width) for side, some in zip(sides, others, strict=True)]
+    if not any(good):
+        if all(elsewhere) and elsewhere[0] != elsewhere[1]:
+            return ideal, Fault(HUNG, sides[0], elsewhere[0], Fault(VECTOR))
+        return ideal, Fault(VECTOR)
+    bad = good.index(False)
+    right_one, anchor = sides[1 - bad], here[anchors[1 - bad]]
+    fault = Fault(DIRECTION, sides[bad])
+    # Through the other line's own point both lines would meet there, and nothing would be drawn.
+    if elsewhere[bad] and elsewhere[bad] != anchors[1 - bad]:
+        fault = Fault(HUNG, sides[bad], elsewhere[bad], fault)
+    if abs(there - (2 * anchor - ideal)) <= 2 * width:
+        fault = Fault(SENSE, right_one, plainer=fault)
+    return ideal, fault
+
+
+def _off(side: Side, there: complex, through: complex) -> float:
+    """How far a point is from a side's line through another."""
+    return abs(_split(there - through, side.along)[1])
+
+
+def _through(side: Side, there: complex, names: list[str], here: Mapping[str, complex], width: float) -> str:
+    """Through which of these points a side's line goes that a drawn point is on; none when through none."""
+    nearest = min(names, key=lambda q: _off(side, there, here[q]), default="")
+    return nearest if nearest and _off(side, there, here[nearest]) <= width else ""
+
+
+def _meeting(sides: tuple[Side, ...], through: list[complex]) -> complex | None:
+    """Where two lines meet; None for lines that are as good as parallel."""
+    u, v = sides[0].along, sides[1].along
+    slope = (u.conjugate() * v).imag
+    if abs(slope) < 1e-6:
+        return None
+    return through[0] + u * ((through[1] - through[0]).conjugate() * v).imag / slope
+
+
+# ------------------------------------------------------------------------------ scale
+
+
+def _scale(
+    polygon: Polygon, points: Mapping[str, complex], stated: float | None, width: float
+) -> tuple[float, bool]:
+    """The scale to judge at, and whether the stated one is it.
+
+    Each known vector is right for a range of scales. The stated scale is taken, unless it makes none of them
+    right and another makes several right; without one, that which makes most of them right.
+    """
+    ranges = list(_ranges(polygon, points, width))
+    best, count = _most_covered(ranges)
+    if stated is not None:
+        agrees = any(0 < low <= 1 / stated <= high for low, high in ranges)
+        is_other = count > 1 and abs(best * stated - 1) > _SAME_SCALE
+        return (1 / best, False) if is_other and not agrees else (stated, True)
+    if count:
+        return 1 / best, True
+    return _by_length(polygon, points), True
+
+
+def _ranges(polygon: Polygon, points: Mapping[str, complex], width: float) -> Iterator[tuple[float, float]]:
+    """For each known vector that is drawn, the mm of paper for a unit between which it is right."""
+    for side in polygon.sides:
+        if not (side.is_known and side.start in points and side.end in points and side.value):
+            continue
+        drawn, size = points[side.end] - points[side.start], abs(side.value)
+        along, across = _split(drawn, side.value / size)
+        if abs(across) > width:
+            continue
+        half = (width**2 - across**2) ** 0.5
+        if along + half > 0:
+            yield max(along - half, 0.0) / size, (along + half) / size
+
+
+def _most_covered(ranges: list[tuple[float, float]]) -> tuple[float, int]:
+    """The middle of what most of the ranges have in common, and their number; of several, the first's.
+
+    A vector as short as the tolerance is right down to no length at all: it bounds a scale, and tells none.
+    """
+    best, count = 0.0, 0
+    for low, _ in ranges:
+        if not low:
+            continue
+        here = [(a, b) for a, b in ranges if a <= low <= b]
+        if len(here) > count:
+            best, count = (max(a for a, _ in here) + min(b for _, b in here)) / 2, len(here)
+    return best, count
+
+
+def _by_length(polygon: Polygon, points: Mapping[str, complex]) -> float:
+    """The scale at which the first known vector has its length, whatever its direction."""
+    for side in polygon.sides:
+        if side.is_known and side.value and side.start in points and side.end in points:
+            length = abs(points[side.end] - points[side.start])
+            if length > 0:
+                return abs(side.value) / length
+    return max(polygon.size, 1.0)

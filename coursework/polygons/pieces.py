@@ -1,0 +1,101 @@
+r"""The pieces that polygons are made of: a driven crank, two bars that meet, a rod and its slider, a slotted guide.
+
+Each gives the sides of a velocity polygon (``_v``) or of an acceleration polygon (``_a``) in order of construction.
+Image points have the small letters of their points. Vectors are complex numbers in mm; what a bar's length
+and rate are called is told as LaTeX.
+"""
+
+from __future__ import annotations
+
+from coursework.polygons.polygon import Polygon, Side, normal, tangential, turning
+
+
+def velocity_polygon(*pieces, scale=None):
+    return Polygon("velocity", sum(pieces, ()), scale)
+
+
+def acceleration_polygon(*pieces, scale=None):
+    return Polygon("acceleration", sum(pieces, ()), scale)
+
+
+def crank_v(A, line, vector, omega, number="2", length="r_2"):
+    """A crank of known rate about a fixed point."""
+    return (turning("p_v", A.lower(), A, line, vector, omega, rf"{length} \left|\omega_{number}\right|"),)
+
+
+def crank_a(A, line, vector, omega, alpha=0.0):
+    """The same; one that turns steadily has no tangential part."""
+    a = A.lower()
+    square, growth = r"r_2\,\omega_2^2", r"r_2 \left|\alpha_2\right|"
+    if not alpha:
+        return (Side("p_a", a, rf"\vec{{a}}_{{{A}}}", -(omega**2) * vector, rf"\parallel {line}", square),)
+    return (
+        normal("p_a", f"{a}'", A, line, vector, omega, square),
+        tangential(f"{a}'", a, A, line, vector, alpha, growth),
+    )
+
+
+def two_bars_v(B, A, C, AB, omega, CB, omega_C):
+    """The bar AB, whose end A is known, meets at B a bar that turns about the fixed point C."""
+    a, b = A.lower(), B.lower()
+    return (
+        turning(a, b, f"{B}/{A}", A + B, AB, omega),
+        turning("p_v", b, B, C + B, CB, omega_C),
+    )
+
+
+def two_bars_a(B, A, C, AB, omega, alpha, length, CB, omega_C, alpha_C, length_C):
+    """The same: the normal parts are known from the velocities."""
+    a, b = A.lower(), B.lower()
+    return (
+        normal(a, f"{b}'", f"{B}/{A}", A + B, AB, omega, rf"V_{{{B}/{A}}}^2 / {length}"),
+        normal("p_a", f"{b}''", B, C + B, CB, omega_C, rf"V_{B}^2 / {length_C}"),
+        tangential(f"{b}'", b, f"{B}/{A}", A + B, AB, alpha),
+        tangential(f"{b}''", b, B, C + B, CB, alpha_C),
+        Side("p_a", b, rf"\vec{{a}}_{B}", (1j * alpha_C - omega_C**2) * CB),
+    )
+
+
+def slider_v(B, A, AB, omega, v):
+    """The rod AB, whose end A is known, carries at B a slider that goes along x."""
+    a, b = A.lower(), B.lower()
+    return (
+        turning(a, b, f"{B}/{A}", A + B, AB, omega),
+        Side("p_v", b, rf"\vec{{V}}_{B}", v, r"\parallel Ox", way=1),
+    )
+
+
+def slider_a(B, A, AB, omega, alpha, length, acceleration):
+    a, b = A.lower(), B.lower()
+    return (
+        normal(a, f"{b}'", f"{B}/{A}", A + B, AB, omega, rf"V_{{{B}/{A}}}^2 / {length}"),
+        tangential(f"{b}'", b, f"{B}/{A}", A + B, AB, alpha),
+        Side("p_a", b, rf"\vec{{a}}_{B}", acceleration, r"\parallel Ox", way=1),
+    )
+
+
+def guide_v(A, of_guide, line, vector, omega, sliding):
+    """A guide that turns about a fixed point, and the block A that slides on it; ``vector`` goes from the guide's
+    pivot to A, ``sliding`` is positive away from it. ``of_guide`` is the guide's own point at A."""
+    a, own = A.lower(), of_guide.lower()
+    along = vector / abs(vector)
+    return (
+        turning("p_v", own, of_guide, line, vector, omega),
+        Side(own, a, rf"\vec{{V}}_{{{A}/{of_guide}}}", sliding * along, rf"\parallel {line}", way=along),
+    )
+
+
+def guide_a(A, of_guide, line, vector, omega, alpha, sliding, gain, length, rate):
+    """The same; the Coriolis term is laid off back from the image of A, ``gain`` is the rate of ``sliding``."""
+    a, own = A.lower(), of_guide.lower()
+    along = vector / abs(vector)
+    slide = f"{A}/{of_guide}"
+    return (
+        Side(
+            "k", a, rf"\vec{{a}}^c_{{{slide}}}", 2j * omega * sliding * along, rf"\perp {line}",
+            rf"2 \left|{rate}\right| V_{{{slide}}}", 1j * along,
+        ),
+        normal("p_a", f"{own}'", of_guide, line, vector, omega, rf"V_{{{of_guide}}}^2 / {length}"),
+        tangential(f"{own}'", own, of_guide, line, vector, alpha),
+        Side(own, "k", rf"\vec{{a}}^s_{{{slide}}}", gain * along, rf"\parallel {line}", way=along),
+    )  # fmt: skip

@@ -1,0 +1,1 @@
+"""Quantities as a graph of functions: evaluated, rounded, replaced."""

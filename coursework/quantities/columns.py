@@ -1,0 +1,36 @@
+"""Functions of one mechanism, applied to one or to many."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from coursework.errors import WrongValue
+
+
+def each(function: Callable[..., Any], *arguments: Any, dtype: Any = object) -> Any:
+    """``function`` of the arguments; element by element where some are arrays, which broadcast.
+
+    Lists and records are single values. ``dtype`` is that of the array of results: ``int``, ``str``, or objects.
+    """
+    arrays = [np.asarray(a) for a in arguments if isinstance(a, np.ndarray)]
+    if not arrays:
+        return function(*arguments)
+    shape = np.broadcast_shapes(*[a.shape for a in arrays])
+    columns = [np.broadcast_to(a, shape).ravel() if isinstance(a, np.ndarray) else a for a in arguments]
+    found = np.empty(int(np.prod(shape)), dtype=object)
+    for index in range(found.size):
+        found[index] = function(*[c[index] if isinstance(c, np.ndarray) else c for c in columns])
+    return found.reshape(shape) if dtype is object else found.reshape(shape).astype(dtype)
+
+
+def each_stacked(read, whole):
+    """``read`` of one thing, or of each in an array of objects; vectors along a last axis."""
+    if not isinstance(whole, np.ndarray):
+        return read(whole)
+    if whole.dtype != object or not whole.size:
+        raise WrongValue(f"joints is a list of joints, each a mapping; found {str(whole)[:60]!r}")
+    found = np.array([read(one) for one in whole.ravel()])
+    return found.reshape(whole.shape + found.shape[1:])

@@ -1,0 +1,456 @@
+"""The quantity graph: plain functions whose names are quantities and whose parameters are what they need.
+
+A request for some quantities is resolved into exactly the functions it needs, in order, and each is
+called once, on scalars or on arrays that broadcast; long arrays go through the whole request piece
+by piece. A parameter with a default is an *optional effect*: it is absent (the default holds) unless its
+value is given or the request calls for it.
+
+A function may carry a second, *stable* one (:func:`coursework.solution.stable`): the same quantity, by a way
+that keeps its digits everywhere but passes over quantities that the first one needs. It is taken unless
+one of those is given or mistaken, so that what a request gives always counts.
+
+A name that begins with an underscore is hidden: a function may need it, a request cannot name it.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coursework.errors import (
+    BrokenFunction,
+    CourseworkError,
+    Cycle,
+    MissingQuantity,
+    Undefined,
+    nearest,
+    unknown,
+)
+from coursework.system.blocks import joined, pieces
+
+Value = Any  #: a float, a complex number, a text, or an array of them
+
+
+def _place(function: Callable[..., Value]) -> str:
+    """Where a function of a course stands, for messages."""
+    code = getattr(function, "__code__", None)
+    name = getattr(function, "__name__", "a function")
+    return f"{name} ({Path(code.co_filename).name}, line {code.co_firstlineno})" if code else name
+
+
+def plain_scalar(value: Value) -> Value:
+    """A numpy scalar as Python's own; vectors are left alone."""
+    zero_dimensional = isinstance(value, np.generic) or (isinstance(value, np.ndarray) and not value.ndim)
+    return value.item() if zero_dimensional else value
+
+
+def _right(name: str) -> str:
+    """The name under which a replaced quantity keeps its right value."""
+    return f"{name} (right)"
+
+
+@dataclass(frozen=True)
+class Node:
+    """One quantity: the function that gives it and the names of its arguments, in call order."""
+
+    function: Callable[..., Value]
+    arguments: tuple[str, ...]
+    defaults: Mapping[str, Value]
+    stable: Node | None = None  #: the same quantity by a way that keeps its digits everywhere
+
+    @staticmethod
+    def of(function: Callable[..., Value]) -> Node:
+        parameters = inspect.signature(function).parameters
+        defaults = {p.name: p.default for p in parameters.values() if p.default is not p.empty}
+        stable = getattr(function, "__stable__", None)
+        return Node(function, tuple(parameters), defaults, None if stable is None else Node.of(stable))
+
+    @property
+    def needs(self) -> frozenset[str]:
+        """The names that either function takes."""
+        return frozenset(self.arguments) | (self.stable.needs if self.stable else frozenset())
+
+    def renamed(self, names: Mapping[str, str]) -> Node:
+        """With arguments of other names."""
+        return Node(
+            self.function,
+            tuple(names.get(a, a) for a in self.arguments),
+            {names.get(a, a): v for a, v in self.defaults.items()},
+            self.stable and self.stable.renamed(names),
+        )
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """Some quantities computed by another function: what a named mistake is.
+
+    ``function`` gives the value of ``targets[0]``, or a tuple of values when there are several. A
+    parameter of its that bears a target's name stands for the right value of that target.
+    """
+
+    targets: tuple[str, ...]
+    function: Callable[..., Value]
+
+
+def _is_hidden(name: str) -> bool:
+    return name.startswith("_")
+
+
+def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
+    """Call the functions of a plan in order, and put what they give among the values."""
+    for name, function, arguments in steps:
+        try:
+            values[name] = function(*[values[a] for a in arguments])
+        except CourseworkError:
+            raise
+        except (ArithmeticError, ValueError) as fault:
+            told = ", ".join(f"{a} = {values[a]}" for a in arguments)[:300]
+            raise Undefined(f"{name} does not exist for {told} ({fault})") from fault
+        except Exception as fault:
+            raise BrokenFunction(f"{_place(function)} fails: {type(fault).__name__}: {fault}") from fault
+
+
+def _missing(found: Mapping[str, str]) -> MissingQuantity:
+    """What is said of quantities that are not given; with each, the one that needs it first."""
+    names = tuple(found)
+    listed = f"{', '.join(names[:-1])} and {names[-1]}" if names[1:] else names[0]
+    are = "are" if names[1:] else "is"
+    needing = set(found.values())
+    who = needing.pop() if len(needing) == 1 else "the request"
+    return MissingQuantity(
+        f"{who} needs {listed}, which {are} not given" if who else f"{listed} {are} not given", names
+    )
+
+
+class Graph:
+    """Quantities by name. Immutable; plans are remembered for each shape of request."""
+
+    def __init__(self, functions: Mapping[str, Callable[..., Value]]):
+        self._build({name: Node.of(f) for name, f in functions.items()}, frozenset())
+
+    def _build(
+        self, nodes: Mapping[str, Node], shadowed: frozenset[str], effects: tuple[str, ...] | None = None
+    ) -> None:
+        optional = {p for node in nodes.values() for p in node.defaults}
+        self._effects = tuple(n for n in nodes if n in optional) if effects is None else effects
+        self._nodes = dict(nodes)
+        self._shadowed = shadowed
+        self._set_aside: frozenset[str] = frozenset()
+        self._plans: dict[object, tuple[tuple[str, ...], list, dict]] = {}
+        leaves = {a for node in nodes.values() for a in node.needs} - set(nodes)
+        self._leaves = frozenset(leaves)
+        self._known = frozenset(n for n in nodes if not _is_hidden(n)) | leaves
+        self._passed_over = {
+            name: self._ancestors(node.arguments) - self._ancestors(node.stable.arguments)
+            for name, node in nodes.items()
+            if node.stable is not None
+        }
+
+    def _ancestors(self, names: Iterable[str]) -> frozenset[str]:
+        """The names and all that they need, by the first of each node's functions."""
+        found: set[str] = set()
+        waiting = list(names)
+        while waiting:
+            name = waiting.pop()
+            if name not in found:
+                found.add(name)
+                waiting.extend(self._nodes[name].arguments if name in self._nodes else ())
+        return frozenset(found)
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """The names that have a function, in the order they were defined; not the hidden ones."""
+        return tuple(n for n in self._nodes if not _is_hidden(n))
+
+    @cached_property
+    def textbook(self) -> Graph:
+        """The same graph, every quantity by the first of its functions."""
+        graph = Graph.__new__(Graph)
+        nodes = {name: replace(node, stable=None) for name, node in self._nodes.items()}
+        graph._build(nodes, self._shadowed, self._effects)
+        return graph
+
+    @property
+    def leaves(self) -> frozenset[str]:
+        """The names that functions need and no function gives."""
+        return self._leaves
+
+    def node(self, name: str) -> Node:
+        if name not in self._nodes:
+            raise unknown("quantity", name, self._nodes)
+        return self._nodes[name]
+
+    def effects(self) -> tuple[str, ...]:
+        """The quantities that a request may call for as optional effects."""
+        return self._effects
+
+    def plan(
+        self, wanted: Sequence[str], given: Iterable[str] = (), effects: Iterable[str] = ()
+    ) -> tuple[str, ...]:
+        """The quantities that a request evaluates, in order.
+
+        Raises
+        ------
+        UnknownName
+            A wanted quantity or an effect that the graph does not have.
+        MissingQuantity
+            A needed quantity that is neither given nor computed.
+        Cycle
+            Quantities that need each other.
+        """
+        return self._plan(tuple(wanted), frozenset(given), frozenset(effects))[0]
+
+    def _plan(
+        self,
+        wanted: tuple[str, ...],
+        given: frozenset[str],
+        effects: frozenset[str],
+        found: frozenset[str] = frozenset(),
+    ):
+        key = (wanted, given, effects, found)
+        if key not in self._plans:
+            self._plans[key] = self._resolve(wanted, given, effects, found)
+        return self._plans[key]
+
+    def _resolve(
+        self,
+        wanted: tuple[str, ...],
+        given: frozenset[str],
+        effects: frozenset[str],
+        found: frozenset[str],
+    ):
+        for effect in effects:
+            if effect not in self._effects:
+                raise unknown("effect", effect, self._effects)
+        effects = effects | {_right(effect) for effect in effects}
+        order: dict[str, tuple[Callable, tuple[str, ...]]] = {}
+        constants: dict[str, Value] = {}
+        path: list[str] = []
+        missing: dict[str, str] = {}  # and what needs each first
+
+        def visit(name: str) -> None:
+            if name in given or name in order or name in found:
+                return
+            if name not in self._nodes:
+                missing.setdefault(name, next((p for p in reversed(path) if not _is_hidden(p)), ""))
+                return
+            if name in path:
+                loop = " -> ".join([*path[path.index(name) :], name])
+                raise Cycle(f"quantities need each other: {loop}; give one of them a value")
+            path.append(name)
+            node = self._nodes[name]
+            if node.stable is not None and not self._passed_over[name] & given:
+                node = node.stable
+            arguments = []
+            for argument in node.arguments:
+                if argument in node.defaults and argument not in given and argument not in effects:
+                    constant = f"{name}.{argument}"
+                    constants[constant] = node.defaults[argument]
+                    arguments.append(constant)
+                else:
+                    visit(argument)
+                    arguments.append(argument)
+            path.pop()
+            order[name] = (node.function, tuple(arguments))
+
+        for name in wanted:
+            if name not in self._known and name not in given:
+                raise unknown("quantity", name, self.quantities)
+            visit(name)
+        if missing:
+            raise _missing(missing)
+        steps = [(name, function, arguments) for name, (function, arguments) in order.items()]
+        return tuple(order), steps, constants
+
+    def evaluate(
+        self,
+        wanted: Sequence[str],
+        given: Mapping[str, Value],
+        effects: Iterable[str] = (),
+        found: Mapping[str, Value] | None = None,
+    ) -> dict[str, Value]:
+        """The wanted quantities, from the given ones.
+
+        A given quantity is used as it is, whether or not a function could compute it. Values are
+        scalars or arrays that broadcast; nothing is copied or checked but names. A function must give at
+        each place of an array what it would give for the values there alone.
+
+        ``found`` holds what :meth:`everything` gave for the same given values and effects, from this graph or
+        from the one that it was made of by :meth:`replacing` or :meth:`with_functions`: what still holds
+        of it is not computed again.
+
+        Raises
+        ------
+        UnknownName, MissingQuantity, Cycle
+            As :meth:`plan`, and for a given name that nothing uses.
+        Undefined
+            A function divides by zero or leaves its domain on scalars.
+        """
+        values = self._values(tuple(wanted), given, effects, found or {})
+        return {name: values[name] for name in wanted}
+
+    def everything(
+        self,
+        wanted: Sequence[str],
+        given: Mapping[str, Value],
+        effects: Iterable[str] = (),
+        found: Mapping[str, Value] | None = None,
+    ) -> dict[str, Value]:
+        """As :meth:`evaluate`, with all that is met on the way, hidden ones too.
+
+        Of arrays so long that they are gone through piece by piece, only what is wanted.
+        """
+        values = self._values(tuple(wanted), given, effects, found or {})
+        return {name: value for name, value in values.items() if name in self._nodes}
+
+    def walk(
+        self, wanted: Sequence[str], given: Mapping[str, Value], effects: Iterable[str] = ()
+    ) -> tuple[str, ...]:
+        """The names of every quantity that the textbook way meets on the way to the wanted ones, in its order."""
+        met = self.textbook.plan(tuple(wanted), self._renamed(given), effects)
+        return tuple(name for name in met if not _is_hidden(name))
+
+    def _renamed(self, given: Mapping[str, Value]) -> Mapping[str, Value]:
+        if not self._shadowed:
+            return given
+        return {_right(k) if k in self._shadowed else k: v for k, v in given.items()}
+
+    def _values(
+        self,
+        wanted: tuple[str, ...],
+        given: Mapping[str, Value],
+        effects: Iterable[str],
+        found: Mapping[str, Value],
+    ) -> dict[str, Value]:
+        given = self._renamed(given)
+        names = frozenset(given)
+        if not names <= self._known:
+            odd = min(names - self._known)
+            raise unknown("quantity", odd, self._known)
+        long = pieces(given)
+        # What was found of long arrays is whole, and would not fit their pieces.
+        found = {} if long else {_right(n) if n in self._set_aside else n: v for n, v in found.items()}
+        _, steps, constants = self._plan(wanted, names, frozenset(effects), frozenset(found))
+        values = {**found, **given, **constants}
+        with np.errstate(all="ignore"):
+            if long is None:
+                _run(steps, values)
+                return values
+            cut, places = long
+            moving = self._moving(steps, cut)
+            _run([step for step in steps if step[0] not in moving], values)
+            steps = [step for step in steps if step[0] in moving]
+            kept = moving.intersection(wanted)
+
+            def compute(place: slice) -> dict[str, Value]:
+                piece = fixed | {name: given[name][place] for name in cut}
+                with np.errstate(all="ignore"):
+                    _run(steps, piece)
+                return {name: piece[name] for name in kept}
+
+            fixed = dict(values)
+            values |= joined(compute, places, len(given[cut[0]]))
+        return values
+
+    @staticmethod
+    def _moving(steps: Sequence[tuple], cut: Iterable[str]) -> set[str]:
+        """The quantities of a plan that depend on some names, by the functions of the plan."""
+        reached = set(cut)
+        for name, _, arguments in steps:
+            if reached.intersection(arguments):
+                reached.add(name)
+        return reached.difference(cut)
+
+    def replacing(self, replacement: Replacement) -> Graph:
+        """The same graph with some quantities computed by another function.
+
+        Raises
+        ------
+        UnknownName
+            A target that the graph neither computes nor needs.
+        """
+        targets = replacement.targets
+        for target in targets:
+            if target not in self._known:
+                raise unknown("quantity", target, self._known)
+        # A way that passes over a target would not see the mistake.
+        nodes = {
+            name: replace(node, stable=None) if self._passed_over.get(name, set()) & set(targets) else node
+            for name, node in self._nodes.items()
+        }
+        # The right value of a target is that of the right graph, all the way up.
+        touched = self.descendants(targets)
+        for name in touched & self._nodes.keys():
+            nodes[_right(name)] = self._nodes[name].renamed({n: _right(n) for n in touched})
+        wrong = Node.of(replacement.function).renamed({n: _right(n) for n in targets})
+        if len(targets) == 1:
+            nodes[targets[0]] = wrong
+        else:
+            together = " and ".join(targets) + " (wrong)"
+            nodes[together] = wrong
+            for index, target in enumerate(targets):
+                nodes[target] = Node(lambda values, i=index: values[i], (together,), {})
+        graph = Graph.__new__(Graph)
+        graph._build(nodes, frozenset(t for t in targets if t not in self._nodes), self._effects)
+        graph._set_aside = touched & self._nodes.keys()
+        return graph
+
+    def observed(self, observe: Callable[[str, Value], Value]) -> Graph:
+        """The same graph, with every value handed on as ``observe(name, value)`` gives it; hidden ones as
+        they are."""
+
+        def wrapped(name: str, node: Node) -> Node:
+            def function(*arguments: Value) -> Value:
+                return observe(name, node.function(*arguments))
+
+            stable = wrapped(name, node.stable) if node.stable else None
+            return replace(node, function=function, stable=stable)
+
+        graph = Graph.__new__(Graph)
+        nodes = {n: node if _is_hidden(n) else wrapped(n, node) for n, node in self._nodes.items()}
+        graph._build(nodes, self._shadowed, self._effects)
+        return graph
+
+    def descendants(self, names: Iterable[str]) -> frozenset[str]:
+        """The names themselves and every quantity that depends on one of them."""
+        found = set(names)
+        grown = True
+        while grown:
+            more = {n for n, node in self._nodes.items() if found & node.needs} - found
+            found |= more
+            grown = bool(more)
+        return frozenset(found)
+
+    def with_functions(self, functions: Mapping[str, Callable[..., Value]]) -> Graph:
+        """The same graph with more quantities.
+
+        Raises
+        ------
+        ValueError
+            A name that the graph has already.
+        """
+        twice = set(functions) & set(self._nodes)
+        if twice:
+            raise ValueError(f"the graph has {min(twice)!r} already{nearest(min(twice), self._nodes)}")
+        graph = Graph.__new__(Graph)
+        nodes = {**self._nodes, **{name: Node.of(f) for name, f in functions.items()}}
+        graph._build(nodes, self._shadowed)
+        return graph
+
+
+def call_on_quantities(function: Any, values: Mapping[str, Any], helpers: tuple = ()) -> Any:
+    """Call a function that draws, or states what is drawn, with the quantities its parameters name."""
+    name, graph = function.__name__, graph_of(function, helpers)
+    return graph.evaluate((name,), {n: v for n, v in values.items() if n in graph.leaves})[name]
+
+
+@lru_cache(maxsize=256)
+def graph_of(function: Any, helpers: tuple = ()) -> Graph:
+    """The same graph for all variants, so that its plans are made once."""
+    return Graph({**{f.__name__: f for f in helpers}, function.__name__: function})

@@ -1,0 +1,162 @@
+"""What rounding on the way does to an answer: the honest student who keeps a few digits at each step.
+
+A student who writes every intermediate value down to ``digits`` significant digits does everything right, and
+lands beside the reference. How far at most is the *envelope*: the marking widens its tolerance to it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from coursework.quantities.graph import Graph
+
+#: Rounding errors compound a little beyond their first order.
+_BEYOND_FIRST_ORDER = 1.1
+
+
+def rounded(value: Any, digits: int) -> Any:
+    """Numbers to significant digits, element by element; whatever is no number stays as it is."""
+    if isinstance(value, tuple):
+        parts = [rounded(part, digits) for part in value]
+        return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
+    if isinstance(value, (str, bool)) or not _is_number(value):
+        return value
+    if np.iscomplexobj(value):
+        return rounded(np.real(value), digits) + 1j * rounded(np.imag(value), digits)
+    if isinstance(value, (int, float)):
+        return float(f"{value:.{digits - 1}e}") if math.isfinite(value) else value
+    array = np.asarray(value)
+    if array.dtype.kind != "f":
+        return value
+    step = 2 * half_step(array, digits)
+    with np.errstate(all="ignore"):
+        return np.where(step > 0, np.rint(array / step) * step, array)[()]
+
+
+def half_step(value: Any, digits: int) -> np.ndarray:
+    """Half of the last of so many digits: what rounding moves a number by at most; 0 for 0."""
+    size = np.abs(np.asarray(value, dtype=float))
+    with np.errstate(all="ignore"):
+        decade = np.floor(np.log10(np.where(size > 0, size, 1.0)))
+    return np.where(size > 0, 0.5 * 10.0 ** (decade + 1 - digits), 0.0)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float, complex)) or (
+        isinstance(value, (np.ndarray, np.generic)) and value.dtype.kind in "ifc"
+    )
+
+
+def student_who_rounds(
+    graph: Graph, wanted: Sequence[str], given: Mapping[str, Any], effects: Iterable[str], digits: int
+) -> dict[str, Any]:
+    """The answers of a student who takes the textbook way and rounds each value that they write down.
+
+    ``given`` holds scalars or arrays that broadcast. Errors are those of :meth:`Graph.evaluate`.
+    """
+    rounding = graph.textbook.observed(lambda name, value: rounded(value, digits))
+    return rounding.evaluate(wanted, given, effects)
+
+
+def envelope(
+    graph: Graph,
+    wanted: Sequence[str],
+    given: Mapping[str, Any],
+    effects: Iterable[str],
+    digits: int,
+    directions: Collection[str] = (),
+) -> dict[str, np.ndarray]:
+    """How far from the reference such a student lands at most, in the worst combination of roundings.
+
+    ``given`` holds scalars or arrays of one shape ``(n,)``, cases among them. Each step is moved by half of its
+    last digit, alone; the moves of an answer add up. ``directions`` are angles known up to a turn. Gives an array ``(n,)`` a quantity, in its unit:
+    distances for vectors, amounts of angle for angles; 0 for cases and whole numbers, infinite or NaN
+    where some step does not stand being moved.
+    """
+    wanted = tuple(wanted)
+    textbook = graph.textbook
+    count = max((np.size(v) for v in given.values() if np.ndim(v)), default=1)
+    columns = _columns(textbook, wanted, given, effects)
+    spread = {n: _down(v, count) for n, v in given.items()}
+
+    def moved(name: str, value: Any) -> Any:
+        for column, part in columns.get(name, ()):
+            value = _moved(value, part, column, len_all, digits)
+        return value
+
+    len_all = 1 + sum(len(places) for places in columns.values())
+    found = textbook.observed(moved).evaluate(wanted, spread, effects)
+    return {name: _total(value, count, name in directions) for name, value in found.items()}
+
+
+def _down(value: Any, count: int) -> Any:
+    """A given value as a column, so that the moves lie side by side."""
+    if isinstance(value, str):
+        return value
+    return np.broadcast_to(np.asarray(value), (count,))[:, None] if np.ndim(value) else value
+
+
+def _columns(
+    graph: Graph, wanted: Sequence[str], given: Mapping[str, Any], effects: Iterable[str]
+) -> dict[str, list[tuple[int, Any]]]:
+    """For each step, the columns in which it is moved, and which of its components there.
+
+    One column for a number, two for a complex one, one a coordinate of a vector.
+    """
+    first = {n: (v if isinstance(v, str) or not np.ndim(v) else v[:1]) for n, v in given.items()}
+    names = [n for n in graph.plan(tuple(wanted), frozenset(given), effects) if not n.startswith("_")]
+    values = graph.evaluate(names, first, effects)
+    columns: dict[str, list[tuple[int, Any]]] = {}
+    column = 1
+    for name in names:
+        value = values[name]
+        if isinstance(value, (str, bool, int, tuple)) or not _is_number(value):
+            continue
+        if np.iscomplexobj(value):
+            parts: list[Any] = ["real", "imag"]
+        elif np.asarray(value).dtype.kind != "f":
+            continue
+        else:
+            # Numbers are single, or one in an array of one variant; anything longer is a vector.
+            is_vector = np.ndim(value) == 2 or (np.ndim(value) == 1 and np.shape(value) != (1,))
+            parts = list(range(np.shape(value)[-1])) if is_vector else [None]
+        columns[name] = [(column + i, part) for i, part in enumerate(parts)]
+        column += len(parts)
+    return columns
+
+
+def _moved(value: Any, part: Any, column: int, width: int, digits: int) -> Any:
+    """The value with one column of it moved by half of its last digit."""
+    vector = isinstance(part, int)
+    value = np.asarray(value)
+    if vector:
+        base = value if value.ndim == 3 else value.reshape(1, 1, -1)
+        full = np.array(np.broadcast_to(base, (len(base), width, base.shape[-1])))
+        full[:, column, part] += half_step(full[:, column, part], digits)
+        return full
+    lead = value.shape[0] if value.ndim == 2 else 1
+    full = np.array(np.broadcast_to(value, (lead, width)))
+    if part == "imag":
+        full[:, column] += 1j * half_step(full[:, column].imag, digits)
+    else:
+        full[:, column] += half_step(full[:, column].real, digits)
+    return full
+
+
+def _total(value: Any, count: int, is_direction: bool) -> np.ndarray:
+    """The moves of an answer added up: from its first column, where nothing is moved, to the others."""
+    value = np.asarray(value)
+    if value.dtype.kind not in "fc" or value.ndim < 2:
+        return np.zeros(count)
+    if value.ndim == 3:
+        moves = np.linalg.norm(value - value[:, :1], axis=-1)
+    else:
+        moves = np.abs(value - value[:, :1])
+        if is_direction:
+            moves = np.minimum(moves, np.abs(moves - 360.0))
+    with np.errstate(all="ignore"):
+        return np.broadcast_to(_BEYOND_FIRST_ORDER * moves.sum(axis=1), (count,))

@@ -1,0 +1,1 @@
+"""From a text to a value: spelling, units, expressions, equations, choices."""

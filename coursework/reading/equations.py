@@ -1,0 +1,148 @@
+"""Equations as people write them: two formulas with an equals sign between them."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from numbers import Real
+
+import numpy as np
+
+from coursework.reading.expressions import parse_expression
+from coursework.reading.reading import Reading, bare_value, reading_of
+from coursework.reading.spelling import shorten, tidy
+from coursework.reading.trees import Expression, Operation
+from coursework.reading.vocabulary import MAX_LENGTH, Unreadable, Value
+
+
+@dataclass(frozen=True)
+class Equation:
+    """Two formulas with an equals sign between them."""
+
+    text: str
+    left: Expression
+    right: Expression
+
+    @property
+    def variables(self) -> frozenset[str]:
+        return self.left.variables | self.right.variables
+
+    def difference(self, values: Mapping[str, object]) -> Value:
+        """Left side minus right side."""
+        return self.left.evaluate(values) - self.right.evaluate(values)
+
+    def gap(self, values: Mapping[str, np.ndarray], count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Left side minus right side at points, of shape ``(count,)``, and the sum of their sizes.
+
+        NaN where there is no value.
+        """
+        with np.errstate(all="ignore"):
+            left = np.broadcast_to(value_or_nan(self.left, values), (count,))
+            right = np.broadcast_to(value_or_nan(self.right, values), (count,))
+            return left - right, np.abs(left) + np.abs(right)
+
+    def with_numbers(self, values: Mapping[str, float]) -> Equation:
+        """The equation with numbers in place of some of its symbols."""
+        left, right = (Expression(self.text, _with_numbers(s.root, values)) for s in (self.left, self.right))
+        return Equation(self.text, left, right)
+
+    def in_degrees(self) -> Equation | None:
+        """The equation with numbers that stand for angles taken as degrees: ``sin(theta2 + 90)``, ``cos(90)``.
+
+        None where no such number is.
+        """
+        sides = [_in_degrees(side.root) for side in (self.left, self.right)]
+        if sides == [self.left.root, self.right.root]:
+            return None
+        return Equation(self.text, *(Expression(self.text, root) for root in sides))
+
+
+def _in_degrees(node: Operation) -> Operation:
+    """A tree in which plain numbers under a sine, a cosine, a tangent or ``e^(i …)`` are degrees, alone or added."""
+    args = tuple(map(_in_degrees, node.args))
+    if node.kind == "call" and node.name in ("sin", "cos", "tan"):
+        args = (_angle_in_degrees(args[0]),)
+    elif node.kind == "call" and node.name == "exp":
+        args = (_exponent_in_degrees(args[0]),)
+    elif node.kind == "power" and args[0] == Operation("constant", "e"):
+        args = (args[0], _exponent_in_degrees(args[1]))
+    return replace(node, args=args) if args != node.args else node
+
+
+def _angle_in_degrees(node: Operation) -> Operation:
+    """An angle whose plain numbers are degrees; what is said in terms of pi is in radians."""
+    if node.kind in ("sum", "neg"):
+        return replace(node, args=tuple(map(_angle_in_degrees, node.args)))
+    is_plain = node.constant and not (node.angle or node.speaks_of_pi or node.has_inverse)
+    return Operation("degree", args=(node,), angle=True) if is_plain else node
+
+
+def _exponent_in_degrees(node: Operation) -> Operation:
+    """An exponent of e in which plain numbers beside the imaginary unit are degrees: ``i*90``, ``i(theta2 + 90)``."""
+    if node.kind in ("sum", "neg"):
+        return replace(node, args=tuple(map(_exponent_in_degrees, node.args)))
+    if node.kind != "product" or sum(arg == _IMAGINARY for arg in node.args) != 1:
+        return node
+    others = [arg for arg in node.args if arg != _IMAGINARY]
+    if node.constant and not any(arg.angle or arg.speaks_of_pi or arg.has_inverse for arg in others):
+        return Operation("degree", args=(node,))
+    if len(others) == 1:
+        return replace(node, args=tuple(a if a == _IMAGINARY else _angle_in_degrees(a) for a in node.args))
+    return node
+
+
+_IMAGINARY = Operation("constant", "i")
+
+
+def _with_numbers(node: Operation, values: Mapping[str, float]) -> Operation:
+    if node.kind == "variable" and node.name in values:
+        return Operation("number", repr(values[node.name]))
+    return replace(node, args=tuple(_with_numbers(arg, values) for arg in node.args))
+
+
+def parse_equation(text: str, variables: Iterable[str]) -> Equation:
+    """Read an equation over the given variables; there must be exactly one equals sign, which may be ``==``.
+
+    Raises
+    ------
+    Unreadable
+        As :func:`parse_expression`, and ``no_equals_sign``, ``two_equals_signs``.
+    """
+    if len(text) > MAX_LENGTH:
+        message = f"an equation of {len(text)} characters is not read; at most {MAX_LENGTH} are"
+        raise Unreadable(message, code="too_long", found=text)
+    sides = re.split("==?", tidy(text).strip("$ "))
+    if len(sides) != 2:
+        code = "no_equals_sign" if len(sides) == 1 else "two_equals_signs"
+        raise Unreadable(
+            f"an equation has one equals sign, {shorten(text)!r} has {len(sides) - 1}", code=code, found=text
+        )
+    variables = tuple(variables)
+    left, right = (parse_expression(side, variables) for side in sides)
+    return Equation(text, left, right)
+
+
+def value_or_nan(expression: Expression, values: Mapping[str, np.ndarray]) -> Value:
+    """The value, NaN where there is none."""
+    try:
+        return expression.evaluate(values)
+    except Unreadable:
+        return math.nan
+
+
+# --- equations --------------------------------------------------------------------------
+
+
+def read_equation(text: object, variables: Iterable[str]) -> Reading:
+    """An equation over the given variables; the value is an :class:`~coursework.equations.Equation`."""
+    text = bare_value(text)
+    if isinstance(text, Real) and not isinstance(text, bool):
+        text = str(text)
+
+    def read(plain: str) -> Reading:
+        plain = plain.rstrip(" .;,")
+        return Reading(text, "read", (parse_equation(plain, tuple(variables)),), (plain,))
+
+    return reading_of(text, read)

@@ -1,0 +1,118 @@
+"""TODO coursework/reading/points.py"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from numbers import Real
+
+from coursework.reading.digits import in_unit, written_amount
+from coursework.reading.numbers import NAME, RATIO, read_amounts, target_unit, without_name
+from coursework.reading.reading import Reading, Stop, bare_value, reading_of
+from coursework.reading.spelling import shorten
+from coursework.reading.units import Unit, find_unit
+from coursework.reading.vocabulary import Unreadable
+
+# --- points -----------------------------------------------------------------------------
+
+_POINT = re.compile(r"(?:[^\W\d_]\w{0,9}\s*)?[(\[{<](?P<inside>.*)[)\]}>]\s*(?P<unit>.*)", re.DOTALL)
+
+
+def _splits(text: str) -> Iterable[list[str]]:
+    """Ways to cut a text into coordinates, the likelier first."""
+    if ";" in text or "|" in text:
+        yield re.split(r"[;|]", text)
+        return
+    commas = text.split(",")
+    yield re.split(r",\s+|\s+,\s*", text)
+    pieces = text.replace(", ", " ").split()
+    yield pieces
+    yield commas
+    if len(commas) % 2 == 0:  # 12,3,4,5: each other comma is decimal
+        yield [f"{a},{b}" for a, b in zip(commas[::2], commas[1::2], strict=True)]
+
+
+def _coordinates(pieces: Sequence[str], unit: str, target: Unit) -> list[tuple[tuple[float, ...], str, bool]]:
+    """The readings of coordinates, their echo, whether a unit is written; the last one's serves for all."""
+    pieces = [piece.strip() for piece in pieces]
+    columns = [read_amounts(piece, target) for piece in pieces]
+    units = {column[0].unit for column in columns}
+    if not unit and len(units) == 2 and "" in units:
+        unit = (units - {""}).pop()
+        columns = [
+            column if column[0].unit else read_amounts(f"{without_name(piece)} {unit}", target)
+            for piece, column in zip(pieces, columns, strict=True)
+        ]
+    readings = []
+    for which in (0, -1):
+        amounts = [column[which] for column in columns]
+        echo = "(" + "; ".join(a.echo for a in amounts) + ")"
+        readings.append((tuple(a.value for a in amounts), echo, any(a.unit for a in amounts)))
+    return readings
+
+
+def _bare_point(text: str) -> tuple[str, str]:
+    """The coordinates inside brackets, and the unit behind the brackets."""
+    if text.count("=") + text.count(":") == 1:  # A = (1 ; 2), but not x = 1 ; y = 2
+        text = NAME.sub("", text, count=1) if NAME.match(text) else text
+    found = _POINT.fullmatch(text.rstrip(" .;,"))
+    return (found["inside"], found["unit"].lstrip("*").strip()) if found else (text.rstrip(" .;,"), "")
+
+
+_AXIS = re.compile(
+    r"(?P<sign>[+-]?)\s*(?:(?:l'\s*)?ax(?:e|is)\s+)?(?:\\?(?:vec|overrightarrow)\s*)?\{?\s*(?P<letter>[xyz])\u20d7?\s*\}?(?:[ -]axis)?",
+    re.I,
+)  #: ``y``, ``-z``, ``\\vec y``, ``y axis``
+
+
+def _axis(text: str, count: int) -> tuple[float, ...] | None:
+    """The direction of an axis of coordinates that is named, or ``None``."""
+    found = _AXIS.fullmatch(text)
+    place = "xyz".index(found["letter"].lower()) if found else count
+    if place >= count:
+        return None
+    one = -1.0 if found["sign"] == "-" else 1.0
+    return tuple(one if k == place else 0.0 for k in range(count))
+
+
+def _point(text: str, original: str, target: Unit, count: int) -> Reading:
+    if target.dimension == RATIO and (axis := _axis(text.rstrip(" .;,"), count)):
+        return Reading(original, "read", (axis,), ("(" + "; ".join(f"{c:g}" for c in axis) + ")",))
+    inside, unit = _bare_point(text)
+    source = target
+    if unit:
+        source = find_unit(unit)
+        if source is None:
+            raise Stop("unknown_unit", unit)
+        in_unit(0.0, source, target)
+    readings: dict[tuple[float, ...], str] = {}
+    given = bool(unit)
+    stop: Exception | None = None
+    for pieces in _splits(inside):
+        if len(pieces) != count:
+            continue
+        try:
+            for values, echo, written in _coordinates(pieces, unit, source):
+                values = tuple(in_unit(v, source, target) for v in values)
+                readings.setdefault(values, written_amount(0.0, echo, unit).echo)
+                given = given or written
+        except (Stop, Unreadable) as error:
+            stop = stop or error
+    if not readings:
+        raise stop or Stop("wrong_count", text)
+    kept = list(readings.items())[:2]
+    return Reading(original, "read", tuple(v for v, _ in kept), tuple(e for _, e in kept), given)
+
+
+def read_point(text: object, unit: str, count: int) -> Reading:
+    """The ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``; an axis is a direction.
+
+    ``(12,3 ; 4,5) mm``, ``12.3, 4.5``, ``[1, 0, 1]``, ``(1 0 1)``, ``x = 1; y = 2``, or a list. A unit
+    behind the brackets or behind the last coordinate serves for all.
+    """
+    target, text = target_unit(unit), bare_value(text)
+    if isinstance(text, (list, tuple)):
+        text = "[" + " ; ".join(str(item) for item in text[: count + 1]) + "]"
+    elif isinstance(text, Real) and not isinstance(text, bool):
+        return Reading(str(text), "unreadable", code="wrong_count", found=shorten(str(text)))
+    return reading_of(text, lambda plain: _point(plain, text, target, count))

@@ -1,0 +1,75 @@
+"""TODO coursework/reading/reading.py"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from numbers import Real
+
+import numpy as np
+
+from coursework.reading.spelling import shorten, tidy, unwrapped, without_latex
+from coursework.reading.vocabulary import MAX_LENGTH, Unreadable
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What was understood of one answer.
+
+    ``status``: ``read``, ``missing``, ``unreadable`` or ``wrong_unit``. ``values``: one or two honest
+    readings in the canonical unit (floats; integers; tuples of floats for a point; a key for a choice; an
+    :class:`~coursework.equations.Equation`), empty unless read. ``read_as``: one echo a value, with a
+    decimal point and the unit as written. When it is not read, ``code`` is a short key for the reason and
+    ``found`` the piece that stops the reading.
+    """
+
+    text: str
+    status: str
+    values: tuple = ()
+    read_as: tuple[str, ...] = ()
+    unit_given: bool = False
+    code: str = ""
+    found: str = ""
+
+
+class Stop(Exception):
+    """Why a text is not read."""
+
+    def __init__(self, code: str, found: str, status: str = "unreadable") -> None:
+        super().__init__(code)
+        self.code, self.found, self.status = code, found, status
+
+
+def bare_value(answer: object) -> object:
+    """What a cell's value holds: an array, or a list of one, is its number; a number of NumPy is Python's."""
+    if answer.__class__ is str:
+        return answer
+    for _ in range(_MAX_NESTING):
+        if isinstance(answer, (np.ndarray, np.generic)) and answer.size <= _MAX_ITEMS:
+            answer = answer.tolist()
+        if not isinstance(answer, (list, tuple)) or len(answer) != 1:
+            break
+        (answer,) = answer
+    return answer
+
+
+_MAX_ITEMS, _MAX_NESTING = 100, 4  #: of an array that is looked into
+
+
+def reading_of(answer: object, read: Callable[[str], Reading]) -> Reading:
+    """Common to all kinds: what is missing, what is too long, what stops on the way."""
+    answer = bare_value(answer)
+    if answer is None:
+        return Reading("", "missing")
+    text = answer if isinstance(answer, str) else str(answer)
+    if isinstance(answer, bool) or not isinstance(answer, (str, Real)):
+        return Reading(text, "unreadable", code="not_a_number", found=shorten(text))
+    if len(text) > MAX_LENGTH and len(text.strip()) > MAX_LENGTH:
+        return Reading(text, "unreadable", code="too_long", found=shorten(text))
+    try:
+        plain = without_latex(tidy(unwrapped(text)))
+        return read(plain) if plain else Reading(text, "missing")
+    except Stop as stop:
+        return Reading(text, stop.status, code=stop.code, found=shorten(stop.found or plain))
+    except Unreadable as error:
+        return Reading(text, "unreadable", code=error.code, found=error.found)

@@ -1,0 +1,191 @@
+"""TODO coursework/reading/trees.py"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coursework.reading.spelling import shorten
+from coursework.reading.vocabulary import FUNCTIONS, INVERSE, Unreadable, Value
+
+MAX_EXPONENT = 64
+
+
+# --- trees ------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """One operation: ``number constant variable neg sum product power call degree``.
+
+    ``name`` is the number's text, the name, or one sign for each term of a sum or product.
+    ``angle``: the value is an angle in radians because a degree sign says so.
+    """
+
+    kind: str
+    name: str = ""
+    args: tuple[Operation, ...] = ()
+    angle: bool = False
+
+    def walk(self) -> Iterable[Operation]:
+        yield self
+        for arg in self.args:
+            yield from arg.walk()
+
+    @property
+    def constant(self) -> bool:
+        return all(node.kind != "variable" for node in self.walk())
+
+    @property
+    def speaks_of_pi(self) -> bool:
+        return any((node.kind, node.name) == ("constant", "pi") for node in self.walk())
+
+    @property
+    def has_inverse(self) -> bool:
+        """Whether an inverse trigonometric function gives an angle in it."""
+        return any(node.kind == "call" and node.name in INVERSE for node in self.walk())
+
+    @property
+    def turns(self) -> bool:
+        """Whether it is an angle in radians by itself: ``acos(0.5)``, or so many times that."""
+        if self.kind == "call":
+            return self.name in INVERSE
+        if self.kind == "neg":
+            return self.args[0].turns
+        return self.kind == "product" and [
+            s for s, arg in zip(self.name, self.args, strict=True) if arg.turns
+        ] == ["*"]
+
+
+def _number(value: object) -> np.ndarray | np.generic:
+    array = np.asarray(value)
+    return (array if array.dtype.kind == "c" else array.astype(float))[()]
+
+
+_CONSTANTS = {"pi": _number(math.pi), "e": _number(math.e), "i": _number(1j)}
+
+
+def _power(base: Value, exponent: Value) -> Value:
+    if np.any(np.abs(exponent) > MAX_EXPONENT):
+        raise Unreadable(
+            f"an exponent beyond {MAX_EXPONENT} is not computed", code="too_complex", found=f"^{exponent}"
+        )
+    return base**exponent
+
+
+def compute(node: Operation, values: Mapping[str, object]) -> Value:
+    if node.kind == "number":
+        return _number(float(node.name))
+    if node.kind == "constant":
+        return _CONSTANTS[node.name]
+    if node.kind == "variable":
+        return _number(values[node.name])
+    args = [compute(arg, values) for arg in node.args]
+    if node.kind == "neg":
+        return -args[0]
+    if node.kind == "degree":
+        return args[0] * (math.pi / 180)
+    if node.kind == "power":
+        return _power(*args)
+    if node.kind == "call":
+        return FUNCTIONS[node.name](*args)
+    total = args[0]
+    for sign, arg in zip(node.name[1:], args[1:], strict=True):
+        if sign == "+":
+            total = total + arg
+        elif sign == "-":
+            total = total - arg
+        else:
+            total = total * arg if sign == "*" else total / arg
+    return total
+
+
+_A_RADIAN = math.degrees(1.0)
+
+
+def _calculated_in_degrees(node: Operation) -> Operation:
+    """A tree whose trigonometric functions take degrees, and whose inverse ones give them unless converted by hand."""
+    args = tuple(map(_calculated_in_degrees, node.args))
+    if node.kind == "call" and node.name in ("sin", "cos", "tan"):
+        return replace(node, args=(Operation("degree", args=args),))
+    if node.kind == "call" and node.name in INVERSE:
+        return Operation("product", "**", (replace(node, args=args), Operation("number", repr(_A_RADIAN))))
+    if node.kind == "product" and node.turns and _is_conversion(node):
+        args = tuple(
+            new.args[0] if old.kind == "call" and old.turns else new
+            for old, new in zip(node.args, args, strict=True)
+        )
+    return replace(node, args=args)
+
+
+def _is_conversion(node: Operation) -> bool:
+    """Whether a product of an inverse function makes radians into degrees, ``acos(0.5)*180/3.14``."""
+    pairs = [(s, arg) for s, arg in zip(node.name, node.args, strict=True) if not arg.turns]
+    if not pairs or not all(arg.constant for _, arg in pairs):
+        return False
+    signs, args = zip(*pairs, strict=True)
+    one = Operation("number", "1")
+    with np.errstate(all="ignore"):
+        factor = compute(Operation("product", "*" + "".join(signs), (one, *args)), {})
+    return bool(abs(factor / _A_RADIAN - 1) < 0.01)
+
+
+@dataclass(frozen=True)
+class Expression:
+    """A formula that has been read.
+
+    ``is_angle``: a degree sign makes it an angle, in radians. ``speaks_radians``: pi or an
+    inverse trigonometric function says that an angle without unit may be in radians.
+    ``other`` is the second honest reading of ``1/2π``, where the product binds first.
+    """
+
+    text: str
+    root: Operation
+    other: Expression | None = None
+
+    @property
+    def variables(self) -> frozenset[str]:
+        """Canonical names of the variables used."""
+        return frozenset(node.name for node in self.root.walk() if node.kind == "variable")
+
+    @property
+    def is_angle(self) -> bool:
+        return self.root.angle
+
+    @property
+    def speaks_radians(self) -> bool:
+        return self.root.speaks_of_pi or self.root.has_inverse
+
+    @property
+    def as_calculated_in_degrees(self) -> Expression | None:
+        """The formula of who works in degrees, ``180 - atan(1.6)``: its functions take and give them.
+
+        None where no inverse function gives an angle, where pi says that it is in radians, or a degree sign has spoken.
+        """
+        if (
+            not self.root.has_inverse
+            or self.root.speaks_of_pi
+            or any(node.angle for node in self.root.walk())
+        ):
+            return None
+        return Expression(self.text, _calculated_in_degrees(self.root))
+
+    def evaluate(self, values: Mapping[str, object] | None = None) -> Value:
+        """The value, of the shape to which the values broadcast; angles in radians.
+
+        Raises
+        ------
+        Unreadable
+            A scalar result that is not finite (an array is NaN or infinite there), an exponent beyond 64.
+        """
+        with np.errstate(all="ignore"):
+            result = compute(self.root, values or {})
+        if np.ndim(result):
+            return result
+        if not np.isfinite(result):
+            message = f"{shorten(self.text)!r} has no finite value"
+            raise Unreadable(message, code="not_finite", found=self.text)
+        return result.item()

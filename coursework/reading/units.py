@@ -1,0 +1,380 @@
+"""Units: read by dimension and prefix, never from a list of spellings.
+
+A unit is an exact rational factor, a power of pi, and a dimension. Angle is a dimension of
+its own, so that a length is never taken for an angle; where one of two units leaves the
+angle out (``1/s`` for ``rad/s``), it is in radians.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+
+from coursework.errors import BadCourse, WrongUnit
+from coursework.reading.spelling import shorten, tidy, without_latex
+
+#: What the entries of a dimension count. A cycle is a count (1 Hz is one a second) that is a turn
+#: where an angle is expected.
+DIMENSIONS = ("length", "mass", "time", "angle", "current", "cycle")
+_ANGLE, _CYCLE = DIMENSIONS.index("angle"), DIMENSIONS.index("cycle")
+
+_MAX_LENGTH = 80
+_MAX_POWER = 9
+_MAX_DECADES = 100
+
+
+class UnknownUnit(WrongUnit):
+    """A text that is no unit; ``found`` is the piece that is not known."""
+
+    def __init__(self, message: str, found: str) -> None:
+        super().__init__(message)
+        self.found = found
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit: ``ratio`` times pi to the power ``pi`` base units (m, kg, s, rad, A), and its dimension."""
+
+    text: str
+    ratio: Fraction
+    pi: int
+    dimension: tuple[int, ...]
+
+    @property
+    def factor(self) -> float:
+        """One of this unit in base units."""
+        return float(self.ratio) * math.pi**self.pi
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether it measures an angle and nothing else."""
+        return self.dimension == _ANGLE_ALONE
+
+
+def _dimension(**powers: int) -> tuple[int, ...]:
+    return tuple(powers.get(name, 0) for name in DIMENSIONS)
+
+
+_NONE = _dimension()
+_ANGLE_ALONE = _dimension(angle=1)
+
+
+# --- what is known: symbols, prefixes, words --------------------------------------------
+
+_PREFIXES = {
+    "": 0, "f": -15, "p": -12, "n": -9, "μ": -6, "u": -6, "m": -3, "c": -2, "d": -1,
+    "da": 1, "h": 2, "k": 3, "M": 6, "G": 9, "T": 12,
+}  # fmt: skip
+_PREFIX_WORDS = {
+    "": 0, "nano": -9, "micro": -6, "milli": -3, "centi": -2, "deci": -1, "kilo": 3, "mega": 6, "giga": 9,
+}  # fmt: skip
+
+
+def _known(ratio: object, pi: int = 0, **powers: int) -> Unit:
+    return Unit("", Fraction(ratio), pi, _dimension(**powers))
+
+
+#: Symbols that take a prefix.
+_PREFIXED = {
+    "m": _known(1, length=1),
+    "g": _known("1/1000", mass=1),
+    "s": _known(1, time=1),
+    "rad": _known(1, angle=1),
+    "N": _known(1, length=1, mass=1, time=-2),
+    "J": _known(1, length=2, mass=1, time=-2),
+    "W": _known(1, length=2, mass=1, time=-3),
+    "Pa": _known(1, length=-1, mass=1, time=-2),
+    "Hz": _known(1, time=-1, cycle=1),
+    "A": _known(1, current=1),
+    "C": _known(1, current=1, time=1),
+    "V": _known(1, length=2, mass=1, time=-3, current=-1),
+    "Ω": _known(1, length=2, mass=1, time=-3, current=-2),
+    "ohm": _known(1, length=2, mass=1, time=-3, current=-2),
+}
+_DEGREE, _GON, _TURN = _known("1/180", 1, angle=1), _known("1/200", 1, angle=1), _known(2, 1, angle=1)
+_TURN_A_MINUTE = _known("2/60", 1, angle=1, time=-1)
+#: Symbols that take none.
+_PLAIN = {
+    "1": _known(1),
+    "%": _known("1/100"),
+    "min": _known(60, time=1),
+    "h": _known(3600, time=1),
+    "t": _known(1000, mass=1),
+    "deg": _DEGREE, "°": _DEGREE,
+    "grad": _GON, "gon": _GON, "gr": _GON,
+    "tr": _TURN, "rev": _TURN, "r": _TURN,
+    "rpm": _TURN_A_MINUTE,
+    "sec": _known(1, time=1), "rd": _known(1, angle=1),
+}  # fmt: skip
+#: Words, without accents, any capitals, with or without a plural s; the first group takes prefix words.
+_WORDS = {
+    "metre": "m", "meter": "m", "gramme": "g", "gram": "g", "seconde": "s", "second": "s",
+    "radian": "rad", "newton": "N", "joule": "J", "watt": "W", "pascal": "Pa", "hertz": "Hz", "volt": "V",
+    "ampere": "A", "coulomb": "C", "ohm": "Ω",
+    "degre": "deg", "degree": "deg", "grade": "gon", "tour": "tr", "turn": "tr", "revolution": "tr",
+    "minute": "min", "heure": "h", "hour": "h", "tonne": "t",
+}  # fmt: skip
+_ACCENTS = str.maketrans("éèêàç", "eeeac")
+
+
+def _scaled(unit: Unit, decades: int) -> Unit:
+    return Unit("", unit.ratio * Fraction(10) ** decades, unit.pi, unit.dimension)
+
+
+def _symbol(name: str) -> Unit | None:
+    """A symbol with its prefix; a symbol as it stands comes before a prefix (``min`` is no milli-inch)."""
+    if name in _PLAIN:
+        return _PLAIN[name]
+    for size in range(3):
+        prefix, rest = name[:size], name[size:]
+        if prefix in _PREFIXES and rest in _PREFIXED:
+            return _scaled(_PREFIXED[rest], _PREFIXES[prefix])
+    return None
+
+
+def _word(name: str) -> Unit | None:
+    """A unit spelled out, ``millimètres``."""
+    low = name.lower().translate(_ACCENTS)
+    if len(low) < 4:
+        return None
+    for prefix, decades in _PREFIX_WORDS.items():
+        symbol = _WORDS.get(low.removeprefix(prefix).removesuffix("s")) if low.startswith(prefix) else None
+        if symbol and (not prefix or symbol in _PREFIXED):
+            return _scaled(_symbol(symbol), decades)
+    return None
+
+
+#: Symbols that are known in any capitals, and with a plural s: no other unit is spelled so.
+_ANY_CAPITALS = ("rad", "rd", "deg", "grad", "gon", "rev", "tr", "rpm", "min", "sec")
+
+
+def _capitals(name: str) -> Unit | None:
+    """A symbol in other capitals, ``RPM``, or with a plural s, ``revs``."""
+    low = name.lower()
+    for symbol in (low, low.removesuffix("s")):
+        if symbol in _ANY_CAPITALS:
+            return _symbol(symbol)
+    return None
+
+
+def _moment(name: str) -> Unit | None:
+    """``Nm``, ``kNmm``: the one product that is written without a sign."""
+    force, newton, arm = name.partition("N")
+    if not newton or force not in _PREFIXES or not arm.endswith("m") or arm[:-1] not in _PREFIXES:
+        return None
+    decades = _PREFIXES[force] + _PREFIXES[arm[:-1]]
+    return _scaled(_product(_PREFIXED["N"], _PREFIXED["m"], 1), decades)
+
+
+def _product(a: Unit, b: Unit, power: int) -> Unit:
+    """``a * b**power``."""
+    dimension = tuple(p + power * q for p, q in zip(a.dimension, b.dimension, strict=True))
+    return Unit("", a.ratio * b.ratio**power, a.pi + power * b.pi, dimension)
+
+
+def _spellings() -> Iterator[str]:
+    """What a misspelled piece may have meant, for a message."""
+    yield from _PLAIN
+    for symbol in _PREFIXED:
+        for prefix in ("", "m", "c", "k", "μ", "M"):
+            yield prefix + symbol
+    yield from ("N.m", "N.mm")
+
+
+# --- reading ----------------------------------------------------------------------------
+
+_TOKEN = re.compile(
+    r"\s*(?:(?P<name>[^\W\d_]+|[°%](?![^\W\d_]))|(?P<one>1)(?![0-9])|(?P<sign>[*./()\[\]]))"
+    r"(?P<power>\s*(?:\^|\*\*)\s*(?:[({]\s*(?P<in>[+-]?[0-9])\s*[)}]|(?P<bare>[+-]?[0-9]))|(?P<glued>-?[0-9]))?(?![0-9])"
+)
+
+
+_PER = re.compile(r"(?<![^\W\d_])(?:par|per)(?![^\W\d_])", re.I)
+_HYPHEN = re.compile(r"(?<=[^\W\d_])-(?=[^\W\d_])")
+
+
+class _UnknownPiece(Exception):
+    """The piece at which a text stops being a unit."""
+
+
+def _named(name: str) -> Unit:
+    unit = _symbol(name) or _word(name) or _moment(name) or _capitals(name)
+    if unit is None:
+        raise _UnknownPiece(name)
+    return unit
+
+
+def _may_have_power(token: re.Match[str]) -> bool:
+    """Whether the power of a token, if any, is in its place: ``90°-5`` is a difference, not a power."""
+    if not token["power"]:
+        return True
+    return not token["glued"] if token["name"] in ("°", "%") else token["sign"] in (None, ")", "]")
+
+
+def _tokens(text: str) -> list[tuple[str, int]]:
+    """Names, signs and brackets, each with its power (1 unless written)."""
+    found, at = [], 0
+    while at < len(text):
+        token = _TOKEN.match(text, at)
+        if token is None or not _may_have_power(token):
+            raise _UnknownPiece(text[at:].strip())
+        power = token["in"] or token["bare"] or token["glued"] or "1"
+        found.append((token["name"] or token["one"] or token["sign"], int(power)))
+        at = token.end()
+    return found
+
+
+def _chain(tokens: list[tuple[str, int]], text: str, depth: int = 0) -> Unit:
+    """Units multiplied and divided from left to right, up to the end or a closing bracket; eats tokens."""
+    unit, sign, waiting = _PLAIN["1"], 1, True
+    if depth > 5:
+        raise _UnknownPiece(text)
+    while tokens and tokens[0][0] not in (")", "]"):
+        piece, power = tokens.pop(0)
+        if piece in ("*", ".", "/"):
+            if waiting:
+                raise _UnknownPiece(text)
+            sign, waiting = (-1 if piece == "/" else 1), True
+            continue
+        if piece in ("(", "["):
+            factor = _chain(tokens, text, depth + 1)
+            if not tokens:
+                raise _UnknownPiece(text)
+            power = tokens.pop(0)[1]
+        elif piece == "1" and not waiting and (power != 1 or not tokens or tokens[0][0] != "/"):
+            raise _UnknownPiece(text)  # rad 1/s is a unit, ° 1-1 is none
+        else:
+            factor = _named(piece)
+        unit, sign, waiting = _product(unit, factor, sign * power), 1, False
+        if abs(unit.pi) + max(map(abs, unit.dimension)) > 4 * _MAX_POWER:
+            raise _UnknownPiece(text)
+    if waiting:
+        raise _UnknownPiece(text)
+    return unit
+
+
+@lru_cache(maxsize=4096)
+def _analyse(text: str) -> tuple[Unit | None, str]:
+    """The unit, or the piece that is not understood."""
+    if len(text) > _MAX_LENGTH:
+        return None, text
+    try:
+        plain = _PER.sub("/", without_latex(tidy(text)))
+        tokens = _tokens(_HYPHEN.sub("*", plain))
+        unit = _chain(tokens, text)
+    except _UnknownPiece as piece:
+        return None, str(piece)
+    size = abs(math.log10(unit.ratio.numerator) - math.log10(unit.ratio.denominator))
+    if tokens or size > _MAX_DECADES:
+        return None, text
+    return Unit(text, unit.ratio, unit.pi, unit.dimension), ""
+
+
+def find_unit(text: str) -> Unit | None:
+    """The unit that a text names, or ``None``."""
+    return _analyse(text)[0]
+
+
+def parse_unit(text: str) -> Unit:
+    """The unit that a text names: ``rad.s-1``, ``N·m``, ``mm/s²``, ``tr/min``; ``1`` is a ratio.
+
+    A product may be written ``. · * × -`` or a space, a power ``^2 ² 2``, a quotient ``/`` or ``per``. Case matters, save in
+    ``RPM`` and the like. A quotient binds from left to right, ``mm/s/mm`` is ``(mm/s)/mm``.
+
+    Raises
+    ------
+    UnknownUnit
+        A :class:`WrongUnit` that names the piece that is not known and the nearest that is.
+    """
+    unit, piece = _analyse(text)
+    if unit is None:
+        piece = shorten(piece)
+        known = list(_spellings())
+        near = [s for s in known if s.casefold() == piece.casefold()]
+        near = near or difflib.get_close_matches(piece, known, n=1, cutoff=0.5)
+        hint = f"; did you mean {near[0]!r}?" if near else "; units are such as mm, rad/s, N.m, kg.m^2"
+        where = f" in {shorten(text)!r}" if piece != shorten(text) else ""
+        raise UnknownUnit(f"no unit {piece!r}{where}{hint}", found=piece)
+    return unit
+
+
+def check_unit(whose: str, text: str) -> None:
+    """Refuse a course that states a unit that is none; ``whose`` begins the message."""
+    try:
+        parse_unit(text)
+    except WrongUnit as fault:
+        raise BadCourse(f"{whose}: {fault}") from fault
+
+
+# --- converting -------------------------------------------------------------------------
+
+
+def _without_angle(dimension: tuple[int, ...]) -> tuple[int, ...]:
+    return tuple(p for i, p in enumerate(dimension) if i not in (_ANGLE, _CYCLE))
+
+
+def _compatible(a: Unit, b: Unit) -> bool:
+    if a.dimension == b.dimension:
+        return True
+    rest = _without_angle(a.dimension)
+    # A bare number is no angle, and an angle no ratio; beside another dimension radians may go unsaid.
+    return rest == _without_angle(b.dimension) and any(rest)
+
+
+def _as_unit(unit: str | Unit) -> Unit:
+    return unit if isinstance(unit, Unit) else parse_unit(unit)
+
+
+def same_dimension(a: str | Unit, b: str | Unit) -> bool:
+    """Whether a value in one unit can be converted to the other."""
+    return _compatible(_as_unit(a), _as_unit(b))
+
+
+@lru_cache(maxsize=4096)
+def _scale(source: Unit, target: Unit) -> tuple[Fraction, int]:
+    """What multiplies a number of ``source``: a rational and a power of pi."""
+    ratio, pi = source.ratio / target.ratio, source.pi - target.pi
+    turns = source.dimension[_CYCLE] - target.dimension[_CYCLE]
+    if turns and source.dimension[_ANGLE] != target.dimension[_ANGLE]:
+        ratio, pi = ratio * Fraction(2) ** turns, pi + turns
+    return ratio, pi
+
+
+def convert(value: float, from_unit: str | Unit, to_unit: str | Unit) -> float:
+    """A value, or an array of values, in another unit of the same dimension.
+
+    A power of ten costs one rounding at most. A unit without angle, where the other has one, is in radians.
+
+    Raises
+    ------
+    WrongUnit
+        The units have different dimensions, or one is unknown.
+    """
+    source, target = _as_unit(from_unit), _as_unit(to_unit)
+    if not _compatible(source, target):
+        raise WrongUnit(
+            f"{shorten(source.text)!r} measures {describe(source)}, but {describe(target)} is expected, "
+            f"as in {target.text!r}"
+        )
+    ratio, pi = _scale(source, target)
+    if pi == 0 and ratio == 1:
+        return value
+    if pi == 0 and max(ratio.numerator, ratio.denominator) < 2**53:
+        scaled = value * ratio.numerator if ratio.numerator != 1 else value
+        return scaled / ratio.denominator if ratio.denominator != 1 else scaled
+    return value * (float(ratio) * math.pi**pi)
+
+
+def describe(unit: Unit) -> str:
+    """A unit's dimension in words: ``length/time^2``."""
+    pairs = list(zip(DIMENSIONS, unit.dimension, strict=True))
+    above = [n if p == 1 else f"{n}^{p}" for n, p in pairs if p > 0]
+    below = [n if p == -1 else f"{n}^{-p}" for n, p in pairs if p < 0]
+    if not above and not below:
+        return "a ratio"
+    return "*".join(above or ["1"]) + "".join(f"/{b}" for b in below)

@@ -1,0 +1,42 @@
+"""What a notebook's cell shows by itself: a mechanism in motion, a polygon under construction."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from coursework.course.variant import Variant
+from coursework.motion.animation import Animation
+from coursework.polygons.construction import Construction
+from coursework.rendering.renderer import builtin_renderer, renderer_of
+from coursework.sheets.drawings import stated_polygons
+
+
+class DisplayedAnimation(Animation):
+    """An animation with its page."""
+
+    def html(self) -> str:
+        """One page with a slider for the driver's angle: it fetches nothing, and without script stands still."""
+        return renderer_of(self.variant.exercise.folder).motion_html(self)
+
+
+class DisplayedConstruction(Construction):
+    """A polygon with its piece of a page."""
+
+    def html(self) -> str:
+        """Equations, table, steps and whole drawing, as a piece of a web page."""
+        return builtin_renderer().construction_html(self)
+
+    def _repr_html_(self) -> str:
+        return self.html()
+
+
+@lru_cache(maxsize=16)
+def displayed_polygons(variant: Variant) -> tuple[DisplayedConstruction, ...]:
+    """The polygons that the solution of a variant states, drawn to scale.
+
+    Raises
+    ------
+    NoSolution
+        The course folder has no solutions.
+    """
+    return tuple(DisplayedConstruction(c.polygon, c.lang) for c in stated_polygons(variant))

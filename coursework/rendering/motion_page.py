@@ -1,0 +1,97 @@
+"""A mechanism in motion as one web page: the drawing, its numbers at every instant, one short script."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from coursework.figures.moving import COLOURS, Track
+from coursework.language.numbers import localise, significant
+from coursework.language.words import words
+from coursework.motion.animation import Animation
+from coursework.rendering.environment import render
+from coursework.rendering.html import environment_of
+
+
+def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> str:
+    """The whole page, in the variant's language."""
+    variant = animation.variant
+    lang = variant.lang
+    shown = animation.drawing(animation.available)
+    first = animation.first
+    film = animation.film is not None
+    told = animation.angles if film else animation.angles % 360.0
+    angles = [f"{localise(significant(a, 5), lang)}°" for a in told]
+    data = {
+        "tracks": [_numbers(track) for track in shown.tracks if track.moves],
+        "order": list(animation.order),
+        "times": [round(float(t), 6) for t in animation.times],
+        "seconds": animation.seconds,
+        "first": first,
+        "angles": angles,
+        "film": film,
+        "degrees": [round(float(a), 4) for a in animation.angles],
+        "readings": [list(reading.values) for reading in animation.readings],
+    }
+    sheet = {"course": variant.exercise.folder.title(lang), "title": animation.title}
+    said = words(lang)
+    start = said["motion"]["film" if film else "statement"]
+    names = {
+        "lang": lang,
+        "paper": paper,
+        "title": animation.title,
+        "variant": f"{variant.exercise.name} {variant.seed}",
+        "words": said,
+        "said": said["motion"],
+        "sheet": sheet,
+        "drawing": Markup(_svg(shown.tracks, shown.size, first, animation)),
+        "effects": [(e, e in animation.effects, COLOURS[e]) for e in animation.available],
+        "points": list(animation.points),
+        "readings": animation.readings,
+        "driver": variant.exercise.symbol(animation.driver),
+        "count": len(animation.angles),
+        "first": first,
+        "angle": angles[first],
+        "start": start,
+        "swings": not animation.turns,
+        "turns": localise(significant(float(np.ptp(animation.angles)) / 360.0, 3), lang) if film else "",
+        "has_vectors": bool(animation.scales),
+        "data": Markup(json.dumps(data, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")),
+    }
+    return render(environment_of(tuple(folders), lang), "motion.html.j2", names)
+
+
+def _numbers(track: Track) -> dict[str, Any]:
+    rows = [[round(float(x), 2) for x in row] for row in track.numbers]
+    return {"mark": bool(track.mark), "closed": track.closed, "rows": rows}
+
+
+def _svg(tracks: Sequence[Track], size: tuple[float, float], first: int, animation: Animation) -> str:
+    """The first instant; what moves is numbered in order, and says what switches it on."""
+    width, height = (f"{x:.6g}" for x in size)
+    lines, moving = [], 0
+    for track in tracks:
+        more = ""
+        if track.moves:
+            more, moving = f' data-track="{moving}"', moving + 1
+        on = track.effect in animation.effects
+        if track.key:
+            more += f' data-key="{track.effect}"' + ("" if on else ' style="opacity:.3"')
+        elif track.effect:
+            more += f' data-effect="{track.effect}"' + ("" if on else ' style="display:none"')
+        if track.point:
+            more += f' data-point="{escape(track.point)}"'
+        lines.append(track.svg(first, more))
+    return "\n".join([
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" '
+        f'aria-label="{escape(animation.words)}">',
+        f'<rect width="{width}" height="{height}" fill="#fff"/>',
+        '<g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">', *lines, "</g>",
+        "</svg>",
+    ])  # fmt: skip

@@ -1,0 +1,161 @@
+"""Handouts, worked solutions, feedback and reports as PDF, web page, notebook and text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from coursework.course.builtin import builtin_root
+from coursework.course.folder import Folder
+from coursework.errors import unknown
+from coursework.sheets.report import Report
+from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout
+
+if TYPE_CHECKING:
+    from coursework.motion.animation import Animation
+    from coursework.polygons.construction import Construction
+    from coursework.sheets.sheet import StudySheet
+
+
+PAPERS = ("a4", "letter")
+
+
+class Renderer:
+    """Renders sheets through the templates of these folders, the first that has one.
+
+    The same sheet gives the same bytes. Safe to share between threads; not to be carried into a
+    forked process. ``paper`` is ``a4`` or ``letter``; another raises :class:`UnknownName`.
+    """
+
+    def __init__(self, template_folders: Sequence[Path], paper: str = "a4") -> None:
+        if paper not in PAPERS:
+            raise unknown("paper", paper, PAPERS)
+        self.template_folders = tuple(Path(folder) for folder in template_folders)
+        self.paper = paper
+
+    def on(self, paper: str) -> Renderer:
+        """The same renderer for another paper."""
+        return Renderer(self.template_folders, paper)
+
+    def typst(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
+        """The Typst source of a sheet; it stands alone."""
+        from coursework.rendering import pdf
+
+        return pdf.source(self.template_folders, [sheet], self.paper)
+
+    def pdf(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> bytes:
+        """A sheet as a tagged PDF."""
+        return self.booklet_pdf([sheet])
+
+    def booklet_pdf(self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]) -> bytes:
+        """Several sheets in one PDF, each with its own page numbers; those to print from an odd page on."""
+        from coursework.rendering import pdf
+
+        return pdf.compile_pdf(pdf.source(self.template_folders, sheets, self.paper))
+
+    def booklet(
+        self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]
+    ) -> tuple[bytes, tuple[tuple[int, int], ...]]:
+        """The PDF of :meth:`booklet_pdf`, and the first and last page of each sheet in it, from 1 on."""
+        from coursework.rendering import pdf
+
+        return pdf.compile_booklet(pdf.source(self.template_folders, sheets, self.paper))
+
+    def html(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
+        """A sheet as one web page that fetches nothing and runs no script."""
+        from coursework.rendering import html
+
+        return html.page(self.template_folders, sheet, self.paper)
+
+    def tex(self, sheet: Handout | AnswerSheet, figure: str, polygons: str = "polygons.pdf") -> str:
+        """A sheet as LaTeX source for pdflatex.
+
+        ``figure`` names the PDF file beside it that holds the figure of :meth:`figure_pdf`, if any, and
+        ``polygons`` that of :meth:`polygons_pdf`.
+        """
+        from coursework.rendering import latex
+
+        return latex.source(self.template_folders, sheet, self.paper, figure, polygons)
+
+    def figure_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
+        """The figure that a sheet shows, as a PDF of its own; nothing when it shows none."""
+        from coursework.rendering import views
+
+        figure = views.figure_of(sheet)
+        return None if figure is None else figure.pdf()
+
+    def polygons_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
+        """The drawings of a solution's polygons, one a page of its own size; nothing when it has none."""
+        from coursework.rendering import views
+
+        drawings = views.polygon_drawings(sheet)
+        if not drawings:
+            return None
+        from coursework.figures.typesetting import pages
+
+        return pages([(figure.svg(), figure.size_mm[0]) for figure in drawings])
+
+    def construction_html(self, construction: Construction) -> str:
+        """A polygon, its equations, table and steps, as a piece of a web page."""
+        from coursework.rendering import html
+
+        return html.construction(self.template_folders, construction)
+
+    def notebook(self, handout: Handout) -> str:
+        """A handout as a notebook to hand in (JSON, nbformat 4.5): nothing in it checks an answer."""
+        from coursework.rendering import notebook
+
+        return notebook.notebook(self.template_folders, handout)
+
+    def study(self, sheet: StudySheet) -> str:
+        """A self-study notebook (JSON, nbformat 4.5)."""
+        from coursework.rendering import notebook
+
+        return notebook.study(self.template_folders, sheet)
+
+    def lesson(self, name: str, text: str, lang: str) -> str:
+        """A lesson's Markdown as a notebook (JSON, nbformat 4.5)."""
+        from coursework.rendering import notebook
+
+        return notebook.lesson(name, text, lang)
+
+    def report_html(self, report: Report) -> str:
+        """A report as one web page that fetches nothing and runs no script."""
+        from coursework.rendering import reports
+
+        return reports.page(self.template_folders, report, self.paper)
+
+    def report_pdf(self, report: Report) -> bytes:
+        """A report as a tagged PDF."""
+        from coursework.rendering import pdf, reports
+
+        return pdf.compile_pdf(reports.source(self.template_folders, report, self.paper))
+
+    def motion_html(self, animation: Animation) -> str:
+        """A mechanism in motion as one web page that fetches nothing; its one script is in the page."""
+        from coursework.rendering import motion_page
+
+        return motion_page.page(self.template_folders, animation, self.paper)
+
+    def terminal(self, handout: Handout) -> str:
+        """A handout as plain text."""
+        from coursework.rendering import terminal
+
+        return terminal.statement(handout)
+
+
+def renderer_of(folder: Folder) -> Renderer:
+    """Renders a course's sheets."""
+    return _renderer(folder.template_folders)
+
+
+def builtin_renderer() -> Renderer:
+    """Renders through the templates that the package brings."""
+    return _renderer((builtin_root() / "templates",))
+
+
+@cache
+def _renderer(template_folders: tuple[Path, ...]) -> Renderer:
+    return Renderer(template_folders)

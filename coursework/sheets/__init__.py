@@ -1,0 +1,1 @@
+"""What a sheet says, before it is rendered: questions, answers, worked solutions."""

@@ -1,0 +1,207 @@
+"""From a variant to what its sheets show: a handout without answers, an answer sheet with them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coursework.errors import BadCourse, BadStatement, CourseworkError
+from coursework.language.numbers import localise, significant, unit_text
+from coursework.language.words import is_whole, quoted
+from coursework.language.words import words as engine_words
+from coursework.model import Part
+from coursework.quantities.graph import plain_scalar
+from coursework.sheets.drawings import solution_figure, stated_polygons
+from coursework.sheets.equation_latex import latex_of_equation
+from coursework.sheets.formula_latex import Shown, formula_in_symbols, formula_latex, number_latex
+from coursework.sheets.handout import handout
+from coursework.sheets.sheet import Answer, AnswerSheet, Remark, Step
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+
+
+PRINTED_DIGITS = 5  #: significant digits of a value in a worked solution
+_SAME = 1e-9  #: of a value, by which two ways to compute it may differ
+
+
+def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) -> AnswerSheet:
+    """The handout with its answers and worked solution.
+
+    Raises
+    ------
+    NoSolution
+        The course folder has no solutions.
+    """
+    sheet = handout(variant, student)
+    values, text = variant.walk, variant.solution_text
+    steps = _steps(variant, values, text)
+    answers = tuple(
+        Answer(question, answer_text(variant, part, values), _margin(variant, part))
+        for question, part in zip(sheet.questions, variant.parts, strict=True)
+    )
+    figure = solution_figure(variant)
+    says = text.sections.get("figure") if figure is not None else None
+    alt = " ".join(says.text.split()) if says else ""
+    drawn = stated_polygons(variant) if polygons else ()
+    return AnswerSheet(sheet, answers, steps, text.opening, figure, alt, drawn)
+
+
+def _symbol(variant: Variant, name: str) -> str:
+    return variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)
+
+
+def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step, ...]:
+    """The quantities that are not given, in order."""
+    units = variant.exercise.units
+    symbols = tuple((n, _symbol(variant, n)) for n in values)
+    numbers = {
+        n: (number_latex(v, units.get(n, "1"), PRINTED_DIGITS), True)
+        for n, v in values.items()
+        if isinstance(v, (int, float, complex))
+    }
+    remarks = _remarks(variant, values, text)
+    return tuple(
+        _step(variant, name, value, text, symbols, numbers, remarks.get(name, ()))
+        for name, value in values.items()
+        if name not in variant.given
+    )
+
+
+def _step(
+    variant: Variant,
+    name: str,
+    found: Any,
+    text: Any,
+    symbols: tuple[tuple[str, str], ...],
+    numbers: Shown,
+    remarks: Sequence[Remark],
+) -> Step:
+    exercise = variant.exercise
+    function = exercise.solution.graph.node(name).function
+    section = text.sections.get(name)
+    value = _value_latex(variant, name, found)
+    try:
+        formula = formula_in_symbols(function, symbols)
+        substitution = formula_latex(function, numbers) if formula and value else ""
+    except KeyError as fault:
+        raise BadCourse(
+            f"solutions/{exercise.name}.py: the formula of {name} names {fault}, which is not among its quantities"
+        ) from fault
+    symbol = _symbol(variant, name)
+    return Step(
+        name=name,
+        symbol=symbol,
+        formula=formula if formula not in (value, symbol) else "",
+        substitution=substitution if substitution not in (formula, value) else "",
+        value=value,
+        words=_words_of(variant, name, found, section.text if section else ""),
+        remarks=tuple(remarks),
+        asked=any(p.quantity == name for p in variant.parts),
+    )
+
+
+def _remarks(variant: Variant, values: Mapping[str, Any], text: Any) -> dict[str, list[Remark]]:
+    """The known mistakes by the step that they stand at: the first of their targets that they change.
+
+    One that is about what is given stands at the first step that it changes. One that changes nothing in this
+    variant is none, and is left out.
+    """
+    solution, units = variant.exercise.solution, variant.exercise.units
+    steps = [q for q in values if q not in variant.given]
+    found: dict[str, list[Remark]] = {}
+    for name, mistake in solution.mistakes.items():
+        graph, about = solution.mistaken(name), [q for q in steps if q in mistake.targets]
+        for quantity in about or [q for q in steps if q in solution.reached(name)]:
+            try:
+                wrong = graph.evaluate((quantity,), variant.used, variant.effects)[quantity]
+            except CourseworkError:
+                continue
+            if not _agrees(wrong, values[quantity], units.get(quantity, "1")):
+                told = Remark(text.section(f"mistake {name}").text, _wrong_text(variant, quantity, wrong))
+                found.setdefault(quantity, []).append(told)
+                break
+    return found
+
+
+def _agrees(wrong: Any, right: Any, unit: str) -> bool:
+    """Whether a mistake gives the right value; directions are the same after a full turn."""
+    if isinstance(right, (str, tuple)) or isinstance(wrong, (str, tuple)):
+        return bool(wrong == right)
+    gap = np.abs(np.subtract(wrong, right))
+    if unit == "deg":
+        gap = np.minimum(gap % 360.0, -gap % 360.0)
+    return bool(np.all(gap <= _SAME * np.max(np.abs(right))))
+
+
+def _wrong_text(variant: Variant, name: str, wrong: Any) -> str:
+    part = next((p for p in variant.parts if p.quantity == name), None)
+    if part is not None and part.kind == "choice":
+        return quoted(variant.text.label(part.id, str(wrong)), variant.lang)
+    if isinstance(wrong, (str, tuple)) or np.ndim(wrong) or not np.isfinite(wrong):
+        return ""
+    return f"${_value_latex(variant, name, plain_scalar(wrong))}$"
+
+
+def _words_of(variant: Variant, name: str, found: Any, reason: str) -> str:
+    """The words of a step: which question it answers; of a choice, the case after its reason."""
+    number = next((n for n, p in enumerate(variant.parts, start=1) if p.quantity == name), 0)
+    if not number:
+        return reason
+    said, part = engine_words(variant.lang), variant.parts[number - 1]
+    asks = f"{said['sheet']['question']['one']} {number}."
+    words = [f"*{asks[:1].upper()}{asks[1:]}*", reason]
+    if part.kind == "choice":
+        # At the end of the reason's last sentence, or after it.
+        words += [f"{said['solution']['case']}{said['sheet']['colon']}"] if is_whole(reason) else []
+        words += [f"**{variant.text.label(part.id, str(found))}**."]
+    return " ".join(filter(None, words))
+
+
+def _value_latex(variant: Variant, name: str, value: Any) -> str:
+    r"""``\num{319.8}\ \mathrm{mm}``; an equation; a vector by coordinates; nothing for a case or a bundle."""
+    exercise = variant.exercise
+    part = next((p for p in variant.parts if p.quantity == name), None)
+    unit = exercise.units.get(name, "1")
+    if isinstance(value, str):
+        return equation_latex(variant, value) if part is not None and part.kind == "equation" else ""
+    if isinstance(value, tuple):
+        return ""
+    if isinstance(value, np.ndarray):
+        inner = r";\ ".join(number_latex(v, "1", PRINTED_DIGITS) for v in value.tolist())
+        return rf"\left({inner}\right)" + _unit_latex(unit)
+    return number_latex(value, "1", PRINTED_DIGITS) + _unit_latex(unit)
+
+
+def _unit_latex(unit: str) -> str:
+    if unit in ("1", "deg"):
+        return r"^{\circ}" if unit == "deg" else ""
+    text = unit.replace("*", r"{\cdot}").replace("^2", "^{2}")
+    return rf"\ \mathrm{{{text}}}"
+
+
+def equation_latex(variant: Variant, equation: str) -> str:
+    """A reference equation as it is printed."""
+    names = {n for p in variant.parts for n in p.variables}
+    return latex_of_equation(equation, {n: _symbol(variant, n) for n in names})
+
+
+def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
+    """The reference answer of a part, rounded for print, as Markdown."""
+    value = values[part.quantity]
+    if part.kind == "choice":
+        return variant.text.label(part.id, str(value))
+    latex = _value_latex(variant, part.quantity, value)
+    if not latex:
+        raise BadStatement(f"{variant.exercise.name}: the answer to {part.id} cannot be printed")
+    return f"${latex}$"
+
+
+def _margin(variant: Variant, part: Part) -> str:
+    if not part.has_margin or part.kind == "direction":
+        return ""
+    width = localise(significant(variant.key.half_width(part), 2), variant.lang)
+    unit = unit_text(part.unit, variant.lang)
+    return width + (unit if unit == "°" else f" {unit}" if unit else "")

@@ -1,0 +1,55 @@
+"""What a solution draws: its own figure, and the polygons that it states."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from coursework.errors import BadCourse, BrokenFunction
+from coursework.polygons.construction import Construction
+from coursework.polygons.polygon import Polygon
+from coursework.quantities.graph import call_on_quantities, graph_of
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+    from coursework.figures import Figure
+
+
+def solution_figure(variant: Variant) -> Figure | None:
+    solution = variant.exercise.solution
+    if solution.figure is None:
+        return None
+    return call_on_quantities(solution.figure, _quantities(variant, solution.figure))
+
+
+def _quantities(variant: Variant, function: Any) -> dict[str, Any]:
+    """The quantities of a variant's solution, and those besides that a function of the solution needs."""
+    values = dict(variant.walk)
+    more = tuple(n for n in graph_of(function).node(function.__name__).arguments if n not in values)
+    return {**values, **variant.quantities(more)}
+
+
+@lru_cache(maxsize=16)  # a variant is rendered in every format before the next
+def stated_polygons(variant: Variant) -> tuple[Construction, ...]:
+    """The polygons that the solution states, less those in which nothing moves.
+
+    Raises
+    ------
+    BadCourse
+        It states something else, or a polygon that cannot be drawn.
+    """
+    solution = variant.exercise.solution
+    if solution.polygons is None:
+        return ()
+    values = _quantities(variant, solution.polygons)
+    try:
+        stated = call_on_quantities(solution.polygons, values)
+    except BrokenFunction:  # it names its file itself
+        raise
+    except BadCourse as fault:
+        raise BadCourse(f"solutions/{solution.name}.py: {fault}") from fault
+    if not isinstance(stated, (tuple, list)) or not all(isinstance(p, Polygon) for p in stated):
+        raise BadCourse(
+            f"solutions/{solution.name}.py: polygons(…) returns a tuple of Polygon; found {str(stated)[:60]}"
+        )
+    return tuple(Construction(p, variant.lang) for p in stated if p.size > 0)

@@ -1,0 +1,130 @@
+"""What a student's sheet shows: the statement, the data, the questions with their margins."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from coursework.language.numbers import localise, plain, unit_text
+from coursework.language.words import words as engine_words
+from coursework.model import Part
+from coursework.sheets.sheet import Given, Handout, Question
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+
+
+_WITHOUT_SYMBOL = ("choice", "equation")
+
+
+def handout(variant: Variant, student: str = "") -> Handout:
+    """What a student's sheet shows; nobody's unless told.
+
+    Raises
+    ------
+    BadStatement
+        A part has no section in the statement.
+    """
+    return replace(_unnamed(variant), student=student)
+
+
+@lru_cache(maxsize=16)  # a variant is rendered in every format before the next
+def _unnamed(variant: Variant) -> Handout:
+    exercise, text, lang = variant.exercise, variant.text, variant.lang
+    return Handout(
+        lang=lang,
+        course=exercise.folder.title(lang),
+        exercise=exercise.name,
+        version=exercise.version,
+        seed=variant.seed,
+        student="",
+        title=text.title,
+        statement=text.opening,
+        given=tuple(_given(variant, name) for name, spec in exercise.spec.given.items() if spec.shown),
+        figure=variant.figure,
+        figure_alt=" ".join(text.section("figure").text.split()) if exercise.spec.figure else "",
+        questions=tuple(
+            _question(variant, n, p, ways)
+            for n, (p, ways) in enumerate(zip(variant.parts, _ways_to_write(variant), strict=True), start=1)
+        ),
+        record=variant.record,
+        drawing_mm=exercise.spec.drawing_mm,
+    )
+
+
+def _given(variant: Variant, name: str) -> Given:
+    spec, value = variant.exercise.spec.given[name], variant.given[name]
+    symbol = variant.exercise.symbol(name)
+    if spec.is_choice:
+        return Given(name, symbol, variant.text.label(name, value), "", is_number=False)
+    return Given(name, symbol, plain(value), unit_text(spec.unit, variant.lang))
+
+
+def _ways_to_write(variant: Variant) -> list[tuple[str, ...]]:
+    """For each part, what its sheet has not said yet of how equations of loops are written."""
+    met: list[tuple[str, ...]] = []
+    found = []
+    for part in variant.parts:
+        new: tuple[str, ...] = ()
+        if part.loop and part.id not in variant.text.sections and part.variables not in met:
+            new = ("symbols",) if met else ("symbols", "how")
+            met.append(part.variables)
+        found.append(new)
+    return found
+
+
+def prompt(variant: Variant, part: Part, ways: Iterable[str] = ()) -> str:
+    """What a part asks: its section of the statement; for an equation of a loop that has none, the engine's
+    words after the section of its loop, and the ``ways`` to write it: ``symbols``, ``how``.
+
+    Raises
+    ------
+    BadStatement
+        The statement has no such section.
+    """
+    if not part.loop or part.id in variant.text.sections:
+        return variant.text.section(part.id).text
+    table = engine_words(variant.lang)["loop"]
+    loop = variant.text.section(part.loop).text
+    asked = part.quantity.removeprefix(f"{part.loop}_")
+    symbols = ", ".join(f"`{name}`" for name in part.variables)
+    return " ".join([loop, *(table[key].format(symbols=symbols) for key in (asked, *ways))])
+
+
+def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) -> Question:
+    choices = tuple((case, variant.text.label(part.id, case)) for case in part.choices)
+    return Question(
+        number=number,
+        id=part.id,
+        symbol="" if part.kind in _WITHOUT_SYMBOL else variant.exercise.symbol(part.quantity),
+        prompt=prompt(variant, part, ways),
+        unit="" if part.asks_unit else unit_text(part.unit, variant.lang),
+        kind=part.kind,
+        choices=choices,
+        points=part.points,
+        tolerance=tolerance_words(part, variant.lang),
+        asks_unit=part.asks_unit,
+        judge=part.judge,
+    )
+
+
+def tolerance_words(part: Part, lang: str) -> str:
+    """The accepted margin as a student reads it; empty for what is judged exactly."""
+    if part.is_exact or not (part.atol or part.rtol):
+        return ""
+    table = engine_words(lang)["accepted"]
+    percent = localise(plain(round(100 * part.rtol, 6)), lang)
+    absolute = localise(plain(part.atol), lang)
+    if part.atol and part.unit == "deg":
+        fixed = table["degrees"].format(absolute)
+    else:
+        fixed = table["absolute"].format(f"{absolute} {unit_text(part.unit, lang)}".strip())
+    if not part.rtol:
+        return fixed
+    if not part.atol:
+        return table["percent"].format(percent)
+    return table["either"].format(
+        table["share"].format(percent), f"{absolute} {unit_text(part.unit, lang)}".strip()
+    )

@@ -1,0 +1,157 @@
+"""What a sheet is made of: a handout for the student, an answer sheet for the staff.
+
+A :class:`Handout` has no field for an answer: what a student receives is rendered from
+a type that cannot hold one. Texts are Markdown with ``$LaTeX$`` in the sheet's language;
+numbers inside formulas are written ``\\num{228.6}``, always with a point, and each back
+end prints them as the language does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from coursework.figures import Figure
+from coursework.polygons.construction import Construction
+
+
+@dataclass(frozen=True)
+class Given:
+    """One given quantity, as printed."""
+
+    name: str  #: public name, ``theta2``
+    symbol: str  #: LaTeX, ``\theta_2``
+    value: str  #: with a decimal point, ``228.6``; a label in the sheet's language for a choice
+    unit: str  #: unit as the language prints it, ``mm``, ``°``; empty for a ratio or a choice
+    is_number: bool = True
+
+
+@dataclass(frozen=True)
+class Question:
+    """One part of the exercise."""
+
+    number: int
+    id: str
+    symbol: str  #: LaTeX of the quantity asked; empty when a symbol says nothing (a choice)
+    prompt: str  #: Markdown
+    unit: str  #: printed beside the answer box; empty if none
+    kind: str  #: number, angle, integer, choice, point, direction, equation
+    choices: tuple[tuple[str, str], ...]  #: (key, label) pairs of a choice
+    points: float
+    tolerance: str  #: in words a student understands; empty for exact kinds
+    asks_unit: bool = False  #: the answer is to come with its unit, which the sheet does not print
+    judge: str = ""  #: of the parts that are judged together with this one
+
+
+@dataclass(frozen=True)
+class Handout:
+    """All that a student's sheet shows."""
+
+    lang: str
+    course: str  #: title of the course
+    exercise: str
+    version: int
+    seed: int
+    student: str  #: empty when the sheet is nobody's
+    title: str
+    statement: str  #: Markdown
+    given: tuple[Given, ...]
+    figure: Figure | None
+    figure_alt: str
+    questions: tuple[Question, ...]
+    record: Mapping[str, object]  #: the variant's JSON record
+    drawing_mm: tuple[int, int] | None = None  #: width and height of the box to draw in, where there is one
+
+    @property
+    def points(self) -> float:
+        return sum(q.points for q in self.questions)
+
+
+@dataclass(frozen=True)
+class Remark:
+    """A known mistake that lurks at a step."""
+
+    words: str  #: Markdown
+    wrong: str = ""  #: what it gives in place of the right value, as Markdown; empty where that is no number and no case
+
+
+@dataclass(frozen=True)
+class Step:
+    """One quantity of the worked solution: formula, numbers put in, value."""
+
+    name: str
+    symbol: str
+    formula: str  #: LaTeX of the right-hand side; empty when words say it
+    substitution: str  #: the same with this variant's numbers; empty if none
+    value: str  #: LaTeX of the value with its unit, ``\num{319.8}\ \mathrm{mm}``
+    words: str  #: Markdown from the solution's text, before the formula
+    remarks: tuple[Remark, ...]  #: those that are mistakes in this variant
+    asked: bool
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The reference answer of one question, as the staff reads it."""
+
+    question: Question
+    text: str  #: Markdown, rounded for print
+    margin: str  #: the accepted half-width with its unit, or empty
+
+
+@dataclass(frozen=True)
+class AnswerSheet:
+    """A handout with its answers and its worked solution."""
+
+    handout: Handout
+    answers: tuple[Answer, ...]
+    steps: tuple[Step, ...]
+    introduction: str  #: Markdown, the solution text's opening words
+    figure: Figure | None  #: the solution's own figure, if it has one
+    figure_alt: str = ""  #: what that figure shows; empty when the handout's words say it
+    polygons: tuple[Construction, ...] = ()  #: of velocities and accelerations
+
+
+@dataclass(frozen=True)
+class FeedbackLine:
+    """What became of one answer."""
+
+    question: Question
+    answer: str  #: the student's text as it came
+    read_as: str
+    verdict: str
+    points: float
+    out_of: float
+    says: str  #: Markdown, a sentence that helps and gives no reference value
+
+
+@dataclass(frozen=True)
+class FeedbackSheet:
+    """A student's marks on one exercise."""
+
+    handout: Handout
+    lines: tuple[FeedbackLine, ...]
+    points: float
+    out_of: float
+
+
+@dataclass(frozen=True)
+class Ask:
+    """A prediction to make: its name, the question (Markdown), and what may be written (plain text)."""
+
+    id: str
+    question: str
+    options: str
+
+
+@dataclass(frozen=True)
+class StudySheet:
+    """All that a self-study notebook shows; like its handout it holds no answer."""
+
+    handout: Handout
+    file: str  #: where answers are kept, beside the notebook
+    course: str  #: name of the course's folder; empty for the course that the package brings
+    before: tuple[Ask, ...]  #: predictions before any computation
+    cycle: tuple[Ask, ...]  #: predictions before the curves
+    moves: bool  #: whether there are curves over a cycle
+    animates: bool  #: whether the mechanism can be shown in motion
+    questions: tuple[Question, ...]  #: of the first fresh variant; none where there is no other variant

@@ -1,0 +1,1 @@
+"""How a class did: measured from its marks, and told on a page."""

@@ -1,0 +1,128 @@
+"""What a report calls questions and mistakes: as sheets and feedback do, and never by names of the code alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from coursework.course.course import Course
+from coursework.course.exercise import ALL, CourseExercise
+from coursework.errors import CourseworkError
+from coursework.language.words import words
+from coursework.markup.markdown import plain_line
+from coursework.sheets.handout import prompt
+from coursework.statistics.measures import MistakeStatistics, PartStatistics, Statistics
+
+SHORT = 44  #: characters of a question's words, or of a mistake's, that stand for it
+_MEASURED_BY_SYMBOL = ("number", "angle", "integer")
+_OPEN = re.compile(r"\{\w+\}")
+
+
+class Names:
+    """The names of one report. What the course does not know keeps the name that the marks give it."""
+
+    def __init__(self, course: Course, statistics: Statistics, lang: str) -> None:
+        self._course = course
+        self._lang = lang
+        self._marked: dict[str, set[str]] = {}
+        for part in statistics.parts:
+            self._marked.setdefault(part.exercise, set()).add(part.part)
+        self._texts: dict[str, list[Mapping[str, Any]]] = {}
+
+    def exercise(self, name: str) -> CourseExercise | None:
+        """The exercise of that name, where the course has it."""
+        if name not in self._course:
+            return None
+        return self._course[name]
+
+    # --------------------------------------------------------------- questions
+
+    def number(self, part: PartStatistics) -> int | None:
+        """The number of the question; None where it is not the same on every sheet, or cannot be told."""
+        exercise = self.exercise(part.exercise)
+        asked = [p for p in exercise.spec.parts if not p.by_request] if exercise else []
+        ids = [p.id for p in asked]
+        always = {p.id for p in asked if p.when is None}
+        if part.part not in ids or not always <= self._marked[part.exercise] <= set(ids):
+            return None
+        place = ids.index(part.part)
+        return place + 1 if always.issuperset(ids[:place]) else None
+
+    def symbol(self, part: PartStatistics) -> str:
+        """LaTeX of what the part asks; nothing where a symbol says nothing, or the course knows no such part."""
+        exercise = self.exercise(part.exercise)
+        asked = exercise.spec.part(part.part) if exercise else None
+        measured = asked is not None and asked.kind in _MEASURED_BY_SYMBOL
+        return exercise.symbol(asked.quantity) if measured else ""
+
+    def question(self, part: PartStatistics) -> str:
+        """The words of the question, shortened, as plain text; the part's own name where there are none."""
+        exercise = self.exercise(part.exercise)
+        asked = exercise.spec.part(part.part) if exercise else None
+        if asked is None or self._lang not in exercise.languages:
+            return part.part
+        try:
+            said = prompt(exercise.variant(0, self._lang, (ALL,)), asked)
+        except CourseworkError:
+            return part.part
+        return shortened(plain_line(said, self._lang)) or part.part
+
+    # ---------------------------------------------------------------- mistakes
+
+    def says(self, one: MistakeStatistics) -> str:
+        """What students are told of a mistake or a slip, as plain text: an ellipsis where each has words of their own,
+        nothing where the course has none."""
+        if one.kind == "slip":
+            return self._slip(one.name)
+        told = [plain_line(text, self._lang) for text in self._told(one)]
+        return _common(told) if told else ""
+
+    def says_markdown(self, one: MistakeStatistics) -> str:
+        """The same with its formulas, where all are told the same; else nothing."""
+        told = set(self._told(one))
+        return " ".join(told.pop().split()) if len(told) == 1 else ""
+
+    def mistake(self, one: MistakeStatistics, most: int = SHORT) -> str:
+        """The mistake in the first words of what is told; its own name where nothing is."""
+        first = re.split(r"(?<=[.?!])\s", self.says(one), maxsplit=1)[0]
+        return shortened(first.removesuffix("."), most) or one.name
+
+    def _told(self, one: MistakeStatistics) -> list[str]:
+        """The sentence of a mistake on two variants, Markdown."""
+        if one.kind == "slip":
+            return []
+        if one.exercise not in self._texts:
+            self._texts[one.exercise] = self._of_two_variants(one.exercise)
+        section = f"mistake {one.name}"
+        return [texts[section].text for texts in self._texts[one.exercise] if section in texts]
+
+    def _slip(self, kind: str) -> str:
+        sentence = words(self._lang)["marking"].get(f"slip_{kind}", "")
+        told = sentence.removeprefix("{name}").lstrip(" :\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}")
+        said = plain_line(_OPEN.sub("…", told), self._lang)
+        return said[:1].upper() + said[1:]
+
+    def _of_two_variants(self, name: str) -> list[Mapping[str, Any]]:
+        exercise = self.exercise(name)
+        try:
+            variants = exercise.variants((0, 1), self._lang) if exercise else []
+            return [v.solution_text.sections for v in variants]
+        except CourseworkError:
+            return []  # a course without solutions, or without this text, has no words for mistakes
+
+
+def shortened(text: str, most: int = SHORT) -> str:
+    """The text up to the end of a word, with an ellipsis where that is not all."""
+    if len(text) <= most:
+        return text
+    whole = text[:most].rpartition(" ")[0] or text[: most - 1]
+    return whole.rstrip(" ,;:.") + "…"
+
+
+def _common(texts: list[str]) -> str:
+    """The words that the texts share, an ellipsis for each that they do not; nothing where they differ in more."""
+    split = [text.split() for text in texts]
+    if len({len(one) for one in split}) > 1:
+        return ""
+    return " ".join(one[0] if len(set(one)) == 1 else "…" for one in zip(*split, strict=True))

@@ -1,0 +1,197 @@
+"""TODO coursework/statistics/marks.py"""
+
+from __future__ import annotations
+
+import csv
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from coursework.errors import BadInput
+from coursework.gradebook.book import VERDICTS
+from coursework.system.tables import delimiter_of, open_csv
+
+MOST_POINTS = 1e9  #: more is no number of points
+
+_MARKS = ("student", "exercise", "part", "verdict", "points", "out_of")
+_REJECTED = ("source", "reason")
+_SUMMARY = ("student", "unreadable", "out_of", "missing")
+
+
+# ---------------------------------------------------------------------- reading
+
+
+@dataclass(frozen=True)
+class Marks:
+    """The lines of ``marks.csv`` as columns, each of shape (lines,), and what the other files add."""
+
+    students: tuple[str, ...]  #: those with a line, then those of the summary without
+    parts: tuple[tuple[str, str], ...]  #: exercise and part
+    verdicts: tuple[str, ...]
+    student: np.ndarray  #: index into students
+    part: np.ndarray  #: index into parts
+    verdict: np.ndarray  #: index into verdicts
+    points: np.ndarray
+    out_of: np.ndarray
+    issued: np.ndarray  #: points that each student could have, shape (students,)
+    without_line: int  #: answers asked for that no line holds
+    rejected: int  #: rows that could not be marked
+    unread: int  #: students who handed in, and nothing that could be marked
+
+    @property
+    def exercises(self) -> tuple[str, ...]:
+        """Names of the exercises, in the order they are met."""
+        return tuple(dict.fromkeys(exercise for exercise, _ in self.parts))
+
+
+class _Numbered(dict):
+    """Texts to numbers, in the order they are met."""
+
+    def __missing__(self, key: Any) -> int:
+        self[key] = number = len(self)
+        return number
+
+
+class _Decimals(dict):
+    """Texts to numbers that points may be, each read once; a comma is a point, as some spreadsheets save it."""
+
+    def __missing__(self, text: str) -> float:
+        value = float(text.strip().replace(",", "."))
+        if not abs(value) <= MOST_POINTS:
+            raise ValueError(text)
+        self[text] = value
+        return value
+
+
+def read(folder: Path) -> Marks:
+    """Read a folder of marks: ``marks.csv``, and ``summary.csv`` and ``rejected.csv`` if they are there.
+
+    Points come from ``marks.csv`` alone, so that a mark mended by hand there counts.
+
+    Raises
+    ------
+    BadInput
+        No ``marks.csv``, a column that is missing, or a line that holds no mark.
+    """
+    path = folder / "marks.csv"
+    if not path.is_file():
+        raise BadInput(_no_marks(folder))
+    students, parts, verdicts, decimals = _Numbered(), _Numbered(), _Numbered(), _Decimals()
+    codes = [array("i") for _ in range(3)]
+    student, part, verdict = codes
+    points, out_of = array("d"), array("d")
+    for who, exercise, asked, judged, got, of in _lines(path, _MARKS, decimals):
+        student.append(students[who])
+        part.append(parts[exercise, asked])
+        verdict.append(verdicts[judged])
+        points.append(got)
+        out_of.append(of)
+    _check_verdicts(path, verdicts)
+    columns = [np.array(c, dtype=np.int64) for c in codes]
+    points, out_of = np.array(points, dtype=float), np.array(out_of, dtype=float)
+    if np.any(out_of <= 0):
+        raise BadInput(f"{path}: a line is out of {out_of.min():g} points; every part is out of some")
+
+    marked = len(students)
+    told, asked_blank, unread = _summary(folder / "summary.csv", students, decimals)
+    issued = np.bincount(columns[0], out_of, minlength=len(students))
+    issued = np.maximum(issued, [told.get(s, 0.0) for s in students])
+    blank = np.array([family_of(v) == "missing" for v in verdicts], dtype=bool)
+    without_line = max(0, asked_blank - int(np.count_nonzero(blank[columns[2]])))
+    rejected = folder / "rejected.csv"
+    return Marks(
+        tuple(students),
+        tuple(parts),
+        tuple(verdicts),
+        *columns,
+        points,
+        out_of,
+        issued,
+        without_line if told else 0,
+        sum(1 for _ in _lines(rejected, _REJECTED)) if rejected.is_file() else 0,
+        sum(1 for student in unread if students[student] >= marked),
+    )
+
+
+def _summary(path: Path, students: _Numbered, decimals: _Decimals) -> tuple[dict[str, float], int, set[str]]:
+    """The points that each student could have, the count of blank answers, and those who handed in what cannot be
+    read; new students join."""
+    told: dict[str, float] = {}
+    blank, unread = 0, set()
+    if path.is_file():
+        for name, unreadable, out_of, missing in _lines(path, _SUMMARY, decimals):
+            students[name]
+            if unreadable.strip() not in ("", "0"):
+                unread.add(name)
+            told[name] = out_of
+            blank += round(missing)
+    return told, blank, unread
+
+
+def _no_marks(folder: Path) -> str:
+    if folder.is_file():
+        return f"{folder} is a file; give the folder that 'coursework grade' wrote, with marks.csv in it"
+    if not folder.is_dir():
+        return f"there is no folder {folder}; give the one that 'coursework grade' wrote"
+    found = sorted(p.name for p in folder.iterdir())
+    told = f"found {', '.join(found[:6])}{', …' if len(found) > 6 else ''}" if found else "it is empty"
+    below = sorted(p.parent for p in folder.glob("*/marks.csv"))
+    would = f"did you mean {below[0]}?" if below else "give the folder that 'coursework grade' wrote"
+    return f"{folder} holds no marks.csv ({told}); {would}"
+
+
+def _check_verdicts(path: Path, verdicts: Mapping[str, int]) -> None:
+    for verdict in verdicts:
+        if family_of(verdict) not in VERDICTS:
+            raise BadInput(f"{path}: no verdict {verdict[:40]!r}; there is {', '.join(VERDICTS)}")
+
+
+def family_of(verdict: str) -> str:
+    return verdict.partition(":")[0]
+
+
+def _lines(
+    path: Path, columns: Sequence[str], decimals: _Decimals | None = None
+) -> Iterator[tuple[Any, ...]]:
+    """The named columns of a CSV, line by line; with ``decimals``, the last two of them as floats."""
+    try:
+        with open_csv(path) as file:
+            delimiter = delimiter_of(file.readline())
+            file.seek(0)
+            reader = csv.reader(file, delimiter=delimiter)
+            places = _places(path, next(reader, []), columns)
+            named = itemgetter(*places)
+            for cells in reader:
+                try:
+                    row = named(cells)
+                    yield row if decimals is None else (*row[:-2], decimals[row[-2]], decimals[row[-1]])
+                except (IndexError, ValueError) as fault:
+                    if any(c.strip() for c in cells):
+                        raise BadInput(_bad_line(path, reader.line_num, cells, columns, fault)) from fault
+    except OSError as fault:
+        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+    except csv.Error as fault:
+        raise BadInput(f"{path} is not CSV: {fault}") from fault
+
+
+def _places(path: Path, header: Sequence[str], columns: Sequence[str]) -> list[int]:
+    names = [h.strip().casefold() for h in header]
+    missing = [c for c in columns if c not in names]
+    if missing:
+        found = ", ".join(n[:30] for n in names if n) or "nothing"
+        raise BadInput(
+            f"{path} needs the columns {', '.join(columns)}; {', '.join(missing)} missing, found {found}; "
+            "'coursework grade' writes them"
+        )
+    return [names.index(c) for c in columns]
+
+
+def _bad_line(path: Path, line: int, cells: Sequence[str], columns: Sequence[str], fault: Exception) -> str:
+    if isinstance(fault, IndexError):
+        return f"{path}, line {line}: {len(cells)} cells, too few for {', '.join(columns)}"
+    return f"{path}, line {line}: {' and '.join(columns[-2:])} are numbers, to {MOST_POINTS:g}; found {','.join(cells)[:60]!r}"

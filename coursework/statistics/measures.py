@@ -1,0 +1,282 @@
+"""Statistics of a marked class, from the folder that ``grade`` wrote: numbers, and no page.
+
+Texts are numbered as they are read, so that a line of ``marks.csv`` costs a few numbers whatever its
+answer and feedback hold.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from coursework.gradebook.book import VERDICTS
+from coursework.statistics.marks import Marks, family_of
+
+RIGHT = ("correct", "follow_through", "accepted")
+RECOGNISED = ("mistake", "slip")
+
+ENOUGH = 10  #: students below which a discrimination is chance
+WEAK = 0.15  #: a discrimination below which a part is worth a look
+BINS = 10  #: of the distribution of points
+
+PART_COLUMNS = ("exercise", "part", "answers", "right", "mean", "discrimination", *VERDICTS)
+MISTAKE_COLUMNS = ("exercise", "part", "kind", "mistake", "count", "share", "lost", "share_of_lost", "says")
+
+
+# -------------------------------------------------------------------- measuring
+
+
+@dataclass(frozen=True)
+class PartStatistics:
+    """One part over a class; shares are from 0 to 1."""
+
+    exercise: str
+    part: str
+    answers: int  #: lines, blank ones included
+    students: int  #: who have one of them
+    counts: Mapping[str, int]  #: by family of verdicts
+    mean: float  #: mean share of the part's points: the lower, the harder
+    discrimination: float | None  #: None where it cannot be computed
+    lost: float  #: points
+
+    def share(self, *families: str) -> float:
+        return sum(self.counts[f] for f in families) / self.answers
+
+    @property
+    def right(self) -> float:
+        """Share of the answers that are right: by themselves, from an earlier wrong one, or accepted by hand."""
+        return self.share(*RIGHT)
+
+    def row(self) -> dict[str, Any]:
+        """A line of ``parts.csv``: shares with four decimals."""
+        r = self.discrimination
+        return {
+            "exercise": self.exercise,
+            "part": self.part,
+            "answers": self.answers,
+            "right": round(self.right, 4),
+            "mean": round(self.mean, 4),
+            "discrimination": None if r is None else round(r, 4),
+            **{f: round(self.share(f), 4) for f in VERDICTS},
+        }
+
+
+@dataclass(frozen=True)
+class MistakeStatistics:
+    """A recognised mistake or slip, on one part or, where ``part`` is empty, on all of an exercise."""
+
+    exercise: str
+    part: str
+    kind: str  #: mistake or slip
+    name: str
+    count: int
+    share: float  #: of the answers to the part, or to the parts where it is met
+    lost: float  #: points
+    share_of_lost: float  #: of all points that the class lost on lines of marks.csv
+
+    def row(self) -> dict[str, Any]:
+        """A line of ``mistakes.csv``, but for the words of its feedback."""
+        return {
+            "exercise": self.exercise,
+            "part": self.part,
+            "kind": self.kind,
+            "mistake": self.name,
+            "count": self.count,
+            "share": round(self.share, 4),
+            "lost": round(self.lost, 4),
+            "share_of_lost": round(self.share_of_lost, 4),
+        }
+
+
+@dataclass(frozen=True)
+class Statistics:
+    """What a class did."""
+
+    students: int
+    silent: int  #: students who handed in nothing
+    unread: int  #: students who handed in, and nothing that could be marked
+    answers: int  #: lines of marks.csv, blank ones included
+    counts: Mapping[str, int]  #: of all lines, by family of verdicts
+    without_line: int  #: answers asked for that no line holds
+    rejected: int
+    percents: np.ndarray  #: of the points each student could have, shape (students with points to have,)
+    parts: tuple[PartStatistics, ...]  #: an exercise after another, in sheet order
+    mistakes: tuple[MistakeStatistics, ...]  #: by part, the most frequent first
+
+    @property
+    def needs_a_look(self) -> int:
+        """Answers that somebody must look at: unreadable or rejected."""
+        return self.counts["unreadable"] + self.rejected
+
+    @property
+    def exercises(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(p.exercise for p in self.parts))
+
+    def histogram(self) -> np.ndarray:
+        """Students in each tenth of the points, shape (BINS,); a full score is in the last."""
+        # A hair above its edge, so that rounding puts no 70 % below 70 %.
+        place = np.floor(self.percents * BINS / 100 + 1e-9)
+        return np.bincount(np.clip(place, 0, BINS - 1).astype(int), minlength=BINS)
+
+    def mistakes_of_exercises(self) -> list[MistakeStatistics]:
+        """The mistakes, those of one name summed over an exercise's parts; the most frequent first."""
+        groups: dict[tuple[str, str, str], list[MistakeStatistics]] = {}
+        for one in self.mistakes:
+            groups.setdefault((one.exercise, one.kind, one.name), []).append(one)
+        answers = {(p.exercise, p.part): p.answers for p in self.parts}
+        summed = [
+            MistakeStatistics(
+                *(exercise, "", kind, name),
+                count=(count := sum(m.count for m in group)),
+                share=count / sum(answers[m.exercise, m.part] for m in group),
+                lost=sum(m.lost for m in group),
+                share_of_lost=sum(m.share_of_lost for m in group),
+            )
+            for (exercise, kind, name), group in groups.items()
+        ]
+        return sorted(summed, key=lambda m: (-m.count, -m.lost))
+
+    def as_json(self) -> dict[str, Any]:
+        percents = self.percents
+        some = percents.size > 0
+        return {
+            "students": self.students,
+            "handed_in_nothing": self.silent,
+            "handed_in_unreadable": self.unread,
+            "answers": self.answers,
+            "verdicts": dict(self.counts),
+            "asked_without_line": self.without_line,
+            "rejected": self.rejected,
+            "percent": {
+                "mean": round(float(percents.mean()), 2) if some else None,
+                "median": round(float(np.median(percents)), 2) if some else None,
+                "histogram": self.histogram().tolist(),
+            },
+            "parts": [p.row() for p in self.parts],
+            "mistakes": [m.row() for m in self.mistakes],
+        }
+
+
+def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None) -> Statistics:
+    """Measure a class.
+
+    ``sheet_order`` gives the part ids of exercises as their sheets print them; parts that it does not
+    know follow, in the order they are met.
+    """
+    families = np.array([VERDICTS.index(family_of(v)) for v in marks.verdicts], dtype=int)
+    family = families[marks.verdict]
+    n = len(marks.parts)
+    answers = np.bincount(marks.part, minlength=n)
+    counts = np.bincount(marks.part * len(VERDICTS) + family, minlength=n * len(VERDICTS))
+    counts = counts.reshape(n, len(VERDICTS))
+    share = marks.points / marks.out_of
+    mean = np.bincount(marks.part, share, minlength=n) / np.maximum(answers, 1)
+    lost = np.bincount(marks.part, marks.out_of - marks.points, minlength=n)
+    askers = _askers(marks)
+    told = _discriminations(marks, share, askers)
+
+    def place(index: int) -> tuple[int, int]:
+        exercise, part = marks.parts[index]
+        known = list((sheet_order or {}).get(exercise, ()))
+        return marks.exercises.index(exercise), known.index(part) if part in known else len(known) + index
+
+    order = sorted(range(n), key=place)
+    parts = tuple(
+        PartStatistics(
+            *marks.parts[i],
+            answers=int(answers[i]),
+            students=askers[i],
+            counts=dict(zip(VERDICTS, counts[i].tolist(), strict=True)),
+            mean=float(mean[i]),
+            discrimination=told[i],
+            lost=float(lost[i]),
+        )
+        for i in order
+    )
+    students = len(marks.students)
+    with_line = np.bincount(marks.student, minlength=students) > 0
+    total = np.bincount(marks.student, marks.points, minlength=students)
+    has = marks.issued > 0
+    return Statistics(
+        students=students,
+        silent=students - int(np.count_nonzero(with_line)) - marks.unread,
+        unread=marks.unread,
+        answers=len(marks.student),
+        counts=dict(zip(VERDICTS, counts.sum(axis=0).tolist(), strict=True)),
+        without_line=marks.without_line,
+        rejected=marks.rejected,
+        percents=100 * total[has] / marks.issued[has],
+        parts=parts,
+        mistakes=_mistakes(marks, answers, order, float(lost.sum())),
+    )
+
+
+def _askers(marks: Marks) -> list[int]:
+    """By part, how many students have a line of it."""
+    students = max(1, len(marks.students))
+    pairs = np.sort(marks.part * students + marks.student)
+    pairs = pairs[np.diff(pairs, prepend=-1) > 0]
+    return np.bincount(pairs // students, minlength=len(marks.parts)).tolist()
+
+
+def _discriminations(marks: Marks, share: np.ndarray, askers: Sequence[int]) -> list[float | None]:
+    """By part, the correlation of its points with the student's points on everything else.
+
+    Both are shares, since variants may ask different parts; where all ask the same this is the
+    correlation of the points themselves. What a student was asked and did not hand in counts as 0.
+    """
+    total = np.bincount(marks.student, marks.points, minlength=len(marks.students))
+    others_out_of = marks.issued[marks.student] - marks.out_of
+    # Out of the part alone there is no rest to compare with.
+    compared = others_out_of > 1e-6 * marks.out_of
+    rest = np.divide(
+        total[marks.student] - marks.points, others_out_of, out=np.zeros_like(share), where=compared
+    )
+    lines = np.flatnonzero(compared)
+    lines = lines[np.argsort(marks.part[lines], kind="stable")]
+    ends = np.searchsorted(marks.part[lines], np.arange(len(marks.parts) + 1))
+    found: list[float | None] = []
+    for (start, end), students in zip(pairwise(ends), askers, strict=True):
+        own = lines[start:end]
+        enough = students >= ENOUGH and own.size > 0
+        found.append(correlation(share[own], rest[own]) if enough else None)
+    return found
+
+
+def correlation(x: np.ndarray, y: np.ndarray) -> float | None:
+    """Pearson's correlation of two samples; None where one of them does not vary."""
+    if min(np.ptp(x), np.ptp(y)) < 1e-9:
+        return None
+    x, y = x - x.mean(), y - y.mean()
+    return float((x * y).sum() / math.sqrt((x * x).sum() * (y * y).sum()))
+
+
+def _mistakes(
+    marks: Marks, answers: np.ndarray, order: Sequence[int], all_lost: float
+) -> tuple[MistakeStatistics, ...]:
+    recognised = np.array([family_of(v) in RECOGNISED for v in marks.verdicts], dtype=bool)
+    lines = np.flatnonzero(recognised[marks.verdict])
+    kinds = len(marks.verdicts)
+    code, which = np.unique(marks.part[lines] * kinds + marks.verdict[lines], return_inverse=True)
+    counts = np.bincount(which, minlength=len(code))
+    lost = np.bincount(which, (marks.out_of - marks.points)[lines], minlength=len(code))
+    rank = {index: place for place, index in enumerate(order)}
+    found = []
+    for one, count, points in zip(code.tolist(), counts.tolist(), lost.tolist(), strict=True):
+        part, verdict = divmod(one, kinds)
+        kind, _, name = marks.verdicts[verdict].partition(":")
+        own = MistakeStatistics(
+            *(*marks.parts[part], kind, name),
+            count=count,
+            share=count / int(answers[part]),
+            lost=points,
+            share_of_lost=points / all_lost if all_lost > 0 else 0.0,
+        )
+        found.append((rank[part], own))
+    found.sort(key=lambda f: (-f[1].count, f[0], f[1].kind, f[1].name))
+    return tuple(own for _, own in found)

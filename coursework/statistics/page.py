@@ -1,0 +1,340 @@
+"""Statistics of a class as a page: charts, tables, and what they say in plain words."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from coursework.course.course import Course
+from coursework.figures.charts import bars, formula_label, histogram, plain_label
+from coursework.gradebook.book import VERDICTS
+from coursework.language.numbers import localise, plain
+from coursework.language.typography import typeset
+from coursework.language.words import listed, words
+from coursework.markup.markdown import drawable, to_text
+from coursework.sheets.report import Chart, Report, Section, Table
+from coursework.statistics.captions import SHORT, Names
+from coursework.statistics.measures import (
+    BINS,
+    ENOUGH,
+    MISTAKE_COLUMNS,
+    WEAK,
+    MistakeStatistics,
+    PartStatistics,
+    Statistics,
+)
+
+_QUOTED = 160  #: characters of a mistake's words in a sentence
+_NAMED = 5  #: questions that a sentence names
+_CHARTED = 12  #: mistakes in the chart
+_LISTED = 12  #: mistakes in the table of an exercise
+_CHART_ROWS = 16  #: bars that one chart holds
+
+Words = Mapping[str, Any]
+
+
+def sheet_order(course: Course, exercises: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """Part ids in the order of the sheets, of those exercises that the course has."""
+    return {name: tuple(p.id for p in course[name].spec.parts) for name in exercises if name in course}
+
+
+def report(course: Course, statistics: Statistics, lang: str) -> Report:
+    """The reading, the points, a section an exercise, the mistakes."""
+    page = _Page(course, statistics, lang)
+    sections = [page.short()]
+    if statistics.percents.size:
+        sections.append(page.points())
+    sections += [page.exercise(name) for name in statistics.exercises]
+    if statistics.mistakes:
+        sections.append(page.mistakes())
+    return Report(
+        lang,
+        course.folder.title(lang),
+        page.said["title"],
+        page.said["source"],
+        page.said["opening"],
+        tuple(sections),
+    )
+
+
+def mistake_rows(course: Course, statistics: Statistics, lang: str) -> Iterator[dict[str, Any]]:
+    """The lines of ``mistakes.csv``."""
+    names = Names(course, statistics, lang)
+    for one in statistics.mistakes:
+        yield {c: {**one.row(), "says": names.says(one)}[c] for c in MISTAKE_COLUMNS}
+
+
+class _Page:
+    """The sections of one report."""
+
+    def __init__(self, course: Course, statistics: Statistics, lang: str) -> None:
+        self.course = course
+        self.statistics = statistics
+        self.lang = lang
+        self.said: Words = words(lang)["statistics"]
+        self.verdicts: Words = words(lang)["verdicts"]
+        self.names = Names(course, statistics, lang)
+
+    # ---------------------------------------------------------------- sections
+
+    def short(self) -> Section:
+        told = self.statistics
+        percents = told.percents
+        rows = [
+            (self.said["students"], self._number(told.students)),
+            (self.said["silent"], self._number(told.silent)),
+            (self.said["unread"], self._number(told.unread)),
+            (self.said["answers"], self._number(told.answers)),
+            (self.said["without_line"], self._number(told.without_line)),
+            (self.verdicts["missing"], self._number(told.counts["missing"])),
+            (self.verdicts["unreadable"], self._number(told.counts["unreadable"])),
+            (self.said["rejected"], self._number(told.rejected)),
+        ]
+        if percents.size:
+            rows.append((self.said["mean_percent"], self._percent(percents.mean() / 100)))
+            rows.append((self.said["median_percent"], self._percent(np.median(percents) / 100)))
+        text = "\n".join(f"- {sentence}" for sentence in self._reading())
+        table = Table((self.said["measure"], self.said["count"]), tuple(rows), (False, True))
+        return Section(self.said["short"], text, tables=(table,))
+
+    def points(self) -> Section:
+        counts = self.statistics.histogram().tolist()
+        edges = [round(100 * k / BINS) for k in range(BINS + 1)]
+        heads = tuple(f"{a}–{b}" for a, b in pairwise(edges))
+        svg = histogram(
+            counts, edges, self.said["chart_points"], self.said["axis_points"], self.said["axis_students"]
+        )
+        table = Table(heads, (tuple(self._number(c) for c in counts),), (True,) * BINS)
+        return Section(
+            self.said["points"],
+            self.said["points_text"],
+            (self._chart(svg, self.said["chart_points"]),),
+            (table,),
+        )
+
+    def exercise(self, name: str) -> Section:
+        parts = [p for p in self.statistics.parts if p.exercise == name]
+        title = self._heading(name)
+        heading = self.said["chart_right"].format(title)
+        charts = [
+            self._chart(
+                bars(
+                    [(self._label(p), 100 * p.right, self._chart_text(self._percent(p.right))) for p in rows],
+                    self._chart_text(heading),
+                    self.said["axis_right"],
+                    full=100,
+                ),
+                heading,
+            )
+            for rows in _shared_out(parts, _CHART_ROWS)
+        ]
+        return Section(title, "", tuple(charts), (self._part_table(parts), self._verdict_table(parts)))
+
+    def mistakes(self) -> Section:
+        told = self.statistics
+        rows = [
+            (self._mistake_label(m), m.count, str(m.count)) for m in told.mistakes_of_exercises()[:_CHARTED]
+        ]
+        heading = self.said["chart_mistakes"]
+        chart = self._chart(bars(rows, self._chart_text(heading), self.said["axis_answers"]), heading)
+        tables, left_out = [], 0
+        for name in told.exercises:
+            own = [m for m in told.mistakes if m.exercise == name]
+            left_out += len(own[_LISTED:])
+            if own:
+                tables.append(self._mistake_table(name, own[:_LISTED]))
+        text = [self.said["mistakes_text"]]
+        if left_out:
+            text.append(self.said["mistakes_more"].format(left_out))
+        return Section(self.said["mistakes"], " ".join(text), (chart,), tuple(tables))
+
+    # ------------------------------------------------------------------ tables
+
+    def _part_table(self, parts: Sequence[PartStatistics]) -> Table:
+        keys = ("part", "part_answers", "right", "mean", "discrimination")
+        rows = tuple(
+            (
+                self._name_and_id(p),
+                self._number(p.answers),
+                self._percent(p.right),
+                self._percent(p.mean),
+                self._discriminates(p),
+            )
+            for p in parts
+        )
+        return Table(tuple(self.said[k] for k in keys), rows, (False, True, True, True, True))
+
+    def _discriminates(self, part: PartStatistics) -> str:
+        if part.discrimination is not None:
+            return self._decimal(part.discrimination)
+        return self.said["too_few" if part.students < ENOUGH else "all_alike"]
+
+    def _verdict_table(self, parts: Sequence[PartStatistics]) -> Table:
+        """The verdicts that some answer has; the others have no column."""
+        met = [f for f in VERDICTS if any(p.counts[f] for p in parts)]
+        rows = tuple(
+            (self._name(p), *(self._hundredths(p.share(f)) if p.counts[f] else "" for f in met))
+            for p in parts
+        )
+        heads = (self.said["part"], *(self.verdicts[f] for f in met))
+        return Table(heads, rows, (False, *[True] * len(met)), self.said["became"])
+
+    def _mistake_table(self, exercise: str, mistakes: Sequence[MistakeStatistics]) -> Table:
+        parts = {p.part: p for p in self.statistics.parts if p.exercise == exercise}
+        rows = tuple(
+            (
+                self._name(parts[one.part]),
+                self.names.says_markdown(one) or _as_it_is(self.names.says(one) or one.name),
+                self._number(one.count),
+                self._percent(one.share),
+                self._decimal(one.lost, 1),
+            )
+            for one in mistakes
+        )
+        heads = tuple(self.said[h] for h in ("part", "says", "part_answers", "share", "lost"))
+        return Table(heads, rows, (False, False, True, True, True), self._heading(exercise))
+
+    # ----------------------------------------------------------------- reading
+
+    def _reading(self) -> list[str]:
+        if not self.statistics.answers:
+            found = [self.said["reading"]["nothing"]]
+        else:
+            found = [self._hardest(), self._discrimination(), self._costly()]
+        return [*found, self._to_look_at()]
+
+    def _hardest(self) -> str:
+        lost = [p for p in self.statistics.parts if p.mean < 1]
+        if not lost:
+            return self.said["reading"]["all_full"]
+        hardest = sorted(lost, key=lambda p: p.mean)[:3]
+        shown = [self._with(p, self._percent(p.mean)) for p in hardest]
+        return self.said["reading"]["hardest"].format(parts=listed(shown, self.lang))
+
+    def _discrimination(self) -> str:
+        reading = self.said["reading"]
+        measured = [p for p in self.statistics.parts if p.discrimination is not None]
+        if not measured:
+            return reading["unmeasured"].format(ENOUGH)
+        active = self.statistics.students - self.statistics.silent - self.statistics.unread
+        # The standard error of a correlation near 0.
+        uncertain = reading["uncertain"].format(
+            students=active, error=self._decimal(1 / math.sqrt(active - 1))
+        )
+        limit = self._decimal(WEAK)
+        weak = sorted((p for p in measured if p.discrimination < WEAK), key=lambda p: p.discrimination)
+        if not weak:
+            return f"{reading['none_weak'].format(limit=limit)} {uncertain}"
+        shown = [self._with(p, self._decimal(p.discrimination)) for p in weak[:_NAMED]]
+        parts = listed(shown, self.lang)
+        if len(weak) > _NAMED:
+            parts = ", ".join([*shown, reading["more"].format(len(weak) - _NAMED)])
+        return f"{reading['weak'].format(limit=limit, parts=parts)} {uncertain}"
+
+    def _costly(self) -> str:
+        reading = self.said["reading"]
+        costly = max(self.statistics.mistakes_of_exercises(), key=lambda m: m.lost, default=None)
+        if costly is None:
+            return reading["no_mistake"]
+        return reading["costly"].format(
+            name=f"*{_as_it_is(self.names.mistake(costly, most=_QUOTED))}*",
+            exercise=self._title(costly.exercise),
+            count=self._number(costly.count),
+            answers=self._number(round(costly.count / costly.share)),
+            share=self._percent(costly.share_of_lost),
+        )
+
+    def _to_look_at(self) -> str:
+        told = self.statistics
+        if not told.needs_a_look:
+            return self.said["reading"]["no_look"]
+        return self.said["reading"]["look"].format(
+            total=told.needs_a_look, unreadable=told.counts["unreadable"], rejected=told.rejected
+        )
+
+    # ------------------------------------------------------------------- names
+
+    def _title(self, name: str) -> str:
+        """An exercise's title as Markdown."""
+        exercise = self.names.exercise(name)
+        return exercise.title(self.lang) if exercise and self.lang in exercise.languages else _as_it_is(name)
+
+    def _heading(self, name: str) -> str:
+        """An exercise's title as plain text."""
+        return " ".join(to_text(self._title(name), self.lang).split())
+
+    def _numbered(self, part: PartStatistics, name: str) -> str:
+        number = self.names.number(part)
+        return name if number is None else f"{number} · {name}"
+
+    def _name(self, part: PartStatistics) -> str:
+        symbol = self.names.symbol(part)
+        return self._numbered(part, f"${symbol}$" if symbol else _as_it_is(self.names.question(part)))
+
+    def _name_and_id(self, part: PartStatistics) -> str:
+        """For the one table where an author looks for a part by its id."""
+        name, own = self._name(part), _as_it_is(part.part)
+        return name if name == own else f"{name} ({own})"
+
+    def _with(self, part: PartStatistics, value: str) -> str:
+        """A part and a number of it, in a sentence about the class."""
+        several = len(self.statistics.exercises) > 1
+        note = f"{self._title(part.exercise)}, {value}" if several else value
+        return f"{self._name(part)} ({note})"
+
+    def _label(self, part: PartStatistics) -> str:
+        symbol, name = self.names.symbol(part), plain_label(_short(self.names.question(part), SHORT))
+        return self._numbered(part, formula_label(symbol, _short(part.part)) if symbol else name)
+
+    def _mistake_label(self, one: MistakeStatistics) -> str:
+        several = len(self.statistics.exercises) > 1
+        name = _short(self.names.mistake(one), SHORT)
+        return plain_label(f"{name} ({_short(self._heading(one.exercise), 24)})" if several else name)
+
+    # ------------------------------------------------------------------ pieces
+
+    def _number(self, value: float) -> str:
+        return localise(plain(value), self.lang)
+
+    def _decimal(self, value: float, digits: int = 2) -> str:
+        text = f"{value:.{digits}f}"
+        return localise(text.removeprefix("-") if float(text) == 0 else text, self.lang)
+
+    def _hundredths(self, share: float) -> str:
+        """A share in percent as a number alone; what is not all and not nothing does not round to it."""
+        value = round(100 * float(share), 9)
+        rounded = min(max(round(value), 1), 99) if 0 < value < 100 else round(value)
+        return localise(str(rounded), self.lang)
+
+    def _percent(self, share: float) -> str:
+        return self.said["percent"].format(self._hundredths(share))
+
+    def _chart_text(self, text: str) -> str:
+        return plain_label(typeset(_short(text, 80), self.lang))
+
+    def _chart(self, svg: bytes, heading: str) -> Chart:
+        return Chart(svg.decode("utf-8"), self.said["alt"].format(heading))
+
+
+def _shared_out(rows: Sequence[PartStatistics], most: int) -> list[Sequence[PartStatistics]]:
+    """The rows in as few runs as hold them, of about the same length."""
+    runs = -(-len(rows) // most)
+    size = -(-len(rows) // runs)
+    return [rows[start : start + size] for start in range(0, len(rows), size)]
+
+
+def _short(name: str, most: int = 40) -> str:
+    """A name from a file on one line of a chart, in characters that its font has."""
+    one_line = drawable(" ".join(name.split()))
+    return one_line if len(one_line) <= most else one_line[: most - 1] + "…"
+
+
+def _as_it_is(name: str) -> str:
+    """A name from a file as Markdown that shows it."""
+    one_line = " ".join("".join(c if c.isprintable() else " " for c in name).split())
+    return re.sub(r"([!-/:-@\[-`{-~])", r"\\\1", one_line) or "–"

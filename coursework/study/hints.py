@@ -1,0 +1,253 @@
+"""Hints in steps: what a quantity depends on, the words of the course, its formula, its formula with numbers.
+
+All of it is read from the solution's graph and texts. No step holds the value: numbers stand for what the statement
+gives and for what the student has found; the rest stays a symbol, to be found first.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from coursework.language.words import is_whole, words
+from coursework.markup.formula_tree import tokens
+from coursework.rendering.views import chain_on_lines, given_formula, given_words
+from coursework.sheets.answer_sheet import answer_sheet
+from coursework.sheets.formula_latex import formula_latex, number_latex
+from coursework.sheets.handout import handout
+from coursework.study.refusals import expect
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+    from coursework.model import Part
+    from coursework.sheets.sheet import Step
+
+
+_DIGITS = 6
+_UNFINISHED = re.compile(r"(?:(?<=[.!?])|\A)[^.!?]*[^.!?\s]\s*\Z")
+_LAST_SENTENCE = re.compile(r"(?:(?<=[.!?…])\s|\A)(?:[^.!?…]|[.!?…](?!\s|\Z))*[.!?…]\W*\Z")
+_COMPUTED = re.compile(r"\{[{%#]")
+_SENTENCE_END = re.compile(r"[.!?…](?=\s|\Z)|\s?:(?=\s|\Z)")
+_NUMBER = re.compile(r"\\num\{[^{}]*\}")
+_AROUND = re.compile(r"\^\{\\circ\}|\\left|\\right|\\ |[();\s-]")
+
+
+def quantity_of(variant: Variant, name: str) -> str:
+    """The quantity of a part's id, or a step on the way to one, by its own name.
+
+    Raises
+    ------
+    UnknownName
+        Neither; the message has the nearest name.
+    """
+    by_part = {p.id: p.quantity for p in variant.parts}
+    names = {**{q: q for q in variant.walk if q not in variant.given}, **by_part}
+    expect(variant.lang, "question", name, names)
+    return names[name]
+
+
+def steps(
+    variant: Variant,
+    name: str,
+    found: Mapping[str, float] = MappingProxyType({}),
+    call: Callable[[str], str] = '`hint("{}")`'.format,
+) -> tuple[str, ...]:
+    """The hints for a part or a step on the way, from the vaguest on, as Markdown.
+
+    ``found`` holds the quantities that the student has right, as the student has them; ``call`` says how to ask
+    for the hints of another.
+    """
+    quantity = quantity_of(variant, name)
+    all_steps = (
+        _depends(variant, quantity, call),
+        _words(variant, quantity),
+        _formula(variant, quantity, {}),
+        _formula(variant, quantity, {n: v for n, v in {**found, **variant.given}.items() if n != quantity}),
+    )
+    told = tuple(step for k, step in enumerate(all_steps) if step and step not in all_steps[:k])
+    if told or (part := _asked(variant, quantity)) is None:
+        return told
+    return (_against(variant, part) or _look_again(variant, part),)
+
+
+def _asked(variant: Variant, quantity: str) -> Part | None:
+    """The part that asks for a quantity."""
+    return next((p for p in variant.parts if p.quantity == quantity), None)
+
+
+def needs(variant: Variant, quantity: str) -> tuple[str, ...]:
+    """The quantities that a quantity's textbook formula takes, hidden ones seen through."""
+    graph = variant.exercise.solution.graph
+    found: dict[str, None] = {}
+
+    def visit(name: str) -> None:
+        node = graph.node(name)
+        for argument in node.arguments:
+            if argument in node.defaults and argument not in variant.effects:
+                continue
+            if argument.startswith("_"):
+                visit(argument)
+            else:
+                found.setdefault(argument)
+
+    visit(quantity)
+    return tuple(found)
+
+
+def _symbol(variant: Variant, name: str) -> str:
+    return variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)
+
+
+def _depends(variant: Variant, quantity: str, call: Callable[[str], str]) -> str:
+    said = words(variant.lang)["study"]["hint"]
+    needed = needs(variant, quantity)
+    given = [_given(variant, n) for n in needed if n in variant.given]
+    asked = {p.quantity: (k, p.id) for k, p in enumerate(variant.parts, start=1)}
+    before = [
+        said["asked"].format(symbol=f"${_symbol(variant, n)}$", number=asked[n][0])
+        for n in needed
+        if n in asked and n not in variant.given
+    ]
+    between = [
+        said["between"].format(symbol=f"${_symbol(variant, n)}$", call=call(n))
+        for n in needed
+        if n not in asked
+        and n not in variant.given
+        and isinstance(variant.walk.get(n), (int, float, complex))
+    ]
+    pieces = [*given, *before, *between]
+    return (
+        said["depends"].format(list=f"{words(variant.lang)['sheet']['separator']} ".join(pieces))
+        if pieces
+        else ""
+    )
+
+
+def _given(variant: Variant, name: str) -> str:
+    given = next(g for g in handout(variant).given if g.name == name)
+    return f"${given_formula(given)}$" if given.is_number else given_words(given, variant.lang)
+
+
+def _words(variant: Variant, quantity: str) -> str:
+    """The solution's words before its step, where they hold no computed number."""
+    section = variant.solution_text.sections.get(quantity)
+    if section is None or not section.text:
+        return ""
+    is_free, start = _is_free(variant, quantity), _before_numbers(variant, quantity)
+    asked = _asked(variant, quantity)
+    if asked is None or asked.kind != "choice":
+        return start or (section.text if is_free else "")
+    text = section.text if is_free else start
+    if not text:
+        return ""
+    # The words before a case break off where the answer follows: "Here the guide". A whole reason tells the answer
+    # in its last sentence.
+    if not is_whole(text):
+        return _UNFINISHED.sub("", text).strip() or f"{text} …"
+    return _LAST_SENTENCE.sub("", text).strip() if is_free else text
+
+
+def _before_numbers(variant: Variant, section: str) -> str:
+    """The sentences of a section's words that stand before the first computed number."""
+    path = variant.exercise.texts.file("solutions", variant.lang)
+    start = _COMPUTED.split(sections(path, path.stat().st_mtime_ns).get(section, ""), maxsplit=1)[0]
+    ends = [found.end() for found in _SENTENCE_END.finditer(start)]
+    return re.sub(r"\s*:$", ".", start[: ends[-1]].strip()) if ends else ""
+
+
+def _against(variant: Variant, part: Part) -> str:
+    """Of a choice among three or more, why one that is wrong is none; nothing for anything else."""
+    if part.kind != "choice" or len(part.choices) < 3:
+        return ""
+    step = next(s for s in answer_sheet(variant, polygons=False).steps if s.name == part.quantity)
+    said = words(variant.lang)["study"]["hint"]["against"]
+    return next((said.format(wrong=r.wrong, why=r.words) for r in step.remarks if r.wrong), "")
+
+
+def _look_again(variant: Variant, part: Part) -> str:
+    """What is left to say where nothing else is."""
+    said = words(variant.lang)["study"]["hint"]
+    return said["cases"] if part.kind == "choice" else said["statement"]
+
+
+def _is_free(variant: Variant, section: str) -> bool:
+    path = variant.exercise.texts.file("solutions", variant.lang)
+    used = variables(path, path.stat().st_mtime_ns).get(section)
+    return used is not None and used <= variant.printed.keys()
+
+
+@lru_cache(maxsize=256)
+def sections(path: Path, changed: int) -> Mapping[str, str]:
+    """What each section of a text says, as it is written."""
+    from coursework.course.texts import parse
+
+    return {
+        name: section.text for name, section in parse(path.read_text("utf-8"), path.name).sections.items()
+    }
+
+
+@lru_cache(maxsize=256)
+def variables(path: Path, changed: int) -> Mapping[str, frozenset[str]]:
+    """The names that each section of a text prints; a section cut by a block is left out."""
+    import jinja2
+    from jinja2 import meta
+
+    env = jinja2.Environment()
+    found = {}
+    for name, text in sections(path, changed).items():
+        try:
+            found[name] = frozenset(meta.find_undeclared_variables(env.parse(text)))
+        except jinja2.TemplateSyntaxError:
+            continue
+    return found
+
+
+def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
+    """The formula, numbers put in for what is known; empty where words say it or it would be the value."""
+    values = variant.walk
+    shown = {n: (_symbol(variant, n), False) for n in values}
+    shown |= {
+        n: (number_latex(value, variant.exercise.units.get(n, "1"), _DIGITS), True)
+        for n, value in known.items()
+        if isinstance(values.get(n), (int, float, complex))
+    }
+    function = variant.exercise.solution.graph.node(quantity).function
+    try:
+        formula = formula_latex(function, shown)
+        plain = formula_latex(function, {n: (_symbol(variant, n), False) for n in values})
+    except KeyError:
+        return ""
+    symbol = _symbol(variant, quantity)
+    if not formula or formula == symbol or _is_value(formula) or not _names_something(plain):
+        return ""
+    return f"$${symbol} = {formula}$$"
+
+
+def _is_value(latex: str) -> bool:
+    """Whether a formula is a number, or numbers side by side, with nothing left to compute."""
+    return not _AROUND.sub("", _NUMBER.sub("", latex))
+
+
+def _names_something(latex: str) -> bool:
+    """Whether a formula holds a symbol: one of numbers alone would be the value."""
+    without = "".join(
+        t for t in tokens(latex) if t not in (r"\num", r"\times", r"\frac", r"\left", r"\right")
+    )
+    return any(c.isalpha() for c in without)
+
+
+def revealed(variant: Variant, name: str) -> Step:
+    """The whole step of the worked solution, with its value."""
+    quantity = quantity_of(variant, name)
+    return next(s for s in answer_sheet(variant).steps if s.name == quantity)
+
+
+def revealed_text(variant: Variant, name: str) -> str:
+    """The same as Markdown."""
+    step = revealed(variant, name)
+    formula = f"$${chain_on_lines(step)}$$" if step.value else ""
+    return "\n\n".join(filter(None, (step.words, formula)))

@@ -1,0 +1,299 @@
+"""Predictions: what one can say before computing, derived from the exercise itself.
+
+What is worth predicting is found by looking at a few dozen variants of the exercise, never at the student's own:
+that a sign is asked says that signs differ among variants, and nothing of this one.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coursework.errors import CourseworkError
+from coursework.language.numbers import plain, with_unit
+from coursework.language.words import words
+from coursework.marking.answers import read
+from coursework.markup.markdown import to_text
+from coursework.model import Part
+from coursework.reading.numbers import read_number
+from coursework.study import word_answers as wording
+from coursework.study.store import is_blank
+
+if TYPE_CHECKING:
+    from coursework.course.exercise import CourseExercise
+    from coursework.course.variant import Variant
+
+
+MOST = 6  #: predictions before the answers
+OVER_THE_CYCLE = 3  #: predictions before the plots
+_SAMPLE = range(24)
+_FEW = 3  #: variants of the sample that must differ, for a question to be one
+_RATES = ("rad/s", "mm/s")
+_PEAKS = ("mm", "deg", "N", "N*m", "1")  #: units of what has a largest value worth knowing
+NEAR = 15.0  #: degrees of the driver, for where a curve is highest
+INSTANTS = 721
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Something to say beforehand about a quantity.
+
+    ``kind`` is ``sign``, ``quadrant``, ``compare`` (with the given quantity ``other``), ``guess`` (a whole
+    number or a case), or over the cycle ``zeros`` (how often it changes its sign) or ``highest`` (at which angle of the driver).
+    """
+
+    id: str
+    quantity: str
+    kind: str
+    other: str = ""
+    choices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Compared:
+    """A prediction beside what came out; ``right`` is None where the prediction cannot be read."""
+
+    prediction: Prediction
+    said: str
+    found: str
+    right: bool | None
+
+
+# ------------------------------------------------------------------------ which
+
+
+def before_answers(variant: Variant) -> tuple[Prediction, ...]:
+    """What to predict before any computation, a part each, evenly over the parts."""
+    found = [p for part in variant.parts if (p := _of_part(variant.exercise, part)) is not None]
+    if len(found) <= MOST:
+        return tuple(found)
+    step = (len(found) - 1) / (MOST - 1)
+    return tuple(found[round(k * step)] for k in range(MOST))
+
+
+def _of_part(exercise: CourseExercise, part: Part) -> Prediction | None:
+    if part.kind == "angle":
+        return Prediction(part.id, part.quantity, "quadrant")
+    if part.kind in ("integer", "choice"):
+        return Prediction(part.id, part.quantity, "guess", choices=part.choices)
+    if part.kind != "number" or not exercise.folder.has_solutions:
+        return None
+    values = _sample(exercise).get(part.quantity)
+    if values is None:
+        return None
+    if _differ(values > 0, values):
+        return Prediction(part.id, part.quantity, "sign")
+    others = {
+        name: _sample(exercise)[name]
+        for name, spec in exercise.spec.given.items()
+        # A direction is known up to whole turns: neither larger nor smaller than anything.
+        if spec.unit == part.unit != "deg" and not spec.is_choice and not spec.is_fixed
+    }
+    fair = {n: abs(np.mean(values > v) - 0.5) for n, v in others.items() if _differ(values > v, values)}
+    return Prediction(part.id, part.quantity, "compare", min(fair, key=fair.__getitem__)) if fair else None
+
+
+def _differ(holds: np.ndarray, values: np.ndarray) -> bool:
+    known = holds[np.isfinite(values)]
+    return min(int(known.sum()), int((~known).sum())) >= _FEW
+
+
+@lru_cache(maxsize=64)
+def _sample(exercise: CourseExercise) -> Mapping[str, np.ndarray]:
+    """Numbers given and asked, over some variants; NaN where a variant has none."""
+    asked = [p.quantity for p in exercise.spec.parts if p.kind == "number"]
+    given = [n for n, spec in exercise.spec.given.items() if not spec.is_choice]
+    columns: dict[str, list[float]] = {name: [] for name in dict.fromkeys([*given, *asked])}
+    for variant in exercise.variants(_SAMPLE):
+        values = dict(variant.given)
+        wanted = [p.quantity for p in variant.parts if p.kind == "number"]
+        try:
+            values |= exercise.solve(**variant.given, only=wanted, effects=variant.effects)
+        except CourseworkError:
+            continue
+        for name, column in columns.items():
+            column.append(float(values.get(name, math.nan)))
+    return {name: np.array(column) for name, column in columns.items()}
+
+
+def moving(variant: Variant) -> tuple[Part, ...]:
+    """The parts whose number moves with the driver; none without a driver or without solutions."""
+    exercise = variant.exercise
+    driver = exercise.spec.driver
+    if driver is None or driver.angle not in variant.used or not exercise.folder.has_solutions:
+        return ()
+    reached = exercise.solution.graph.textbook.descendants((driver.angle,))
+    numbers = (p for p in variant.parts if p.kind in ("number", "angle"))
+    return tuple(p for p in numbers if p.quantity in reached)
+
+
+def over_the_cycle(variant: Variant) -> tuple[Prediction, ...]:
+    """What to predict before the plots: how often a rate changes its sign, where a length or an effort is largest."""
+    rates, others = [], []
+    for part in moving(variant):
+        if part.kind == "number" and part.unit in _RATES:
+            # The length of a vector never changes its sign: there is nothing to say of it.
+            values = _sample(variant.exercise)[part.quantity]
+            if not _differ(values > 0, values):
+                continue
+            rates.append(Prediction(f"zeros_{part.id}", part.quantity, "zeros"))
+        elif part.kind == "number" and part.unit in _PEAKS:
+            others.append(Prediction(f"highest_{part.id}", part.quantity, "highest"))
+    chosen = [*others[:1], *rates]
+    return tuple(chosen[:OVER_THE_CYCLE])
+
+
+# ------------------------------------------------------------------------ asked
+
+
+def asked(variant: Variant, prediction: Prediction) -> str:
+    """The question of a prediction, in one line of Markdown."""
+    said = words(variant.lang)["study"]["predict"]
+    exercise = variant.exercise
+    driver = exercise.spec.driver
+    return said[prediction.kind].format(
+        symbol=f"${exercise.symbol(prediction.quantity)}$",
+        other=f"${exercise.symbol(prediction.other)}$" if prediction.other else "",
+        driver=f"${exercise.symbol(driver.angle)}$" if driver else "",
+        number=_number_of(variant, prediction),
+    )
+
+
+def _number_of(variant: Variant, prediction: Prediction) -> int:
+    numbers = [n for n, p in enumerate(variant.parts, start=1) if p.quantity == prediction.quantity]
+    return numbers[0] if numbers else 0
+
+
+def options(variant: Variant, prediction: Prediction) -> str:
+    """What may be written, as plain text."""
+    part = next((p for p in variant.parts if p.id == prediction.id), None)
+    if part is not None and prediction.choices:
+        return choices(variant, part)
+    return words(variant.lang)["study"]["options"][prediction.kind]
+
+
+def choices(variant: Variant, part: Part) -> str:
+    """The cases of a choice: what is written, and what it is called."""
+    labels = {c: to_text(variant.label(part.id, c), variant.lang, sys.maxsize) for c in part.choices}
+    return " / ".join(c if c == label else f"{c} ({label})" for c, label in labels.items())
+
+
+def is_understood(variant: Variant, prediction: Prediction, text: Any) -> bool:
+    """Whether a prediction can be read; nothing is computed."""
+    return _READ[prediction.kind](variant, prediction, text) is not None
+
+
+# --------------------------------------------------------------------- compared
+
+
+def compared(
+    variant: Variant, prediction: Prediction, text: Any, own: float | None = None
+) -> Compared | None:
+    """A prediction beside what comes out; None where nothing was predicted.
+
+    ``own`` is the student's own right value, where it is not the reference's: the prediction was of that.
+
+    Raises
+    ------
+    NoSolution
+        The course folder has no solutions.
+    """
+    if is_blank(text):
+        return None
+    said = _READ[prediction.kind](variant, prediction, text)
+    value = variant.walk[prediction.quantity] if own is None else own
+    found, right = _FOUND[prediction.kind](variant, prediction, value, said)
+    return Compared(prediction, str(text).strip(), found, None if said is None else right)
+
+
+def _read_guess(variant: Variant, prediction: Prediction, text: Any) -> tuple[Any, ...] | None:
+    part = next(p for p in variant.parts if p.id == prediction.id)
+    if part.kind == "integer" and (whole := wording.count(text)) is not None:
+        return (whole,)
+    reading = read(variant, part, text)
+    return reading.values if reading.status == "read" else None
+
+
+def _read_angle(variant: Variant, prediction: Prediction, text: Any) -> tuple[float, ...] | None:
+    reading = read_number(wording.without_about(text), "deg")
+    return reading.values if reading.status == "read" else None
+
+
+_READ: Mapping[str, Callable[[Variant, Prediction, Any], Any]] = {
+    "sign": lambda variant, prediction, text: wording.sign(text) or None,
+    "quadrant": lambda variant, prediction, text: wording.quadrant(text),
+    "compare": lambda variant, prediction, text: wording.comparison(text) or None,
+    "guess": _read_guess,
+    "zeros": lambda variant, prediction, text: wording.count(text),
+    "highest": _read_angle,
+}
+
+Outcome = tuple[str, bool]
+
+
+def _sign(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+    return ("+" if value > 0 else "−"), said == ("+" if value > 0 else "-")
+
+
+def _quadrant(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+    found = 1 + int(value % 360 // 90)
+    return str(found), said == found
+
+
+def _compare(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+    other = variant.given[prediction.other]
+    found = ">" if value > other else "<" if value < other else "="
+    return found, said == found
+
+
+def _guess(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+    is_choice = bool(prediction.choices)
+    found = variant.label(prediction.id, str(value)) if is_choice else plain(int(value))
+    return found, value in (said or ())
+
+
+def _zeros(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+    _, values = curve(variant, prediction.quantity)
+    found = zeros(values)
+    return str(found), said == found
+
+
+def _highest(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
+    angles, values = curve(variant, prediction.quantity)
+    best = float(angles[np.nanargmax(values)])
+    top, low = np.nanmax(values), np.nanmin(values)
+    near = angles[values >= top - 0.01 * (top - low)]
+    right = any((np.abs((near - angle + 180) % 360 - 180) <= NEAR).any() for angle in said or ())
+    return with_unit(plain(round(best)), "deg", variant.lang), right
+
+
+_FOUND: Mapping[str, Callable[[Variant, Prediction, Any, Any], Outcome]] = {
+    "sign": _sign,
+    "quadrant": _quadrant,
+    "compare": _compare,
+    "guess": _guess,
+    "zeros": _zeros,
+    "highest": _highest,
+}
+
+
+def zeros(values: np.ndarray) -> int:
+    """How often a curve over a full turn changes its sign; its ends are one place."""
+    signs = np.sign(values[:-1])
+    signs = signs[np.isfinite(signs) & (signs != 0)]
+    return int(np.sum(signs != np.roll(signs, 1)))
+
+
+def curve(variant: Variant, quantity: str) -> tuple[np.ndarray, np.ndarray]:
+    """The driver's angle over a turn, from 0 to 360 degrees, and the quantity at each; NaN where nothing closes."""
+    angles = np.linspace(0.0, 360.0, INSTANTS)
+    exercise = variant.exercise
+    given = {**variant.used, exercise.spec.driver.angle: angles}
+    found = exercise.solve(**given, only=quantity, effects=variant.effects)[quantity]
+    return angles, np.broadcast_to(np.asarray(found, dtype=float), angles.shape)

@@ -1,0 +1,76 @@
+"""What a session refuses, said in its language: what was asked, what was found, what would do."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from numbers import Integral
+from typing import Any
+
+from coursework.errors import BadInput, UnknownName, closest
+from coursework.language.words import words
+
+
+def expect(lang: str, kind: str, name: object, known: Collection[str]) -> None:
+    """Nothing, where a name is one of the known ones.
+
+    ``kind`` says of what: ``exercise``, ``question``, ``prediction``, ``curve`` or ``effect``.
+
+    Raises
+    ------
+    UnknownName
+        The name is none of them; the message has the nearest, or all.
+    """
+    if isinstance(name, str) and name in known:
+        return
+    said = words(lang)["study"]["refused"]
+    raise UnknownName(f"{said[kind].format(name=name)} {would_do(lang, str(name), known)}")
+
+
+def would_do(lang: str, name: str, known: Collection[str]) -> str:
+    """The nearest known name, or all."""
+    said = words(lang)["study"]["refused"]
+    near = closest(name, known)
+    if near is not None:
+        return said["near"].format(name=near)
+    return said["known"].format(names=", ".join(known)) if known else said["none"]
+
+
+class UnknownMethod(UnknownName, AttributeError):
+    """Something that a session cannot do."""
+
+
+def no_method(lang: str, name: str, known: Collection[str]) -> UnknownMethod:
+    """The error for a method that is not there."""
+    said = words(lang)["study"]["refused"]["method"].format(name=name)
+    return UnknownMethod(f"{said} {would_do(lang, name, known)}")
+
+
+def by_name(lang: str, call: str, told: object) -> Mapping[str, Any]:
+    """What a call is told, by name.
+
+    Raises
+    ------
+    BadInput
+        It is no dictionary.
+    """
+    if not isinstance(told, Mapping):
+        raise refused(lang, "mapping", call=call, found=f"{told!r:.60}")
+    return told
+
+
+def counted(lang: str, why: str, told: object) -> int:
+    """A whole number from 1 on.
+
+    Raises
+    ------
+    BadInput
+        Anything else.
+    """
+    if isinstance(told, bool) or not isinstance(told, Integral) or told < 1:
+        raise refused(lang, why, found=repr(told))
+    return int(told)
+
+
+def refused(lang: str, why: str, **told: object) -> BadInput:
+    """The error for anything else that would not do."""
+    return BadInput(words(lang)["study"]["refused"][why].format(**told))

@@ -1,0 +1,51 @@
+"""What a student has right, as the student wrote it: near the reference, or right in another way."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from coursework.marking.answers import read
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+    from coursework.model import Part
+
+
+_NEAR = 0.1  #: of the reference; the marks decide what is right, this which choice it belongs to
+_NEAR_ANGLE = 10.0  #: degrees
+_NUMBERS = ("number", "angle", "integer")
+
+
+@dataclass(frozen=True)
+class Own:
+    """A right answer: its number where it is one; ``is_usual`` where it is the reference but for its rounding.
+
+    An answer may be right without that: the other assembly first, another scale of the drawing.
+    """
+
+    value: float | None
+    is_usual: bool
+
+
+def right_ones(variant: Variant, answers: Mapping[str, Any], right: Collection[str]) -> dict[str, Own]:
+    """Of the parts that are right, the student's own, by quantity."""
+    return {p.quantity: _own(variant, p, answers.get(p.id)) for p in variant.parts if p.id in right}
+
+
+def _own(variant: Variant, part: Part, answer: Any) -> Own:
+    reference = variant.walk.get(part.quantity)
+    reading = read(variant, part, answer)
+    if part.kind not in _NUMBERS or reading.status != "read":
+        return Own(None, True)
+    gaps = {float(v): _gap(part, float(v), float(reference)) for v in reading.values}
+    value = min(gaps, key=gaps.__getitem__)
+    limit = _NEAR_ANGLE if part.kind == "angle" else _NEAR * abs(reference) + 1e-9
+    return Own(value, gaps[value] <= max(limit, variant.key.half_width(part)))
+
+
+def _gap(part: Part, value: float, reference: float) -> float:
+    if part.kind == "angle":
+        return abs((value - reference + 180.0) % 360.0 - 180.0)
+    return abs(value - reference)

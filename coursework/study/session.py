@@ -1,0 +1,600 @@
+"""A study session: one exercise for a student alone, in a notebook or a terminal."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coursework.course.course import Course
+from coursework.course.variant import Variant
+from coursework.errors import BadCourse, NoSolution, Starved, WrongValue
+from coursework.figures.plot import Axis, Plot, Spot
+from coursework.language.numbers import unit_text
+from coursework.language.words import words
+from coursework.marking.answers import read
+from coursework.marking.feedback import part_name
+from coursework.marking.mark import Mark, Marking
+from coursework.marking.marking import mark as grade
+from coursework.markup.shown import Picture, Shown
+from coursework.motion.animation import EFFECTS
+from coursework.rendering.displayed import DisplayedAnimation
+from coursework.rendering.views import points_number
+from coursework.sheets.handout import handout
+from coursework.study import hints, predictions, refusals
+from coursework.study import word_answers as wording
+from coursework.study.predictions import Prediction
+from coursework.study.right_answers import Own, right_ones
+from coursework.study.sheet import fresh_variants
+from coursework.study.store import Kept, is_blank
+
+if TYPE_CHECKING:
+    from coursework.figures import Figure
+
+
+PANELS = 6  #: curves of a plot, unless some are named
+
+
+def open_session(
+    course: Course[Any],
+    exercise: str,
+    *,
+    seed: int,
+    lang: str,
+    named: str | Path | None,
+    version: int | None,
+    folder: str | Path,
+) -> StudySession:
+    """A study session of an exercise of an open course; ``named`` is how the course was asked for.
+
+    Raises
+    ------
+    BadInput
+        The course has another version of the exercise: the variant on paper would not be this one.
+    UnknownName
+        No such exercise or language.
+    """
+    words(lang)  # an unknown language is told before anything is said in it
+    refusals.expect(lang, "exercise", exercise, course.names)
+    one = course[exercise]
+    if version is not None and version != one.version:
+        own = f"--course {named} " if named is not None else ""
+        again = f"coursework {own}notebook {exercise} --seed {seed} --lang {lang} --out DIR"
+        told = {"exercise": exercise, "version": version, "installed": one.version, "command": again}
+        raise refusals.refused(lang, "version", **told)
+    kept = Kept(Path(folder) / f"{exercise}.study.json", exercise)
+    return StudySession(one.variant(seed, lang), kept)
+
+
+def course_folder(course: str | Path | None, lang: str) -> Path | None:
+    """The folder of a course that is asked for by it, or by its name, beside or above the place where we are; none
+    for the built-in course.
+
+    Raises
+    ------
+    BadCourse
+        No such course.
+    """
+    if course is None:
+        return None
+    if (Path(course) / "exercises").is_dir():
+        return Path(course)
+    here = Path.cwd()
+    for place in (here, *here.parents):
+        for folder in (place / course, place):
+            if folder.name == Path(course).name and (folder / "exercises").is_dir():
+                return folder
+    raise BadCourse(words(lang)["study"]["refused"]["course"].format(name=course, here=here))
+
+
+class StudySession:
+    """One variant to be worked on: predictions, answers, feedback, hints, plots.
+
+    What is written is kept by variant in a file beside the notebook; nothing there is ever erased. Each method
+    gives what a notebook's cell shows; ``print`` gives it as plain text.
+    """
+
+    def __init__(self, variant: Variant, kept: Kept, base: int | None = None):
+        self.variant = variant
+        self._kept = kept
+        self._base = variant.seed if base is None else base
+        self._hints: dict[str, int] = {}
+        self._said = words(variant.lang)["study"]
+
+    # ---------------------------------------------------------------- statement
+
+    def statement(self) -> Shown:
+        """The statement, the figure, the data and the questions."""
+        sheet, said = handout(self.variant), words(self.variant.lang)["sheet"]
+        colon = said["colon"]
+        head = self._said["variant"].format(title=f"**{sheet.title}**", seed=sheet.seed)
+        pieces: list[str | Picture] = [f"{head}\n\n{sheet.statement}"]
+        if sheet.figure is not None:
+            pieces.append(Picture(sheet.figure.outlined_svg(), sheet.figure_alt))
+        given = [f"- {hints._given(self.variant, g.name)}" for g in sheet.given]
+        if given:
+            pieces.append(f"**{said['data']}**\n\n" + "\n".join(given))
+        questions = []
+        for q in sheet.questions:
+            unit = said["with_unit"] if q.asks_unit else q.unit
+            prompt = " ".join(q.prompt.split())
+            cases = "".join(f"\n   - `{key}`{colon} {label}" for key, label in q.choices)
+            questions.append(f"{q.number}. `{q.id}`{colon} {prompt}{f' ({unit})' if unit else ''}{cases}")
+        pieces.append("\n".join(questions))
+        return self._shown(*pieces)
+
+    def _ipython_display_(self) -> None:
+        self.statement()._ipython_display_()
+
+    def __str__(self) -> str:
+        return str(self.statement())
+
+    __repr__ = __str__
+
+    @property
+    def figure(self) -> Figure | None:
+        """The figure to scale."""
+        return self.variant.figure
+
+    def motion(self, *effects: str) -> Shown:
+        """The mechanism over its cycle; ``effects`` as in :class:`~coursework.motion.Animation`.
+
+        Unless told, paths and velocities, where the solution states them.
+
+        Raises
+        ------
+        UnknownName
+            An effect that is none.
+        BadInput
+            An effect of which there is nothing to show.
+        """
+        for effect in effects:
+            refusals.expect(self.variant.lang, "effect", effect, EFFECTS)
+        try:
+            moving = DisplayedAnimation(self.variant, effects)
+        except BadCourse:
+            return self._shown(self._missing() or self._said["no_motion"])
+        except WrongValue:
+            if missing := self._missing():
+                return self._shown(missing)
+            shown = ", ".join(dict.fromkeys(("position", *DisplayedAnimation(self.variant).available)))
+            raise refusals.refused(self.variant.lang, "no_effect", names=shown) from None
+        if not effects:
+            usual = [e for e in ("position", "velocity") if e in moving.available]
+            moving = DisplayedAnimation(self.variant, usual)
+        return self._shown(Picture(moving.svg(), moving.title))
+
+    # -------------------------------------------------------------- predictions
+
+    @property
+    def _asked(self) -> dict[str, Prediction]:
+        both = (*predictions.before_answers(self.variant), *predictions.over_the_cycle(self.variant))
+        return {p.id: p for p in both}
+
+    @property
+    def predictions(self) -> dict[str, Any]:
+        """What was predicted for this variant."""
+        return self._kept.of(self.variant.seed, "predictions")
+
+    def predict(self, predicted: Mapping[str, Any] | None = None, /, **named: Any) -> Shown:
+        """Keep predictions, to be compared once the answers are right, or the curves are seen.
+
+        What cannot be read is said at once. Without predictions, which there are.
+
+        Raises
+        ------
+        UnknownName
+            Something that is not to be predicted here.
+        BadInput
+            No dictionary.
+        """
+        asked = self._asked
+        predicted = self._told("predict", "prediction", predicted, named, asked)
+        if not predicted:
+            example = f'`{self._name}.predict({{"{next(iter(asked))}": "…"}})`' if asked else ""
+            return self._shown(self._said["which_predictions"].format(names=_names(asked), call=example))
+        self._kept.add(self.variant.seed, "predictions", predicted)
+        now = self.predictions
+        made = [n for n in predicted if not is_blank(now.get(n))]
+        left = [n for n in predicted if is_blank(now.get(n))]
+        lines = [self._said["kept_predictions"].format(made=len(made), of=len(predicted))]
+        lines += [self._left(left)] if left else []
+        unread = [n for n in made if not predictions.is_understood(self.variant, asked[n], now[n])]
+        lines += [
+            self._said["not_understood"].format(
+                name=n, said=_quoted(now[n]), options=predictions.options(self.variant, asked[n])
+            )
+            for n in unread
+        ]
+        return self._shown(*lines, self._trouble)
+
+    def _told(
+        self, method: str, kind: str, told: Any, named: Mapping[str, Any], known: Iterable[str]
+    ) -> dict[str, Any]:
+        """What a method is told, by the names that it knows: a dictionary, or names of its own."""
+        found: dict[str, Any] = {}
+        given = refusals.by_name(self.variant.lang, f"{self._name}.{method}", {} if told is None else told)
+        for name, value in (*given.items(), *named.items()):
+            if name == "student" and kind == "question":
+                continue
+            name = self._named(name)
+            refusals.expect(self.variant.lang, kind, name, known)
+            if is_blank(found.get(name)):
+                found[name] = wording.unwrapped(value)
+        return found
+
+    def _named(self, question: Any) -> Any:
+        """A question's name, where its number is told: ``5``, ``"5"``, ``"question 5"``."""
+        ids = self.variant.part_ids
+        number = question if isinstance(question, int) and not isinstance(question, bool) else None
+        if isinstance(question, str) and question not in ids:
+            said = re.fullmatch(
+                r"\s*(?:question|q)?\.?\s*(?:n°|no\.?|#)?\s*(\d{1,3})\.?\s*", question, re.IGNORECASE
+            )
+            number = int(said[1]) if said else None
+        return ids[number - 1] if number is not None and 1 <= number <= len(ids) else question
+
+    def _left(self, names: Iterable[str]) -> str:
+        return self._said["left"].format(names=_names(names))
+
+    def _compared(self, names: Iterable[str], own: Mapping[str, Own]) -> str:
+        """Predictions beside what came out, as a list."""
+        asked, lines = self._asked, []
+        for name in names:
+            mine = own.get(asked[name].quantity)
+            value = None if mine is None or mine.is_usual else mine.value
+            found = predictions.compared(self.variant, asked[name], self.predictions.get(name), value)
+            if found is None:
+                continue
+            mark = {True: "✓", False: "✗", None: "?"}[found.right]
+            question = predictions.asked(self.variant, asked[name])
+            line = self._said["compared"].format(said=f"`{found.said.replace('`', '')}`", found=found.found)
+            if found.right is None:
+                line += f" — {predictions.options(self.variant, asked[name])}"
+            lines.append(f"- {mark} {question} {line}")
+        return "\n".join([f"**{self._said['predictions']}**", "", *lines]) if lines else ""
+
+    # ------------------------------------------------------------------ answers
+
+    @property
+    def answers(self) -> dict[str, Any]:
+        """The last answer to each question of this variant that was not blank."""
+        return self._asked_of(self.variant)
+
+    def _asked_of(self, variant: Variant) -> dict[str, Any]:
+        """The kept answers to a variant that it asks: a file may hold others."""
+        return {n: a for n, a in self._kept.of(variant.seed, "answers").items() if n in variant.part_ids}
+
+    def check(self, answers: Mapping[str, Any] | None = None, /, **named: Any) -> Shown:
+        """Mark answers, by the name or the number of the question, and say what to look at; kept ones fill what is blank.
+
+        An entry ``student`` is no answer. The value of an answer is never told. ``check(rA="238")`` does as well.
+
+        Raises
+        ------
+        UnknownName
+            An answer to a question that this variant does not ask.
+        BadInput
+            No dictionary.
+        """
+        given = self._told("check", "question", answers, named, self.variant.part_ids)
+        if missing := self._missing():
+            self._kept.add(self.variant.seed, "answers", given)
+            return self._shown(missing, self._trouble)
+        now = {**self.answers, **{n: a for n, a in given.items() if not is_blank(a)}}
+        try:
+            marking = grade(self.variant, now)
+        except Exception:
+            self._kept.add(self.variant.seed, "answers", given)  # nothing is lost by a fault of the course
+            raise
+        copied, theirs = self._same_as_another(given, marking)
+        self._kept.add(self.variant.seed, "answers", {n: a for n, a in given.items() if n not in theirs})
+        lines, unanswered = [], []
+        for number, mark in enumerate(marking.values(), start=1):
+            if mark.verdict == "missing":
+                unanswered.append(mark.part)
+            else:
+                lines.append(f"- {_sign(mark)} **{number}.** `{mark.part}` — {self._says(mark)}")
+        if copied is not None:
+            lines.insert(0, self._said["copied"].format(seed=copied) + "\n")
+        right = {m.part for m in marking.values() if m.verdict == "correct"}
+        total = self._said["total"].format(
+            points=points_number(marking.points, self.variant.lang),
+            out_of=points_number(marking.out_of, self.variant.lang),
+        )
+        before = [n for n in now if (named or answers is not None) and is_blank(given.get(n))]
+        after = [self._left(unanswered)] if unanswered else []
+        after += [self._said["from_before"].format(names=_names(before))] if before else []
+        first = next((n for n, m in marking.items() if m.verdict not in ("correct", "missing")), "")
+        after += [self._said["try_hint"].format(call=self._call("hint", first))] if first else []
+        asked_before = [p.id for p in predictions.before_answers(self.variant) if p.id in right]
+        return self._shown(
+            "\n".join(lines),
+            f"**{total}**",
+            " ".join(after),
+            self._compared(asked_before, self._own_in(marking, now)),
+            self._trouble,
+        )
+
+    def _says(self, mark: Mark) -> str:
+        """What is said to a student alone of an answer: where nobody will look at it, what to write instead."""
+        if mark.verdict != "unreadable":
+            return mark.says
+        table = words(self.variant.lang)["marking"]["unreadable"]
+        part = next(p for p in self.variant.parts if p.id == mark.part)
+        kind = {"angle": "number", "direction": "point", "point_on_line": "point"}.get(part.kind, part.kind)
+        general = [table["otherwise"]] if kind == "number" else [table["otherwise"], table["not_a_number"]]
+        if kind != "choice" and not any(mark.says.endswith(s.rpartition("{found}")[2]) for s in general):
+            return mark.says
+        colon = words(self.variant.lang)["sheet"]["colon"]
+        name = part_name(self.variant, part)
+        choices = predictions.choices(self.variant, part)
+        return f"{name[:1].upper()}{name[1:]}{colon} " + self._said["not_read"][kind].format(
+            found=_quoted(mark.answer), choices=choices
+        )
+
+    def _same_as_another(self, given: Mapping[str, Any], marking: Marking) -> tuple[int | None, list[str]]:
+        """The seed of another variant that these very answers were for, and which of them are wrong here.
+
+        Two numbers at least that are wrong here, and would be others there, make a copy: what is right in both,
+        and a small whole number, may well be the same.
+        """
+        written = {n: a for n, a in given.items() if not is_blank(a)}
+        wrong = [p for p in self.variant.parts if p.id in written and marking[p.id].verdict != "correct"]
+        wrong = [p for p in wrong if p.kind in ("number", "angle", "point", "direction", "point_on_line")]
+        for seed in self._kept.seeds if len(wrong) > 1 else ():
+            theirs = self._kept.of(seed, "answers")
+            if seed == self.variant.seed or any(theirs.get(n) != a for n, a in written.items()):
+                continue
+            other = self.variant.exercise.variant(seed, self.variant.lang).walk
+            here = self.variant.walk
+            differ = [p.id for p in wrong if not _are_same(other.get(p.quantity), here.get(p.quantity))]
+            if len(differ) > 1:
+                return seed, differ
+        return None, []
+
+    @property
+    def _own(self) -> dict[str, Own]:
+        """What the student has right, by quantity."""
+        return self._own_in(grade(self.variant, self.answers), self.answers)
+
+    def _own_in(self, marking: Marking, answers: Mapping[str, Any]) -> dict[str, Own]:
+        right = [name for name, mark in marking.items() if mark.verdict == "correct"]
+        return right_ones(self.variant, answers, right)
+
+    # -------------------------------------------------------------------- hints
+
+    def _which(self, method: str, sentence: str) -> str:
+        names = _names(self.variant.part_ids)
+        return sentence.format(names=names, call=self._call(method, self.variant.part_ids[0]))
+
+    def hint(self, question: str | int = "", step: int | None = None) -> Shown:
+        """A hint, and one step more at each call; without a question, which there are.
+
+        ``step`` goes to a step at once. No hint holds the value: :meth:`reveal` does.
+
+        Raises
+        ------
+        UnknownName
+            No such question, and no such quantity on the way to one.
+        BadInput
+            A step that is no whole number.
+        """
+        if missing := self._missing():
+            return self._shown(missing)
+        if question == "":
+            return self._shown(self._which("hint", self._said["hint"]["which"]))
+        question = self._named(question)
+        if step is not None:
+            step = refusals.counted(self.variant.lang, "step", step)
+        # Of what is right in another way the reference is not the student's: it stays a symbol.
+        found = {q: own.value for q, own in self._own.items() if own.is_usual and own.value is not None}
+        texts = hints.steps(self.variant, question, found, lambda n: self._call("hint", n))
+        if not texts:
+            return self._shown(self._said["hint"]["none"].format(call=self._call("reveal", question)))
+        last = step if step is not None else self._hints.get(question, 0) + 1
+        last = min(max(last, 1), len(texts))
+        self._hints[question] = last
+        said = self._said["hint"]
+        pieces = [
+            f"**{said['step'].format(number=k, of=len(texts))}** {text}"
+            if not text.startswith("$$")
+            else f"**{said['step'].format(number=k, of=len(texts))}**\n\n{text}"
+            for k, text in enumerate(texts[:last], start=1)
+        ]
+        closing = (
+            said["more"] if last < len(texts) else said["last"].format(call=self._call("reveal", question))
+        )
+        return self._shown(*pieces, f"*{closing}*")
+
+    def reveal(self, question: str | int = "") -> Shown:
+        """The whole step of the worked solution, with its value: for who asks for it by name or number.
+
+        Raises
+        ------
+        UnknownName
+            No such question, and no such quantity on the way to one.
+        """
+        if missing := self._missing():
+            return self._shown(missing)
+        if question == "":
+            return self._shown(self._which("reveal", self._said["which_reveal"]))
+        return self._shown(hints.revealed_text(self.variant, self._named(question)))
+
+    # -------------------------------------------------------------------- plots
+
+    def plot(self, *names: str | int) -> Shown:
+        """Quantities over a turn of the driver, the student's own answers marked; then the predictions about them.
+
+        Without names, the first of those asked; any that moves may be named.
+
+        Raises
+        ------
+        UnknownName
+            A question that does not move with the driver.
+        """
+        if missing := self._missing():
+            return self._shown(missing)
+        parts = {p.id: p for p in predictions.moving(self.variant)}
+        if not parts:
+            return self._shown(self._said["no_plot"])
+        names = tuple(self._named(name) for name in names)
+        for name in names:
+            refusals.expect(self.variant.lang, "curve", name, parts)
+        first = [p.quantity for p in predictions.over_the_cycle(self.variant)]
+        usual = sorted(parts, key=lambda i: parts[i].quantity not in first)[:PANELS]
+        chosen = [parts[n] for n in (names or sorted(usual, key=list(parts).index))]
+        driver, lang = self.variant.exercise.spec.driver.angle, self.variant.lang
+        at = float(self.variant.given[driver]) % 360.0
+        curves, spots, own = [], [], self._own
+        for part in chosen:
+            angles, values = predictions.curve(self.variant, part.quantity)
+            curves.append(
+                Axis(self.variant.exercise.symbol(part.quantity), unit_text(part.unit, lang), values)
+            )
+            spots.append(self._spots(part, at, own, values))
+        turn = Axis(self.variant.exercise.symbol(driver), "°", angles)
+        picture = Plot(turn, curves, lang, at, spots)
+        symbols = ", ".join(f"${self.variant.exercise.symbol(p.quantity)}$" for p in chosen)
+        said = self._said["plot"].format(list=symbols, driver=f"${self.variant.exercise.symbol(driver)}$")
+        beside = [p for p in chosen if p.quantity in own and not own[p.quantity].is_usual]
+        outside = [p for p, far in zip(chosen, picture.has_outside, strict=True) if far]
+        notes = [
+            self._said[note].format(
+                list=", ".join(f"${self.variant.exercise.symbol(p.quantity)}$" for p in found)
+            )
+            for note, found in (("beside_curve", beside), ("outside", outside))
+            if found
+        ]
+        others = [n for n in parts if parts[n] not in chosen]
+        more = (
+            self._said["more_plots"].format(names=_names(others), call=self._call("plot", others[0]))
+            if others
+            else ""
+        )
+        asked = [p.id for p in predictions.over_the_cycle(self.variant)]
+        plain = f"{', '.join(p.id for p in chosen)} / {driver}"
+        return self._shown(said, Picture(picture.svg(), plain), *notes, more, self._compared(asked, own))
+
+    def _spots(self, part: Any, at: float, own: Mapping[str, Own], values: np.ndarray) -> tuple[Spot, ...]:
+        """The student's answer as a point, where it can be read; none where it is right, but not of this curve."""
+        mine = own.get(part.quantity)
+        if mine is not None and not mine.is_usual:
+            return ()
+        answer = self.answers.get(part.id)
+        if is_blank(answer):
+            return ()
+        reading = read(self.variant, part, answer)
+        if reading.status != "read":
+            return ()
+        value = written = float(reading.values[0]) if mine is None or mine.value is None else mine.value
+        if part.kind == "angle":
+            # Of all turns the one beside the curve, so that a point above it is above.
+            middle = (np.nanmin(values) + np.nanmax(values)) / 2
+            value = middle + (value - middle + 180) % 360 - 180
+        return (Spot(at, value, mine is not None, written),)
+
+    # ----------------------------------------------------------- other variants
+
+    def fresh(self, number: int | None = None) -> StudySession:
+        """Another variant: the first, second… after the notebook's own; without a number, the next one not begun.
+
+        Only variants that are worth issuing count, as for a class.
+
+        What was written for this one stays kept.
+
+        Raises
+        ------
+        BadInput
+            A number below 1.
+        Starved
+            The exercise has no more variants.
+        """
+        if number is not None:
+            number = refusals.counted(self.variant.lang, "fresh", number)
+        begun = {seed for seed in self._kept.seeds if self._kept.of(seed, "answers")}
+        # One of so many is not begun.
+        count = number or len((begun | {self.variant.seed}) - {self._base}) + 1
+        try:
+            variants = fresh_variants(self.variant.exercise, self._base, count, self.variant.lang)
+        except Starved as fault:
+            why = "starved" if number is not None else "all_begun"
+            raise Starved(self._said["refused"][why].format(number=count)) from fault
+        left = [v for v in variants if v.seed not in begun and v.seed != self.variant.seed]
+        variant = left[0] if number is None else variants[-1]
+        return StudySession(variant, self._kept, self._base)
+
+    def progress(self) -> Shown:
+        """The variants begun, and what is right in each."""
+        if missing := self._missing():
+            return self._shown(missing)
+        lines = []
+        for seed in dict.fromkeys((self._base, *self._kept.seeds)):
+            variant = self.variant.exercise.variant(seed, self.variant.lang)
+            marking = grade(variant, self._asked_of(variant))
+            right = sum(m.verdict == "correct" for m in marking.values())
+            lines.append("- " + self._said["progress"].format(seed=seed, right=right, of=len(marking)))
+        return self._shown("\n".join(lines), self._trouble)
+
+    # ------------------------------------------------------------------- common
+
+    def __getattr__(self, name: str) -> Any:
+        """A method that is none is refused in the session's language, with the nearest."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        known = [n for n in dir(type(self)) if not n.startswith("_")]
+        raise refusals.no_method(self.variant.lang, name, known)
+
+    def _call(self, method: str, name: str) -> str:
+        """How the notebook calls a method, as code in Markdown."""
+        return f'`{self._name}.{method}("{name}")`'
+
+    @property
+    def _name(self) -> str:
+        """What the notebook calls this session."""
+        return "study" if self.variant.seed == self._base else "again"
+
+    def _missing(self) -> str:
+        """What to say where the course folder has no solution of this exercise; empty when it has one."""
+        try:
+            self.variant.exercise.solution  # noqa: B018
+        except NoSolution:
+            return self._said["no_solutions"]
+        return ""
+
+    @property
+    def _trouble(self) -> str:
+        """What to say of the file of answers, if anything."""
+        texts = self._said["trouble"]
+        return texts[self._kept.trouble].format(file=self._kept.path.name) if self._kept.trouble else ""
+
+    def _shown(self, *pieces: str | Picture) -> Shown:
+        return Shown(self.variant.lang, *pieces)
+
+
+def _names(names: Iterable[str]) -> str:
+    return ", ".join(f"`{n}`" for n in names)
+
+
+def _quoted(text: Any) -> str:
+    """What was written, shortened, as no Markdown reader takes for markup."""
+    said = "".join(c for c in str(text) if c.isprintable() and c not in "$`*_\\<>[]#|{}")
+    return said if len(said) <= 60 else f"{said[:59]}…"
+
+
+def _are_same(one: Any, other: Any) -> bool:
+    if one is None or other is None:
+        return one is other
+    return bool(np.array_equal(np.asarray(one), np.asarray(other)))
+
+
+def _sign(mark: Mark) -> str:
+    """The mark at the head of a line, told apart without colour."""
+    if mark.verdict == "correct":
+        return "✓"
+    if mark.verdict in ("unreadable", "missing_unit", "wrong_unit"):
+        return "?"
+    return "≈" if mark.points else "✗"

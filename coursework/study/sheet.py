@@ -1,0 +1,59 @@
+"""What a self-study notebook holds beside the handout: the predictions to make, and what it can run."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from coursework.course.builtin import builtin_root
+from coursework.errors import Starved
+from coursework.making.issuing import distinct_variants
+from coursework.sheets.handout import handout
+from coursework.sheets.sheet import Ask, Question, StudySheet
+from coursework.study import predictions
+from coursework.study.predictions import Prediction
+
+if TYPE_CHECKING:
+    from coursework.course.exercise import CourseExercise
+    from coursework.course.variant import Variant
+
+
+def study_sheet(variant: Variant, student: str = "") -> StudySheet:
+    """The self-study notebook of a variant, before it is printed."""
+    exercise = variant.exercise
+    own = exercise.folder.root != builtin_root().resolve()
+    return StudySheet(
+        handout=handout(variant, student),
+        file=f"{exercise.name}.study.json",
+        course=exercise.folder.root.name if own else "",
+        before=tuple(_ask(variant, p) for p in predictions.before_answers(variant)),
+        cycle=tuple(_ask(variant, p) for p in predictions.over_the_cycle(variant)),
+        moves=bool(predictions.moving(variant)),
+        animates=exercise.is_animated,
+        questions=_fresh_questions(variant),
+    )
+
+
+def fresh_variants(exercise: CourseExercise, seed: int, count: int, lang: str) -> list[Variant]:
+    """The first variants after that of a seed that are worth issuing, all different from it and each other.
+
+    Raises
+    ------
+    Starved
+        So many do not exist.
+    """
+    found = distinct_variants(exercise, seed + 1, count + 1, lang)
+    base = exercise.variant(seed, lang)
+    return [v for v in found if v.given != base.given][:count]
+
+
+def _fresh_questions(variant: Variant) -> tuple[Question, ...]:
+    try:
+        return handout(fresh_variants(variant.exercise, variant.seed, 1, variant.lang)[0]).questions
+    except Starved:
+        return ()
+
+
+def _ask(variant: Variant, prediction: Prediction) -> Ask:
+    return Ask(
+        prediction.id, predictions.asked(variant, prediction), predictions.options(variant, prediction)
+    )

@@ -1,0 +1,123 @@
+"""What a student says in words: a sign, a comparison, a quadrant, a number, a yes; in any language of the engine."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from functools import cache
+from typing import Any
+
+from coursework.language.words import languages, words
+from coursework.reading.numbers import read_number
+
+_DASHES = str.maketrans("−–—‐‑", "-----")
+_ROMAN = {"i": 1, "ii": 2, "iii": 3, "iv": 4}
+_ORDINAL = re.compile(r"([1-4])(?:e|eme|er|ere|re|nd|nde|d|st|rd|th)")
+_UNITS = ("deg", "mm", "rad/s", "rad/s^2", "mm/s", "mm/s^2", "N", "N*m", "mm^2", "1")
+
+
+def unwrapped(value: Any) -> Any:
+    """A value as plain Python: numbers of numpy as numbers, arrays as lists, anything else as its text."""
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    if isinstance(value, (list, tuple)):
+        return [unwrapped(item) for item in value]
+    return value if value is None or isinstance(value, (str, int, float)) else str(value)
+
+
+def folded(text: Any) -> str:
+    """A text without case, accents and what closes a sentence."""
+    bare = unicodedata.normalize("NFKD", str(text).translate(_DASHES)).casefold().replace("’", "'")
+    return " ".join("".join(c for c in bare if not unicodedata.combining(c)).strip(" .!,;").split())
+
+
+@cache
+def _called(what: str) -> frozenset[str]:
+    return frozenset(folded(w) for lang in languages() for w in words(lang)["study"]["reads"][what])
+
+
+def _one_of(text: str, kinds: tuple[str, ...]) -> str:
+    return next((kind for kind in kinds if text in _called(kind)), "")
+
+
+def sign(text: Any) -> str:
+    """``+`` or ``-``; empty where neither is said, or both."""
+    said = folded(text)
+    if found := re.fullmatch(r"([+-])\s*(?:[\d.,]*|\([^()]*\))|([<>])\s*0", said):
+        return found[1] or {">": "+", "<": "-"}[found[2]]
+    return {"positive": "+", "negative": "-"}.get(_one_of(said, ("positive", "negative")), "")
+
+
+def comparison(text: Any) -> str:
+    """``>``, ``<`` or ``=``; empty where none is said."""
+    said = folded(text)
+    if found := re.fullmatch(r"([<>=])[^<>=]*", said):
+        return found[1]
+    said = re.split(r" (?:que|qu'|than|to|a) ?", said, maxsplit=1)[0]
+    return {"larger": ">", "smaller": "<", "equal": "="}.get(
+        _one_of(said, ("larger", "smaller", "equal")), ""
+    )
+
+
+def quadrant(text: Any) -> int | None:
+    """1 to 4: a digit, a Roman numeral, an ordinal, in words or not."""
+    said = re.sub(
+        r"\b(?:quadrant|le|la|l'|dans|in|the|q|n°)(?![a-z])|(?<=\bq)(?=[1-4]$)|^q(?=[1-4]$)",
+        " ",
+        folded(text),
+    )
+    said = said.strip()
+    if found := _ORDINAL.fullmatch(said):
+        return int(found[1])
+    if said in _ROMAN:
+        return _ROMAN[said]
+    number = next(
+        (n for n, kind in enumerate(("first", "second", "third", "fourth"), 1) if said in _called(kind)), None
+    )
+    number = count(said) if number is None else number
+    return number if number in (1, 2, 3, 4) else None
+
+
+def count(text: Any) -> int | None:
+    """A whole number from 0 on, in digits or in words, with or without ``times``."""
+    said = folded(text)
+    for times in sorted(_called("times"), key=len, reverse=True):
+        said = said.removesuffix(f" {times}")
+    if re.fullmatch(r"\+?\d{1,6}(?:[.,]0*)?", said):
+        return int(float(said.replace(",", ".")))
+    for lang in languages():
+        table = words(lang)["study"]["reads"]
+        for names in (table["numbers"], table["often"]):
+            groups = [[folded(w) for w in group.split("|")] for group in names]
+            if found := [n for n, group in enumerate(groups) if said in group]:
+                return found[0]
+    return None
+
+
+def truth(text: Any) -> bool | None:
+    """Yes or no; None where neither is said."""
+    if isinstance(text, bool):
+        return text
+    return {"yes": True, "no": False}.get(_one_of(folded(text), ("yes", "no")))
+
+
+def numbers(text: Any) -> tuple[tuple[float, ...], bool]:
+    """The honest readings of a number, with or without a unit, in the course's unit; whether it is in degrees."""
+    if isinstance(text, str):
+        if (whole := count(text)) is not None:
+            return (float(whole),), False
+        text = without_about(text)
+    for unit in _UNITS:
+        reading = read_number(text, unit)
+        if reading.status == "read":
+            return tuple(reading.values), unit == "deg" and reading.unit_given
+    return (), False
+
+
+def without_about(text: Any) -> Any:
+    """An angle or a number without a word that says only that it is not exact."""
+    return (
+        re.sub(r"^\s*(?:vers|autour de|towards|near|around)\b", "", text, flags=re.I)
+        if isinstance(text, str)
+        else text
+    )
