@@ -13,7 +13,7 @@
 * ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
 * ``FILM``, a :class:`Film`, states a picture of its own for the animation, where the statement's figure cannot move;
 * ``polygons`` gives the velocity and acceleration polygons, each a :class:`~coursework.polygons.Polygon`;
-* ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities: :mod:`coursework.loops`;
+* ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities: :mod:`coursework.quantities.loops`;
   ``RATES`` gives the names of derivatives that do not follow from a quantity's own;
 * ``STRUCTURES`` names the quantities whose value is a list or a record, such as a list of joints: a request
   may give them, and they are passed to the functions as they come;

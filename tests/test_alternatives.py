@@ -12,7 +12,7 @@ import pytest
 
 import coursework
 from coursework.figures import Figure, ball, contact, ground_pivot, pin, point, slider
-from coursework.motion.animation import Animation
+from coursework.rendering.displayed import DisplayedAnimation as Animation
 from coursework.rendering.renderer import renderer_of
 from coursework.sheets.drawings import solution_figure
 

@@ -20,8 +20,9 @@ from coursework.figures import link, pin, rail, rotation_arrow
 from coursework.figures.moving import drawing
 from coursework.figures.riding import ride
 from coursework.figures.text import read
-from coursework.motion.animation import EFFECTS, Animation
+from coursework.motion.animation import EFFECTS
 from coursework.motion.scenes import Scene
+from coursework.rendering.displayed import DisplayedAnimation as Animation
 
 COURSE = coursework.open_course()
 DRIVEN = [n for n in COURSE.names if COURSE[n].spec.driver is not None]

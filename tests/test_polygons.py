@@ -24,8 +24,9 @@ from coursework.errors import BadCourse, NoSolution, UnknownName
 from coursework.figures import Figure, vector
 from coursework.figures.text import SIZE, read
 from coursework.language.words import languages
-from coursework.polygons.construction import BOX_MM, Construction
+from coursework.polygons.construction import BOX_MM
 from coursework.polygons.polygon import Polygon, Side, normal, tangential, turning
+from coursework.rendering.displayed import DisplayedConstruction as Construction
 from coursework.rendering.pdf import _letters as letters_to_set
 from coursework.rendering.renderer import renderer_of
 

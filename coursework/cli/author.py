@@ -1,4 +1,4 @@
-"""TODO coursework/cli/author.py"""
+"""Commands of an author: check, new."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from pathlib import Path
 
 import click
 
-from coursework.cli.options import DONE, FOUND, Whole, cli, exercise_names, json_option, opened
+from coursework.cli.options import DONE, FOUND, Whole, exercise_names, json_option, opened
 from coursework.cli.printing import print_json, print_note, print_table, progress_bar
 
 # ------------------------------------------------------------------------ check
 
 
-@cli.command()
+@click.command()
 @click.argument("exercises", nargs=-1)
 @click.option("--variants", "count", type=Whole(1), default=200, show_default=True)
 @json_option
@@ -44,7 +44,7 @@ def check(context: click.Context, exercises: Sequence[str], count: int, as_json:
 # -------------------------------------------------------------------------- new
 
 
-@cli.command()
+@click.command()
 @click.argument("folder", type=click.Path(path_type=Path, file_okay=False))
 @click.argument("exercise", required=False)
 def new(folder: Path, exercise: str | None) -> None:

@@ -14,9 +14,13 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+import click
 import numpy as np
 
 from coursework.api import open_course
+from coursework.cli.make import build_files
+from coursework.cli.mark import grade_with_bar
+from coursework.cli.printing import print_table
 from coursework.course.answer_key import Key
 from coursework.course.variant import Variant
 from coursework.language.numbers import significant
@@ -225,3 +229,13 @@ def _notebook(course: Any, variant: Variant, student: str, answers: Mapping[str,
     lines = [f"    {part!r}: {answer!r},\n" for part, answer in answers.items()]
     cell["source"] = ["answers = {\n", *lines, "}"]
     return json.dumps(notebook, ensure_ascii=False)
+
+
+@click.command()
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default="demo", show_default=True)
+def demo(out: Path) -> None:
+    """Do the whole job on a small class: sheets, answers of all kinds, marks."""
+    rows, told = class_of_twelve(out, build_files, grade_with_bar)
+    print_table(rows, title="What became of the answers")
+    for line in told:
+        click.echo(line)

@@ -1,4 +1,4 @@
-"""TODO coursework/cli/look.py"""
+"""Commands that look at a course: list, show, variant, solve."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from coursework.cli.options import (
     DONE,
     FOUND,
     Whole,
-    cli,
     complain,
     json_option,
     lang_option,
@@ -28,7 +27,7 @@ from coursework.rendering.renderer import renderer_of
 # ------------------------------------------------------------------------- look
 
 
-@cli.command("list")
+@click.command("list")
 @json_option
 @click.pass_context
 def list_exercises(context: click.Context, as_json: bool) -> int:
@@ -62,7 +61,7 @@ def _listed(exercise: Any) -> dict[str, Any]:
     }
 
 
-@cli.command()
+@click.command()
 @click.argument("exercise")
 @seed_option
 @lang_option
@@ -86,7 +85,7 @@ def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[A
     return found
 
 
-@cli.command()
+@click.command()
 @click.argument("exercise")
 @seed_option
 @click.option("--count", type=Whole(1), default=1, show_default=True, help="How many, seed after seed.")
@@ -121,7 +120,7 @@ def variant(
         print_table(rows, title=f"{exercise}, seed {drawn.seed}")
 
 
-@cli.command()
+@click.command()
 @click.argument("exercise")
 @click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A given value: r1=228.6mm.")
 @click.option("--only", default="", metavar="Q,Q", help="The quantities wanted; every part's unless told.")

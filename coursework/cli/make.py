@@ -1,4 +1,4 @@
-"""TODO coursework/cli/make.py"""
+"""Commands that make what is handed out: build, notebook, lesson."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ import click
 from coursework.cli.options import (
     Lists,
     Whole,
-    cli,
     exercise_names,
     known_formats,
     known_languages,
@@ -36,7 +35,7 @@ if TYPE_CHECKING:
 # ----------------------------------------------------------------------- lesson
 
 
-@cli.command()
+@click.command()
 @click.argument("lessons", nargs=-1)
 @lang_option
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for the notebooks.")
@@ -80,7 +79,7 @@ def _spare(paths: Sequence[Path], overwrite: bool) -> None:
 # --------------------------------------------------------------------- notebook
 
 
-@cli.command()
+@click.command()
 @click.argument("exercises", nargs=-1)
 @seed_option
 @click.option(
@@ -126,7 +125,7 @@ def notebook(
 # ------------------------------------------------------------------------ build
 
 
-@cli.command()
+@click.command()
 @click.argument("exercises", nargs=-1)
 @click.option("--variants", "count", type=Whole(1), help="How many variants; with a roster, one a student.")
 @seed_option

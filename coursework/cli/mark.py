@@ -1,4 +1,4 @@
-"""TODO coursework/cli/mark.py"""
+"""Commands that mark: grade, report."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.options import DONE, FOUND, cli, json_option, lang_option, opened
+from coursework.cli.options import DONE, FOUND, json_option, lang_option, opened
 from coursework.cli.printing import print_json, progress_bar
 from coursework.errors import BadInput, counted
 from coursework.rendering.renderer import renderer_of
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 # ------------------------------------------------------------------------ grade
 
 
-@cli.command()
+@click.command()
 @click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option(
     "--issued", type=click.Path(path_type=Path), required=True, help="The issued.json of the build."
@@ -101,7 +101,7 @@ def grade_with_bar(
 # ----------------------------------------------------------------------- report
 
 
-@cli.command()
+@click.command()
 @click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
 @lang_option
 @click.option(

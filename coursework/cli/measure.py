@@ -1,4 +1,4 @@
-"""TODO coursework/cli/measure.py"""
+"""The command that measures accuracy against time."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from pathlib import Path
 
 import click
 
-from coursework.cli.options import cli, json_option, lang_option, opened
+from coursework.cli.options import json_option, lang_option, opened
 from coursework.cli.printing import print_json
 from coursework.rendering.renderer import renderer_of
 
 # --------------------------------------------------------------------- accuracy
 
 
-@cli.command()
+@click.command()
 @click.argument("exercises", nargs=-1)
 @click.option("--quick", is_flag=True, help="Fewer places and shorter timings: under half a minute.")
 @lang_option

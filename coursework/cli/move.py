@@ -1,4 +1,4 @@
-"""TODO coursework/cli/move.py"""
+"""Commands that move a mechanism: simulate, animate."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ import click
 
 from coursework.cli.options import (
     Whole,
-    cli,
     json_option,
     lang_option,
     opened,
@@ -24,7 +23,7 @@ from coursework.errors import WrongValue
 # --------------------------------------------------------------------- simulate
 
 
-@cli.command()
+@click.command()
 @click.argument("exercise")
 @click.option(
     "--effects", default="", metavar="E,E", help="What the scene calls for; positions alone unless told."
@@ -114,7 +113,7 @@ def _drive(exercise: Any, text: str) -> float:
 # ---------------------------------------------------------------------- animate
 
 
-@cli.command()
+@click.command()
 @click.argument("exercise")
 @seed_option
 @click.option(

@@ -1,4 +1,4 @@
-"""TODO coursework/cli/options.py"""
+"""What the commands share: options, how something is told or complained of."""
 
 from __future__ import annotations
 
@@ -14,11 +14,6 @@ if TYPE_CHECKING:
 
 
 DONE, FOUND, BAD = 0, 1, 2  #: exit statuses
-
-
-def named_command(arguments: Sequence[str]) -> str:
-    known = [a for a in arguments if a in cli.commands]
-    return f"{known[0]} " if known else ""
 
 
 def tell(notes: Sequence[str]) -> None:
@@ -109,17 +104,6 @@ replace_option = click.option(
 seed_option = click.option(
     "--seed", type=Whole(0), default=0, show_default=True, help="Which variant (the first one)."
 )
-
-
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
-@click.option(
-    "--course", "folder", type=click.Path(), help="Course folder; the built-in course unless given."
-)
-@click.version_option(package_name="coursework", prog_name="coursework")
-@click.pass_context
-def cli(context: click.Context, folder: str | None) -> None:
-    """Parameterised exercises in plane-mechanism kinematics: draw, solve, print and mark them."""
-    context.obj = folder
 
 
 def opened(context: click.Context) -> Course:

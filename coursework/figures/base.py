@@ -1,4 +1,4 @@
-"""TODO coursework/figures/base.py"""
+"""What every element of a figure is, and the shapes that several share."""
 
 from __future__ import annotations
 

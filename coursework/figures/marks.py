@@ -1,4 +1,4 @@
-"""TODO coursework/figures/marks.py"""
+"""Elements that say something about a mechanism: axes, angles, dimensions, vectors, notes, traces."""
 
 from __future__ import annotations
 

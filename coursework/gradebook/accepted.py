@@ -1,4 +1,4 @@
-"""TODO coursework/gradebook/accepted.py"""
+"""Answers that a person accepted, whatever the marking says."""
 
 from __future__ import annotations
 

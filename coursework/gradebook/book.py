@@ -1,4 +1,4 @@
-"""Marking a class: rows of answers against what was issued. Pure; :mod:`coursework.grading` writes the files.
+"""Marking a class: rows of answers against what was issued. Pure; :mod:`coursework.gradebook.grading` writes the files.
 
 Every row in comes out once, as a marked row or as a rejected one, or is counted where it is blank beside another to the
 same part. Sheets are marked by the hundred, so that

@@ -1,4 +1,4 @@
-"""TODO coursework/gradebook/class_marking.py"""
+"""A class marked sheet by sheet, on all processors."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO coursework/gradebook/feedback_sheets.py"""
+"""Feedback: a sheet a student and exercise, printed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO coursework/gradebook/graded.py"""
+"""What was given for one sheet."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO coursework/gradebook/placing.py"""
+"""Answers to the variants that they belong to; what cannot be placed is kept with its reason."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO coursework/gradebook/rows.py"""
+"""Rows of submissions, and what is no row."""
 
 from __future__ import annotations
 

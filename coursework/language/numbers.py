@@ -1,4 +1,4 @@
-"""TODO coursework/language/numbers.py"""
+"""Numbers and units as a language prints them."""
 
 from __future__ import annotations
 

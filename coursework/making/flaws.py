@@ -122,7 +122,7 @@ def try_judges(key: Key) -> None:
     Raises
     ------
     BadCourse
-        As :func:`coursework.judging.judged`.
+        As :func:`coursework.marking.judges.judged`.
     """
     quantity_of = {part.id: part.quantity for part in key.variant.parts}
     for name, ids in judges_of(key.variant):

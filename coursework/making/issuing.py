@@ -29,7 +29,7 @@ def distinct_variants(
 
     ``parts`` are the ids of those to ask; a variant that asks none of them is passed over.
 
-    Equal ones are passed over, and so are those that mark badly (:mod:`coursework.worth`), if the course
+    Equal ones are passed over, and so are those that mark badly (:mod:`coursework.making.flaws`), if the course
     folder has solutions to tell; ``refused`` counts these by their flaw.
 
     Raises

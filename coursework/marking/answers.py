@@ -1,4 +1,4 @@
-"""TODO coursework/marking/answers.py"""
+"""An answer read as its part's kind asks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO coursework/marking/explaining.py"""
+"""Why an answer is not right: what explains it among known mistakes, slips and what a student wrote before."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ their combinations are independent. An equation whose gradient vanishes at the p
 nothing there, and is not right.
 
 Poses are those of the exercise's own first variants, so that a form that holds on the mechanism's branch is
-right. What is wrong is looked up among the faults of :mod:`coursework.loops`: each has poses of its own, at which
+right. What is wrong is looked up among the faults of :mod:`coursework.quantities.loops`: each has poses of its own, at which
 whoever made it has an equation that holds.
 """
 

@@ -1,4 +1,4 @@
-"""TODO coursework/marking/mark.py"""
+"""What became of one answer, and of all of a student."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Plain right answers, a column at a time: most of what comes back, and the cheapest to mark.
 
 An answer of digits alone that lies within its part's own margin is right whatever else the student wrote.
-Everything else is left to :mod:`coursework.marking`, whose marks these are.
+Everything else is left to :mod:`coursework.marking.marking`, whose marks these are.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def plainly_right(
 def _within(part: Part, values: np.ndarray, reference: np.ndarray) -> np.ndarray:
     """Which values are accepted, the boundary inclusive up to rounding; never where one is NaN.
 
-    The rule is that of :func:`coursework.comparing.distance`, which takes one value at a time; here a
+    The rule is that of :func:`coursework.marking.distance.distance`, which takes one value at a time; here a
     whole column is compared at once.
     """
     size = np.abs(reference)

@@ -1,4 +1,4 @@
-"""TODO coursework/marking/together.py"""
+"""Marks of parts that are judged together: drawings, demands that many answers meet, equations of a loop."""
 
 from __future__ import annotations
 

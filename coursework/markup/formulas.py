@@ -1,6 +1,6 @@
 """Formulas of a statement, for every back end.
 
-A formula is LaTeX from a whitelist (:mod:`coursework.rendering.formula_tree`), its numbers written
+A formula is LaTeX from a whitelist (:mod:`coursework.markup.formula_tree`), its numbers written
 ``\\num{-1234.5}``. Here it becomes Typst, MathML, LaTeX for a notebook, one line of text, or words to be
 read aloud, each with numbers as the language prints them.
 """

@@ -1,4 +1,4 @@
-"""TODO coursework/markup/line.py"""
+"""A formula as one line of plain text."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO coursework/markup/mathml.py"""
+"""A formula as MathML."""
 
 from __future__ import annotations
 

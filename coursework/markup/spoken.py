@@ -1,4 +1,4 @@
-"""TODO coursework/markup/spoken.py"""
+"""A formula in words, for those who hear it."""
 
 from __future__ import annotations
 

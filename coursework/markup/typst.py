@@ -1,4 +1,4 @@
-"""TODO coursework/markup/typst.py"""
+"""A formula as Typst mathematics."""
 
 from __future__ import annotations
 

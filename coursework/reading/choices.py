@@ -1,4 +1,4 @@
-"""TODO coursework/reading/choices.py"""
+"""Cases of a choice as people name them: labels, numbers, letters, formulas, a remark behind them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO coursework/reading/digits.py"""
+"""Amounts written in digits: decimals in either school, powers of ten, degrees and minutes, mixed numbers."""
 
 from __future__ import annotations
 

@@ -136,7 +136,7 @@ def value_or_nan(expression: Expression, values: Mapping[str, np.ndarray]) -> Va
 
 
 def read_equation(text: object, variables: Iterable[str]) -> Reading:
-    """An equation over the given variables; the value is an :class:`~coursework.equations.Equation`."""
+    """An equation over the given variables; the value is an :class:`~coursework.reading.equations.Equation`."""
     text = bare_value(text)
     if isinstance(text, Real) and not isinstance(text, bool):
         text = str(text)

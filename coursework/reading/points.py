@@ -1,4 +1,4 @@
-"""TODO coursework/reading/points.py"""
+"""Points and vectors by their coordinates, with a unit each or one for all."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO coursework/reading/reading.py"""
+"""What reading an answer gives, and what stops it."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Reading:
 
     ``status``: ``read``, ``missing``, ``unreadable`` or ``wrong_unit``. ``values``: one or two honest
     readings in the canonical unit (floats; integers; tuples of floats for a point; a key for a choice; an
-    :class:`~coursework.equations.Equation`), empty unless read. ``read_as``: one echo a value, with a
+    :class:`~coursework.reading.equations.Equation`), empty unless read. ``read_as``: one echo a value, with a
     decimal point and the unit as written. When it is not read, ``code`` is a short key for the reason and
     ``found`` the piece that stops the reading.
     """

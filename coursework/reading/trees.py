@@ -1,4 +1,4 @@
-"""TODO coursework/reading/trees.py"""
+"""Expressions as trees that compute: no text of a student is ever run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TODO coursework/reading/vocabulary.py"""
+"""The words that an expression may use: functions, constants, variables, and how each is spelled."""
 
 from __future__ import annotations
 

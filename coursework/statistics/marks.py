@@ -1,4 +1,4 @@
-"""TODO coursework/statistics/marks.py"""
+"""The marks of a class as columns, read back from its tables."""
 
 from __future__ import annotations
 

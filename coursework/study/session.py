@@ -140,7 +140,7 @@ class StudySession:
         return self.variant.figure
 
     def motion(self, *effects: str) -> Shown:
-        """The mechanism over its cycle; ``effects`` as in :class:`~coursework.motion.Animation`.
+        """The mechanism over its cycle; ``effects`` as in :class:`~coursework.motion.animation.Animation`.
 
         Unless told, paths and velocities, where the solution states them.
 

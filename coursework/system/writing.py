@@ -1,4 +1,4 @@
-"""TODO coursework/system/writing.py"""
+"""Files and tables that take their places together, whole or not at all."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def write_tree(
 ) -> list[str]:
     """Make and write a build: it appears whole, in place of the one before, or not at all.
 
-    What somebody changed or put there is not lost, and ``anew`` is as in :func:`coursework.build_folder.place`; gives
+    What somebody changed or put there is not lost, and ``anew`` is as in :func:`coursework.system.build_folder.place`; gives
     notes to tell.
 
     Raises

@@ -1,0 +1,58 @@
+"""The commands by name. What a command needs is loaded when it is called."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import import_module
+
+import click
+
+#: By name, the file of this room that holds the command, and what it is called there.
+COMMANDS = {
+    "accuracy": ("measure", "accuracy"),
+    "animate": ("move", "animate"),
+    "build": ("make", "build"),
+    "check": ("author", "check"),
+    "demo": ("demo", "demo"),
+    "grade": ("mark", "grade"),
+    "lesson": ("make", "lesson"),
+    "list": ("look", "list_exercises"),
+    "new": ("author", "new"),
+    "notebook": ("make", "notebook"),
+    "report": ("mark", "report"),
+    "show": ("look", "show"),
+    "simulate": ("move", "simulate"),
+    "solve": ("look", "solve"),
+    "variant": ("look", "variant"),
+}
+
+
+class _Commands(click.Group):
+    """A group that loads a command when it is asked for."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted(COMMANDS)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        if cmd_name not in COMMANDS:
+            return None
+        file, function = COMMANDS[cmd_name]
+        command: click.Command = getattr(import_module(f"coursework.cli.{file}"), function)
+        return command
+
+
+@click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--course", "folder", type=click.Path(), help="Course folder; the built-in course unless given."
+)
+@click.version_option(package_name="coursework", prog_name="coursework")
+@click.pass_context
+def commands(context: click.Context, folder: str | None) -> None:
+    """Parameterised exercises in plane-mechanism kinematics: draw, solve, print and mark them."""
+    context.obj = folder
+
+
+def named_command(arguments: Sequence[str]) -> str:
+    """The command that some arguments name, and a space; nothing where they name none."""
+    known = [a for a in arguments if a in COMMANDS]
+    return f"{known[0]} " if known else ""
