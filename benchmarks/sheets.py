@@ -19,6 +19,7 @@ from timing import machine, print_table
 import coursework
 from coursework.making import build as building
 from coursework.making import issuing
+from coursework.system import writing
 
 BY_LATEX = 20  #: sheets that pdflatex is timed on
 
@@ -39,7 +40,7 @@ def build(
     course = coursework.open_course()
     wall, processors = time.perf_counter(), used()[0]
     issues = issuing.issue(course, [name], first_seed=0, count=students, langs=["fr"])
-    building.write(out, list(building.files(course, issues, formats, polygons=polygons)))
+    writing.write(out, list(building.files(course, issues, formats, polygons=polygons)))
     return time.perf_counter() - wall, used()[0] - processors
 
 

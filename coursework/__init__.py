@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from coursework.api import Variant, open_course, show_motion, study
     from coursework.course.course import Course
     from coursework.errors import CannotAssemble, CourseworkError, NoSolution, Undefined, UnknownName
-    from coursework.study.lessons import compare, plot
+    from coursework.selfstudy.lessons import compare, plot
 
 __version__ = "0.1.0"
 __all__ = [
@@ -37,9 +37,9 @@ __all__ = [
 _HOMES = {
     "Course": "course.course",
     "Variant": "api",
-    "compare": "study.lessons",
+    "compare": "selfstudy.lessons",
     "open_course": "api",
-    "plot": "study.lessons",
+    "plot": "selfstudy.lessons",
     "show_motion": "api",
     "study": "api",
 }

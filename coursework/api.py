@@ -12,8 +12,8 @@ from coursework.course.course import Course, opened
 if TYPE_CHECKING:
     from coursework.marking.mark import Marking
     from coursework.rendering.displayed import DisplayedAnimation, DisplayedConstruction
+    from coursework.selfstudy.session import StudySession
     from coursework.sheets.sheet import AnswerSheet, Handout, StudySheet
-    from coursework.study.session import StudySession
 
 
 def open_course(folder: str | Path | None = None) -> Course[Variant]:
@@ -63,7 +63,7 @@ def study(
     UnknownName
         No such exercise or language.
     """
-    from coursework.study.session import course_folder, open_session
+    from coursework.selfstudy.session import course_folder, open_session
 
     chosen = open_course(course_folder(course, lang))
     return open_session(chosen, exercise, seed=seed, lang=lang, named=course, version=version, folder=folder)
@@ -101,7 +101,7 @@ class Variant(numbers.Variant):
 
     def study_sheet(self, student: str = "") -> StudySheet:
         """What the self-study notebook of this variant shows."""
-        from coursework.study.sheet import study_sheet
+        from coursework.selfstudy.sheet import study_sheet
 
         return study_sheet(self, student)
 

@@ -25,10 +25,9 @@ from functools import cache, lru_cache
 from typing import Any
 
 from coursework.errors import BadCourse, WrongValue, nearest
+from coursework.kinds.kind import Kind, kind_of
 from coursework.reading.units import check_unit
 
-KINDS = ("number", "angle", "integer", "choice", "point", "point_on_line", "direction", "equation")
-_EXACT_KINDS = ("integer", "choice", "equation")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*\Z")
 
 Bound = float | Callable[..., Any]  #: a number, or a function of quantities drawn before
@@ -102,7 +101,7 @@ def chosen(*choices: str, shown: bool = True) -> GivenSpec:
 class Part:
     """One question: which quantity, in which unit, for how many points, how judged.
 
-    ``kind`` is ``number``, ``angle`` (compared modulo 360), ``integer``, ``choice`` (of ``choices``),
+    ``kind``, a file of :mod:`coursework.kinds`, is ``number``, ``angle`` (compared modulo 360), ``integer``, ``choice`` (of ``choices``),
     ``point`` (by its distance to the reference), ``point_on_line`` (a point of the line through the reference
     along the quantity ``along``),
     ``direction`` (any non-zero multiple of the reference vector) or ``equation`` (in the exercise's
@@ -132,17 +131,19 @@ class Part:
     judge: str = ""
     loop: str = ""
     by_request: bool = False
+    sort: Kind = field(init=False, repr=False, compare=False)  #: what its kind says of it
 
     def __post_init__(self) -> None:
-        if self.kind not in KINDS:
-            raise BadCourse(f"part {self.quantity!r}: no kind {self.kind!r}{nearest(self.kind, KINDS)}")
-        if (self.kind == "choice") != bool(self.choices):
-            raise BadCourse(f"part {self.quantity!r}: a part has choices exactly when its kind is 'choice'")
-        if (self.kind == "point_on_line") != bool(self.along):
-            raise BadCourse(f"part {self.quantity!r}: 'along' goes with kind 'point_on_line', and it must")
-        if (self.kind == "equation") != bool(self.variables):
-            raise BadCourse(f"part {self.quantity!r}: 'variables' goes with kind 'equation', and it must")
-        if self.loop and (self.kind != "equation" or _loop_form(self) is None):
+        try:
+            sort = kind_of(self.kind)
+        except BadCourse as fault:
+            raise BadCourse(f"part {self.quantity!r}: {fault}") from None
+        object.__setattr__(self, "sort", sort)
+        for name in ("choices", "along", "variables"):
+            if bool(getattr(self, name)) != (name in sort.goes_with):
+                have = f"{self.kind!r} comes with it" if name in sort.goes_with else f"{self.kind!r} has none"
+                raise BadCourse(f"part {self.quantity!r}: {name!r} goes with some kinds, and must: {have}")
+        if self.loop and (not self.variables or _loop_form(self) is None):
             raise BadCourse(
                 f"part {self.quantity!r}: an equation of the loop {self.loop!r} is called {self.loop}_x, {self.loop}_y or "
                 f"{self.loop}_complex, and its derivatives {self.loop}_x_dot, {self.loop}_x_ddot"
@@ -151,20 +152,20 @@ class Part:
             raise BadCourse(f"part {self.quantity!r}: it can ask for a unit only where its answer has one")
         if not self.points > 0:
             raise BadCourse(f"part {self.quantity!r}: points must be positive; found {self.points}")
-        in_degrees = self.kind == "angle" or self.unit == "deg"
+        if self.unit == "1":
+            object.__setattr__(self, "unit", sort.unit)
+        in_degrees = bool(sort.turn) or self.unit == "deg"
         if self.atol is None:
             object.__setattr__(self, "atol", 1.0 if in_degrees and not self.judge else 0.0)
         if self.rtol is None:
             object.__setattr__(self, "rtol", 0.0 if in_degrees or self.judge else 0.01)
-        if self.kind == "angle" and self.unit == "1":
-            object.__setattr__(self, "unit", "deg")
         if not self.id:
             object.__setattr__(self, "id", self.quantity)
 
     @property
     def is_exact(self) -> bool:
         """Judged by identity: no tolerance."""
-        return self.kind in _EXACT_KINDS
+        return self.sort.is_exact
 
     @property
     def has_margin(self) -> bool:

@@ -15,9 +15,9 @@ from html import escape
 from pathlib import Path
 
 import coursework
+from coursework.api import Variant
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
-from coursework.course.variant import Variant
 from coursework.language.numbers import plain, with_unit
 from coursework.markup.markdown import html_inline, to_html
 from coursework.markup.mathml import to_mathml

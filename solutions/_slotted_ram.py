@@ -10,7 +10,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.kinematics.slotted_guide import SlottedGuidePose
-from coursework.polygons import crank_v, guide_v, slider_v, turning, velocity_polygon
+from coursework.polygons import crank_v, guide_v, polygon_of_velocities, slider_v, turning
 from coursework.solution import Moving, formula, stable
 
 LOOPS = {
@@ -94,7 +94,7 @@ def polygons(r2, theta2, omega2, rA, theta4, omega4, r4, p, q, omega5, v_C):
     """The crank pin is A_2, A_4 the point of the guide under it; P is farther along the guide."""
     crank, along = polar(r2, theta2), polar(1, theta4)
     return (
-        velocity_polygon(
+        polygon_of_velocities(
             crank_v("A_2", "O_2A", crank, omega2),
             guide_v("A_2", "A_4", "O_4A", rA * along, omega4, (1j * omega2 * crank / along).real),
             (turning("p_v", "p", "P", "O_4P", r4 * along, omega4, "r_4 V_{A_4} / r_A"),),

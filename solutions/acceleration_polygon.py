@@ -7,7 +7,7 @@ from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.marking.drawn_polygons import Asked, Read, met, to_paper, turned, verdicts
-from coursework.polygons import acceleration_polygon, crank_a, two_bars_a
+from coursework.polygons import crank_a, polygon_of_accelerations, two_bars_a
 from coursework.solution import formula, judge, mistake
 
 from ._drawn_acceleration import *
@@ -218,7 +218,7 @@ def _polygon(bars, omega2, scale=None):
     crank, coupler, rocker, *ratios, gain3, gain4 = bars
     omega3, omega4 = (ratio * omega2 for ratio in ratios)
     alpha3, alpha4 = (gain * omega2**2 for gain in (gain3, gain4))
-    return acceleration_polygon(
+    return polygon_of_accelerations(
         crank_a("A", "OA", crank, omega2),
         two_bars_a("B", "A", "C", coupler, omega3, alpha3, "r_3", rocker, omega4, alpha4, "r_4"),
         scale=scale,

@@ -7,7 +7,7 @@ from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.marking.drawn_polygons import Asked, Read, met, verdicts
-from coursework.polygons import acceleration_polygon, crank_a, slider_a
+from coursework.polygons import crank_a, polygon_of_accelerations, slider_a
 from coursework.solution import formula, judge, mistake
 
 from ._drawn_acceleration import *
@@ -158,7 +158,7 @@ def drawing(answers, r2, r3, theta2, omega2):
 def _polygon(bars, omega2, scale=None):
     crank, rod, ratio, gain = bars
     of_B = _images(bars, omega2)[-1].real
-    return acceleration_polygon(
+    return polygon_of_accelerations(
         crank_a("A", "OA", crank, omega2),
         slider_a("B", "A", rod, ratio * omega2, gain * omega2**2, "r_3", of_B),
         scale=scale,

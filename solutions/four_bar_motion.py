@@ -12,12 +12,12 @@ from coursework.figures import Figure, ground_pivot, line, link, pin, vector
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.polygons import (
-    acceleration_polygon,
     crank_a,
     crank_v,
+    polygon_of_accelerations,
+    polygon_of_velocities,
     two_bars_a,
     two_bars_v,
-    velocity_polygon,
 )
 from coursework.solution import Moving, formula, mistake, stable
 
@@ -142,8 +142,8 @@ def motion(r1, r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha
 def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4):
     OA, AB, CB = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4)
     return (
-        velocity_polygon(crank_v("A", "OA", OA, omega2), two_bars_v("B", "A", "C", AB, omega3, CB, omega4)),
-        acceleration_polygon(
+        polygon_of_velocities(crank_v("A", "OA", OA, omega2), two_bars_v("B", "A", "C", AB, omega3, CB, omega4)),
+        polygon_of_accelerations(
             crank_a("A", "OA", OA, omega2, alpha2),
             two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
         ),

@@ -12,7 +12,7 @@ from coursework.figures import Figure, circle, contact, ground_pivot, link, pin,
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slotted_guide import SlottedGuidePose
-from coursework.polygons import Side, crank_v, guide_v, turning, velocity_polygon
+from coursework.polygons import Side, crank_v, guide_v, polygon_of_velocities, turning
 from coursework.solution import Moving, formula, mistake, stable
 
 UNITS = {"e": "mm"}
@@ -174,7 +174,7 @@ def polygons(e, r2, b, theta1, omega1, theta4, rA, omega4, v_slide, v_B2_x, v_B2
     """The crank's point A_1, the guide's point A_4 under it; B_2 and I are points of the wheel, about A_1."""
     crank, along = polar(1.0, theta1), polar(1.0, theta4)
     return (
-        velocity_polygon(
+        polygon_of_velocities(
             crank_v("A_1", "O_1A_1", e * crank, omega1, "1", "e"),
             guide_v("A_1", "A_4", "O_4A_1", rA * along, omega4, v_slide),
             (

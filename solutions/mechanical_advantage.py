@@ -10,7 +10,7 @@ from coursework.degrees import polar, sin
 from coursework.errors import Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
 from coursework.kinematics.dyads import side_of
-from coursework.polygons import crank_v, two_bars_v, velocity_polygon
+from coursework.polygons import crank_v, polygon_of_velocities, two_bars_v
 from coursework.solution import Moving, formula, mistake
 
 from ._four_bar import *
@@ -145,7 +145,7 @@ def torque_with_the_crank_arm(r2, F_s):
 def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4):
     AB, CB = polar(r3, theta3), polar(r4, theta4)
     return (
-        velocity_polygon(
+        polygon_of_velocities(
             crank_v("A", "OA", polar(r2, theta2), omega2),
             two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
         ),

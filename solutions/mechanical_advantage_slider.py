@@ -10,7 +10,7 @@ from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.polygons import crank_v, slider_v, velocity_polygon
+from coursework.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.solution import Moving, formula, mistake, stable
 
 UNITS = {
@@ -121,7 +121,7 @@ def force_divided(F_e, mechanical_advantage):
 
 def polygons(r2, theta2, omega2, p, q, omega3, r1_dot):
     return (
-        velocity_polygon(
+        polygon_of_velocities(
             crank_v("A", "OA", polar(r2, theta2), omega2), slider_v("B", "A", q + 1j * p, omega3, r1_dot)
         ),
     )

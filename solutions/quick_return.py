@@ -17,14 +17,14 @@ from coursework.kinematics.cycle import turning_points
 from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.kinematics.margins import grashof_margins
 from coursework.polygons import (
-    acceleration_polygon,
     crank_a,
     crank_v,
+    polygon_of_accelerations,
+    polygon_of_velocities,
     slider_a,
     slider_v,
     two_bars_a,
     two_bars_v,
-    velocity_polygon,
 )
 from coursework.solution import Moving, formula, mistake, stable
 
@@ -542,12 +542,12 @@ def polygons(
     OA, AB, DB, BC = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r5, theta5)
     alpha3 = (((1j * alpha4 - omega4**2) * DB + omega2**2 * OA) / AB).imag
     return (
-        velocity_polygon(
+        polygon_of_velocities(
             crank_v("A", "OA", OA, omega2),
             two_bars_v("B", "A", "D", AB, omega3, DB, omega4),
             slider_v("C", "B", BC, omega5, v_C),
         ),
-        acceleration_polygon(
+        polygon_of_accelerations(
             crank_a("A", "OA", OA, omega2),
             two_bars_a("B", "A", "D", AB, omega3, alpha3, "r_3", DB, omega4, alpha4, "r_4"),
             slider_a("C", "B", BC, omega5, alpha5, "r_5", a_C),

@@ -15,7 +15,7 @@ from coursework.errors import CannotAssemble
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.polygons import crank_v, slider_v, velocity_polygon
+from coursework.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.solution import Moving, formula, mistake, stable
 
 from ._in_line import _in_line
@@ -206,7 +206,7 @@ def motion(r2, e, theta2, omega2, p, q, omega3, xC, v_C):
 
 def polygons(r2, theta2, omega2, p, q, omega3, v_C):
     return (
-        velocity_polygon(
+        polygon_of_velocities(
             crank_v("A", "OA", polar(r2, theta2), omega2), slider_v("C", "A", q + 1j * p, omega3, v_C)
         ),
     )

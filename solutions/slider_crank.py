@@ -13,7 +13,14 @@ from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.polygons import acceleration_polygon, crank_a, crank_v, slider_a, slider_v, velocity_polygon
+from coursework.polygons import (
+    crank_a,
+    crank_v,
+    polygon_of_accelerations,
+    polygon_of_velocities,
+    slider_a,
+    slider_v,
+)
 from coursework.solution import Moving, formula, mistake, stable
 
 UNITS = {"p": "mm", "q": "mm"}
@@ -179,8 +186,8 @@ def polygons(r2, theta2, omega2, alpha2, p, q, omega3, r1_dot, alpha3, r1_ddot, 
     """At the scales of the statement."""
     OA, AB = polar(r2, theta2), q + 1j * p
     return (
-        velocity_polygon(crank_v("A", "OA", OA, omega2), slider_v("B", "A", AB, omega3, r1_dot), scale=kv),
-        acceleration_polygon(
+        polygon_of_velocities(crank_v("A", "OA", OA, omega2), slider_v("B", "A", AB, omega3, r1_dot), scale=kv),
+        polygon_of_accelerations(
             crank_a("A", "OA", OA, omega2, alpha2),
             slider_a("B", "A", AB, omega3, alpha3, "r_3", r1_ddot),
             scale=ka,

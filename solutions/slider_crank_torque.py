@@ -19,12 +19,12 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.polygons import (
     Side,
-    acceleration_polygon,
     crank_a,
     crank_v,
+    polygon_of_accelerations,
+    polygon_of_velocities,
     slider_a,
     slider_v,
-    velocity_polygon,
 )
 from coursework.solution import Moving, formula, mistake, stable
 
@@ -359,8 +359,8 @@ def polygons(r2, theta2, omega2, alpha2, s3, p, q, omega3, r1_dot, alpha3, r1_dd
     OA, AB = polar(r2, theta2), q + 1j * p
     a_GA = s3 * (1j * alpha3 - omega3**2) * AB
     return (
-        velocity_polygon(crank_v("A", "OA", OA, omega2), slider_v("B", "A", AB, omega3, r1_dot)),
-        acceleration_polygon(
+        polygon_of_velocities(crank_v("A", "OA", OA, omega2), slider_v("B", "A", AB, omega3, r1_dot)),
+        polygon_of_accelerations(
             crank_a("A", "OA", OA, omega2, alpha2),
             slider_a("B", "A", AB, omega3, alpha3, "r_3", r1_ddot),
             (

@@ -17,14 +17,14 @@ from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
 from coursework.polygons import (
-    acceleration_polygon,
     crank_a,
     crank_v,
+    polygon_of_accelerations,
+    polygon_of_velocities,
     slider_a,
     slider_v,
     two_bars_a,
     two_bars_v,
-    velocity_polygon,
 )
 from coursework.solution import Moving, formula, mistake, stable
 
@@ -340,12 +340,12 @@ def polygons(
     """Two bars meet at B, then the rod from B to the slider."""
     OA, AB, DB, BP = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), -polar(r5, theta5)
     return (
-        velocity_polygon(
+        polygon_of_velocities(
             crank_v("A", "OA", OA, omega2),
             two_bars_v("B", "A", "D", AB, omega3, DB, omega4),
             slider_v("P", "B", BP, omega5, r6_dot),
         ),
-        acceleration_polygon(
+        polygon_of_accelerations(
             crank_a("A", "OA", OA, omega2),
             two_bars_a("B", "A", "D", AB, omega3, alpha3, "r_3", DB, omega4, alpha4, "r_4"),
             slider_a("P", "B", BP, omega5, alpha5, "r_5", r6_ddot),

@@ -13,7 +13,14 @@ from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slotted_guide import SlottedGuidePose
-from coursework.polygons import acceleration_polygon, crank_a, crank_v, guide_a, guide_v, velocity_polygon
+from coursework.polygons import (
+    crank_a,
+    crank_v,
+    guide_a,
+    guide_v,
+    polygon_of_accelerations,
+    polygon_of_velocities,
+)
 from coursework.solution import Moving, formula, mistake, stable
 
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
@@ -165,10 +172,10 @@ def polygons(r2, theta2, omega2, alpha2, rA, theta4, rA_dot, omega4, rA_ddot, al
     """The crank pin is A_2; A_4 is the point of the guide under it."""
     crank, arm = polar(r2, theta2), polar(rA, theta4)
     return (
-        velocity_polygon(
+        polygon_of_velocities(
             crank_v("A_2", "O_2A", crank, omega2), guide_v("A_2", "A_4", "O_4A", arm, omega4, rA_dot)
         ),
-        acceleration_polygon(
+        polygon_of_accelerations(
             crank_a("A_2", "O_2A", crank, omega2, alpha2),
             guide_a("A_2", "A_4", "O_4A", arm, omega4, alpha4, rA_dot, rA_ddot, "r_A", r"\omega_4"),
         ),

@@ -17,19 +17,19 @@ from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import rrp, side_of
 from coursework.kinematics.four_bar import FourBar
 from coursework.polygons import (
-    acceleration_polygon,
     crank_a,
     crank_v,
     guide_a,
     guide_v,
     normal,
+    polygon_of_accelerations,
+    polygon_of_velocities,
     slider_a,
     slider_v,
     tangential,
     turning,
     two_bars_a,
     two_bars_v,
-    velocity_polygon,
 )
 from coursework.solution import Moving, formula, mistake, stable
 
@@ -367,7 +367,7 @@ def polygons(
     OA, AB, CB, AE = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r6, theta6)
     DE, DF, FG = polar(d5, theta5), polar(r5, theta5), polar(r7, theta7)
     return (
-        velocity_polygon(
+        polygon_of_velocities(
             crank_v("A", "OA", OA, omega2),
             two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
             (turning("a", "e", "E/A", "AE", AE, omega3, "r_6 V_{B/A} / r_3"),),
@@ -375,7 +375,7 @@ def polygons(
             (turning("p_v", "f", "F", "DF", DF, omega5, "r_5 V_{E_5} / d_5"),),
             slider_v("G", "F", FG, omega7, x8_dot),
         ),
-        acceleration_polygon(
+        polygon_of_accelerations(
             crank_a("A", "OA", OA, omega2),
             two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
             (

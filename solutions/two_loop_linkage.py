@@ -17,15 +17,15 @@ from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
 from coursework.polygons import (
-    acceleration_polygon,
     crank_a,
     crank_v,
     normal,
+    polygon_of_accelerations,
+    polygon_of_velocities,
     tangential,
     turning,
     two_bars_a,
     two_bars_v,
-    velocity_polygon,
 )
 from coursework.solution import Moving, formula, mistake, stable
 
@@ -343,13 +343,13 @@ def polygons(
     OA, AB, CB, CD = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4), polar(r5, theta5)
     DE, FE = polar(r6, theta6), polar(r7, theta7)
     return (
-        velocity_polygon(
+        polygon_of_velocities(
             crank_v("A", "OA", OA, omega2),
             two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
             (turning("p_v", "d", "D", "CD", CD, omega4, "r_5 V_B / r_4"),),
             two_bars_v("E", "D", "F", DE, omega6, FE, omega7),
         ),
-        acceleration_polygon(
+        polygon_of_accelerations(
             crank_a("A", "OA", OA, omega2),
             two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),
             (

@@ -6,7 +6,7 @@ from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.marking.drawn_polygons import Asked, Read, verdicts
-from coursework.polygons import crank_v, two_bars_v, velocity_polygon
+from coursework.polygons import crank_v, polygon_of_velocities, two_bars_v
 from coursework.solution import formula, judge, mistake
 
 from ._drawn_velocity import *
@@ -114,7 +114,7 @@ def drawing(answers, r1, r2, r3, r4, theta2, omega2, mode):
 def _polygon(bars, omega2, scale=None):
     crank, coupler, rocker, *ratios = bars
     omega3, omega4 = (ratio * omega2 for ratio in ratios)
-    return velocity_polygon(
+    return polygon_of_velocities(
         crank_v("A", "OA", crank, omega2),
         two_bars_v("B", "A", "C", coupler, omega3, rocker, omega4),
         scale=scale,

@@ -6,7 +6,7 @@ from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.marking.drawn_polygons import Asked, Read, verdicts
-from coursework.polygons import crank_v, slider_v, velocity_polygon
+from coursework.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.solution import formula, judge, mistake
 
 from ._drawn_velocity import *
@@ -114,7 +114,7 @@ def drawing(answers, r2, r3, theta2, omega2):
 def _polygon(bars, omega2, scale=None):
     crank, rod, ratio = bars
     v_B = _images(bars, omega2)[1].real
-    return velocity_polygon(
+    return polygon_of_velocities(
         crank_v("A", "OA", crank, omega2), slider_v("B", "A", rod, ratio * omega2, v_B), scale=scale
     )
 

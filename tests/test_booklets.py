@@ -16,9 +16,9 @@ from coursework.cli.options import DONE
 from coursework.course.builtin import builtin_root
 from coursework.errors import BadStatement, UnknownName
 from coursework.making import booklets, issuing
-from coursework.making import build as building
 from coursework.rendering.pdf import source
 from coursework.rendering.renderer import PAPERS, Renderer, renderer_of
+from coursework.system import writing
 
 TEMPLATES = [builtin_root() / "templates"]
 WIDTHS = {"a4": "595.27", "letter": "612"}
@@ -88,7 +88,7 @@ def test_the_table_of_pages_has_a_line_for_each_sheet_whichever_booklet_holds_it
 ):
     monkeypatch.setattr(booklets, "SHEETS", 2)
     issues = issues_of(course, 3, ("fr", "en"))
-    building.write(tmp_path, list(booklets.files(course, renderer_of(course.folder), issues)))
+    writing.write(tmp_path, list(booklets.files(course, renderer_of(course.folder), issues)))
     rows = list(csv.DictReader(io.StringIO((tmp_path / "handouts" / "pages.csv").read_text("utf-8-sig"))))
     assert [(r["lang"], int(r["seed"])) for r in rows] == [
         (lang, issue.variant.seed) for lang in ("fr", "en") for issue in issues
@@ -125,4 +125,4 @@ def test_a_sheet_that_cannot_be_made_ends_the_build_with_its_fault(course, tmp_p
 
     wanted = list(booklets.files(course, Broken(TEMPLATES), issues_of(course, 1)))
     with pytest.raises(BadStatement, match="no"):
-        building.write(tmp_path, wanted)
+        writing.write(tmp_path, wanted)

@@ -10,6 +10,7 @@ from coursework.making import build as building
 from coursework.making import issuing
 from coursework.making.roster import Student
 from coursework.rendering.renderer import Renderer
+from coursework.system import writing
 
 COURSE = coursework.open_course()
 TEXTS = ("html", "tex", "ipynb")
@@ -41,7 +42,7 @@ def test_a_variant_goes_with_the_parts_that_were_chosen_and_what_its_key_has_com
     assert there.exercise is variant.exercise
     assert there.part_ids == variant.part_ids == ("theta4", "loop_1_x")
     assert (there.record, there.lang) == (variant.record, variant.lang)
-    assert {"reference", "envelope"} <= set(there.key.__dict__)
+    assert there.key.numbers.envelope == variant.key.numbers.envelope != {}
     assert there.key.half_width(there.parts[0]) == width > 0
 
 
@@ -50,9 +51,9 @@ def test_processes_write_what_threads_write(tmp_path, monkeypatch):
     issues = issuing.issue(COURSE, names, first_seed=0, count=5, langs=["fr", "en"])
     told = []
     for folder, enough in (("threads", 10**6), ("processes", 1)):
-        monkeypatch.setattr(building, "WORTH_PROCESSES", enough)
+        monkeypatch.setattr(writing, "WORTH_PROCESSES", enough)
         wanted = list(building.files(COURSE, issues, ("pdf", "html"), booklet=True))
-        building.write_tree(tmp_path / folder, wanted, told.append)
+        writing.write_tree(tmp_path / folder, wanted, told.append)
         assert sorted(told) == sorted(file.path for file in wanted)
         told.clear()
     assert written(tmp_path / "threads") == written(tmp_path / "processes") != {}
@@ -62,11 +63,11 @@ def test_a_sheet_that_a_process_cannot_make_ends_the_build_with_its_fault(tmp_pa
     (tmp_path / "templates").mkdir()
     (tmp_path / "templates" / "_figure_and_data.typ.j2").write_text("#nonsense", "utf-8")
     broken = Renderer([tmp_path / "templates", *COURSE.folder.template_folders])
-    monkeypatch.setattr(building, "WORTH_PROCESSES", 1)
-    monkeypatch.setitem(COURSE.__dict__, "renderer", broken)
+    monkeypatch.setattr(writing, "WORTH_PROCESSES", 1)
+    monkeypatch.setattr(building, "renderer_of", lambda folder: broken)
     issues = issuing.issue(COURSE, ["slotted_mechanism"], first_seed=0, count=2, langs=["fr"])
     with pytest.raises(BadStatement, match="nonsense"):
-        building.write_tree(tmp_path / "out", list(building.files(COURSE, issues, ("pdf",))))
+        writing.write_tree(tmp_path / "out", list(building.files(COURSE, issues, ("pdf",))))
     assert not list((tmp_path / "out").rglob("*.pdf"))
 
 
@@ -75,6 +76,6 @@ def test_a_course_that_cannot_be_opened_by_a_process_is_told_as_such(small_cours
     issues = issuing.issue(course, ["crank_pin"], first_seed=0, count=2, langs=["fr"])
     wanted = list(building.files(course, issues, ("html",)))
     small_course.rename(tmp_path / "moved")
-    monkeypatch.setattr(building, "WORTH_PROCESSES", 1)
+    monkeypatch.setattr(writing, "WORTH_PROCESSES", 1)
     with pytest.raises(BadCourse, match="no course at"):
-        building.write(tmp_path / "out", wanted)
+        writing.write(tmp_path / "out", wanted)

@@ -250,16 +250,16 @@ def test_every_damaged_row_is_reported_and_nothing_else_is_lost(built, cli, tmp_
 
 
 def test_a_sheet_that_nothing_foresaw_costs_itself_alone(built, cli, tmp_path, monkeypatch):
-    import coursework.marking
+    import coursework.marking.marking
 
-    read = coursework.marking.read
+    read = coursework.marking.marking.read
 
     def breaks(variant, part, answer):
         if answer == "surprise":
             raise RuntimeError("unforeseen")
         return read(variant, part, answer)
 
-    monkeypatch.setattr(coursework.marking, "read", breaks)
+    monkeypatch.setattr(coursework.marking.marking, "read", breaks)
     rows = filled(built)
     rows[0]["answer"] = "surprise"
     path = write_rows(tmp_path / "a.csv", rows)

@@ -56,8 +56,8 @@ def test_a_course_overrides_one_template_and_takes_the_others_from_the_built_in_
     template.write_text("<p>{{ sheet.title }}, ours</p>", "utf-8")
     own = coursework.open_course(small_course)
     handout = own["crank_pin"].variant(1).handout()
-    assert own.renderer.html(handout) == "<p>Un maneton, ours</p>"
-    assert own.renderer.notebook(handout)
+    assert renderer_of(own.folder).html(handout) == "<p>Un maneton, ours</p>"
+    assert renderer_of(own.folder).notebook(handout)
 
 
 def test_exercises_never_import_solutions(course):

@@ -12,7 +12,7 @@ import pytest
 
 import coursework
 from coursework.cli import run
-from coursework.cli.options import cli
+from coursework.cli.commands import commands as cli
 from coursework.rendering.renderer import renderer_of
 
 ROOT = Path(__file__).resolve().parent.parent

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from coursework.sheets.equation_latex import latex_of_equation
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -12,7 +13,6 @@ from coursework.reading.equations import parse_equation
 from coursework.reading.equivalence import same_equation
 from coursework.reading.expressions import parse_expression
 from coursework.reading.vocabulary import Unreadable
-from coursework.sheets.equation_latex import latex_of_equation
 
 NAMES = (
     "r1", "r2", "r3", "r4", "theta2", "theta3", "theta4",

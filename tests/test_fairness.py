@@ -17,12 +17,15 @@ from coursework.course.marking_rules import Rules
 from coursework.errors import BadCourse, Starved
 from coursework.making.flaws import HIDDEN, SHOWN, flaws, visibility, worthy
 from coursework.making.issuing import distinct_variants
-from coursework.marking.distance import distance
 from coursework.model import Part
 from coursework.quantities.rounding import envelope, half_step, rounded, student_who_rounds
 
 COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize("name", COURSE.names)
+
+
+def distance(part, *values):
+    return part.sort.distance(part, *values)
 
 
 def issued(name, count=25):
@@ -294,7 +297,7 @@ def test_an_earlier_error_that_hardly_matters_explains_nothing():
 def test_a_course_may_give_a_share_for_what_follows(small_course):
     course = small_course / "exercises" / "course.toml"
     course.write_text("[marking]\nfollow_through = 0.5\nslip = 0.25\ndigits = 3\n", "utf-8")
-    rules = coursework.open_course(small_course).rules
+    rules = coursework.open_course(small_course).folder.rules
     assert rules == Rules(digits=3, follow_through=0.5, slip=0.25)
 
 
@@ -310,7 +313,7 @@ def test_a_course_may_give_a_share_for_what_follows(small_course):
 def test_rules_that_make_no_sense_are_told(small_course, text, told):
     (small_course / "exercises" / "course.toml").write_text(text, "utf-8")
     with pytest.raises(BadCourse, match=told):
-        _ = coursework.open_course(small_course).rules
+        _ = coursework.open_course(small_course).folder.rules
 
 
 # ------------------------------------------------------------------------ slips
@@ -381,8 +384,8 @@ def test_the_envelope_widens_and_never_narrows():
 @pytest.mark.parametrize("name", COURSE.names)
 def test_many_sheets_are_marked_as_each_alone(name):
     """By the column or one by one, the verdict, the points, what was read and what is said are the same."""
-    from coursework.gradebook.class_marking import _Job, _mark_chunk
-    from coursework.gradebook.graded import Line
+    from coursework.gradebook.class_marking import _Job, _mark_chunk, _waiting
+    from coursework.marking.mark import Mark
 
     exercise = COURSE[name]
     variants = exercise.variants(range(24), "en")
@@ -407,10 +410,10 @@ def test_many_sheets_are_marked_as_each_alone(name):
     together = _mark_chunk(COURSE, jobs, False)
     for job, lines in zip(jobs, together, strict=True):
         alone = exercise.from_record(job.record).grade(job.answers)
-        lines = [Line._make(line) for line in lines]
+        lines = [Mark.received(line) for line in lines]
         assert [line.part for line in lines] == list(alone)
         for line in lines:
-            mark = Line.of(alone[line.part], printed=False)
+            mark = Mark.received(_waiting(alone[line.part]).sent(printed=False))
             assert (line.verdict, line.points, line.read_as, line.answer, line.feedback, line.matches) == (
                 mark.verdict, mark.points, mark.read_as, mark.answer, mark.feedback, mark.matches,
             )  # fmt: skip

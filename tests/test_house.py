@@ -9,8 +9,8 @@ PACKAGE = Path(__file__).resolve().parent.parent / "coursework"
 
 #: From the ground up.
 ROOMS = (
-    "errors degrees language system kinematics solids markup figures structure reading polygons quantities model solution "
-    "course marking sheets motion rendering accuracy making gradebook statistics study authoring api __init__ cli __main__"
+    "errors degrees language system kinematics solids markup figures structure reading polygons quantities kinds model solution "
+    "course marking sheets motion rendering accuracy making gradebook statistics selfstudy authoring api __init__ cli __main__"
 ).split()
 
 FILES = {
@@ -28,8 +28,12 @@ def imported(text):
     """The modules of the package that a file imports, at its top, inside functions or for types alone, with the line."""
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Import):
-            yield from ((alias.name, node.lineno) for alias in node.names if alias.name.split(".")[0] == "coursework")
-        elif isinstance(node, ast.ImportFrom) and (node.level or (node.module or "").split(".")[0] == "coursework"):
+            yield from (
+                (alias.name, node.lineno) for alias in node.names if alias.name.split(".")[0] == "coursework"
+            )
+        elif isinstance(node, ast.ImportFrom) and (
+            node.level or (node.module or "").split(".")[0] == "coursework"
+        ):
             assert not node.level, f"line {node.lineno}: a relative import; name the room"
             for alias in node.names:
                 whole = f"{node.module}.{alias.name}"
@@ -63,7 +67,7 @@ def test_a_file_imports_from_its_own_room_and_from_rooms_below(file):
     [
         "from coursework.cli.options import opened",
         "def late():\n    from coursework.api import open_course",
-        "if TYPE_CHECKING:\n    from coursework.study.session import StudySession",
+        "if TYPE_CHECKING:\n    from coursework.selfstudy.session import StudySession",
         "import coursework.rendering.renderer",
         "from coursework import api",
     ],

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import coursework
-from coursework.authoring import checks
+from coursework.authoring import check_answers, checks
 from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName
 from coursework.making import issuing
@@ -236,7 +236,7 @@ def test_a_judge_answers_for_every_absurd_answer(name):
     (variant,) = COURSE[name].variants([3], parts=("all",))
     right = variant.solution()
     size = {p.id: np.size(right[p.quantity]) for p in variant.parts if p.judge}
-    shown = {p.id: checks._written(right[p.quantity]) for p in variant.parts if p.judge}
+    shown = {p.id: check_answers._written(right[p.quantity]) for p in variant.parts if p.judge}
     for number in ABSURD:
         absurd = {i: "; ".join([number] * n) for i, n in size.items()}
         assert "correct" not in {variant.grade(absurd)[i].verdict for i in size}

@@ -10,17 +10,20 @@ import pytest
 
 from coursework.errors import NoSolution, UnknownName, WrongValue
 from coursework.marking import marking
-from coursework.marking.distance import distance
 from coursework.markup.markdown import plain_line
 from coursework.model import Part
 
 GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "theta2": 135.0, "omega2": 5.0, "alpha2": 0.0}
 
 
+def distance(part, *values):
+    return part.sort.distance(part, *values)
+
+
 @pytest.fixture(scope="module")
 def slotted(course):
     """The course's own numbers: rA = 319.80 mm, theta4 = 104.64 deg."""
-    from coursework.course.variant import Variant
+    from coursework.api import Variant
 
     return Variant(course["slotted_mechanism"], 0, GIVEN, "fr")
 
@@ -153,7 +156,7 @@ def test_an_equation_is_quoted_with_its_stars(course):
 
 
 def test_both_readings_of_an_ambiguous_group_are_tried(course):
-    from coursework.course.variant import Variant
+    from coursework.api import Variant
 
     variant = Variant(
         course["slotted_mechanism"], 0, {**GIVEN, "r1": 1000.0, "r2": 234.0, "theta2": 90.0}, "fr"

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import coursework
+from coursework.api import Variant
 from coursework.authoring.checks import check
 from coursework.cli import run
 from coursework.course.exercise import CourseExercise
@@ -243,7 +244,7 @@ def test_a_crank_angle_that_is_an_answer_is_shown_and_the_assembly_kept():
 
 
 def test_a_driver_angle_that_nothing_says_is_a_fault_of_the_course():
-    exercise = CourseExercise(COURSE, "quick_return")
+    exercise = CourseExercise("quick_return", COURSE.folder, COURSE, Variant)
     exercise.spec = replace(exercise.spec, driver=replace(exercise.spec.driver, poses=None))
     with pytest.raises(BadCourse, match="theta2 is no given quantity"):
         exercise.variant(0).animation().svg()

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from coursework.errors import WrongUnit
-from coursework.marking.distance import distance
+from coursework.kinds.kind import kind_of
 from coursework.reading.numbers import read_number
 from coursework.reading.units import convert
 
@@ -57,6 +57,10 @@ DIFFERENCES = {
 _MEASURE = re.compile(r"(?P<number>[+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?(?:/[0-9]+)?)\s*\*?\s*(?P<unit>[^(].*)?")
 
 
+def distance(part, *values):
+    return part.sort.distance(part, *values)
+
+
 def measure(text: object, unit: str = "1") -> tuple[float, str]:
     """Number and unit of a reference or a tolerance as the cases write it, ``12.3*m/s``."""
     text = str(text).split(" (also")[0]
@@ -94,7 +98,7 @@ def ours(case: dict) -> str:
         return "no_such_unit"
     if reading.status != "read":
         return reading.status
-    part = SimpleNamespace(kind="number", half_width=lambda reference: width)
+    part = SimpleNamespace(sort=kind_of("number"), half_width=lambda reference: width)
     gap = min(distance(part, value, reference) for value in reading.values)
     return "correct" if gap <= 1 else "wrong"
 

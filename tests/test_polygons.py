@@ -362,7 +362,10 @@ def test_steps_grow_to_the_whole_in_one_frame(name):
 def test_a_solution_shows_every_polygon_in_black_and_white_in_every_back_end(name, lang):
     variant = variants(name, lang)[3]
     sheet = variant.answer_sheet()
-    page, tex = renderer_of(COURSE.folder).html(sheet), renderer_of(COURSE.folder).tex(sheet, "f.pdf", "p.pdf")
+    page, tex = (
+        renderer_of(COURSE.folder).html(sheet),
+        renderer_of(COURSE.folder).tex(sheet, "f.pdf", "p.pdf"),
+    )
     assert renderer_of(COURSE.folder).pdf(sheet).startswith(b"%PDF")
     assert len(variant.polygons()) > 0
     shown = 0

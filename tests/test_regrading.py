@@ -11,9 +11,8 @@ import pytest
 import coursework
 from coursework.cli import run
 from coursework.errors import BadInput
-from coursework.gradebook.class_marking import marked
+from coursework.gradebook.class_marking import _waiting, marked
 from coursework.gradebook.feedback_sheets import feedback_sheet
-from coursework.gradebook.graded import Line
 from coursework.gradebook.placing import placed
 from coursework.gradebook.submissions import read_file
 from coursework.making.issued import Issued
@@ -130,7 +129,7 @@ def test_a_mark_is_replayed_from_its_record_alone(small_course, issued):
     course = coursework.open_course(small_course)
     for line in table(issued / "marks" / "marks.csv"):
         variant = course["crank_pin"].from_record(records[line["student"]])
-        mark = Line.of(variant.grade({line["part"]: line["answer"]})[line["part"]], printed=False)
+        mark = _waiting(variant.grade({line["part"]: line["answer"]})[line["part"]])
         assert (mark.verdict, f"{mark.points:g}", mark.feedback) == (
             line["verdict"],
             line["points"],
@@ -362,7 +361,10 @@ def test_who_wrote_what_cannot_be_read_is_told_that_somebody_will_look(small_cou
     assert told not in said["correct"]
     course, kept = coursework.open_course(small_course), Issued.read(issued / "issued.json")
     sheets = placed(course, kept, list(read_file(issued.parent / "answers.csv")))
-    pages = [renderer_of(course.folder).html(feedback_sheet(course, graded)) for graded in marked(course, kept, sheets)]
+    pages = [
+        renderer_of(course.folder).html(feedback_sheet(course, graded))
+        for graded in marked(course, kept, sheets)
+    ]
     assert [told in page for page in pages] == [True, False, False]
 
 
@@ -504,12 +506,12 @@ def test_a_parquet_file_that_is_none_is_rejected_with_its_reason(small_course, i
 
 
 def test_many_answers_are_marked_by_processes_as_by_one(small_course, issued, tmp_path, monkeypatch):
-    from coursework.gradebook import book as gradebook
+    from coursework.gradebook import class_marking
 
     grade(small_course, issued, "--out", tmp_path / "one")
-    monkeypatch.setattr(gradebook, "WORTH_PROCESSES", 0)
-    monkeypatch.setattr(gradebook, "CHUNK", 1)
-    monkeypatch.setattr(gradebook, "workers", lambda tasks: 2)
+    monkeypatch.setattr(class_marking, "WORTH_PROCESSES", 0)
+    monkeypatch.setattr(class_marking, "CHUNK", 1)
+    monkeypatch.setattr(class_marking, "workers", lambda tasks: 2)
     grade(small_course, issued, "--out", tmp_path / "many")
     for name in ("marks.csv", "summary.csv", "rejected.csv"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "many" / name).read_bytes()

@@ -258,7 +258,7 @@ def keys(table: dict, path: str = "") -> set[str]:
 
 def test_both_languages_have_the_same_words():
     tables = {
-        lang: tomllib.loads((resources.files("coursework") / "words" / f"{lang}.toml").read_text("utf-8"))
+        lang: tomllib.loads((resources.files("coursework") / "language" / f"{lang}.toml").read_text("utf-8"))
         for lang in ("fr", "en")
     }
     french, english = (keys({k: v for k, v in t.items() if k != "units"}) for t in tables.values())

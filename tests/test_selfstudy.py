@@ -17,8 +17,8 @@ from coursework.figures.plot import Axis, Plot, Spot
 from coursework.language.words import words
 from coursework.making.flaws import worthy
 from coursework.rendering.renderer import renderer_of
-from coursework.study import hints, predictions
-from coursework.study import word_answers as wording
+from coursework.selfstudy import hints, predictions
+from coursework.selfstudy import word_answers as wording
 
 COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize("name", COURSE.names)
@@ -82,7 +82,9 @@ def test_a_self_study_notebook_runs_in_a_kernel(name, lang, tmp_path):
 
 @every_exercise
 def test_a_self_study_notebook_is_the_same_twice_and_has_one_cell_of_answers(name):
-    first, second = (renderer_of(COURSE.folder).study(COURSE[name].variant(3, "fr").study_sheet()) for _ in range(2))
+    first, second = (
+        renderer_of(COURSE.folder).study(COURSE[name].variant(3, "fr").study_sheet()) for _ in range(2)
+    )
     assert first == second
     book = json.loads(first)
     (answers,) = [c for c in book["cells"] if "answers" in c["metadata"].get("tags", ())]
@@ -513,7 +515,10 @@ def test_who_works_alone_is_not_told_that_somebody_will_look(name, lang, here):
 @BOTH
 def test_the_answers_cell_of_a_self_study_notebook_is_run(lang, here):
     variant = COURSE["coriolis"].variant(3, lang)
-    books = [renderer_of(COURSE.folder).study(variant.study_sheet()), renderer_of(COURSE.folder).notebook(variant.handout())]
+    books = [
+        renderer_of(COURSE.folder).study(variant.study_sheet()),
+        renderer_of(COURSE.folder).notebook(variant.handout()),
+    ]
     texts = [flat(" ".join("".join(c["source"]) for c in json.loads(book)["cells"])) for book in books]
     helps = (SAID[lang]["answers_help"], words(lang)["notebook"]["answers_help"])
     for k, text in enumerate(texts):

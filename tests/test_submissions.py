@@ -302,6 +302,6 @@ def test_an_answer_given_twice_comes_out_twice(tmp_path):
 
 
 def test_a_file_too_large_is_told(tmp_path, monkeypatch):
-    monkeypatch.setattr("coursework.submissions.MAX_BYTES", 10)
+    monkeypatch.setattr("coursework.gradebook.submissions.MAX_BYTES", 10)
     _, rejected = read(tmp_path, "a.csv", HEADER)
     assert "limit" in rejected[0].reason

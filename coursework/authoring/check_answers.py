@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from coursework.authoring.check_report import KEPT_DIGITS, Report
-from coursework.course.answer_key import FOLLOWED, Key, envelopes
+from coursework.course.answer_key import Key, envelopes
 from coursework.course.exercise import CourseExercise
 from coursework.course.variant import Variant
-from coursework.language.numbers import plain, significant
 from coursework.making.flaws import SHOWN, judged_wrong, visibility
-from coursework.marking.distance import distance
 from coursework.marking.judges import judged, judges_of
 from coursework.marking.marking import mark as grade
 from coursework.model import Part
@@ -43,37 +42,17 @@ def check_right_answers(variant: Variant, key: Key, report: Report) -> None:
 
 def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
     """The right answers of a variant in the ways people write them."""
-    full, printed, comma, edge = {}, {}, {}, {}
+    sheets: dict[str, dict[str, Any]] = {way: {} for way in ("exact", "printed", "comma", "edge")}
     for part in variant.parts:
-        value = key.reference[part.quantity]
-        if part.kind == "choice":
-            full[part.id] = str(value)
-            printed[part.id] = variant.label(part.id, str(value))
-        elif part.kind == "equation":
-            full[part.id] = str(value)
-            left, _, right = str(value).partition("=")
-            printed[part.id] = f"2*({right}) - 2*({left}) = 0"
-        elif isinstance(value, np.ndarray):
-            full[part.id] = "; ".join(repr(v) for v in value.tolist())
-            printed[part.id] = "(" + " ; ".join(significant(v, 6) for v in value.tolist()) + ")"
-            comma[part.id] = printed[part.id].replace(".", ",")
-        else:
-            unit = "" if part.unit == "1" else f" {part.unit}"
-            full[part.id] = value
-            printed[part.id] = significant(value, 4 if part.kind != "integer" else 9) + unit
-            comma[part.id] = printed[part.id].replace(".", ",")
-            if not part.has_margin:
-                continue
-            if part.kind == "number":
-                edge[part.id] = plain(value + part.half_width(value))
-            elif part.kind == "angle":
-                edge[part.id] = plain(value + 360.0 - part.half_width(value))
-    comma = {i: text for i, text in comma.items() if text != printed[i]}
+        for way, answer in part.sort.spellings(
+            part, key.reference[part.quantity], partial(variant.label, part.id)
+        ):
+            sheets.setdefault(way, {})[part.id] = answer
     # Parts that are judged together stand on a sheet together.
-    beside = {part.id: printed[part.id] for part in variant.parts if part.judge}
-    if not beside.keys().isdisjoint(comma):
-        comma = beside | comma
-    yield from filter(None, (full, printed, comma, edge))
+    beside = {part.id: sheets["printed"][part.id] for part in variant.parts if part.judge}
+    if not beside.keys().isdisjoint(sheets["comma"]):
+        sheets["comma"] = beside | sheets["comma"]
+    yield from filter(None, sheets.values())
 
 
 def check_rounding_students(
@@ -97,10 +76,10 @@ def check_rounding_students(
                     continue
                 own, width = (_at(c[part.quantity], index, len(drawn)) for c in (found, widths))
                 along = variant.key.reference.get(part.along)
-                gap = distance(part, own, variant.key.reference[part.quantity], along, float(width))
+                gap = part.sort.distance(part, own, variant.key.reference[part.quantity], along, float(width))
                 report.counts[f"rounding to {kept}"] += 1
                 report.counts[f"outside the usual margin at {kept}"] += bool(
-                    distance(part, own, variant.key.reference[part.quantity], along) > 1
+                    part.sort.distance(part, own, variant.key.reference[part.quantity], along) > 1
                 )
                 if not gap <= 1:
                     report.fail(
@@ -158,7 +137,7 @@ def check_slips(variant: Variant, key: Key, report: Report) -> None:
     shown: list[dict[str, tuple[str, Any]]] = []
     for part in variant.parts:
         reference, width = key.reference[part.quantity], key.envelope.get(part.quantity, 0.0)
-        slips = [s for s in key.slips(part) if distance(part, s[1], reference, None, width) > SHOWN]
+        slips = [s for s in key.slips(part) if part.sort.distance(part, s[1], reference, None, width) > SHOWN]
         for place, slip in enumerate(slips):
             shown += [{}] * (place + 1 - len(shown))
             shown[place] = {**shown[place], part.id: slip}
@@ -178,7 +157,7 @@ def check_slips(variant: Variant, key: Key, report: Report) -> None:
 
 def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
     """Who errs once, much or little, and goes on rightly is marked wrong once."""
-    parts = [p for p in variant.parts if p.kind in FOLLOWED and not p.judge]
+    parts = [p for p in variant.parts if p.sort.is_followed and not p.judge]
     half = parts[variant.seed % 2 :: 2] or parts  # the other half on the next variant
     for first, wrong in ((part, value) for part in half for value in _little_and_much(part, key)):
         answers, expected, own = {first.id: wrong}, {}, {first.quantity: wrong}
@@ -198,13 +177,7 @@ def check_follow_through(variant: Variant, key: Key, report: Report) -> None:
 
 def _little_and_much(part: Part, key: Key) -> tuple[Any, ...]:
     """Wrong answers just beyond what is accepted, and far from it; of cases and counts, another one."""
-    value = key.reference[part.quantity]
-    if part.kind == "choice":
-        return tuple(c for c in part.choices if c != value)[:1]
-    if part.kind == "integer":
-        return (value + 1,)
-    much = value + 11.0 if part.unit == "deg" else 1.13 * value
-    return value + 1.3 * key.half_width(part), much
+    return part.sort.others(part, key.reference[part.quantity], key.half_width(part))
 
 
 def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: Any, report: Report) -> None:

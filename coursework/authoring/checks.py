@@ -158,7 +158,9 @@ def _describe(drawn: Sequence[Variant], report: Report) -> None:
     for variant in drawn:
         given = variant.exercise.spec.given
         chosen = {n: v for n, v in variant.given.items() if given[n].is_choice}
-        chosen |= {p.quantity: variant.key.reference[p.quantity] for p in variant.parts if p.kind == "choice"}
+        chosen |= {
+            p.quantity: variant.key.reference[p.quantity] for p in variant.parts if p.sort.has_few_values
+        }
         for name, case in chosen.items():
             report.cases.setdefault(name, Counter())[str(case)] += 1
 
@@ -251,7 +253,7 @@ def check_known(exercise: CourseExercise, report: Report) -> None:
 
 
 def _is_orientation(exercise: CourseExercise, name: str) -> bool:
-    return any(p.quantity == name and p.kind == "angle" for p in exercise.spec.parts)
+    return any(p.quantity == name and p.sort.turn for p in exercise.spec.parts)
 
 
 def agrees(found: Any, expected: Any, *, is_angle: bool = False) -> bool:
@@ -279,7 +281,7 @@ def check_solves(variant: Variant, key: Key, report: Report) -> None:
             report.fail(f"seed {variant.seed}: {name} is {value}")
     for part in variant.parts:
         value = key.reference[part.quantity]
-        if part.kind == "number" and part.has_margin and part.atol == 0 and value == 0:
+        if part.sort.is_number and part.has_margin and part.atol == 0 and value == 0:
             report.fail(f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance")
     graph = variant.exercise.solution.residual_graph
     values = graph.evaluate(("residual",), variant.used, variant.effects, variant.computed)
@@ -297,7 +299,9 @@ def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: Rep
     wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
     together = exercise.solve(**given, only=wanted, effects=exercise.spec.effects)
     for index, variant in enumerate(drawn):
-        alone = {name: plain_scalar(value) for name, value in variant.quantities(variant.asked_quantities).items()}
+        alone = {
+            name: plain_scalar(value) for name, value in variant.quantities(variant.asked_quantities).items()
+        }
         for part in variant.parts:
             value = together[part.quantity]
             one = value[index] if isinstance(value, np.ndarray) and len(value) == len(drawn) else value
@@ -313,7 +317,7 @@ def _same(one: Any, other: Any, part: Part) -> bool:
         return str(one) == other
     if isinstance(other, (int, float)):
         gap = one - other
-        gap = math.remainder(gap, 360.0) if part.kind == "angle" else gap
+        gap = math.remainder(gap, part.sort.turn) if part.sort.turn else gap
         return abs(gap) <= 1e-9 * max(1.0, abs(other))
     gap = np.asarray(one, dtype=float) - np.asarray(other, dtype=float)
     return bool(np.all(np.abs(gap) <= 1e-9 * np.maximum(1.0, np.abs(other))))

@@ -29,7 +29,9 @@ def run(arguments: Sequence[str]) -> int:
         return BAD
     except click.ClickException as fault:
         hint = (
-            f"; see 'coursework {named_command(arguments)}--help'" if isinstance(fault, click.UsageError) else ""
+            f"; see 'coursework {named_command(arguments)}--help'"
+            if isinstance(fault, click.UsageError)
+            else ""
         )
         return complain(fault.format_message().rstrip(".") + hint)
     except click.exceptions.Exit as stop:

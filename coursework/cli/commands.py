@@ -13,7 +13,7 @@ COMMANDS = {
     "animate": ("move", "animate"),
     "build": ("make", "build"),
     "check": ("author", "check"),
-    "demo": ("demo", "demo"),
+    "demo": ("make", "demo"),
     "grade": ("mark", "grade"),
     "lesson": ("make", "lesson"),
     "list": ("look", "list_exercises"),

@@ -14,13 +14,9 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-import click
 import numpy as np
 
 from coursework.api import open_course
-from coursework.cli.make import build_files
-from coursework.cli.mark import grade_with_bar
-from coursework.cli.printing import print_table
 from coursework.course.answer_key import Key
 from coursework.course.variant import Variant
 from coursework.language.numbers import significant
@@ -41,18 +37,11 @@ Habit = Callable[[Variant, Key, Part, int], Any]  #: variant, key, part, its pla
 
 def _right(variant: Variant, key: Key, part: Part, digits: int = 5) -> str:
     """The right answer as a careful student writes it, without unit."""
-    value = key.reference[part.quantity]
-    if part.kind == "choice":
-        return " ".join(to_text(variant.text.label(part.id, str(value)), variant.lang).split())
-    if part.kind == "equation":
-        return str(value)
-    if isinstance(value, np.ndarray):
-        return "(" + " ; ".join(significant(v, digits) for v in value.tolist()) + ")"
-    return significant(value, digits if part.kind != "integer" else 9)
 
+    def label(case: str) -> str:
+        return " ".join(to_text(variant.text.label(part.id, case), variant.lang).split())
 
-def _is_number(part: Part) -> bool:
-    return part.kind in ("number", "angle")
+    return part.sort.written(key.reference[part.quantity], digits, label)
 
 
 def careful(variant: Variant, key: Key, part: Part, place: int) -> Any:
@@ -61,7 +50,7 @@ def careful(variant: Variant, key: Key, part: Part, place: int) -> Any:
 
 def decimal_commas(variant: Variant, key: Key, part: Part, place: int) -> Any:
     text = _right(variant, key, part)
-    return text if part.kind in ("choice", "equation") else text.replace(".", ",").replace("-", "−")
+    return text if part.sort.is_text else text.replace(".", ",").replace("-", "−")
 
 
 def with_units(variant: Variant, key: Key, part: Part, place: int) -> Any:
@@ -73,13 +62,13 @@ def with_units(variant: Variant, key: Key, part: Part, place: int) -> Any:
         "mm^2": " mm²",
         "1": "",
     }
-    if not _is_number(part):
+    if not part.sort.is_number:
         return careful(variant, key, part, place)
     return _right(variant, key, part) + written.get(part.unit, f" {part.unit}")
 
 
 def in_metres(variant: Variant, key: Key, part: Part, place: int) -> Any:
-    if not _is_number(part) or not part.unit.startswith("mm") or part.unit.startswith("mm^2"):
+    if not part.sort.is_number or not part.unit.startswith("mm") or part.unit.startswith("mm^2"):
         return careful(variant, key, part, place)
     return f"{key.reference[part.quantity] / 1000:.6f} {part.unit.replace('mm', 'm', 1)}".replace(".", ",", 1)
 
@@ -108,13 +97,13 @@ def known_mistakes(variant: Variant, key: Key, part: Part, place: int) -> Any:
 
 
 def wrong_units(variant: Variant, key: Key, part: Part, place: int) -> Any:
-    if not _is_number(part) or place % 3:
+    if not part.sort.is_number or place % 3:
         return careful(variant, key, part, place)
     return _right(variant, key, part) + " kg"
 
 
 def just_off(variant: Variant, key: Key, part: Part, place: int) -> Any:
-    if not _is_number(part) or place % 2:
+    if not part.sort.is_number or place % 2:
         return careful(variant, key, part, place)
     value = key.reference[part.quantity]
     return significant(value + 3 * part.half_width(value), 6)
@@ -125,7 +114,7 @@ def three_digits(variant: Variant, key: Key, part: Part, place: int) -> Any:
 
 
 def as_a_formula(variant: Variant, key: Key, part: Part, place: int) -> Any:
-    if part.kind != "number":
+    if part.sort.prediction != "size":
         return careful(variant, key, part, place)
     return f"{significant(key.reference[part.quantity] * 2, 6)}/2"
 
@@ -229,13 +218,3 @@ def _notebook(course: Any, variant: Variant, student: str, answers: Mapping[str,
     lines = [f"    {part!r}: {answer!r},\n" for part, answer in answers.items()]
     cell["source"] = ["answers = {\n", *lines, "}"]
     return json.dumps(notebook, ensure_ascii=False)
-
-
-@click.command()
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default="demo", show_default=True)
-def demo(out: Path) -> None:
-    """Do the whole job on a small class: sheets, answers of all kinds, marks."""
-    rows, told = class_of_twelve(out, build_files, grade_with_bar)
-    print_table(rows, title="What became of the answers")
-    for line in told:
-        click.echo(line)

@@ -22,7 +22,6 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import print_json, print_table
 from coursework.errors import BadInput, CourseworkError, MissingQuantity, WrongValue
-from coursework.rendering.renderer import renderer_of
 
 # ------------------------------------------------------------------------- look
 
@@ -69,6 +68,8 @@ def _listed(exercise: Any) -> dict[str, Any]:
 @click.pass_context
 def show(context: click.Context, exercise: str, seed: int, lang: str, parts: str) -> None:
     """Print a statement."""
+    from coursework.rendering.renderer import renderer_of
+
     course = opened(context)
     (drawn,) = _drawn(course[exercise], [seed], lang, parts)
     click.echo(renderer_of(course.folder).terminal(drawn.handout()))

@@ -23,9 +23,8 @@ from coursework.cli.options import (
     tell,
     unknown_language,
 )
-from coursework.cli.printing import progress_bar
+from coursework.cli.printing import print_table, progress_bar
 from coursework.errors import BadInput, counted
-from coursework.rendering.renderer import renderer_of
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
@@ -107,6 +106,7 @@ def notebook(
     One for each exercise named, else for every exercise of the course.
     """
     from coursework.making.issuing import distinct_variants
+    from coursework.rendering.renderer import renderer_of
     from coursework.system.writing import write_whole
 
     course = opened(context)
@@ -241,12 +241,13 @@ def build_files(
 ) -> int:
     """Issue and write a build; gives how many files were written."""
     from coursework.making import build as building
-    from coursework.making import issuing
+    from coursework.making.issued import issued_content
+    from coursework.making.issuing import issue
+    from coursework.system.tables import json_text
+    from coursework.system.writing import write_tree
 
-    issues = issuing.issue(
-        course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts
-    )
-    issued = issuing.json_text(issuing.issued_content(course, issues))
+    issues = issue(course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts)
+    issued = json_text(issued_content(course, issues))
     before = out / "issued.json"
     if before.is_file() and before.read_bytes() != issued.encode("utf-8") and not overwrite:
         raise BadInput(
@@ -259,6 +260,22 @@ def build_files(
         )
     )
     with progress_bar("building", len(wanted)) as advance:
-        notes = building.write_tree(out, wanted, advance, anew=overwrite)
+        notes = write_tree(out, wanted, advance, anew=overwrite)
     tell(notes)
     return len(wanted)
+
+
+# ------------------------------------------------------------------------- demo
+
+
+@click.command()
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default="demo", show_default=True)
+def demo(out: Path) -> None:
+    """Do the whole job on a small class: sheets, answers of all kinds, marks."""
+    from coursework.cli.demo import class_of_twelve
+    from coursework.cli.mark import grade_with_bar
+
+    rows, told = class_of_twelve(out, build_files, grade_with_bar)
+    print_table(rows, title="What became of the answers")
+    for line in told:
+        click.echo(line)

@@ -11,7 +11,6 @@ import click
 from coursework.cli.options import DONE, FOUND, json_option, lang_option, opened
 from coursework.cli.printing import print_json, progress_bar
 from coursework.errors import BadInput, counted
-from coursework.rendering.renderer import renderer_of
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
@@ -117,10 +116,11 @@ def report(context: click.Context, folder: Path, lang: str, out: Path | None, as
     from coursework.language.words import words
     from coursework.statistics import measures as statistics
     from coursework.statistics import page as statistics_page
+    from coursework.statistics.marks import read
 
     words(lang)  # an unknown language stops here
     course = opened(context)
-    marks = statistics.read(folder)
+    marks = read(folder)
     told = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
     if as_json:
         print_json(told.as_json())
@@ -136,6 +136,7 @@ def report(context: click.Context, folder: Path, lang: str, out: Path | None, as
 
 def _write_report(course: Course, told: Any, lang: str, out: Path) -> None:
     """Everything is made before the first file is written."""
+    from coursework.rendering.renderer import renderer_of
     from coursework.statistics import measures as statistics
     from coursework.statistics import page as statistics_page
     from coursework.system.tables import csv_text

@@ -9,7 +9,6 @@ import click
 
 from coursework.cli.options import json_option, lang_option, opened
 from coursework.cli.printing import print_json
-from coursework.rendering.renderer import renderer_of
 
 # --------------------------------------------------------------------- accuracy
 
@@ -36,6 +35,7 @@ def accuracy(
     import json
 
     from coursework.accuracy.measuring import measure, study_of
+    from coursework.rendering.renderer import renderer_of
     from coursework.system.writing import write_whole
 
     course = opened(context)

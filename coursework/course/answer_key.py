@@ -27,8 +27,6 @@ from coursework.reading.units import convert
 
 #: Factors by which a unit is mistaken for another.
 _UNIT_FACTORS = (1e3, 1e-3, 10.0, 0.1)
-#: Kinds of part that a student goes on from, and that follow from others.
-FOLLOWED = ("number", "angle", "integer", "choice")
 _LENGTH = re.compile(r"(?<![^\W\d_])m?m(?![^\W\d_])")
 _TURN_A_MINUTE = 60 / (2 * math.pi)
 
@@ -79,7 +77,7 @@ class Key:
         """The largest accepted distance from the reference, in the part's unit; 0 for what is judged exactly."""
         if not part.has_margin:
             return 0.0
-        size = 1.0 if part.kind == "direction" else float(np.linalg.norm(self.reference[part.quantity]))
+        size = part.sort.size(self.reference[part.quantity])
         return max(part.half_width(size), self.envelope.get(part.quantity, 0.0))
 
     @property
@@ -130,22 +128,26 @@ class Key:
         close, the value is not finite, or trivially 0. A count of 0 is not trivial.
         """
         quantity = part.quantity
-        exact = {p.quantity for p in self.variant.parts if p.kind in ("integer", "choice")}
-        before = {q: v for q, v in own.items() if q != quantity and (v or q in exact or q not in wrong)}
+        sorts = {p.quantity: p.sort for p in self.variant.parts}
+        before = {
+            q: v
+            for q, v in own.items()
+            if q != quantity and (q not in wrong or q not in sorts or not sorts[q].is_trivial(v))
+        }
         if not any(quantity in self.solution.depending_on(q) for q in wrong if q in before):
             return None
         with suppress(CourseworkError):
             given = {**self.variant.used, **before}
             found = self.solution.graph.evaluate((quantity,), given, self.variant.effects)
             value = plain_scalar(found[quantity])
-            if isinstance(value, str) or (math.isfinite(value) and (value or quantity in exact)):
+            if isinstance(value, str) or (math.isfinite(value) and not part.sort.is_trivial(value)):
                 return value
         return None
 
     def slips(self, part: Part) -> Iterator[tuple[str, Any]]:
         """Wrong values that need nobody to declare them, by kind of slip."""
         reference = self.reference[part.quantity]
-        if part.kind not in ("number", "angle") or part.judge:
+        if not part.sort.is_number or part.judge:
             return
         if reference:
             yield "sign", -reference
@@ -203,8 +205,8 @@ def envelopes(
 ) -> dict[str, Any]:
     """Envelopes for given scalars or arrays: shape ``(n,)`` each, 0 for a quantity that has none."""
     parts = {p.quantity: p for p in exercise.spec.parts}
-    numeric = tuple(q for q in quantities if parts[q].has_margin and parts[q].kind != "direction")
-    directions = {q for q in numeric if parts[q].kind == "angle"}
+    numeric = tuple(q for q in quantities if parts[q].has_margin and parts[q].sort.rounds)
+    directions = {q for q in numeric if parts[q].sort.turn}
     found = envelope(exercise.solution.graph, numeric, given, effects, digits, directions)
     return {q: found.get(q, 0.0) for q in quantities}
 

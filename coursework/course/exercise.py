@@ -75,7 +75,9 @@ class CourseExercise(Generic[V]):
             The course folder has none: it looks like a students' copy.
         """
         if self.folder.home("solutions", self.name) is None:
-            why = f"it lacks {self.name}.py" if self.folder.has_solutions else "it looks like a students' copy"
+            why = (
+                f"it lacks {self.name}.py" if self.folder.has_solutions else "it looks like a students' copy"
+            )
             raise NoSolution(f"no solution of {self.name!r} in {self.folder.label}: {why}")
         return Solution.of(self.name, self.folder.module("solutions", self.name))
 
@@ -110,9 +112,7 @@ class CourseExercise(Generic[V]):
     @cached_property
     def intake(self) -> Intake:
         """Takes in what requests give."""
-        return Intake(
-            self.name, self.spec.given, self.units, self.quantity_names, self.solution.structures
-        )
+        return Intake(self.name, self.spec.given, self.units, self.quantity_names, self.solution.structures)
 
     def solve(
         self,
@@ -233,9 +233,7 @@ class CourseExercise(Generic[V]):
         """
         return self.variants([seed], lang, parts)[0]
 
-    def variants(
-        self, seeds: Iterable[int], lang: str = "fr", parts: Sequence[str] | None = None
-    ) -> list[V]:
+    def variants(self, seeds: Iterable[int], lang: str = "fr", parts: Sequence[str] | None = None) -> list[V]:
         """The variants of many seeds, drawn together."""
         chosen = self.chosen_parts(parts)
         seeds = list(seeds)
@@ -244,7 +242,9 @@ class CourseExercise(Generic[V]):
                 raise WrongValue(f"a seed is a whole number from 0 on; found {seed!r}")
         seeds = [int(seed) for seed in seeds]
         drawn = draws.draw(self.name, self.spec, seeds)
-        return [self._variant(self, seed, given, lang, chosen) for seed, given in zip(seeds, drawn, strict=True)]
+        return [
+            self._variant(self, seed, given, lang, chosen) for seed, given in zip(seeds, drawn, strict=True)
+        ]
 
     def chosen_parts(self, parts: Sequence[str] | None) -> tuple[Part, ...] | None:
         """Parts by id, in the order of the exercise; None for the usual ones.

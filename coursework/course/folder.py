@@ -74,7 +74,10 @@ class Folder:
         topics = [p for p in sorted(top.glob("*/")) if p.is_dir() and not (p / "__init__.py").exists()]
         found: dict[str, Path] = {}
         for folder in (top, *topics):
-            files = [*((p.stem, p) for p in folder.glob("*.py")), *((p.parent.name, p) for p in folder.glob("*/__init__.py"))]
+            files = [
+                *((p.stem, p) for p in folder.glob("*.py")),
+                *((p.parent.name, p) for p in folder.glob("*/__init__.py")),
+            ]
             for name, path in files:
                 if not name.isidentifier() or name.startswith("_"):
                     continue
@@ -102,7 +105,11 @@ class Folder:
         home = self.home(kind, name)
         if home is None:
             return (self.root / kind,)
-        return (home.parent, home.parent.parent) if home.name == "__init__.py" else (home.parent / name, home.parent)
+        return (
+            (home.parent, home.parent.parent)
+            if home.name == "__init__.py"
+            else (home.parent / name, home.parent)
+        )
 
     def relative(self, path: Path) -> str:
         """What messages call a file."""

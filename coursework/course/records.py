@@ -78,6 +78,4 @@ class Records:
         spec = self.spec.given[name]
         fits = value in spec.choices if spec.is_choice else isinstance(value, (int, float))
         if not fits or isinstance(value, bool):
-            raise BadInput(
-                f"{self.name}: a record gives {name} = {value!r}, which is no value of it"
-            )
+            raise BadInput(f"{self.name}: a record gives {name} = {value!r}, which is no value of it")

@@ -205,6 +205,10 @@ class Variant:
         text = self.exercise.texts.constants("solutions", self.lang).texts.get(name)
         return self.solution_text.section(name).text if text is None else text
 
+    def reference(self, quantity: str) -> Any:
+        """The right value of an asked quantity."""
+        return self.key.reference[quantity]
+
     @property
     def key(self) -> Key:
         """What the variant's answers are marked by: made when it is first asked for, unless one was given."""
@@ -220,7 +224,9 @@ class Variant:
     def figure(self) -> Figure | None:
         """The figure to scale: laid out once, shown on every sheet of the variant."""
         spec = self.exercise.spec
-        return None if spec.figure is None else call_on_quantities(spec.figure, self.given, tuple(spec.helpers))
+        return (
+            None if spec.figure is None else call_on_quantities(spec.figure, self.given, tuple(spec.helpers))
+        )
 
 
 def _made_anew(
@@ -234,7 +240,9 @@ def _made_anew(
     numbers: KeyNumbers | None,
 ) -> Variant:
     parts = {part.id: part for part in exercise.spec.parts}
-    variant = kind(exercise, seed, given, lang, None if chosen is None else [parts[i] for i in chosen], issued)
+    variant = kind(
+        exercise, seed, given, lang, None if chosen is None else [parts[i] for i in chosen], issued
+    )
     if numbers is not None:
         variant.key = Key(variant, numbers=numbers)
     return variant
@@ -245,4 +253,3 @@ def _rounded(value: Any, lang: str) -> Any:
     if isinstance(value, tuple):
         return value
     return localise(significant(value), lang) if isinstance(value, (int, float)) else str(value)
-

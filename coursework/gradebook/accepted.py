@@ -8,9 +8,11 @@ from typing import Any, NamedTuple
 
 from coursework.errors import BadInput
 from coursework.gradebook.changes import rows_of
-from coursework.gradebook.graded import Graded, Line
+from coursework.gradebook.graded import Graded
 from coursework.language.words import words
 from coursework.making.students import folded
+from coursework.marking.feedback import Told
+from coursework.marking.mark import Mark
 
 ACCEPTED = "accepted"
 
@@ -86,14 +88,14 @@ class _Acceptance(NamedTuple):
     reason: str
 
 
-def _accepted(line: Line, found: _Acceptance, lang: str) -> Line:
+def _accepted(line: Mark, found: _Acceptance, lang: str) -> Mark:
     points = line.out_of if found.points is None else found.points
     if points > line.out_of:
         raise BadInput(
             f"{found.place}: {points:g} points for {line.part}, which has {line.out_of:g}; give that or fewer"
         )
     says = f"{words(lang)['marking']['accepted']} {found.reason}".strip()
-    return line._replace(verdict=ACCEPTED, points=points, says=says, feedback=says)
+    return line._replace(verdict=ACCEPTED, points=points, told=(Told(says, says),))
 
 
 def _points(text: str, place: str) -> float | None:

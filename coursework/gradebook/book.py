@@ -14,9 +14,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from coursework.gradebook.graded import Graded, Line
+from coursework.gradebook.graded import Graded
 from coursework.gradebook.rows import Rejected
 from coursework.making.issued import Issued
+from coursework.marking.mark import Mark
 
 # ------------------------------------------------------------------------- tables
 
@@ -65,7 +66,7 @@ class Total:
     answers: int = 0
     verdicts: Counter[str] = field(default_factory=Counter)
 
-    def add(self, line: Line) -> None:
+    def add(self, line: Mark) -> None:
         self.points += line.points
         self.out_of += line.out_of
         self.verdicts[line.verdict.partition(":")[0]] += 1

@@ -10,11 +10,13 @@ from coursework.course.course import Course, opened
 from coursework.course.key_batch import keys_of
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError, NoSolution
-from coursework.gradebook.graded import Graded, Line
+from coursework.gradebook.graded import Graded
 from coursework.gradebook.placing import Sheets, as_texts
 from coursework.gradebook.rows import Rejected
+from coursework.language.words import words
 from coursework.making.issued import Issued
-from coursework.marking.feedback import right_feedback
+from coursework.marking.feedback import Said, right_feedback
+from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
 from coursework.marking.plain_answers import plainly_right
 from coursework.model import Part
@@ -67,7 +69,7 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
                 reason = f"cannot be marked, somebody must look at it ({result})"
                 sheets.rejected += [Rejected(row.source, reason, as_texts(row)) for row in rows.values()]
             else:
-                lines = map(Line._make, result)
+                lines = map(Mark.received, result)
                 yield Graded(*place, {line.part: line for line in lines}, tuple(rows), record(place))
     for (exercise, why), count in unmarked.items():
         what = "1 sheet" if count == 1 else f"{count} sheets"
@@ -123,13 +125,12 @@ def _mark_sheet(
     marked anew."""
     try:
         marking = mark(variant, answers, right) if len(right) < len(variant.parts) else {}
-        lines = (
-            _right_line(variant, part, answers[part.id], right[part.id])
+        return [
+            _right(variant, part, answers[part.id], right[part.id])
             if part.id in right
-            else Line.of(marking[part.id], printed=printed)
+            else _waiting(marking[part.id]).sent(printed=printed)
             for part in variant.parts
-        )
-        return [tuple(line) for line in lines]  # plain tuples pass between processes at half the price
+        ]
     except NoSolution:
         raise  # no sheet is at fault
     except CourseworkError as fault:
@@ -138,7 +139,15 @@ def _mark_sheet(
         return f"{type(fault).__name__}: {' '.join(str(fault).split())[:80]}"
 
 
-def _right_line(variant: Variant, part: Part, answer: str, read_as: str) -> Line:
+def _right(variant: Variant, part: Part, answer: str, read_as: str) -> tuple[Any, ...]:
+    """The mark of an answer that is plainly right, as it is sent."""
     points = float(part.points)
     says = right_feedback(variant, part, read_as)
-    return Line(part.id, answer, read_as, "correct", points, points, "", says, ())
+    return (part.id, answer, read_as, "correct", points, points, variant.lang, (), False, "", says)
+
+
+def _waiting(mark: Mark) -> Mark:
+    """An answer that could not be read is said to wait for somebody."""
+    if mark.verdict != "unreadable":
+        return mark
+    return mark._replace(told=(*mark.told, Said(words(mark.lang)["marking"]["waits"], {})))

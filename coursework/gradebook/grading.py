@@ -11,12 +11,14 @@ from pathlib import Path
 
 from coursework.course.course import Course
 from coursework.errors import BadInput
+from coursework.gradebook import book as gradebook
 from coursework.gradebook.accepted import Accepted
 from coursework.gradebook.book import Gradebook
-from coursework.gradebook.book import book as gradebook
 from coursework.gradebook.changes import CHANGES_COLUMNS, Before
+from coursework.gradebook.class_marking import marked
 from coursework.gradebook.feedback_sheets import write_feedback
 from coursework.gradebook.graded import Graded
+from coursework.gradebook.placing import placed
 from coursework.gradebook.rows import Rejected, Row
 from coursework.gradebook.submissions import find, read_file
 from coursework.making.issued import Issued
@@ -60,7 +62,7 @@ def grade_files(
         for found in find(submissions):
             yield from [found] if isinstance(found, Rejected) else read_file(found)
 
-    sheets = gradebook.placed(course, issued, rows())
+    sheets = placed(course, issued, rows())
     if not sheets.sheets:
         raise BadInput(_nothing(submissions, sheets.rejected))
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
@@ -70,7 +72,7 @@ def grade_files(
         summary = tables.open("summary.csv", gradebook.SUMMARY_COLUMNS)
         rejected = tables.open("rejected.csv", gradebook.REJECTED_COLUMNS)
         changes = tables.open("changes.csv", CHANGES_COLUMNS) if before.exists else None
-        for done, graded in enumerate(gradebook.marked(course, issued, sheets, printed=feedback), start=1):
+        for done, graded in enumerate(marked(course, issued, sheets, printed=feedback), start=1):
             graded = by_hand.apply(graded, str(graded.record.get("lang", "fr")))
             book.add(graded)
             for row in gradebook.marks_rows(graded):

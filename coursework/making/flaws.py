@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -19,10 +18,8 @@ from coursework.course.exercise import CourseExercise
 from coursework.course.key_batch import keys_of
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
-from coursework.marking.distance import distance
 from coursework.marking.judges import judged, judges_of
 from coursework.model import Part
-from coursework.reading.equations import parse_equation
 from coursework.solution import Judged
 
 SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
@@ -57,10 +54,7 @@ def _reached(key: Key, mistake: str) -> Iterator[tuple[Part, Any]]:
 def _seen(key: Key, part: Part, wrong: Any) -> str:
     along, width = key.reference.get(part.along), key.envelope.get(part.quantity, 0.0)
     reference = key.reference[part.quantity]
-    if part.kind == "equation":
-        gap = _equation_gap(part, wrong, reference)
-    else:
-        gap = distance(part, wrong, reference, along, width)
+    gap = part.sort.apart(part, wrong, reference, along, width)
     return "shown" if gap > SHOWN else "hidden" if gap <= HIDDEN else "murky"
 
 
@@ -77,12 +71,6 @@ def judged_wrong(key: Key, mistake: str) -> Iterator[tuple[str, Mapping[str, Any
 def _judged_wrong(key: Key, mistake: str) -> Iterator[tuple[str, Judged]]:
     for name, answers in judged_wrong(key, mistake):
         yield from judged(key.variant, name, answers).items()
-
-
-@lru_cache(maxsize=1024)
-def _equation_gap(part: Part, wrong: str, reference: str) -> float:
-    """Equations are the same for every variant, and dear to compare."""
-    return distance(part, parse_equation(wrong, part.variables), reference)
 
 
 def conditioning(key: Key) -> float:

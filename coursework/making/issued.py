@@ -144,4 +144,5 @@ def form_rows(issues: Iterable[Issue]) -> Iterator[dict[str, Any]]:
                 "answer": "",
             }
 
+
 COLUMNS = ("student", "exercise", "seed", "part", "answer")

@@ -19,6 +19,7 @@ def folded(name: str) -> str:
     seen = "".join(c for c in plain if unicodedata.category(c) != "Cf")  # what has no width is not seen
     return unicodedata.normalize("NFKC", " ".join(seen.split()).casefold())
 
+
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
 
 

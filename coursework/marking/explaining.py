@@ -4,17 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from coursework.course.answer_key import FOLLOWED, Key
-from coursework.marking.distance import distance
+from coursework.course.answer_key import Key
+from coursework.course.asked import Asked
 from coursework.model import Part
-from coursework.reading.equations import Equation, parse_equation
-from coursework.reading.equivalence import same_equation
 from coursework.reading.reading import Reading
-
-if TYPE_CHECKING:
-    from coursework.course.variant import Variant
 
 
 def nearest_reading(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[int, float]:
@@ -23,12 +18,12 @@ def nearest_reading(part: Part, reading: Reading, key: Key, judged_by: Part) -> 
         return 0, math.inf
     reference = key.reference[judged_by.quantity]
     along = key.reference.get(judged_by.along)
-    gaps = [distance(part, v, reference, along) for v in reading.values]
+    gaps = [part.sort.distance(part, v, reference, along) for v in reading.values]
     index = min(range(len(gaps)), key=gaps.__getitem__)
     if 1 < gaps[index] < math.inf and part.has_margin:
         # Outside the part's own tolerance: rounding on the way may have brought it there.
         width = key.envelope.get(judged_by.quantity, 0.0)
-        gaps = [distance(part, v, reference, along, width) for v in reading.values]
+        gaps = [part.sort.distance(part, v, reference, along, width) for v in reading.values]
     return index, gaps[index]
 
 
@@ -61,7 +56,7 @@ def is_likely(match: str, key: Key, part: Part, before: Before) -> bool:
     about = key.solution.mistakes[name].targets
     if part.quantity in about:
         return True
-    if part.kind != "choice":
+    if not part.sort.has_few_values:
         return not any(_shows(key, name, quantity) for quantity in before.right.intersection(about))
     return not any(
         name == other and not _fits(earlier, reading, value, None, 0.0)
@@ -74,10 +69,12 @@ def _shows(key: Key, mistake: str, quantity: str) -> bool:
     """Whether an answer that is right of an asked quantity shows that a mistake about it was not made."""
     part = next(p for p in key.variant.parts if p.quantity == quantity)
     value = key.wrong[mistake].get(quantity)
-    if value is None or part.kind == "equation":
+    if value is None or not part.sort.disproves:
         return False
     width = key.envelope.get(quantity, 0.0)
-    return bool(distance(part, value, key.reference[quantity], key.reference.get(part.along), width) > 1)
+    return bool(
+        part.sort.apart(part, value, key.reference[quantity], key.reference.get(part.along), width) > 1
+    )
 
 
 def explanations(
@@ -87,7 +84,7 @@ def explanations(
     quantity = judged_by.quantity
     width = key.envelope.get(quantity, 0.0)
     reference = key.reference[quantity]
-    if part.kind in FOLLOWED and before.wrong:
+    if part.sort.is_followed and before.wrong:
         expected = key.followed(judged_by, before.own, before.wrong)
         if expected is not None and (place := _fitting(part, reading, expected, None, width)) is not None:
             yield "follow_through", place
@@ -97,27 +94,21 @@ def explanations(
             along = key.wrong[name].get(judged_by.along, along)
         if (place := _fitting(part, reading, value, along, width)) is not None:
             yield f"mistake:{name}", place
-    if part.kind == "equation" and _holds_with_numbers(key.variant, part, reading.values[0], reference):
-        yield "slip:numbers", 0
+    for slip in part.sort.slips(part, reading.values[0], reference, _lengths(key.variant)):
+        yield f"slip:{slip}", 0
     seen = set()
     for kind, value in key.slips(judged_by):
         # A slip scales what rounding may have moved.
-        own = width * abs(value / reference) if reference and part.kind == "number" else width
+        own = part.sort.scaled(width, value, reference)
         if kind not in seen and (place := _fitting(part, reading, value, None, own)) is not None:
             seen.add(kind)
             yield f"slip:{kind}", place
 
 
-def _holds_with_numbers(variant: Variant, part: Part, equation: Equation, reference: str) -> bool:
-    """Whether an equation is the reference with this variant's numbers in place of some symbols."""
-    numbers = {
-        n: v
-        for n, v in variant.used.items()
-        if not isinstance(v, str) and variant.exercise.units.get(n) != "deg"
-    }
-    asked = parse_equation(reference, part.variables)
-    put_in = {n: float(numbers[n]) for n in asked.variables - equation.variables if n in numbers}
-    return bool(put_in) and same_equation(equation, asked.with_numbers(put_in), parameters=part.parameters)
+def _lengths(variant: Asked) -> dict[str, float]:
+    """The given numbers that are no angles."""
+    units = variant.exercise.units
+    return {n: v for n, v in variant.used.items() if not isinstance(v, str) and units.get(n) != "deg"}
 
 
 def _fits(part: Part, reading: Reading, value: Any, along: Any, width: float) -> bool:
@@ -127,4 +118,6 @@ def _fits(part: Part, reading: Reading, value: Any, along: Any, width: float) ->
 def _fitting(part: Part, reading: Reading, value: Any, along: Any, width: float) -> int | None:
     """The first reading that is this value, if any is."""
     places = range(len(reading.values))
-    return next((i for i in places if distance(part, reading.values[i], value, along, width) <= 1), None)
+    return next(
+        (i for i in places if part.sort.distance(part, reading.values[i], value, along, width) <= 1), None
+    )

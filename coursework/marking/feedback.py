@@ -42,6 +42,19 @@ class Said(NamedTuple):
         return " ".join(_plain_sentence(self.sentence, lang).format(**pieces).split())
 
 
+class Told(NamedTuple):
+    """What was said already: its Markdown, where that was wanted, and one line of plain text."""
+
+    says: str
+    feedback: str
+
+    def markdown(self) -> str:
+        return self.says
+
+    def plain(self, lang: str) -> str:
+        return self.feedback
+
+
 _BARE = re.compile(r"[\w\s.,;:()=/°%·²³−…+^?!-]*")
 _is_plain = _BARE.fullmatch
 
@@ -54,7 +67,7 @@ def _plain_sentence(sentence: str, lang: str) -> str:
 
 def part_name(variant: Variant, part: Part) -> str:
     """What a part is called in feedback: its symbol, or its number when a symbol says nothing."""
-    if part.kind in ("choice", "equation", "direction", "point_on_line"):
+    if not part.sort.is_called_by_symbol:
         number = 1 + [p.id for p in variant.parts].index(part.id)
         return f"{words(variant.lang)['sheet']['question']['one']} {number}"
     return f"${variant.exercise.symbol(part.quantity)}$"
@@ -96,19 +109,16 @@ def say_not_read(variant: Variant, part: Part, reading: Reading) -> Said:
     """Why an answer could not be read, or that there is none."""
     table = words(variant.lang)["marking"]
     unit = unit_text(part.unit, variant.lang)
-    of_piece = ("unknown_unit", "unknown_symbol") if part.kind == "equation" else ("unknown_unit",)
-    is_piece = reading.found and (reading.status == "wrong_unit" or reading.code in of_piece)
+    is_piece = reading.found and (reading.status == "wrong_unit" or reading.code in part.sort.quoted)
     found = shortened(reading.found if is_piece else reading.text)
     pieces = {"name": _opening(variant, part), "found": _harmless(found), "unit": unit or "1"}
-    unitless = "wrong_unit_integer" if part.kind == "integer" else "wrong_unit_ratio"
+    unitless = part.sort.unitless
     if reading.status == "unreadable":
         kinds = table["unreadable"]
-        in_equation = part.kind == "equation"
-        code = "not_a_number" if reading.code == "unknown_symbol" and not in_equation else reading.code
-        if part.kind == "choice" and code in _OF_CHOICES:
-            code = _OF_CHOICES[code]
-            pieces["offered"] = _offered(variant, part)
+        code = part.sort.faults.get(reading.code, reading.code)
         sentence = kinds.get(code, kinds["otherwise"])
+        if "{offered}" in sentence:
+            pieces["offered"] = _offered(variant, part)
         if code == "unknown_unit" and not unit:
             sentence = table[unitless]
     elif reading.status == "wrong_unit":
@@ -124,7 +134,6 @@ def shortened(answer: str) -> str:
     return line if len(line) <= QUOTED else line[: QUOTED - 1] + "…"
 
 
-_OF_CHOICES = {"not_a_choice": "not_a_choice", "two_values": "two_choices"}
 _OFFERED = 200  #: characters of all that is offered
 _SAYING = 4  #: words of a beginning that says something
 

@@ -366,7 +366,9 @@ def judge_of(exercise: CourseExercise, part: Part) -> LoopJudge:
 
 
 #: Judges by exercise, made when the first answer about a loop is marked.
-_judges: WeakKeyDictionary[CourseExercise, dict[tuple[str, int, tuple[str, ...]], LoopJudge]] = WeakKeyDictionary()
+_judges: WeakKeyDictionary[CourseExercise, dict[tuple[str, int, tuple[str, ...]], LoopJudge]] = (
+    WeakKeyDictionary()
+)
 
 
 def loop_verdicts(variant: Variant, readings: Mapping[str, Reading]) -> dict[str, Verdict]:

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
-from functools import cached_property
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from coursework.errors import unknown
-from coursework.language.words import words
-from coursework.marking.feedback import Said
+from coursework.marking.feedback import Said, Told
 from coursework.model import Part
 from coursework.reading.reading import Reading
 
@@ -17,9 +14,8 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
 
-@dataclass(eq=False)
-class Mark:
-    """What became of one answer. Not to be changed."""
+class Mark(NamedTuple):
+    """What became of one answer: plain data, from the marking to the tables and the feedback."""
 
     part: str
     answer: str  #: the text as it came
@@ -30,26 +26,32 @@ class Mark:
     lang: str
     matches: tuple[str, ...] = ()  #: every verdict that explains this answer, the one given first
     in_other_order: bool = False  #: right because the student exchanged two assemblies
-    _tell: Callable[[], Said] = field(default=lambda: Said("", {}), repr=False)
-
-    @cached_property
-    def says(self) -> str:
-        """What to tell the student, Markdown in the sheet's language; never the reference value."""
-        return f"{self._tell().markdown()} {self._note}".rstrip()
-
-    @cached_property
-    def feedback(self) -> str:
-        """What is said, as one line of plain text."""
-        return f"{self._tell().plain(self.lang)} {self._note}".rstrip()
+    told: tuple[Said | Told, ...] = ()  #: what is said of it, sentence by sentence
 
     @property
-    def _note(self) -> str:
-        return words(self.lang)["marking"]["either_order"] if self.in_other_order else ""
+    def says(self) -> str:
+        """What to tell the student, Markdown in the sheet's language; never the reference value."""
+        return " ".join(filter(None, (said.markdown() for said in self.told)))
+
+    @property
+    def feedback(self) -> str:
+        """What is said, as one line of plain text."""
+        return " ".join(filter(None, (said.plain(self.lang) for said in self.told)))
 
     @property
     def mistakes(self) -> tuple[str, ...]:
         """The named mistakes that give this answer."""
         return tuple(m.partition(":")[2] for m in self.matches if m.startswith("mistake:"))
+
+    def sent(self, *, printed: bool) -> tuple[Any, ...]:
+        """Plain values, which pass between processes at half the price: its texts made, the Markdown where it is to
+        be ``printed``."""
+        return (*self[:-1], self.says if printed else "", self.feedback)
+
+    @classmethod
+    def received(cls, sent: tuple[Any, ...]) -> Mark:
+        """The mark of what was :meth:`sent`."""
+        return cls(*sent[:-2], (Told(*sent[-2:]),))
 
 
 class Marking(Mapping[str, Mark]):
@@ -86,18 +88,10 @@ class Marking(Mapping[str, Mark]):
 
 def made_mark(
     variant: Variant, part: Part, reading: Reading, verdict: str, share: float, read_as: str,
-    tell: Callable[[], Said], matches: tuple[str, ...] = (),
+    told: Said, matches: tuple[str, ...] = (),
 ) -> Mark:  # fmt: skip
+    """The mark of an answer that earns a share of its part's points."""
     points = float(part.points)
     return Mark(
-        part.id, reading.text, read_as, verdict, share * points, points, variant.lang, matches, False, tell
+        part.id, reading.text, read_as, verdict, share * points, points, variant.lang, matches, False, (told,)
     )
-
-
-#: the sentence about a wrong answer, by kind of part
-SENTENCE_OF_WRONG = {
-    "choice": "wrong_case",
-    "equation": "wrong_equation",
-    "direction": "wrong_place",
-    "point_on_line": "wrong_place",
-}

@@ -10,19 +10,18 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from coursework.course.answer_key import FOLLOWED, Key
+from coursework.course.answer_key import Key
 from coursework.errors import WrongValue, unknown
-from coursework.language.words import quoted
+from coursework.language.words import quoted, words
 from coursework.marking.answers import read
 from coursework.marking.explaining import Before, explanations, is_likely, nearest_reading
 from coursework.marking.feedback import Said, echo, say, say_not_read
 from coursework.marking.judges import best_judged
 from coursework.marking.loop_judge import loop_verdicts
-from coursework.marking.mark import SENTENCE_OF_WRONG, Mark, Marking, made_mark
+from coursework.marking.mark import Mark, Marking, made_mark
 from coursework.marking.together import is_scale, is_told_with, mark_judged, waits_for
 from coursework.markup.markdown import plain_line
 from coursework.model import Part
@@ -62,7 +61,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     waiting: dict[str, dict[str, frozenset[str]]] = {}
     for i, part in asked.items():
         if i in known:
-            before.own[part.quantity] = known[i] if part.kind == "choice" else float(known[i])
+            before.own[part.quantity] = part.sort.kept(known[i])
             before.right.add(part.quantity)
             continue
         judged_by, reading = asked[target[i]], readings[i]
@@ -77,21 +76,22 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             if is_scale(part) and reading.values[nearest[0]] <= 0:
                 no_scale.add(i)
                 read_as = echo(marks[i].read_as, variant.lang)
-                marks[i] = replace(marks[i], _tell=partial(say, variant, part, "scale", read=read_as))
+                marks[i] = marks[i]._replace(told=(say(variant, part, "scale", read=read_as),))
         else:
             nearest = nearest_reading(part, reading, key, judged_by)
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
         before.shown.update(marks[i].matches)
         if marks[i].verdict == "correct":
             before.right.add(judged_by.quantity)
-        if reading.status == "read" and part.kind in FOLLOWED:
+        if reading.status == "read" and part.sort.is_followed:
             before.read.append((judged_by, reading))
             before.own[judged_by.quantity] = reading.values[nearest[0]]
             if marks[i].verdict != "correct":
                 before.wrong.add(judged_by.quantity)
     for i in marks:
         if target[i] != i and marks[i].verdict == "correct":
-            marks[i] = replace(marks[i], in_other_order=True)
+            note = Said(words(variant.lang)["marking"]["either_order"], {})
+            marks[i] = marks[i]._replace(in_other_order=True, told=(*marks[i].told, note))
     return Marking(marks)
 
 
@@ -135,7 +135,7 @@ def _mark_part(
 ) -> Mark:
     made = partial(made_mark, variant, part, reading)
     if reading.status != "read":
-        return made(reading.status, 0.0, "", lambda: say_not_read(variant, part, reading))
+        return made(reading.status, 0.0, "", say_not_read(variant, part, reading))
     index, gap = nearest
     explained = {} if gap <= 1 else dict(explanations(key, part, reading, judged_by, before))
     matches = tuple(explained)
@@ -146,25 +146,26 @@ def _mark_part(
         # What is told is told of the reading that it explains, else of the text as it stands.
         index = explained[verdict] if likely else 0
     read_as = reading.read_as[index]
-    if part.kind == "choice":
-        read_as = plain_line(variant.label(part.id, str(reading.values[index])), variant.lang)
+    case = part.sort.words(reading.values[index], partial(variant.label, part.id))
+    if case:
+        read_as = plain_line(case, variant.lang)
 
     def told(sentence: str, **pieces: str) -> Said:
         read = echo(read_as, variant.lang)
-        if part.kind == "choice":
+        if case:
             read = quoted(read, variant.lang)
         return say(variant, part, sentence, read=read, **pieces)
 
     if gap <= 1:
         if part.asks_unit and not reading.unit_given:
-            return made("missing_unit", 0.0, read_as, lambda: told("missing_unit"))
-        return made("correct", 1.0, read_as, lambda: told("correct"))
+            return made("missing_unit", 0.0, read_as, told("missing_unit"))
+        return made("correct", 1.0, read_as, told("correct"))
     kind, _, name = verdict.partition(":")
     if kind == "mistake":
         share = key.solution.mistakes[name].share
-        return made(verdict, share, read_as, lambda: told("mistake", says=variant.told(name)), matches)
+        return made(verdict, share, read_as, told("mistake", says=variant.told(name)), matches)
     if kind == "slip":
-        return made(verdict, key.rules.slip, read_as, lambda: told(f"slip_{name}"), matches)
+        return made(verdict, key.rules.slip, read_as, told(f"slip_{name}"), matches)
     if kind == "follow_through":
-        return made(verdict, key.rules.follow_through, read_as, lambda: told("follow_through"), matches)
-    return made("wrong", 0.0, read_as, lambda: told(SENTENCE_OF_WRONG.get(part.kind, "wrong")), matches)
+        return made(verdict, key.rules.follow_through, read_as, told("follow_through"), matches)
+    return made("wrong", 0.0, read_as, told(part.sort.wrong), matches)

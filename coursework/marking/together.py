@@ -13,7 +13,7 @@ from coursework.language.words import words
 from coursework.marking.explaining import mistakes_that_fit
 from coursework.marking.feedback import Said, amount, echo, either_symbol, part_name, questions, say
 from coursework.marking.judges import Verdict, judged
-from coursework.marking.mark import SENTENCE_OF_WRONG, Mark, made_mark
+from coursework.marking.mark import Mark, made_mark
 from coursework.model import Part
 from coursework.reading.reading import Reading
 
@@ -40,11 +40,8 @@ def mark_judged(
     read_as, verdict = reading.read_as[found.reading], found.said
     made = partial(made_mark, variant, part, reading)
     if verdict is None:
-
-        def alone() -> Said:
-            return say(variant, part, "incomplete", read=echo(read_as, variant.lang), missing=missed())
-
-        return made("wrong", 0.0, read_as, alone)
+        read = echo(read_as, variant.lang)
+        return made("wrong", 0.0, read_as, say(variant, part, "incomplete", read=read, missing=missed()))
     share = min(1.0, max(0.0, float(verdict.share)))
 
     def told(sentence: str, **pieces: str) -> Said:
@@ -61,29 +58,26 @@ def mark_judged(
     if share == 1.0:
         is_followed = found.followed or verdict.follows
         kind, share = ("follow_through", key.rules.follow_through) if is_followed else ("correct", 1.0)
-        return made(kind, share, read_as, lambda: told(kind))
+        return made(kind, share, read_as, told(kind))
     shown = [verdict.mistake, *verdict.also] if verdict.mistake else mistakes_that_fit(key, part, reading)
     matches = tuple(f"mistake:{name}" for name in shown) + ((f"slip:{found.slip}",) if found.slip else ())
     if shown:
         share = share if verdict.mistake and share else key.solution.mistakes[shown[0]].share
 
-        def tell() -> Said:
-            if told_with and verdict.mistake:
-                return told("told_with", first=part_name(variant, told_with))
-            return told("mistake", says=variant.told(shown[0]))
-
-        return made(matches[0], share, read_as, tell, matches)
+        if told_with and verdict.mistake:
+            said = told("told_with", first=part_name(variant, told_with))
+        else:
+            said = told("mistake", says=variant.told(shown[0]))
+        return made(matches[0], share, read_as, said, matches)
     if found.slip:
         about = either_symbol(variant, found.about, both=found.slip == "frame_missing")
-        return made(
-            matches[0], key.rules.slip, read_as, lambda: told(f"slip_{found.slip}", about=about), matches
-        )
-    return made("wrong", share, read_as, lambda: told(SENTENCE_OF_WRONG.get(part.kind, "wrong")))
+        return made(matches[0], key.rules.slip, read_as, told(f"slip_{found.slip}", about=about), matches)
+    return made("wrong", share, read_as, told(part.sort.wrong))
 
 
 def is_scale(part: Part) -> bool:
     """Whether a part asks for the scale of a drawing: so much for a millimetre of paper."""
-    return bool(part.judge) and part.kind == "number" and part.unit.endswith("/mm")
+    return bool(part.judge) and part.sort.is_number and part.unit.endswith("/mm")
 
 
 def waits_for(

@@ -439,7 +439,7 @@ class Animation:
         """The quantities of an effect: those of the scene; of a film, those asked, which keep their values."""
         exercise = self.variant.exercise
         if self.film is not None:
-            parts = [p for p in exercise.spec.parts if p.kind in ("number", "angle")]
+            parts = [p for p in exercise.spec.parts if p.sort.is_number]
             return [p.quantity for p in parts if p.unit in LEVELS[effect]]
         try:
             return Scene(exercise, self.variant.used, (effect,)).quantities

@@ -91,7 +91,7 @@ class Scene:
             levels = ["position"]
         wanted = [LEVELS[level] for level in levels] + ([EFFORTS] if self._own else [])
         moving = self._moving()
-        asked = {p.quantity: p.unit for p in self.exercise.spec.parts if p.kind in ("number", "angle")}
+        asked = {p.quantity: p.unit for p in self.exercise.spec.parts if p.sort.is_number}
         shown: list[str] = []
         for units in wanted:
             # An exercise on forces asks no position, yet has them.

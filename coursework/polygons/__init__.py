@@ -1,16 +1,16 @@
 """Velocity and acceleration polygons: stated by their sides, constructed step by step, judged where drawn by hand."""
 
 from coursework.polygons.pieces import (
-    acceleration_polygon,
     crank_a,
     crank_v,
     guide_a,
     guide_v,
+    polygon_of_accelerations,
+    polygon_of_velocities,
     slider_a,
     slider_v,
     two_bars_a,
     two_bars_v,
-    velocity_polygon,
 )
 from coursework.polygons.polygon import UNITS, Polygon, Side, Stage, normal, tangential, turning
 
@@ -19,7 +19,7 @@ __all__ = [
     "Polygon",
     "Side",
     "Stage",
-    "acceleration_polygon",
+    "polygon_of_accelerations",
     "crank_a",
     "crank_v",
     "guide_a",
@@ -31,5 +31,5 @@ __all__ = [
     "turning",
     "two_bars_a",
     "two_bars_v",
-    "velocity_polygon",
+    "polygon_of_velocities",
 ]

@@ -10,11 +10,11 @@ from __future__ import annotations
 from coursework.polygons.polygon import Polygon, Side, normal, tangential, turning
 
 
-def velocity_polygon(*pieces, scale=None):
+def polygon_of_velocities(*pieces, scale=None):
     return Polygon("velocity", sum(pieces, ()), scale)
 
 
-def acceleration_polygon(*pieces, scale=None):
+def polygon_of_accelerations(*pieces, scale=None):
     return Polygon("acceleration", sum(pieces, ()), scale)
 
 

@@ -96,7 +96,9 @@ def _evaluated(expression: Expression, unit: Unit | None, unit_text: str, target
             amounts.append(written_amount(in_unit(value, unit, target), digits, unit_text))
         elif reading.is_angle:
             degrees = math.degrees(value)
-            amounts.append(written_amount(in_unit(degrees, parse_unit("deg"), target), short_number(degrees), "deg"))
+            amounts.append(
+                written_amount(in_unit(degrees, parse_unit("deg"), target), short_number(degrees), "deg")
+            )
         elif target.is_angle and reading.speaks_radians and target.factor != 1:
             radians = in_unit(value, parse_unit("rad"), target)
             amounts.append(written_amount(radians, digits, assumed="rad"))
@@ -116,12 +118,16 @@ def _of_inverse(
     degree, amounts = parse_unit("deg"), []
     if unit is None or unit.ratio == degree.ratio:
         degrees = in_degrees.evaluate()
-        amounts.append(written_amount(in_unit(degrees, degree, target), short_number(degrees), unit_text, assumed="deg"))
+        amounts.append(
+            written_amount(in_unit(degrees, degree, target), short_number(degrees), unit_text, assumed="deg")
+        )
     if unit is None or unit.ratio != degree.ratio:
         value = reading.evaluate()
         if unit or abs(value) <= _TURNS * math.tau:
             own = unit or parse_unit("rad")
-            amounts.append(written_amount(in_unit(value, own, target), short_number(value), unit_text, assumed="rad"))
+            amounts.append(
+                written_amount(in_unit(value, own, target), short_number(value), unit_text, assumed="rad")
+            )
     return amounts
 
 

@@ -174,9 +174,7 @@ def tolerances(questions: Sequence[Question], lang: str) -> tuple[tuple[str, str
     for question in questions:
         if question.tolerance:
             groups.setdefault(question.tolerance, []).append(question.number)
-    if len(groups) == 1 and all(
-        q.tolerance or q.kind in ("choice", "integer", "equation") for q in questions
-    ):
+    if len(groups) == 1 and all(q.tolerance or q.is_exact for q in questions):
         return tuple(("", said) for said in groups)
     noun = words(lang)["sheet"]["question"]
     return tuple(
@@ -359,5 +357,5 @@ def answer_comment(question: Question, lang: str) -> str:
         note = said["notebook"]["one_of"].format(", ".join(key for key, _ in question.choices))
     else:
         unit = said["sheet"]["with_unit"] if question.asks_unit else question.unit
-        note = ", ".join(filter(None, (said["hints"].get(question.kind, ""), unit)))
+        note = ", ".join(filter(None, (said["hints"].get(question.kind, question.hint), unit)))
     return f"  # {note}" if note else ""

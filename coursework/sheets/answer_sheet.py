@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,6 @@ from coursework.language.words import words as engine_words
 from coursework.model import Part
 from coursework.quantities.graph import plain_scalar
 from coursework.sheets.drawings import solution_figure, stated_polygons
-from coursework.sheets.equation_latex import latex_of_equation
 from coursework.sheets.formula_latex import Shown, formula_in_symbols, formula_latex, number_latex
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Answer, AnswerSheet, Remark, Step
@@ -138,8 +138,9 @@ def _agrees(wrong: Any, right: Any, unit: str) -> bool:
 
 def _wrong_text(variant: Variant, name: str, wrong: Any) -> str:
     part = next((p for p in variant.parts if p.quantity == name), None)
-    if part is not None and part.kind == "choice":
-        return quoted(variant.text.label(part.id, str(wrong)), variant.lang)
+    said = "" if part is None else part.sort.words(wrong, partial(variant.text.label, part.id))
+    if said:
+        return quoted(said, variant.lang)
     if isinstance(wrong, (str, tuple)) or np.ndim(wrong) or not np.isfinite(wrong):
         return ""
     return f"${_value_latex(variant, name, plain_scalar(wrong))}$"
@@ -153,10 +154,11 @@ def _words_of(variant: Variant, name: str, found: Any, reason: str) -> str:
     said, part = engine_words(variant.lang), variant.parts[number - 1]
     asks = f"{said['sheet']['question']['one']} {number}."
     words = [f"*{asks[:1].upper()}{asks[1:]}*", reason]
-    if part.kind == "choice":
+    case = part.sort.words(found, partial(variant.text.label, part.id))
+    if case:
         # At the end of the reason's last sentence, or after it.
         words += [f"{said['solution']['case']}{said['sheet']['colon']}"] if is_whole(reason) else []
-        words += [f"**{variant.text.label(part.id, str(found))}**."]
+        words += [f"**{case}**."]
     return " ".join(filter(None, words))
 
 
@@ -166,7 +168,7 @@ def _value_latex(variant: Variant, name: str, value: Any) -> str:
     part = next((p for p in variant.parts if p.quantity == name), None)
     unit = exercise.units.get(name, "1")
     if isinstance(value, str):
-        return equation_latex(variant, value) if part is not None and part.kind == "equation" else ""
+        return "" if part is None else part.sort.latex(value, _symbols(variant))
     if isinstance(value, tuple):
         return ""
     if isinstance(value, np.ndarray):
@@ -182,17 +184,16 @@ def _unit_latex(unit: str) -> str:
     return rf"\ \mathrm{{{text}}}"
 
 
-def equation_latex(variant: Variant, equation: str) -> str:
-    """A reference equation as it is printed."""
-    names = {n for p in variant.parts for n in p.variables}
-    return latex_of_equation(equation, {n: _symbol(variant, n) for n in names})
+def _symbols(variant: Variant) -> dict[str, str]:
+    """LaTeX of what equations may be written in."""
+    return {n: _symbol(variant, n) for p in variant.parts for n in p.variables}
 
 
 def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
     """The reference answer of a part, rounded for print, as Markdown."""
     value = values[part.quantity]
-    if part.kind == "choice":
-        return variant.text.label(part.id, str(value))
+    if said := part.sort.words(value, partial(variant.text.label, part.id)):
+        return said
     latex = _value_latex(variant, part.quantity, value)
     if not latex:
         raise BadStatement(f"{variant.exercise.name}: the answer to {part.id} cannot be printed")
@@ -200,7 +201,7 @@ def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
 
 
 def _margin(variant: Variant, part: Part) -> str:
-    if not part.has_margin or part.kind == "direction":
+    if not part.has_margin or not part.sort.rounds:
         return ""
     width = localise(significant(variant.key.half_width(part), 2), variant.lang)
     unit = unit_text(part.unit, variant.lang)

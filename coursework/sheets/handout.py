@@ -16,9 +16,6 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
 
-_WITHOUT_SYMBOL = ("choice", "equation")
-
-
 def handout(variant: Variant, student: str = "") -> Handout:
     """What a student's sheet shows; nobody's unless told.
 
@@ -98,10 +95,13 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
     return Question(
         number=number,
         id=part.id,
-        symbol="" if part.kind in _WITHOUT_SYMBOL else variant.exercise.symbol(part.quantity),
+        symbol=variant.exercise.symbol(part.quantity) if part.sort.has_symbol else "",
         prompt=prompt(variant, part, ways),
         unit="" if part.asks_unit else unit_text(part.unit, variant.lang),
         kind=part.kind,
+        is_exact=part.is_exact,
+        box=part.sort.box,
+        hint=part.sort.hint.get(variant.lang, ""),
         choices=choices,
         points=part.points,
         tolerance=tolerance_words(part, variant.lang),

@@ -35,10 +35,13 @@ class Question:
     symbol: str  #: LaTeX of the quantity asked; empty when a symbol says nothing (a choice)
     prompt: str  #: Markdown
     unit: str  #: printed beside the answer box; empty if none
-    kind: str  #: number, angle, integer, choice, point, direction, equation
+    kind: str  #: a file of :mod:`coursework.kinds`
     choices: tuple[tuple[str, str], ...]  #: (key, label) pairs of a choice
     points: float
     tolerance: str  #: in words a student understands; empty for exact kinds
+    is_exact: bool = False  #: judged without a margin
+    box: str = "usual"  #: room for the answer: usual, wide, line
+    hint: str = ""  #: the form of an answer, where the engine's words have none for the kind
     asks_unit: bool = False  #: the answer is to come with its unit, which the sheet does not print
     judge: str = ""  #: of the parts that are judged together with this one
 

@@ -15,7 +15,6 @@ from coursework.sheets.handout import prompt
 from coursework.statistics.measures import MistakeStatistics, PartStatistics, Statistics
 
 SHORT = 44  #: characters of a question's words, or of a mistake's, that stand for it
-_MEASURED_BY_SYMBOL = ("number", "angle", "integer")
 _OPEN = re.compile(r"\{\w+\}")
 
 
@@ -53,7 +52,7 @@ class Names:
         """LaTeX of what the part asks; nothing where a symbol says nothing, or the course knows no such part."""
         exercise = self.exercise(part.exercise)
         asked = exercise.spec.part(part.part) if exercise else None
-        measured = asked is not None and asked.kind in _MEASURED_BY_SYMBOL
+        measured = asked is not None and asked.sort.is_scalar
         return exercise.symbol(asked.quantity) if measured else ""
 
     def question(self, part: PartStatistics) -> str:

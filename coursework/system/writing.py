@@ -29,6 +29,8 @@ class File:
     path: Path
     make: Callable[[], bytes | None]
     anywhere: bool = False
+
+
 WORTH_PROCESSES = 150  #: files; fewer are made before a process has started
 _CHUNK = 8  #: files that a process is sent at once
 
@@ -133,6 +135,7 @@ def write_whole(path: Path, data: bytes) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         part.write_bytes(data)
         part.replace(path)
+
 
 #: Called with how many are done, and of how many.
 Progress = Callable[[int, int], None]

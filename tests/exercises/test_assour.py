@@ -80,4 +80,4 @@ def test_the_worked_solution_lists_the_groups():
 
 
 def test_labels_need_no_variant_though_the_statement_lists_joints():
-    assert EXERCISE.constants("exercises", "fr").labels["assour_class", "II"] == "classe II"
+    assert EXERCISE.texts.constants("exercises", "fr").labels["assour_class", "II"] == "classe II"

@@ -8,7 +8,10 @@ from pathlib import Path
 import pytest
 
 import coursework
+from coursework.api import Variant
 from coursework.authoring import checks
+from coursework.course.course import Course
+from coursework.course.folder import Folder
 from coursework.course.texts import constants
 from coursework.errors import BadCourse
 from coursework.language.words import languages
@@ -109,7 +112,7 @@ def test_a_question_without_answer_or_without_words_is_said(own_course):
         own_course / "exercises" / "vocabulary.en.md.j2",
         "\n## belt_sense\nWhich?\n- same: + +\n- opposite: + -\n",
     )
-    exercise = coursework.course.Course(own_course)["vocabulary"]
+    exercise = Course(Folder(own_course), Variant)["vocabulary"]
     with pytest.raises(BadCourse, match="needs an answer"):
         assert exercise.solution
 

@@ -11,9 +11,9 @@ from coursework.figures.plot import Axis, Plot
 from coursework.language.numbers import localise, significant
 from coursework.language.words import words
 from coursework.markup.shown import Picture, Shown
-from coursework.study.refusals import would_do
-from coursework.study.store import is_blank
-from coursework.study.word_answers import folded, numbers, truth, unwrapped
+from coursework.selfstudy.refusals import would_do
+from coursework.selfstudy.store import is_blank
+from coursework.selfstudy.word_answers import folded, numbers, truth, unwrapped
 
 _NEAR = 0.1
 _NEAR_ANGLE = 10.0  #: degrees

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 _NEAR = 0.1  #: of the reference; the marks decide what is right, this which choice it belongs to
 _NEAR_ANGLE = 10.0  #: degrees
-_NUMBERS = ("number", "angle", "integer")
 
 
 @dataclass(frozen=True)
@@ -37,15 +36,15 @@ def right_ones(variant: Variant, answers: Mapping[str, Any], right: Collection[s
 def _own(variant: Variant, part: Part, answer: Any) -> Own:
     reference = variant.walk.get(part.quantity)
     reading = read(variant, part, answer)
-    if part.kind not in _NUMBERS or reading.status != "read":
+    if not part.sort.is_scalar or reading.status != "read":
         return Own(None, True)
     gaps = {float(v): _gap(part, float(v), float(reference)) for v in reading.values}
     value = min(gaps, key=gaps.__getitem__)
-    limit = _NEAR_ANGLE if part.kind == "angle" else _NEAR * abs(reference) + 1e-9
+    limit = _NEAR_ANGLE if part.sort.turn else _NEAR * abs(reference) + 1e-9
     return Own(value, gaps[value] <= max(limit, variant.key.half_width(part)))
 
 
 def _gap(part: Part, value: float, reference: float) -> float:
-    if part.kind == "angle":
-        return abs((value - reference + 180.0) % 360.0 - 180.0)
+    if turn := part.sort.turn:
+        return abs((value - reference + turn / 2) % turn - turn / 2)
     return abs(value - reference)

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from coursework.course.builtin import builtin_root
 from coursework.errors import Starved
 from coursework.making.issuing import distinct_variants
+from coursework.selfstudy import predictions
+from coursework.selfstudy.predictions import Prediction
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Ask, Question, StudySheet
-from coursework.study import predictions
-from coursework.study.predictions import Prediction
 
 if TYPE_CHECKING:
     from coursework.course.exercise import CourseExercise

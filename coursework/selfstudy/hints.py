@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 from coursework.language.words import is_whole, words
 from coursework.markup.formula_tree import tokens
 from coursework.rendering.views import chain_on_lines, given_formula, given_words
+from coursework.selfstudy.refusals import expect
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.formula_latex import formula_latex, number_latex
 from coursework.sheets.handout import handout
-from coursework.study.refusals import expect
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
@@ -139,7 +139,7 @@ def _words(variant: Variant, quantity: str) -> str:
         return ""
     is_free, start = _is_free(variant, quantity), _before_numbers(variant, quantity)
     asked = _asked(variant, quantity)
-    if asked is None or asked.kind != "choice":
+    if asked is None or not asked.choices:
         return start or (section.text if is_free else "")
     text = section.text if is_free else start
     if not text:
@@ -161,7 +161,7 @@ def _before_numbers(variant: Variant, section: str) -> str:
 
 def _against(variant: Variant, part: Part) -> str:
     """Of a choice among three or more, why one that is wrong is none; nothing for anything else."""
-    if part.kind != "choice" or len(part.choices) < 3:
+    if len(part.choices) < 3:
         return ""
     step = next(s for s in answer_sheet(variant, polygons=False).steps if s.name == part.quantity)
     said = words(variant.lang)["study"]["hint"]["against"]
@@ -171,7 +171,7 @@ def _against(variant: Variant, part: Part) -> str:
 def _look_again(variant: Variant, part: Part) -> str:
     """What is left to say where nothing else is."""
     said = words(variant.lang)["study"]["hint"]
-    return said["cases"] if part.kind == "choice" else said["statement"]
+    return said["cases"] if part.choices else said["statement"]
 
 
 def _is_free(variant: Variant, section: str) -> bool:

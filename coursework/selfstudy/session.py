@@ -23,13 +23,13 @@ from coursework.markup.shown import Picture, Shown
 from coursework.motion.animation import EFFECTS
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.rendering.views import points_number
+from coursework.selfstudy import hints, predictions, refusals
+from coursework.selfstudy import word_answers as wording
+from coursework.selfstudy.predictions import Prediction
+from coursework.selfstudy.right_answers import Own, right_ones
+from coursework.selfstudy.sheet import fresh_variants
+from coursework.selfstudy.store import Kept, is_blank
 from coursework.sheets.handout import handout
-from coursework.study import hints, predictions, refusals
-from coursework.study import word_answers as wording
-from coursework.study.predictions import Prediction
-from coursework.study.right_answers import Own, right_ones
-from coursework.study.sheet import fresh_variants
-from coursework.study.store import Kept, is_blank
 
 if TYPE_CHECKING:
     from coursework.figures import Figure
@@ -325,14 +325,14 @@ class StudySession:
             return mark.says
         table = words(self.variant.lang)["marking"]["unreadable"]
         part = next(p for p in self.variant.parts if p.id == mark.part)
-        kind = {"angle": "number", "direction": "point", "point_on_line": "point"}.get(part.kind, part.kind)
-        general = [table["otherwise"]] if kind == "number" else [table["otherwise"], table["not_a_number"]]
-        if kind != "choice" and not any(mark.says.endswith(s.rpartition("{found}")[2]) for s in general):
+        family = part.sort.family
+        general = [table["otherwise"]] if family == "number" else [table["otherwise"], table["not_a_number"]]
+        if not part.choices and not any(mark.says.endswith(s.rpartition("{found}")[2]) for s in general):
             return mark.says
         colon = words(self.variant.lang)["sheet"]["colon"]
         name = part_name(self.variant, part)
         choices = predictions.choices(self.variant, part)
-        return f"{name[:1].upper()}{name[1:]}{colon} " + self._said["not_read"][kind].format(
+        return f"{name[:1].upper()}{name[1:]}{colon} " + self._said["not_read"][family].format(
             found=_quoted(mark.answer), choices=choices
         )
 
@@ -344,7 +344,7 @@ class StudySession:
         """
         written = {n: a for n, a in given.items() if not is_blank(a)}
         wrong = [p for p in self.variant.parts if p.id in written and marking[p.id].verdict != "correct"]
-        wrong = [p for p in wrong if p.kind in ("number", "angle", "point", "direction", "point_on_line")]
+        wrong = [p for p in wrong if not p.is_exact]
         for seed in self._kept.seeds if len(wrong) > 1 else ():
             theirs = self._kept.of(seed, "answers")
             if seed == self.variant.seed or any(theirs.get(n) != a for n, a in written.items()):
@@ -491,10 +491,10 @@ class StudySession:
         if reading.status != "read":
             return ()
         value = written = float(reading.values[0]) if mine is None or mine.value is None else mine.value
-        if part.kind == "angle":
+        if turn := part.sort.turn:
             # Of all turns the one beside the curve, so that a point above it is above.
             middle = (np.nanmin(values) + np.nanmax(values)) / 2
-            value = middle + (value - middle + 180) % 360 - 180
+            value = middle + (value - middle + turn / 2) % turn - turn / 2
         return (Spot(at, value, mine is not None, written),)
 
     # ----------------------------------------------------------- other variants

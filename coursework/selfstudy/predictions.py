@@ -22,8 +22,8 @@ from coursework.marking.answers import read
 from coursework.markup.markdown import to_text
 from coursework.model import Part
 from coursework.reading.numbers import read_number
-from coursework.study import word_answers as wording
-from coursework.study.store import is_blank
+from coursework.selfstudy import word_answers as wording
+from coursework.selfstudy.store import is_blank
 
 if TYPE_CHECKING:
     from coursework.course.exercise import CourseExercise
@@ -78,11 +78,9 @@ def before_answers(variant: Variant) -> tuple[Prediction, ...]:
 
 
 def _of_part(exercise: CourseExercise, part: Part) -> Prediction | None:
-    if part.kind == "angle":
-        return Prediction(part.id, part.quantity, "quadrant")
-    if part.kind in ("integer", "choice"):
-        return Prediction(part.id, part.quantity, "guess", choices=part.choices)
-    if part.kind != "number" or not exercise.folder.has_solutions:
+    if part.sort.prediction in ("quadrant", "guess"):
+        return Prediction(part.id, part.quantity, part.sort.prediction, choices=part.choices)
+    if part.sort.prediction != "size" or not exercise.folder.has_solutions:
         return None
     values = _sample(exercise).get(part.quantity)
     if values is None:
@@ -107,12 +105,12 @@ def _differ(holds: np.ndarray, values: np.ndarray) -> bool:
 @lru_cache(maxsize=64)
 def _sample(exercise: CourseExercise) -> Mapping[str, np.ndarray]:
     """Numbers given and asked, over some variants; NaN where a variant has none."""
-    asked = [p.quantity for p in exercise.spec.parts if p.kind == "number"]
+    asked = [p.quantity for p in exercise.spec.parts if p.sort.prediction == "size"]
     given = [n for n, spec in exercise.spec.given.items() if not spec.is_choice]
     columns: dict[str, list[float]] = {name: [] for name in dict.fromkeys([*given, *asked])}
     for variant in exercise.variants(_SAMPLE):
         values = dict(variant.given)
-        wanted = [p.quantity for p in variant.parts if p.kind == "number"]
+        wanted = [p.quantity for p in variant.parts if p.sort.prediction == "size"]
         try:
             values |= exercise.solve(**variant.given, only=wanted, effects=variant.effects)
         except CourseworkError:
@@ -129,7 +127,7 @@ def moving(variant: Variant) -> tuple[Part, ...]:
     if driver is None or driver.angle not in variant.used or not exercise.folder.has_solutions:
         return ()
     reached = exercise.solution.graph.textbook.descendants((driver.angle,))
-    numbers = (p for p in variant.parts if p.kind in ("number", "angle"))
+    numbers = (p for p in variant.parts if p.sort.is_number)
     return tuple(p for p in numbers if p.quantity in reached)
 
 
@@ -137,13 +135,13 @@ def over_the_cycle(variant: Variant) -> tuple[Prediction, ...]:
     """What to predict before the plots: how often a rate changes its sign, where a length or an effort is largest."""
     rates, others = [], []
     for part in moving(variant):
-        if part.kind == "number" and part.unit in _RATES:
+        if part.sort.prediction == "size" and part.unit in _RATES:
             # The length of a vector never changes its sign: there is nothing to say of it.
             values = _sample(variant.exercise)[part.quantity]
             if not _differ(values > 0, values):
                 continue
             rates.append(Prediction(f"zeros_{part.id}", part.quantity, "zeros"))
-        elif part.kind == "number" and part.unit in _PEAKS:
+        elif part.sort.prediction == "size" and part.unit in _PEAKS:
             others.append(Prediction(f"highest_{part.id}", part.quantity, "highest"))
     chosen = [*others[:1], *rates]
     return tuple(chosen[:OVER_THE_CYCLE])
@@ -214,7 +212,7 @@ def compared(
 
 def _read_guess(variant: Variant, prediction: Prediction, text: Any) -> tuple[Any, ...] | None:
     part = next(p for p in variant.parts if p.id == prediction.id)
-    if part.kind == "integer" and (whole := wording.count(text)) is not None:
+    if part.sort.family == "integer" and (whole := wording.count(text)) is not None:
         return (whole,)
     reading = read(variant, part, text)
     return reading.values if reading.status == "read" else None

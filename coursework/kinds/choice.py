@@ -1,0 +1,51 @@
+"""One case among a few."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.quantities.graph import plain_scalar
+from coursework.reading.choices import read_choice
+from coursework.reading.reading import Reading
+
+
+class Choice(Kind):
+    name = "choice"
+    goes_with = ("choices",)
+    is_exact = is_text = is_followed = has_few_values = True
+    has_symbol = is_called_by_symbol = False
+    prediction = "guess"
+    family = "choice"
+    wrong = "wrong_case"
+    faults = {  # noqa: RUF012
+        "unknown_symbol": "not_a_number",
+        "not_a_choice": "not_a_choice",
+        "two_values": "two_choices",
+    }
+
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        return read_choice(answer, asking.labels(part))
+
+    def kept(self, read_as: str) -> Any:
+        return read_as
+
+    def distance(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        return 0.0 if value == plain_scalar(reference) else math.inf
+
+    def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
+        return tuple(case for case in part.choices if case != value)[:1]
+
+    def words(self, value: Any, label: Callable[[str], str]) -> str:
+        return label(str(value))
+
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        return label(str(value))
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        yield Spelling("exact", str(value))
+        yield Spelling("printed", label(str(value)))

@@ -1,0 +1,34 @@
+"""A direction: any multiple of the reference vector but zero."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from coursework.kinds.kind import Stated
+from coursework.kinds.nearness import in_half_widths
+from coursework.kinds.vectors import Coordinates
+
+
+class Direction(Coordinates):
+    name = "direction"
+    is_called_by_symbol = False
+    rounds = False  # its margin is the sine of an angle
+    box = "wide"
+    wrong = "wrong_place"
+
+    def distance(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        v, d = np.asarray(value, dtype=float), np.asarray(reference, dtype=float)
+        largest = float(np.max(np.abs(v)))
+        v = v / largest if largest else v
+        size = float(np.linalg.norm(v) * np.linalg.norm(d))
+        if size == 0.0:
+            return math.inf
+        return in_half_widths(float(np.linalg.norm(np.cross(v, d))) / size, part.half_width(1.0), 1.0)
+
+    def size(self, reference: Any) -> float:
+        return 1.0

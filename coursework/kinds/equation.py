@@ -1,0 +1,70 @@
+"""An equation in the exercise's symbols, up to a factor: judged by the points that it holds at, never by its spelling."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from functools import lru_cache
+from typing import Any
+
+from coursework.kinds.equation_latex import latex_of_equation
+from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.reading.equations import Equation as Read
+from coursework.reading.equations import parse_equation, read_equation
+from coursework.reading.equivalence import same_equation
+from coursework.reading.reading import Reading
+
+
+class Equation(Kind):
+    name = "equation"
+    goes_with = ("variables",)
+    is_exact = is_text = True
+    disproves = False  # a mistake about a quantity may well leave its equation right
+    has_symbol = is_called_by_symbol = False
+    box = "line"
+    family = "equation"
+    wrong = "wrong_equation"
+    quoted = ("unknown_unit", "unknown_symbol")
+    faults: Mapping[str, str] = {}  # noqa: RUF012
+
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        return read_equation(answer, part.variables)
+
+    def distance(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        return 0.0 if _same(value, reference, part.variables, part.parameters) else math.inf
+
+    def apart(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        return self.distance(part, _parsed(value, part.variables), reference)
+
+    def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:
+        asked = parse_equation(reference, part.variables)
+        put_in = {n: float(numbers[n]) for n in asked.variables - value.variables if n in numbers}
+        if put_in and same_equation(value, asked.with_numbers(put_in), parameters=part.parameters):
+            yield "numbers"
+
+    def latex(self, value: str, symbols: Mapping[str, str]) -> str:
+        return latex_of_equation(value, symbols)
+
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        return str(value)
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        left, _, right = str(value).partition("=")
+        yield Spelling("exact", str(value))
+        yield Spelling("printed", f"2*({right}) - 2*({left}) = 0")
+
+
+@lru_cache(maxsize=4096)
+def _same(value: Read, reference: str, variables: tuple[str, ...], parameters: tuple[str, ...]) -> bool:
+    """Equations are dear to compare, and many students write the same."""
+    return same_equation(value, _parsed(reference, variables), parameters=parameters)
+
+
+@lru_cache(maxsize=1024)
+def _parsed(text: str, variables: tuple[str, ...]) -> Read:
+    """A reference equation, or a mistaken one, read once."""
+    return parse_equation(text, variables)

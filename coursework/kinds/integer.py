@@ -1,0 +1,42 @@
+"""A whole number, judged exactly: a count."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.language.numbers import significant
+from coursework.quantities.graph import plain_scalar
+from coursework.reading.numbers import read_integer
+from coursework.reading.reading import Reading
+
+_DIGITS = 9  #: with which a count is written
+
+
+class Integer(Kind):
+    name = "integer"
+    is_exact = is_scalar = is_followed = True
+    prediction = "guess"
+    family = "integer"
+    unitless = "wrong_unit_integer"
+
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        return read_integer(answer)
+
+    def distance(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        return 0.0 if value == plain_scalar(reference) else math.inf
+
+    def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
+        return (value + 1,)
+
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        return significant(value, _DIGITS)
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        unit = "" if part.unit == "1" else f" {part.unit}"
+        yield Spelling("exact", value)
+        yield Spelling("printed", self.written(value, _DIGITS, label) + unit)

@@ -1,0 +1,206 @@
+"""What every kind of part says: how its answers are read, judged, printed, and written by students.
+
+A part says its kind by a word, and the word is the stem of a file of this room: ``number`` is :mod:`coursework.kinds.number`.
+A course may bring kinds of its own: a class derived from :class:`Kind` that an exercise imports is known by its ``name``.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Mapping
+from importlib import import_module
+from pathlib import Path
+from typing import Any, ClassVar, NamedTuple, Protocol
+
+import numpy as np
+
+from coursework.errors import BadCourse, nearest
+from coursework.reading.reading import Reading
+
+
+class Stated(Protocol):
+    """What a kind needs to know of a part."""
+
+    @property
+    def id(self) -> str: ...
+    @property
+    def quantity(self) -> str: ...
+    @property
+    def unit(self) -> str: ...
+    @property
+    def choices(self) -> tuple[str, ...]: ...
+    @property
+    def variables(self) -> tuple[str, ...]: ...
+    @property
+    def parameters(self) -> tuple[str, ...]: ...
+    @property
+    def has_margin(self) -> bool: ...
+    def half_width(self, reference: float) -> float: ...
+
+
+class Asking(Protocol):
+    """What a kind may need to know of the variant that asks a part."""
+
+    def labels(self, part: Any) -> Mapping[str, Any]:
+        """What each case of a choice is called."""
+
+    def reference(self, quantity: str) -> Any:
+        """A reference value: a vector has as many coordinates as its reference."""
+
+
+class Spelling(NamedTuple):
+    """A right answer in one of the ways that people write it; ways of one name stand on one sheet."""
+
+    way: str  #: exact, printed, comma or edge
+    answer: Any
+
+
+class Kind(ABC):
+    """One kind of part. A newcomer has a ``name``, reads, measures a distance, and says how a value is written;
+    where the rest differs from what stands here, it says so."""
+
+    name: ClassVar[str] = ""  #: the word by which a part asks for it
+    goes_with: ClassVar[tuple[str, ...]] = ()  #: fields of a part that come with this kind, and must
+    unit: ClassVar[str] = "1"  #: of a part that states none
+
+    is_exact: ClassVar[bool] = False  #: judged by identity: no tolerance
+    is_text: ClassVar[bool] = False  #: words or symbols, not numbers
+    is_scalar: ClassVar[bool] = False  #: one number, whole or not
+    is_number: ClassVar[bool] = (
+        False  #: one number measured: its sign, its unit may be mistaken, and it has a curve
+    )
+    turn: ClassVar[float] = 0.0  #: after which values are the same, in the part's unit; 0 for none
+    is_followed: ClassVar[bool] = (
+        False  #: a student goes on from it, and it follows from what was answered before
+    )
+    has_few_values: ClassVar[bool] = False  #: so few that many mistakes lead to the same one
+    disproves: ClassVar[bool] = True  #: a right answer shows that a mistake was not made that would change it
+    rounds: ClassVar[bool] = True  #: rounding on the way widens its margin, which has the part's unit
+
+    has_symbol: ClassVar[bool] = True  #: the quantity's symbol stands before the box
+    is_called_by_symbol: ClassVar[bool] = (
+        True  #: feedback calls it so too; else by the number of the question
+    )
+    box: ClassVar[str] = "usual"  #: room for the answer: usual, wide, line
+    prediction: ClassVar[str] = (
+        ""  #: how it is predicted before it is computed: quadrant, guess, size; nothing for not at all
+    )
+    family: ClassVar[str] = "number"  #: in the words for a student alone whose answer cannot be read
+
+    wrong: ClassVar[str] = "wrong"  #: the sentence for an answer that nothing explains
+    unitless: ClassVar[str] = "wrong_unit_ratio"  #: the sentence for a unit where there is none
+    quoted: ClassVar[tuple[str, ...]] = (
+        "unknown_unit",
+    )  #: faults of which the piece that stops the reading is quoted
+    faults: ClassVar[Mapping[str, str]] = {
+        "unknown_symbol": "not_a_number"
+    }  #: faults that are told as others
+    hint: ClassVar[
+        Mapping[str, str]
+    ] = {}  #: by language, the form of an answer, where the engine's words have none
+
+    def __init_subclass__(cls, **more: Any) -> None:
+        super().__init_subclass__(**more)
+        if cls.name:
+            _known[cls.name] = cls()
+
+    # ------------------------------------------------------------------ reading
+
+    @abstractmethod
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        """What was understood of an answer."""
+
+    def kept(self, read_as: str) -> Any:
+        """The value of an answer that is known to be right, from its echo."""
+        return float(read_as)
+
+    # ------------------------------------------------------------------ judging
+
+    @abstractmethod
+    def distance(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        """How far a value is from a reference, as a multiple of the accepted half-width: right up to 1.
+
+        The half-width is the part's own, or the ``envelope`` where that is wider.
+        """
+
+    def apart(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        """The distance of two values that the solution gives, one of them by a mistake."""
+        return self.distance(part, value, reference, along, envelope)
+
+    def size(self, reference: Any) -> float:
+        """What a relative tolerance is taken of."""
+        return float(np.linalg.norm(reference))
+
+    def is_trivial(self, value: Any) -> bool:
+        """Whether nothing follows from such a value."""
+        return not self.is_exact and not value
+
+    def scaled(self, width: float, value: Any, reference: Any) -> float:
+        """The width of what rounding may have moved, about a slip of the reference."""
+        return width
+
+    def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:
+        """Slips of this kind alone that explain a wrong value; ``numbers`` are the given ones that are no angles."""
+        yield from ()
+
+    def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
+        """Wrong values for a right one: just beyond what is accepted, and far from it; few cases have one other."""
+        return ()
+
+    # ----------------------------------------------------------------- printing
+
+    def words(self, value: Any, label: Callable[[str], str]) -> str:
+        """A reference in words, Markdown, where it is no formula; ``label`` calls its cases."""
+        return ""
+
+    def latex(self, value: str, symbols: Mapping[str, str]) -> str:
+        """A reference that is a text, as a formula; nothing where it is none."""
+        return ""
+
+    # ----------------------------------------------------------------- students
+
+    @abstractmethod
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        """A right answer as a careful student writes it, without its unit, to so many significant digits."""
+
+    def comma(self, written: str) -> str:
+        """The same with decimal commas."""
+        return written if self.is_text else written.replace(".", ",")
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        """A right answer in the ways people write it."""
+        printed = self.written(value, 6, label)
+        yield Spelling("exact", value)
+        yield Spelling("printed", printed)
+        if self.comma(printed) != printed:
+            yield Spelling("comma", self.comma(printed))
+
+
+_known: dict[str, Kind] = {}
+_ROOM = Path(__file__).parent
+
+
+def kinds() -> tuple[str, ...]:
+    """The names of the kinds there are: those of this room, and those that courses brought."""
+    for path in _ROOM.glob("*.py"):
+        import_module(f"coursework.kinds.{path.stem}".removesuffix(".__init__"))
+    return tuple(sorted(_known))
+
+
+def kind_of(name: str) -> Kind:
+    """The kind of a name.
+
+    Raises
+    ------
+    BadCourse
+        There is none; with the nearest name.
+    """
+    if name not in _known and name.isidentifier() and (_ROOM / f"{name}.py").exists():
+        import_module(f"coursework.kinds.{name}")
+    if name not in _known:
+        raise BadCourse(f"no kind {name!r}{nearest(name, kinds())}")
+    return _known[name]

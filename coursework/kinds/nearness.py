@@ -1,0 +1,26 @@
+"""Gaps counted in the half-width that is accepted."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+SLACK = 1e-12  #: relative, so that an answer on the tolerance's edge is inside it
+_FAR = 1e100  #: a point so far off is not computed with
+
+
+def in_half_widths(gap: float, half_width: float, scale: float) -> float:
+    """``gap`` in half-widths, the boundary inclusive up to rounding of what is as large as ``scale``."""
+    if not math.isfinite(gap):
+        return math.inf
+    if gap <= half_width + SLACK * max(half_width, abs(scale)):
+        return min(1.0, gap / half_width) if half_width else 0.0
+    return gap / half_width if half_width else math.inf
+
+
+def offset(point: Any, reference: Any) -> np.ndarray | None:
+    """From a reference to a point, shape ``(n,)``; none where it is too far to compute with."""
+    found = np.asarray(point, dtype=float) - reference
+    return None if float(np.max(np.abs(found))) > _FAR else found

@@ -1,0 +1,50 @@
+"""A number: right within a margin of its reference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.nearness import in_half_widths
+from coursework.language.numbers import plain, significant
+from coursework.reading.numbers import read_number
+from coursework.reading.reading import Reading
+
+
+class Number(Kind):
+    name = "number"
+    is_scalar = is_number = is_followed = True
+    prediction = "size"
+
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        return read_number(answer, part.unit)
+
+    def distance(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        return in_half_widths(abs(value - reference), max(part.half_width(reference), envelope), reference)
+
+    def scaled(self, width: float, value: Any, reference: Any) -> float:
+        return width * abs(value / reference) if reference else width
+
+    def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
+        much = value + 11.0 if part.unit == "deg" else 1.13 * value
+        return value + 1.3 * half_width, much
+
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        return significant(value, digits)
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        unit = "" if part.unit == "1" else f" {part.unit}"
+        printed = self.written(value, 4, label) + unit
+        yield Spelling("exact", value)
+        yield Spelling("printed", printed)
+        if self.comma(printed) != printed:
+            yield Spelling("comma", self.comma(printed))
+        if part.has_margin:
+            yield Spelling("edge", plain(self.on_edge(part, value)))
+
+    def on_edge(self, part: Stated, value: Any) -> float:
+        """The last value that is right."""
+        return float(value + part.half_width(value))

@@ -1,0 +1,27 @@
+"""What kinds of coordinates have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.language.numbers import significant
+from coursework.reading.points import read_point
+from coursework.reading.reading import Reading
+
+
+class Coordinates(Kind):
+    """Coordinates, as many as those of the reference."""
+
+    family = "point"
+
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        return read_point(answer, part.unit, len(asking.reference(part.quantity)))
+
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        return "(" + " ; ".join(significant(v, digits) for v in value.tolist()) + ")"
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        yield Spelling("exact", "; ".join(repr(v) for v in value.tolist()))
+        yield from (spelled for spelled in super().spellings(part, value, label) if spelled.way != "exact")
