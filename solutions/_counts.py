@@ -3,7 +3,6 @@
 A solution that takes these has the hidden ``_solids``: the chain, or an array of chains.
 """
 
-
 from coursework.quantities.columns import each_stacked
 
 

@@ -142,7 +142,9 @@ def motion(r1, r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha
 def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4):
     OA, AB, CB = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4)
     return (
-        polygon_of_velocities(crank_v("A", "OA", OA, omega2), two_bars_v("B", "A", "C", AB, omega3, CB, omega4)),
+        polygon_of_velocities(
+            crank_v("A", "OA", OA, omega2), two_bars_v("B", "A", "C", AB, omega3, CB, omega4)
+        ),
         polygon_of_accelerations(
             crank_a("A", "OA", OA, omega2, alpha2),
             two_bars_a("B", "A", "C", AB, omega3, alpha3, "r_3", CB, omega4, alpha4, "r_4"),

@@ -186,7 +186,9 @@ def polygons(r2, theta2, omega2, alpha2, p, q, omega3, r1_dot, alpha3, r1_ddot, 
     """At the scales of the statement."""
     OA, AB = polar(r2, theta2), q + 1j * p
     return (
-        polygon_of_velocities(crank_v("A", "OA", OA, omega2), slider_v("B", "A", AB, omega3, r1_dot), scale=kv),
+        polygon_of_velocities(
+            crank_v("A", "OA", OA, omega2), slider_v("B", "A", AB, omega3, r1_dot), scale=kv
+        ),
         polygon_of_accelerations(
             crank_a("A", "OA", OA, omega2, alpha2),
             slider_a("B", "A", AB, omega3, alpha3, "r_3", r1_ddot),

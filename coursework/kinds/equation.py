@@ -25,7 +25,7 @@ class Equation(Kind):
     family = "equation"
     wrong = "wrong_equation"
     quoted = ("unknown_unit", "unknown_symbol")
-    faults: Mapping[str, str] = {}  # noqa: RUF012
+    faults: Mapping[str, str] = {}
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         return read_equation(answer, part.variables)
