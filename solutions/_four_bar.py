@@ -31,7 +31,6 @@ def phi(r1, r2, theta2):
     return atan2(-r2 * sin(theta2), (r1 - r2) + 2 * r2 * sin(theta2 / 2) ** 2)
 
 
-@formula(r"\arccos \frac{<AC>^2 + <r3>^2 - <r4>^2}{2 \times <AC> \times <r3>}")
 @stable(lambda _linkage: from_radians(_linkage.corner))
 def psi(r3, r4, AC):
     """Angle CAB, by the law of cosines."""
@@ -48,10 +47,6 @@ def theta3(psi, phi, side):
     return wrap(phi + side * psi)
 
 
-@formula(
-    r"\operatorname{atan2}\left(<r2> \sin <theta2> + <r3> \sin <theta3>;\ "
-    r"<r2> \cos <theta2> + <r3> \cos <theta3> - <r1>\right)"
-)
 @stable(lambda _linkage: from_radians(_linkage.rocker_angle))
 def theta4(r1, r2, theta2, r3, theta3):
     """Direction of CB, by its quadrant."""

@@ -11,7 +11,7 @@ from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.polygons import crank_v, guide_v, polygon_of_velocities, slider_v, turning
-from coursework.solution import Moving, formula, stable
+from coursework.solution import Moving, stable
 
 LOOPS = {
     "loop_1": (Vector("r1", pi / 2), Vector("r2", "theta2"), Vector("rA", "theta4", -1)),
@@ -27,14 +27,12 @@ def _arm(r1, r2, theta2):
     return SlottedGuidePose(r1, r2, Degrees.between(90.0, theta2))
 
 
-@formula(r"\sqrt{<r1>^2 + <r2>^2 + 2 \times <r1> \times <r2> \times \sin <theta2>}")
 @stable(lambda _arm: _arm.arm)
 def rA(r1, r2, theta2):
     """Distance O4A, by the law of cosines."""
     return sqrt(r1**2 + r2**2 + 2 * r1 * r2 * sin(theta2))
 
 
-@formula(r"\operatorname{atan2}\left(<r1> + <r2> \sin <theta2>;\ <r2> \cos <theta2>\right)")
 @stable(lambda _arm: wrap(90 + from_radians(_arm.guide_angle)))
 def theta4(r1, r2, theta2):
     """Direction of the guide, by its quadrant."""
@@ -47,12 +45,10 @@ def omega4(r2, omega2, theta2, theta4, rA):
     return r2 * omega2 * cos(theta2 - theta4) / rA
 
 
-@formula(r"<r4> \cos <theta4>")
 def xP(r4, theta4):
     return r4 * cos(theta4)
 
 
-@formula(r"<r4> \sin <theta4>")
 def yP(r4, theta4):
     return r4 * sin(theta4)
 
@@ -72,19 +68,16 @@ def xC(xP, q):
     return xP + q
 
 
-@formula(r"\operatorname{atan2}\left(<p>;\ <q>\right)")
 def theta5(p, q):
     """Direction of the rod, from P to C."""
     return atan2(p, q)
 
 
-@formula(r"-\frac{<omega4> \times <xP>}{<q>}")
 def omega5(omega4, xP, q):
     """C keeps to its line: no velocity across it."""
     return -omega4 * xP / q
 
 
-@formula(r"-<omega4> \times <yP> - <omega5> \times <p>")
 def v_C(omega4, yP, omega5, p):
     """Velocity of the ram, positive to the right."""
     return -omega4 * yP - omega5 * p

@@ -9,7 +9,6 @@ def alpha(Q):
     return 360 * Q / (1 + Q)
 
 
-@formula(r"<alpha> - 180^{\circ}")
 def phi(alpha):
     return alpha - 180
 

@@ -8,7 +8,6 @@ import math
 from coursework.solution import formula
 
 
-@formula(r"360^{\circ} - <alpha>")
 def beta(alpha):
     return 360 - alpha
 
@@ -17,7 +16,6 @@ def Q(alpha, beta):
     return alpha / beta
 
 
-@formula(r"\frac{2 \times \pi}{\left|<omega2>\right|}")
 def T(omega2):
     """Duration of a turn."""
     return 2 * math.pi / abs(omega2)

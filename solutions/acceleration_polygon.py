@@ -8,7 +8,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.marking.drawn_polygons import Asked, Read, met, to_paper, turned, verdicts
 from coursework.polygons import crank_a, polygon_of_accelerations, two_bars_a
-from coursework.solution import formula, judge, mistake
+from coursework.solution import judge, mistake
 
 from ._drawn_acceleration import *
 
@@ -81,7 +81,6 @@ def sense3(_bars):
     return np.sign(gain)
 
 
-@formula(r"<sense3> \times \frac{<ka> \times <bb_t>}{<r3>}")
 def alpha3(sense3, ka, bb_t, r3):
     return sense3 * ka * bb_t / r3
 
@@ -92,7 +91,6 @@ def sense4(_bars):
     return np.sign(gain)
 
 
-@formula(r"<sense4> \times \frac{<ka> \times <mb_t>}{<r4>}")
 def alpha4(sense4, ka, mb_t, r4):
     return sense4 * ka * mb_t / r4
 

@@ -8,7 +8,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.marking.drawn_polygons import Asked, Read, met, verdicts
 from coursework.polygons import crank_a, polygon_of_accelerations, slider_a
-from coursework.solution import formula, judge, mistake
+from coursework.solution import judge, mistake
 
 from ._drawn_acceleration import *
 
@@ -61,7 +61,6 @@ def side_B(_images):
     return np.sign(_images[-1].real)
 
 
-@formula(r"<side_B> \times <ka> \times <pa_b>")
 def r1_ddot(side_B, ka, pa_b):
     return side_B * ka * pa_b
 
@@ -72,7 +71,6 @@ def sense3(_bars):
     return np.sign(gain)
 
 
-@formula(r"<sense3> \times \frac{<ka> \times <bb_t>}{<r3>}")
 def alpha3(sense3, ka, bb_t, r3):
     return sense3 * ka * bb_t / r3
 

@@ -74,7 +74,6 @@ def a_O3_y(R, r, phi_ddot):
     return (R + r) * phi_ddot
 
 
-@formula(r"\left(<R> + \num{2} \times <r>;\ \num{0};\ \num{0}\right)")
 def axis_30_point(R, r):
     """A."""
     return _vector(R + 2 * r, 0.0, 0.0)
@@ -87,25 +86,21 @@ def axis_30_dir(R):
     return _vector(one, 0.0, one)
 
 
-@formula(r"\left(<R>;\ \num{0};\ \num{0}\right)")
 def axis_31_point(R):
     """C."""
     return _vector(R, 0.0, 0.0)
 
 
-@formula(r"\left(\num{1};\ \num{0};\ \num{1} - \frac{<psi_dot>}{<omega>}\right)")
 def axis_31_dir(omega, psi_dot):
     """Omega 3/1 = omega (x_a + z) - psi_dot z, over omega."""
     return _vector(1.0, 0.0, 1 - psi_dot / omega)
 
 
-@formula(r"\left(<R> + <r>;\ \num{0};\ <r>\right)")
 def axis_32_point(R, r):
     """D."""
     return _vector(R + r, 0.0, r)
 
 
-@formula(r"\left(\num{1};\ \num{0};\ \num{1} - \frac{<theta_dot>}{<omega>}\right)")
 def axis_32_dir(omega, theta_dot):
     """Omega 3/2 = omega (x_a + z) - theta_dot z, over omega."""
     return _vector(1.0, 0.0, 1 - theta_dot / omega)

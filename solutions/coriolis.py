@@ -7,7 +7,7 @@ import numpy as np
 from coursework.degrees import polar, wrap
 from coursework.errors import Undefined
 from coursework.figures import Figure, angle_mark, ground_pivot, line, point, slider, slot_link, vector
-from coursework.solution import formula, mistake
+from coursework.solution import mistake
 
 SYMBOLS = {"sense": r"\sigma"}
 UNITS = {"sense": "1"}
@@ -26,13 +26,11 @@ def a_coriolis(omega, r_dot):
     return 2 * abs(omega * r_dot)
 
 
-@formula(r"\operatorname{sgn}\left(<omega> \times <r_dot>\right)")
 def sense(omega, r_dot):
     """+1 when the sliding velocity, turned with the guide, points 90 degrees ahead of it, -1 when behind."""
     return np.sign(omega) * np.sign(r_dot)
 
 
-@formula(r"<theta> + <sense> \times 90^{\circ}")
 def direction(theta, sense):
     """None when there is no Coriolis term."""
     if np.ndim(sense) == 0 and sense == 0:

@@ -36,7 +36,6 @@ SYMBOLS = {
 }
 
 
-@formula(r"2 \times <r4> \times \sin \frac{<psi>}{2}")
 def chord(r4, psi):
     return 2 * r4 * sin(psi / 2)
 
@@ -79,12 +78,10 @@ def _transmission(r1, r2, r3, r4):
     return tuple(acos((r3**2 + r4**2 - (r1 + side * r2) ** 2) / (2 * r3 * r4)) for side in (-1, 1))
 
 
-@formula(r"<chord> \times \frac{\sin\left(<beta> + <phi>\right)}{\sin <phi>}")
 def near(chord, beta, phi):
     return chord * sin(beta + phi) / sin(phi)
 
 
-@formula(r"<chord> \times \frac{\sin <beta>}{\sin <phi>}")
 def far(chord, beta, phi):
     return chord * sin(beta) / sin(phi)
 
@@ -122,9 +119,6 @@ def _extremes(r4, psi, phi, beta):
     return _transmission(*_lengths(r4, psi, phi, beta), r4)
 
 
-@formula(
-    r"\sqrt{<near>^2 + <r4>^2 - 2 \times <near> \times <r4> \times \cos\left(<beta> - 90^{\circ} + \frac{<psi>}{2}\right)}"
-)
 def r1(near, r4, beta, psi):
     """C lies on the same side of B1 B2 as O; its base angles there are 90 degrees less half of psi."""
     return sqrt(near**2 + r4**2 - 2 * near * r4 * cos(beta - 90 + psi / 2))

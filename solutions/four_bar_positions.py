@@ -41,9 +41,6 @@ def _crossed(r1, r2, r3, r4, theta2):
     return FourBar(r1, r2, r3, r4, "crossed").at(Degrees(theta2))
 
 
-@formula(
-    r"\operatorname{min}\left(<r1>;\ <r2>;\ <r3>;\ <r4>\right) + \operatorname{max}\left(<r1>;\ <r2>;\ <r3>;\ <r4>\right)"
-)
 def s_plus_l(r1, r2, r3, r4):
     """Of the shortest and the longest bar."""
     return grashof.shortest(r1, r2, r3, r4) + grashof.longest(r1, r2, r3, r4)
@@ -68,7 +65,6 @@ def a(r1, r2, r3, theta2):
     return -2 * r3 * ((r1 - r2) + 2 * r2 * sin(theta2 / 2) ** 2)
 
 
-@formula(r"2 \times <r2> \times <r3> \times \sin <theta2>")
 def b(r2, r3, theta2):
     """Coefficient of sin(theta3): zero when the crank lies along the frame."""
     return 2 * r2 * r3 * sin(theta2)
@@ -80,13 +76,11 @@ def c(r1, r2, r3, r4, theta2):
     return (r4 - r3) * (r4 + r3) - (r1 - r2) ** 2 - 4 * r1 * r2 * sin(theta2 / 2) ** 2
 
 
-@formula(r"\operatorname{atan2}\left(<b>;\ <a>\right)")
 def phi(a, b):
     """Direction of C towards A, in which a and b are the components."""
     return atan2(b, a)
 
 
-@formula(r"\arccos \left(\frac{<c>}{\sqrt{<a>^2 + <b>^2}}\right)")
 @stable(lambda _open: 180.0 - from_radians(_open.corner))
 def psi(a, b, c):
     """Angle between the coupler and the direction phi."""
@@ -136,7 +130,6 @@ def AC(r1, r2, theta2):
     return sqrt((r1 - r2) ** 2 + 4 * r1 * r2 * sin(theta2 / 2) ** 2)
 
 
-@formula(r"\arccos \left(\frac{<r3>^2 + <r4>^2 - <AC>^2}{2 \times <r3> \times <r4>}\right)")
 @stable(lambda _open: from_radians(_open.transmission_angle))
 def mu(AC, r3, r4):
     """Angle CBA at B, by the law of cosines."""

@@ -2,19 +2,17 @@
 
 import numpy as np
 
-from coursework.solution import formula, mistake
+from coursework.solution import mistake
 from coursework.structure import grashof
 
 UNITS = {"s": "mm", "l": "mm"}
 
 
-@formula(r"\operatorname{min}\left(<r1>;\ <r2>;\ <r3>;\ <r4>\right)")
 def s(r1, r2, r3, r4):
     """The shortest bar."""
     return grashof.shortest(r1, r2, r3, r4)
 
 
-@formula(r"\operatorname{max}\left(<r1>;\ <r2>;\ <r3>;\ <r4>\right)")
 def l(r1, r2, r3, r4):  # noqa: E743
     """The longest bar."""
     return grashof.longest(r1, r2, r3, r4)

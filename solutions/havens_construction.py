@@ -6,7 +6,7 @@ from coursework.degrees import polar
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
 from coursework.marking.drawn_polygons import scale_for, to_paper
 from coursework.polygons.hand_drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_paper, vector_fault
-from coursework.solution import Judged, formula, judge, mistake
+from coursework.solution import Judged, judge, mistake
 
 VECTORS = ("v10", "v40", "v14", "v24", "v20", "v30")
 _WIDTH = 2 * TOLERANCE_MM
@@ -106,7 +106,6 @@ def l4(_images, _pose, kv):
     return (_images[1] / (1j * _pose[1])).real / kv
 
 
-@formula(r"\frac{<kv> \times <l4>}{<rA>}")
 def omega4(kv, l4, rA):
     return kv * l4 / rA
 
@@ -116,7 +115,6 @@ def l3(_images, _pose, kv):
     return (_images[5] / (1j * _pose[0])).real / kv
 
 
-@formula(r"\frac{<kv> \times <l3>}{<r3>}")
 def omega3(kv, l3, r3):
     return kv * l3 / r3
 

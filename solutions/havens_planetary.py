@@ -13,7 +13,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.polygons import Side, crank_v, guide_v, polygon_of_velocities, turning
-from coursework.solution import Moving, formula, mistake, stable
+from coursework.solution import Moving, mistake, stable
 
 UNITS = {"e": "mm"}
 LOOPS = {
@@ -57,7 +57,6 @@ def e(r2, r3):
     return r2 + r3
 
 
-@formula(r"\operatorname{atan2}\left(<e> \sin <theta1>;\ <d> + <e> \cos <theta1>\right)")
 @stable(lambda _arm: from_radians(_arm.guide_angle))
 def theta4(d, e, theta1):
     """Direction of O4A1, by its quadrant."""

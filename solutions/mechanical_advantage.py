@@ -11,7 +11,7 @@ from coursework.errors import Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
 from coursework.kinematics.dyads import side_of
 from coursework.polygons import crank_v, polygon_of_velocities, two_bars_v
-from coursework.solution import Moving, formula, mistake
+from coursework.solution import Moving, mistake
 
 from ._four_bar import *
 
@@ -58,10 +58,9 @@ def _over(numerator, denominator):
     """A quotient that does not exist where the output stands still."""
     if np.ndim(denominator) == 0 and denominator == 0:
         raise Undefined("the output is at rest: the mechanical advantage grows without bound there")
-    return np.where(denominator == 0, np.nan, numerator / np.where(denominator == 0, 1.0, denominator))[()]
+    return numerator / np.where(denominator == 0, np.nan, denominator)[()]
 
 
-@formula(r"\frac{<V_e>}{<V_s>}")
 def mechanical_advantage(V_e, V_s):
     """Equation 21: F_e V_e = F_s V_s; undefined when B is at rest."""
     return _over(V_e, V_s)
@@ -72,7 +71,6 @@ def F_s(F_e, mechanical_advantage):
     return mechanical_advantage * F_e
 
 
-@formula(r"\left|\frac{<omega2>}{<omega4>}\right|")
 def torque_ratio(omega2, omega4):
     """Equation 19: Gamma_e omega_e = Gamma_s omega_s; undefined when the rocker is at rest."""
     return abs(_over(omega2, omega4))

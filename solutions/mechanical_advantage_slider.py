@@ -11,7 +11,7 @@ from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.polygons import crank_v, polygon_of_velocities, slider_v
-from coursework.solution import Moving, formula, mistake, stable
+from coursework.solution import Moving, mistake, stable
 
 UNITS = {
     "p": "mm",
@@ -66,12 +66,11 @@ def V_BA(r3, omega3):
     return r3 * abs(omega3)
 
 
-@formula(r"\frac{<V_e>}{<V_s>}")
 def mechanical_advantage(V_e, V_s):
     """Equation 21: F_e V_e = F_s V_s; undefined when the piston is at rest."""
     if np.ndim(V_s) == 0 and V_s == 0:
         raise Undefined("the piston is at rest: the mechanical advantage grows without bound there")
-    return np.where(V_s == 0, np.nan, V_e / np.where(V_s == 0, 1.0, V_s))[()]
+    return V_e / np.where(V_s == 0, np.nan, V_s)[()]
 
 
 def F_e(r2, Gamma_e):

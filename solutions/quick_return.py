@@ -136,7 +136,6 @@ def B_turn(B_side):
     return side_of(B_side)
 
 
-@formula(r"<theta1> + <B_turn> \times <DOB>")
 def phi(theta1, B_turn, DOB):
     """Direction of OB."""
     return wrap(theta1 + B_turn * DOB)
@@ -147,28 +146,21 @@ def A_turn(A_side):
     return side_of(A_side)
 
 
-@formula(r"<phi> + <A_turn> \times <AOB>")
 def theta2(phi, A_turn, AOB):
     """Direction of OA."""
     return wrap(phi + A_turn * AOB)
 
 
-@formula(r"<theta2> - <A_turn> \times \left(180^{\circ} - <angle_OAB>\right)")
 def theta3(theta2, A_turn, angle_OAB):
     """At A the path O-A-B turns by the supplement of its angle, back towards OB."""
     return wrap(theta2 + A_turn * (angle_OAB - 180))
 
 
-@formula(
-    r"\operatorname{atan2}\left(<OB> \sin <phi> - <r1> \sin <theta1>;\ "
-    r"<OB> \cos <phi> - <r1> \cos <theta1>\right)"
-)
 def theta4(r1, theta1, OB, phi):
     """Direction of DB, by its quadrant."""
     return atan2(OB * sin(phi) - r1 * sin(theta1), OB * cos(phi) - r1 * cos(theta1))
 
 
-@formula(r"<r1> \sin <theta1> + <r4> \sin <theta4>")
 def yB(r1, theta1, r4, theta4):
     return r1 * sin(theta1) + r4 * sin(theta4)
 
@@ -196,40 +188,25 @@ def _run(r5, h, yB):
     return sqrt(above * below)
 
 
-@formula(
-    r"\frac{<r2> \times <omega2> \times \sin\left(<theta2> - <theta4>\right)}"
-    r"{<r3> \times \sin\left(<theta4> - <theta3>\right)}"
-)
 def omega3(r2, omega2, r3, theta2, theta3, theta4):
     """Across the rocker, crank and coupler move B by opposite amounts."""
     return r2 * omega2 * sin(theta2 - theta4) / (r3 * sin(theta4 - theta3))
 
 
-@formula(
-    r"\frac{<r2> \times <omega2> \times \sin\left(<theta2> - <theta3>\right)}"
-    r"{<r4> \times \sin\left(<theta4> - <theta3>\right)}"
-)
 def omega4(r2, omega2, r4, theta2, theta3, theta4):
     """Along the coupler, A and B have the same velocity."""
     return r2 * omega2 * sin(theta2 - theta3) / (r4 * sin(theta4 - theta3))
 
 
-@formula(r"-\frac{<r4> \times <omega4> \times \cos <theta4>}{<r5> \times \cos <theta5>}")
 def omega5(r4, omega4, theta4, r5, theta5):
     """C keeps to its line."""
     return -r4 * omega4 * cos(theta4) / (r5 * cos(theta5))
 
 
-@formula(r"-<r4> \times <omega4> \times \sin <theta4> - <r5> \times <omega5> \times \sin <theta5>")
 def v_C(r4, omega4, theta4, r5, omega5, theta5):
     return -r4 * omega4 * sin(theta4) - r5 * omega5 * sin(theta5)
 
 
-@formula(
-    r"\frac{<r2> \times <omega2>^2 \times \cos\left(<theta2> - <theta3>\right) + <r3> \times <omega3>^2"
-    r" - <r4> \times <omega4>^2 \times \cos\left(<theta4> - <theta3>\right)}"
-    r"{<r4> \times \sin\left(<theta4> - <theta3>\right)}"
-)
 def alpha4(r2, omega2, r3, omega3, r4, omega4, theta2, theta3, theta4):
     """The accelerations of loop O-A-B-D, along the coupler."""
     return (
@@ -237,10 +214,6 @@ def alpha4(r2, omega2, r3, omega3, r4, omega4, theta2, theta3, theta4):
     ) / (r4 * sin(theta4 - theta3))
 
 
-@formula(
-    r"\frac{<r4> \times <omega4>^2 \times \sin <theta4> - <r4> \times <alpha4> \times \cos <theta4>"
-    r" + <r5> \times <omega5>^2 \times \sin <theta5>}{<r5> \times \cos <theta5>}"
-)
 def alpha5(r4, omega4, alpha4, theta4, r5, omega5, theta5):
     """C keeps to its line: no acceleration across it."""
     return (r4 * omega4**2 * sin(theta4) - r4 * alpha4 * cos(theta4) + r5 * omega5**2 * sin(theta5)) / (
@@ -248,10 +221,6 @@ def alpha5(r4, omega4, alpha4, theta4, r5, omega5, theta5):
     )
 
 
-@formula(
-    r"-<r4> \times <alpha4> \times \sin <theta4> - <r4> \times <omega4>^2 \times \cos <theta4>"
-    r" - <r5> \times <alpha5> \times \sin <theta5> - <r5> \times <omega5>^2 \times \cos <theta5>"
-)
 def a_C(r4, omega4, alpha4, theta4, r5, omega5, alpha5, theta5):
     return (
         -r4 * alpha4 * sin(theta4)
@@ -316,13 +285,11 @@ def _corner(near, other, opposite):
     return acos((near**2 + other**2 - opposite**2) / (2 * near * other))
 
 
-@formula(r"\arccos \left(\frac{<r1>^2 + (<r3> + <r2>)^2 - <r4>^2}{2 \times <r1> \times (<r3> + <r2>)}\right)")
 def DOB_far(r1, r2, r3, r4):
     """Angle at O of triangle ODB where crank and coupler are stretched in line."""
     return _corner(r1, r3 + r2, r4)
 
 
-@formula(r"\arccos \left(\frac{<r1>^2 + (<r3> - <r2>)^2 - <r4>^2}{2 \times <r1> \times (<r3> - <r2>)}\right)")
 def DOB_near(r1, r2, r3, r4):
     """The same where the coupler is folded back over the crank."""
     return _corner(r1, r3 - r2, r4)
@@ -364,19 +331,11 @@ def _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
     return rrp(_last_axis(polar(r1, theta1)) + rocker, _last_axis(r5), _last_axis(h)).real
 
 
-@formula(
-    r"<theta1> + 180^{\circ} - <B_turn> \times "
-    r"\arccos \left(\frac{<r1>^2 + <r4>^2 - (<r3> + <r2>)^2}{2 \times <r1> \times <r4>}\right)"
-)
 def theta4_far(r1, theta1, r2, r3, r4, B_turn):
     """Direction of DB where crank and coupler are stretched in line."""
     return wrap(theta1 + 180 - B_turn * _corner(r1, r4, r3 + r2))
 
 
-@formula(
-    r"<theta1> + 180^{\circ} - <B_turn> \times "
-    r"\arccos \left(\frac{<r1>^2 + <r4>^2 - (<r3> - <r2>)^2}{2 \times <r1> \times <r4>}\right)"
-)
 def theta4_near(r1, theta1, r2, r3, r4, B_turn):
     """The same where the coupler is folded back over the crank."""
     return wrap(theta1 + 180 - B_turn * _corner(r1, r4, r3 - r2))
@@ -445,14 +404,12 @@ def _longer_arc(theta2_turns):
     return np.where(two, 360 - arc, np.nan)
 
 
-@formula(r"180^{\circ} + \left|<DOB_far> - <DOB_near>\right|")
 @stable(_longer_arc)
 def alpha(DOB_far, DOB_near):
     """From one direction of OB to the other, and half a turn."""
     return 180 + abs(DOB_far - DOB_near)
 
 
-@formula(r"\left|\frac{<r2> \times <omega2>}{<v_C>}\right|")
 def mechanical_advantage(r2, omega2, v_C):
     """Of the crank pin over the piston, by their speeds."""
     if np.ndim(v_C) == 0 and v_C == 0:

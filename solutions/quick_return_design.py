@@ -18,12 +18,10 @@ UNITS = {"phi": "deg", "side": "1", "lean": "deg"}
 SYMBOLS = {"phi": r"\varphi", "side": r"\varepsilon", "lean": r"\left|\theta_3\right|_{\max}"}
 
 
-@formula(r"\tan \frac{<phi>}{2}")
 def t(phi):
     return tan(phi / 2)
 
 
-@formula(r"\frac{<stroke>}{4} \times \left(\sqrt{4 + 5 \times <t>^2} - <t>\right)")
 def r2(stroke, t):
     """Of all cranks shorter than half the stroke, the one whose rod leans least."""
     return stroke / 4 * (sqrt(4 + 5 * t**2) - t)
@@ -34,12 +32,10 @@ def side(mode):
     return np.where(mode == "inward", 1.0, -1.0)[()]
 
 
-@formula(r"<side> \times \frac{<stroke>^2 - 4 \times <r2>^2}{2 \times <stroke> \times <t>}")
 def e(side, stroke, r2, t):
     return side * (stroke**2 - 4 * r2**2) / (2 * stroke * t)
 
 
-@formula(r"\frac{1}{2} \times \sqrt{<stroke>^2 + \frac{2 \times <stroke> \times \left|<e>\right|}{<t>}}")
 def r3(stroke, e, t):
     return sqrt(stroke**2 + 2 * stroke * abs(e) / t) / 2
 

@@ -55,7 +55,6 @@ def _turning(r2, r3, e):
     return linkage
 
 
-@formula(r"<e> - <r2> \sin <theta2>")
 def p(e, r2, theta2):
     """Height of C above A."""
     return e - r2 * sin(theta2)
@@ -67,7 +66,6 @@ def q(r3, p):
     return sqrt(r3**2 - p**2)
 
 
-@formula(r"<r2> \cos <theta2> + <q>")
 def xC(r2, theta2, q):
     return r2 * cos(theta2) + q
 
@@ -78,13 +76,11 @@ def theta3(p, q):
     return atan2(p, q)
 
 
-@formula(r"-\frac{<r2> \times <omega2> \times \cos <theta2>}{<q>}")
 def omega3(r2, omega2, theta2, q):
     """The piston keeps to its line: no velocity across it."""
     return -r2 * omega2 * cos(theta2) / q
 
 
-@formula(r"-<r2> \times <omega2> \times \sin <theta2> - <p> \times <omega3>")
 def v_C(r2, omega2, theta2, p, omega3):
     """Velocity of the piston, positive to the right."""
     return -r2 * omega2 * sin(theta2) - p * omega3
@@ -107,21 +103,18 @@ def stroke(x2, x1):
     return x2 - x1
 
 
-@formula(r"\arcsin \frac{\left|<e>\right|}{<r3> - <r2>}")
 @stable(lambda e, x1: atan2(abs(e), x1))
 def phi1(r2, r3, e):
     """Between the x axis and the line OC1."""
     return asin(abs(e) / (r3 - r2))
 
 
-@formula(r"\arcsin \frac{\left|<e>\right|}{<r3> + <r2>}")
 @stable(lambda e, x2: atan2(abs(e), x2))
 def phi2(r2, r3, e):
     """Between the x axis and the line OC2."""
     return asin(abs(e) / (r3 + r2))
 
 
-@formula(r"180^{\circ} + <phi1> - <phi2>")
 @stable(lambda _turning: 180 + from_radians(abs(_turning.quick_return())))
 def alpha(phi1, phi2):
     """The longer of the two arcs of crank between the positions in line."""

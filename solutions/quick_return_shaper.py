@@ -13,7 +13,7 @@ import numpy as np
 from coursework.degrees import acos, asin, atan2, cos, polar, sin, sqrt
 from coursework.errors import CannotAssemble, Undefined
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin, point, rotation_arrow
-from coursework.solution import formula, mistake, stable
+from coursework.solution import mistake, stable
 
 from ._slotted_ram import *
 from ._strokes import *
@@ -67,7 +67,6 @@ def _turn(r1, r2, r4, r5, h):
     return _Turn(stroke[()], np.logical_or(stretched, folded))
 
 
-@formula(r"\arcsin \frac{<r2>}{<r1>}")
 @stable(lambda r1, r2: atan2(r2, _to_the_contact(r1, r2)))
 def sigma(r1, r2):
     """Between the guide at the end of its swing and the y axis: the crank is square to it."""
@@ -89,7 +88,6 @@ def _two_strokes(sigma, _turn):
     return np.where(np.isnan(_turn.stroke) | _turn.lines_up, np.nan, 180 + 2 * sigma)[()]
 
 
-@formula(r"180^{\circ} + 2 \times <sigma>")
 @stable(_two_strokes)
 def alpha(sigma):
     """The longer of the two arcs of crank between the ends of the swing."""

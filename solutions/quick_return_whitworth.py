@@ -14,7 +14,7 @@ from coursework.degrees import acos, asin, atan, atan2, cos, polar, sin, sqrt
 from coursework.errors import CannotAssemble, Undefined
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin, point, rotation_arrow
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.solution import formula, mistake, stable
+from coursework.solution import mistake, stable
 
 from ._slotted_ram import *
 from ._strokes import *
@@ -84,14 +84,12 @@ def stroke(x2, x1):
     return x2 - x1
 
 
-@formula(r"\arcsin \frac{<h>}{<r5> - <r4>}")
 @stable(lambda h, x1: atan2(h, x1))
 def phi1(r4, r5, h):
     """Inclination of the line O4C1."""
     return asin(h / (r5 - r4))
 
 
-@formula(r"\arcsin \frac{<h>}{<r5> + <r4>}")
 @stable(lambda h, x2: atan2(h, x2))
 def phi2(r4, r5, h):
     """Inclination of the line O4C2."""
@@ -104,21 +102,18 @@ def _at_A(r1, r2, phi):
     return atan2(r1 * cos(phi), sqrt(longer * shorter))
 
 
-@formula(r"\arcsin \left(\frac{<r1> \cos <phi1>}{<r2>}\right)")
 @stable(lambda r1, r2, phi1: _at_A(r1, r2, phi1))
 def psi1(r1, r2, phi1):
     """Angle at A between guide and crank, at the near end: the law of sines in O4-O2-A."""
     return asin(r1 * cos(phi1) / r2)
 
 
-@formula(r"\arcsin \left(\frac{<r1> \cos <phi2>}{<r2>}\right)")
 @stable(lambda r1, r2, phi2: _at_A(r1, r2, phi2))
 def psi2(r1, r2, phi2):
     """The same at the far end."""
     return asin(r1 * cos(phi2) / r2)
 
 
-@formula(r"180^{\circ} + \left|<psi1> + <psi2> + <phi1> - <phi2>\right|")
 def alpha(phi1, phi2, psi1, psi2):
     """The longer of the two arcs of crank between the positions in line."""
     return 180 + abs(psi1 + psi2 + phi1 - phi2)

@@ -34,7 +34,6 @@ LOOPS = {
 }
 
 
-@formula(r"<e> - <r2> \sin <theta2>")
 def p(e, r2, theta2):
     """Height of B above A: r3 sin theta3."""
     return e - r2 * sin(theta2)

@@ -88,54 +88,35 @@ def theta3(p, q):
     return atan2(p, q)
 
 
-@formula(r"<r2> \cos <theta2> + <q>")
 def r1(r2, theta2, q):
     return r2 * cos(theta2) + q
 
 
-@formula(r"-\frac{<r2> \times <omega2> \times \cos <theta2>}{<q>}")
 def omega3(r2, omega2, theta2, q):
     """The piston keeps to its line: no velocity across it."""
     return -r2 * omega2 * cos(theta2) / q
 
 
-@formula(r"-<r2> \times <omega2> \times \sin <theta2> - <p> \times <omega3>")
 def r1_dot(r2, omega2, theta2, p, omega3):
     """Velocity of the piston, positive to the right."""
     return -r2 * omega2 * sin(theta2) - p * omega3
 
 
-@formula(
-    r"\frac{<r2> \times <omega2>^2 \times \sin <theta2> - <r2> \times <alpha2> \times \cos <theta2>"
-    r" + <p> \times <omega3>^2}{<q>}"
-)
 def alpha3(r2, omega2, alpha2, theta2, p, q, omega3):
     """No acceleration across the line either."""
     return (r2 * omega2**2 * sin(theta2) - r2 * alpha2 * cos(theta2) + p * omega3**2) / q
 
 
-@formula(
-    r"-<r2> \times <alpha2> \times \sin <theta2> - <r2> \times <omega2>^2 \times \cos <theta2>"
-    r" - <p> \times <alpha3> - <q> \times <omega3>^2"
-)
 def r1_ddot(r2, omega2, alpha2, theta2, p, q, omega3, alpha3):
     """Acceleration of the piston, positive to the right."""
     return -r2 * alpha2 * sin(theta2) - r2 * omega2**2 * cos(theta2) - p * alpha3 - q * omega3**2
 
 
-@formula(
-    r"-<r2> \times <alpha2> \times \sin <theta2> - <r2> \times <omega2>^2 \times \cos <theta2>"
-    r" - <s3> \times \left(<p> \times <alpha3> + <q> \times <omega3>^2\right)"
-)
 def a_G_x(r2, omega2, alpha2, theta2, s3, p, q, omega3, alpha3):
     """Acceleration of A, and the share s3 of that of B about A."""
     return -r2 * alpha2 * sin(theta2) - r2 * omega2**2 * cos(theta2) - s3 * (p * alpha3 + q * omega3**2)
 
 
-@formula(
-    r"<r2> \times <alpha2> \times \cos <theta2> - <r2> \times <omega2>^2 \times \sin <theta2>"
-    r" + <s3> \times \left(<q> \times <alpha3> - <p> \times <omega3>^2\right)"
-)
 def a_G_y(r2, omega2, alpha2, theta2, s3, p, q, omega3, alpha3):
     return r2 * alpha2 * cos(theta2) - r2 * omega2**2 * sin(theta2) + s3 * (q * alpha3 - p * omega3**2)
 
@@ -163,7 +144,6 @@ def inertia(m3, J3, m4, J2, s3, p, q, r1_ddot, a_G_x, a_G_y, alpha3, alpha2):
     )
 
 
-@formula(r"<f> \times \operatorname{sgn}\left(<r1_dot>\right)")
 def friction(f, r1_dot):
     """The coefficient with the sign of the motion; a piston at rest is given no friction."""
     return f * np.sign(r1_dot)
@@ -208,7 +188,6 @@ def M_A(applied):
     return applied.M_A
 
 
-@formula(r"\operatorname{sgn}\left(<p> \times <X4> - <q> \times <Y4> - \num{1000} \times <M_A>\right)")
 def side(p, q, X4, Y4, M_A):
     """The side of the guide that bears, +1 under the piston: where it would bear without friction."""
     return np.sign(_push(p, q, X4, Y4, M_A))
@@ -242,53 +221,42 @@ def N_guide(p, q, X4, Y4, M_A, side, friction=0.0):
     return push / arm
 
 
-@formula(r"-<friction> \times \left|<N_guide>\right|")
 def friction_force(N_guide, friction=0.0):
     """Along +x, on the piston."""
     return -friction * abs(N_guide)
 
 
-@formula(r"-\left(<X4> + <friction_force>\right)")
 def R_B_x(X4, friction_force):
     """Force of the rod on the piston."""
     return -(X4 + friction_force)
 
 
-@formula(r"-\left(<Y4> + <N_guide>\right)")
 def R_B_y(Y4, N_guide):
     return -(Y4 + N_guide)
 
 
-@formula(r"<R_B_x> - <X3>")
 def R_A_x(R_B_x, X3):
     """Force of the crank on the rod."""
     return R_B_x - X3
 
 
-@formula(r"<R_B_y> - <Y3>")
 def R_A_y(R_B_y, Y3):
     return R_B_y - Y3
 
 
-@formula(
-    r"\frac{<r2> \times \left(<R_A_y> \times \cos <theta2> - <R_A_x> \times \sin <theta2>\right)}{\num{1000}} - <M2>"
-)
 def torque(r2, theta2, R_A_x, R_A_y, M2):
     """The crank balances about O under the drive, the rod and its own inertia."""
     return r2 * (R_A_y * cos(theta2) - R_A_x * sin(theta2)) / 1000 - M2
 
 
-@formula(r"\sqrt{<R_A_x>^2 + <R_A_y>^2}")
 def R_A(R_A_x, R_A_y):
     return np.hypot(R_A_x, R_A_y)
 
 
-@formula(r"\sqrt{<R_B_x>^2 + <R_B_y>^2}")
 def R_B(R_B_x, R_B_y):
     return np.hypot(R_B_x, R_B_y)
 
 
-@formula(r"<R_A>")
 def R_O(R_A):
     """The balanced crank bears no force but those of its two pins."""
     return R_A

@@ -79,10 +79,6 @@ def theta3(a, b, c, side):
     return wrap(atan2(b, a) - side * acos(c / sqrt(a**2 + b**2)))
 
 
-@formula(
-    r"\operatorname{atan2}\left(<r1> + <r2> \sin <theta2> + <r3> \sin <theta3>;\ "
-    r"<r2> \cos <theta2> + <r3> \cos <theta3>\right)"
-)
 @stable(lambda _linkage: wrap(from_radians(_linkage.rocker_angle) - 90))
 def theta4(r1, r2, theta2, r3, theta3):
     """Direction of B seen from D, by its quadrant."""
@@ -119,7 +115,6 @@ def r6(A, B, C):
     return (-B + sqrt(B**2 - 4 * A * C)) / (2 * A)
 
 
-@formula(r"\operatorname{atan2}\left(<r4> \sin <theta4>;\ <r4> \cos <theta4> - <r6>\right)")
 def theta5(r4, theta4, r6):
     """Direction from the slider to B, by its quadrant."""
     return atan2(r4 * sin(theta4), r4 * cos(theta4) - r6)

@@ -103,10 +103,6 @@ def theta3(phi, psi, side):
     return wrap(phi + side * psi)
 
 
-@formula(
-    r"\operatorname{atan2}\left(<r2> \sin <theta2> + <r3> \sin <theta3> - <yC>;\ "
-    r"<r2> \cos <theta2> + <r3> \cos <theta3> - <xC>\right)"
-)
 @stable(lambda _loop_1, _frame: wrap(from_radians(_loop_1.rocker_angle) + _frame))
 def theta4(xC, yC, r2, theta2, r3, theta3):
     """Direction of CB, by its quadrant."""
@@ -156,7 +152,6 @@ def theta7(r7, p7):
     return atan2(p7, sqrt(r7**2 - p7**2))
 
 
-@formula(r"<xD> + <r5> \cos <theta5> + <r7> \cos <theta7>")
 @stable(lambda xD, r5, theta5, q7: xD + r5 * cos(theta5) + q7)
 def x8(xD, r5, theta5, r7, theta7):
     return xD + r5 * cos(theta5) + r7 * cos(theta7)
@@ -205,11 +200,6 @@ def alpha5(r2, omega2, theta2, r6, omega3, alpha3, theta6, d5, d5_dot, omega5, t
     ) / d5
 
 
-@formula(
-    r"<d5> \times <omega5>^2 - <r2> \times <omega2>^2 \times \cos\left(<theta2> - <theta5>\right)"
-    r" - <r6> \times <alpha3> \times \sin\left(<theta6> - <theta5>\right)"
-    r" - <r6> \times <omega3>^2 \times \cos\left(<theta6> - <theta5>\right)"
-)
 def d5_ddot(r2, omega2, theta2, r6, omega3, alpha3, theta6, d5, omega5, theta5):
     """Component of the acceleration of E along the bar, less the centripetal term."""
     return (

@@ -116,10 +116,6 @@ def theta3(phi_1, psi_1, side_1):
     return wrap(phi_1 + side_1 * psi_1)
 
 
-@formula(
-    r"\operatorname{atan2}\left(<r2> \sin <theta2> + <r3> \sin <theta3> - <yC>;\ "
-    r"<r2> \cos <theta2> + <r3> \cos <theta3> - <xC>\right)"
-)
 @stable(lambda _loop_1, _frame_1: wrap(from_radians(_loop_1.rocker_angle) + _frame_1))
 def theta4(xC, yC, r2, theta2, r3, theta3):
     """Direction of CB, by its quadrant."""
@@ -164,9 +160,6 @@ def theta6(phi_2, psi_2, side_2):
     return wrap(phi_2 + side_2 * psi_2)
 
 
-@formula(
-    r"\operatorname{atan2}\left(<yD> + <r6> \sin <theta6> - <yF>;\ <xD> + <r6> \cos <theta6> - <xF>\right)"
-)
 @stable(lambda _loop_2, _frame_2: wrap(from_radians(_loop_2.rocker_angle) + _frame_2))
 def theta7(xD, yD, r6, theta6, xF, yF):
     """Direction of FE, by its quadrant."""

@@ -7,7 +7,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.marking.drawn_polygons import Asked, Read, verdicts
 from coursework.polygons import crank_v, polygon_of_velocities, two_bars_v
-from coursework.solution import formula, judge, mistake
+from coursework.solution import judge, mistake
 
 from ._drawn_velocity import *
 
@@ -42,7 +42,6 @@ def turn_3(_bars, omega2):
     return np.sign(ratio * omega2)
 
 
-@formula(r"<turn_3> \times \frac{<kv> \times <ab>}{<r3>}")
 def omega3(turn_3, kv, ab, r3):
     return turn_3 * kv * ab / r3
 
@@ -53,7 +52,6 @@ def turn_4(_bars, omega2):
     return np.sign(ratio * omega2)
 
 
-@formula(r"<turn_4> \times \frac{<kv> \times <pv_b>}{<r4>}")
 def omega4(turn_4, kv, pv_b, r4):
     return turn_4 * kv * pv_b / r4
 

@@ -7,7 +7,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.marking.drawn_polygons import Asked, Read, verdicts
 from coursework.polygons import crank_v, polygon_of_velocities, slider_v
-from coursework.solution import formula, judge, mistake
+from coursework.solution import judge, mistake
 
 from ._drawn_velocity import *
 
@@ -39,7 +39,6 @@ def way_B(_images):
     return np.sign(v_B.real)
 
 
-@formula(r"<way_B> \times <kv> \times <pv_b>")
 def r1_dot(way_B, kv, pv_b):
     return way_B * kv * pv_b
 
@@ -50,7 +49,6 @@ def turn_3(_bars, omega2):
     return np.sign(ratio * omega2)
 
 
-@formula(r"<turn_3> \times \frac{<kv> \times <ab>}{<r3>}")
 def omega3(turn_3, kv, ab, r3):
     return turn_3 * kv * ab / r3
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from coursework.degrees import atan2, cos, polar, sin, sqrt
+from coursework.degrees import acos, angle, atan2, cos, polar, sin, sqrt, wrap
+from coursework.errors import Undefined
 from coursework.sheets import answer_sheet as sheets
-from coursework.sheets.formula_latex import formula_latex, number_latex
+from coursework.sheets.formula_latex import Told, formula_latex, number_latex
 from coursework.solution import formula
 
 
@@ -31,6 +32,58 @@ def vector(a, theta):
     return polar(a, theta).real
 
 
+def length(a, b):
+    return np.hypot(a, b)
+
+
+def signed_fraction(a, b, theta):
+    return -a * cos(theta) / b
+
+
+def turned_by_halves(theta, a):
+    return wrap(theta + 180 - a * theta / 2)
+
+
+def square_to(theta, a):
+    return theta + 90 * a
+
+
+def period(a):
+    """One turn."""
+    if a == 0:
+        raise Undefined("it stands still")
+    return np.where(a == 0, np.nan, 2 * np.pi / abs(a))[()]
+
+
+def sum_of_vectors(a, b, theta):
+    return angle(polar(a, theta) - (b + 1j * a))
+
+
+def sum_with_a_complex_quantity(a, arm, theta):
+    return angle(polar(a, theta) + arm)
+
+
+def _corner(near, other, opposite):
+    """The law of cosines."""
+    return acos((near**2 + other**2 - opposite**2) / (2 * near * other))
+
+
+def corner(a, b):
+    return _corner(a + b, b, a)
+
+
+def extremes(a, b):
+    return np.minimum(a, b) * np.sign(b)
+
+
+def _position(x, y, z):
+    return np.stack(np.broadcast_arrays(x, y, z), axis=-1)
+
+
+def position(a, b):
+    return _position(a + b, 0.0, -b)
+
+
 def two_steps(a, b):
     """Told in words."""
     c = a + b
@@ -43,8 +96,18 @@ def stated(a, b):
     return total - b
 
 
-SYMBOLS = {"a": ("a", False), "b": ("b", False), "theta": (r"\theta", False)}
-NUMBERS = {"a": (r"\num{3}", True), "b": (r"\num{-4}", True), "theta": (r"\num{60}^{\circ}", True)}
+SYMBOLS = {
+    "a": ("a", False),
+    "b": ("b", False),
+    "theta": Told(r"\theta", False, "angle"),
+    "arm": Told(r"\vec{r}", False, "complex"),
+}
+NUMBERS = {
+    "a": (r"\num{3}", True),
+    "b": (r"\num{-4}", True),
+    "theta": Told(r"\num{60}^{\circ}", True, "angle"),
+    "arm": Told(r"\left(\num{1} - \num{2}\,i\right)", True, "complex"),
+}
 
 
 @pytest.mark.parametrize(
@@ -75,6 +138,57 @@ NUMBERS = {"a": (r"\num{3}", True), "b": (r"\num{-4}", True), "theta": (r"\num{6
             vector,
             r"\operatorname{Re}\left(a\,e^{i\,\theta}\right)",
             r"\operatorname{Re}\left(\num{3}\,e^{i\,\num{60}^{\circ}}\right)",
+        ),
+        (
+            length,
+            r"\sqrt{a^{\num{2}} + b^{\num{2}}}",
+            r"\sqrt{\num{3}^{\num{2}} + \left(\num{-4}\right)^{\num{2}}}",
+        ),
+        (
+            signed_fraction,
+            r"-\frac{a\,\cos\left(\theta\right)}{b}",
+            r"-\frac{\num{3}\,\cos\left(\num{60}^{\circ}\right)}{\num{-4}}",
+        ),
+        (
+            turned_by_halves,
+            r"\theta + \num{180}^{\circ} - \frac{a\,\theta}{\num{2}}",
+            r"\num{60}^{\circ} + \num{180}^{\circ} - \frac{\num{3} \times \num{60}^{\circ}}{\num{2}}",
+        ),
+        (
+            square_to,
+            r"\theta + \num{90}^{\circ}\,a",
+            r"\num{60}^{\circ} + \num{90}^{\circ} \times \num{3}",
+        ),
+        (period, r"\frac{\num{2}\,\pi}{\left|a\right|}", r"\frac{\num{2}\,\pi}{\left|\num{3}\right|}"),
+        (
+            sum_of_vectors,
+            r"\operatorname{atan2}\left(a\,\sin\left(\theta\right) - a;\ a\,\cos\left(\theta\right) - b\right)",
+            r"\operatorname{atan2}\left(\num{3}\,\sin\left(\num{60}^{\circ}\right) - \num{3};\ "
+            r"\num{3}\,\cos\left(\num{60}^{\circ}\right) - \left(\num{-4}\right)\right)",
+        ),
+        (
+            sum_with_a_complex_quantity,
+            r"\operatorname{arg}\left(a\,e^{i\,\theta} + \vec{r}\right)",
+            r"\operatorname{arg}\left(\num{3}\,e^{i\,\num{60}^{\circ}} + "
+            r"\left(\num{1} - \num{2}\,i\right)\right)",
+        ),
+        (
+            corner,
+            r"\arccos\left(\frac{\left(a + b\right)^{\num{2}} + b^{\num{2}} - a^{\num{2}}}"
+            r"{\num{2}\,\left(a + b\right)\,b}\right)",
+            r"\arccos\left(\frac{\left(\num{3} + \left(\num{-4}\right)\right)^{\num{2}} + "
+            r"\left(\num{-4}\right)^{\num{2}} - \num{3}^{\num{2}}}"
+            r"{\num{2}\,\left(\num{3} + \left(\num{-4}\right)\right) \times \left(\num{-4}\right)}\right)",
+        ),
+        (
+            extremes,
+            r"\operatorname{min}\left(a;\ b\right)\,\operatorname{sgn}\left(b\right)",
+            r"\operatorname{min}\left(\num{3};\ \num{-4}\right)\,\operatorname{sgn}\left(\num{-4}\right)",
+        ),
+        (
+            position,
+            r"\left(a + b;\ \num{0};\ -b\right)",
+            r"\left(\num{3} + \left(\num{-4}\right);\ \num{0};\ -\left(\num{-4}\right)\right)",
         ),
         (two_steps, "", ""),
         (stated, "a - b", r"\num{3} - \left(\num{-4}\right)"),
@@ -112,6 +226,24 @@ def difference(whole, sum_of_two):
 def test_a_symbol_that_is_a_sum_stands_in_brackets():
     shown = {"whole": ("L", False), "sum_of_two": ("s + l", False)}
     assert formula_latex(difference, shown) == r"L - \left(s + l\right)"
+
+
+def times(k, OB):
+    return k * OB * 2
+
+
+@pytest.mark.parametrize("segment", ["OB", "OB_1", r"\angle DOB_{+}", "p_a b", "b'' b"])
+def test_a_symbol_of_several_letters_is_told_from_a_product(segment):
+    shown = {"k": ("k_a", False), "OB": (segment, False)}
+    assert formula_latex(times, shown) == rf"k_a \times {segment} \times \num{{2}}"
+
+
+@pytest.mark.parametrize(
+    "letter", ["r_{A,x}", r"\ddot{r}_1", r"V_{1/4}(A_1)", r"\mathrm{MA}", r"\theta_{4+}", r"\ell_3"]
+)
+def test_a_symbol_of_one_letter_stands_beside_its_factor(letter):
+    shown = {"k": ("k_a", False), "OB": (letter, False)}
+    assert formula_latex(times, shown).startswith(rf"k_a\,{letter} ")
 
 
 def test_each_asked_step_says_which_question_it_answers(course):

@@ -18,7 +18,7 @@ from coursework.markup.formula_tree import tokens
 from coursework.rendering.views import chain_on_lines, given_formula, given_words
 from coursework.selfstudy.refusals import expect
 from coursework.sheets.answer_sheet import answer_sheet
-from coursework.sheets.formula_latex import formula_latex, number_latex
+from coursework.sheets.formula_latex import Told, formula_latex, kind_of, number_latex
 from coursework.sheets.handout import handout
 
 if TYPE_CHECKING:
@@ -208,17 +208,18 @@ def variables(path: Path, changed: int) -> Mapping[str, frozenset[str]]:
 
 def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
     """The formula, numbers put in for what is known; empty where words say it or it would be the value."""
-    values = variant.walk
-    shown = {n: (_symbol(variant, n), False) for n in values}
-    shown |= {
-        n: (number_latex(value, variant.exercise.units.get(n, "1"), _DIGITS), True)
+    values, units = variant.walk, variant.exercise.units
+    kinds = {n: kind_of(value, units.get(n, "1")) for n, value in values.items()}
+    symbols = {n: Told(_symbol(variant, n), False, kinds[n]) for n in values}
+    shown = symbols | {
+        n: Told(number_latex(value, units.get(n, "1"), _DIGITS), True, kinds[n])
         for n, value in known.items()
         if isinstance(values.get(n), (int, float, complex))
     }
     function = variant.exercise.solution.graph.node(quantity).function
     try:
         formula = formula_latex(function, shown)
-        plain = formula_latex(function, {n: (_symbol(variant, n), False) for n in values})
+        plain = formula_latex(function, symbols)
     except KeyError:
         return ""
     symbol = _symbol(variant, quantity)

@@ -15,7 +15,14 @@ from coursework.language.words import words as engine_words
 from coursework.model import Part
 from coursework.quantities.graph import plain_scalar
 from coursework.sheets.drawings import solution_figure, stated_polygons
-from coursework.sheets.formula_latex import Shown, formula_in_symbols, formula_latex, number_latex
+from coursework.sheets.formula_latex import (
+    Shown,
+    Told,
+    formula_in_symbols,
+    formula_latex,
+    kind_of,
+    number_latex,
+)
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Answer, AnswerSheet, Remark, Step
 
@@ -56,9 +63,10 @@ def _symbol(variant: Variant, name: str) -> str:
 def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step, ...]:
     """The quantities that are not given, in order."""
     units = variant.exercise.units
-    symbols = tuple((n, _symbol(variant, n)) for n in values)
+    kinds = {n: kind_of(v, units.get(n, "1")) for n, v in values.items()}
+    symbols = tuple((n, _symbol(variant, n), kinds[n]) for n in values)
     numbers = {
-        n: (number_latex(v, units.get(n, "1"), PRINTED_DIGITS), True)
+        n: Told(number_latex(v, units.get(n, "1"), PRINTED_DIGITS), True, kinds[n])
         for n, v in values.items()
         if isinstance(v, (int, float, complex))
     }
@@ -75,7 +83,7 @@ def _step(
     name: str,
     found: Any,
     text: Any,
-    symbols: tuple[tuple[str, str], ...],
+    symbols: tuple[tuple[str, str, str], ...],
     numbers: Shown,
     remarks: Sequence[Remark],
 ) -> Step:

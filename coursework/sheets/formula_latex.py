@@ -1,19 +1,22 @@
 """The worked solution: the walk of the quantity graph, each function shown as formula, numbers, value.
 
 A function whose body is one expression is printed from its own source, so that the formula on
-paper is the one that computed the answer. A function that does more says its formula by
+paper is the one that computed the answer. Guards that raise are passed over, and a private helper that is one
+expression itself stands in its place. A function that does more says its formula by
 :func:`coursework.solution.formula`, or is told in words alone.
 """
 
 from __future__ import annotations
 
 import ast
+import copy
 import inspect
+import itertools
 import re
 import textwrap
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -29,13 +32,33 @@ _FUNCTIONS = {
     "atan2": r"\operatorname{atan2}",
     "angle": r"\operatorname{arg}",
     "exp": r"\exp",
-    "hypot": r"\operatorname{hypot}",
-    "wrap": "",
+    "sign": r"\operatorname{sgn}",
+    "minimum": r"\operatorname{min}",
+    "maximum": r"\operatorname{max}",
+    "shortest": r"\operatorname{min}",
+    "longest": r"\operatorname{max}",
 }
+_DIRECTIONS = ("asin", "acos", "atan", "atan2", "angle")  #: functions that give an angle, in degrees
 _SUM, _PRODUCT, _UNARY, _POWER, _ATOM = range(5)
 
-#: What stands for a name in print: LaTeX, and whether it is a number.
-Shown = Mapping[str, tuple[str, bool]]
+
+class Told(NamedTuple):
+    """What stands for a name in print."""
+
+    latex: str
+    is_number: bool
+    kind: str = ""  #: of its value: ``angle`` in degrees, ``complex``, or neither
+
+
+#: What stands for each name; a plain pair of LaTeX and whether it is a number will do.
+Shown = Mapping[str, tuple]
+
+
+def kind_of(value: Any, unit: str) -> str:
+    """The kind of a value, as :class:`Told` has it."""
+    if isinstance(value, (complex, np.complexfloating)):
+        return "complex"
+    return "angle" if unit == "deg" else ""
 
 
 class Unprintable(Exception):
@@ -44,26 +67,57 @@ class Unprintable(Exception):
 
 @lru_cache(maxsize=1024)
 def _expression(function: Callable[..., Any]) -> ast.expr:
+    """What a function returns, where that is all it does besides refusing what does not exist."""
     try:
         source = textwrap.dedent(inspect.getsource(function))
     except (OSError, TypeError) as fault:
         raise Unprintable from fault
     body = ast.parse(source).body[0]
-    statements = [
-        s
-        for s in getattr(body, "body", [])
-        if not (isinstance(s, ast.Expr) and isinstance(s.value, ast.Constant))
-    ]
+    statements = [s for s in getattr(body, "body", []) if not (_is_docstring(s) or _is_guard(s))]
     if len(statements) != 1 or not isinstance(statements[0], ast.Return) or statements[0].value is None:
         raise Unprintable
     return statements[0].value
 
 
-class _Printer:
-    """An expression tree to LaTeX; names are shown as told."""
+def _is_docstring(statement: ast.stmt) -> bool:
+    return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
 
-    def __init__(self, shown: Shown):
+
+def _is_guard(statement: ast.stmt) -> bool:
+    """``if …: raise …``, which says where the formula does not exist."""
+    return (
+        isinstance(statement, ast.If)
+        and not statement.orelse
+        and [type(s) for s in statement.body] == [ast.Raise]
+    )
+
+
+class _Degrees(float):
+    """A constant that is an angle: it stands in a sum with angles."""
+
+
+def _called(node: ast.expr) -> str:
+    """The name of the function that is called, without its module's; empty where nothing is."""
+    if not isinstance(node, ast.Call):
+        return ""
+    function = node.func
+    return function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+
+
+def _call(name: str, *arguments: ast.expr) -> ast.Call:
+    return ast.Call(ast.Name(name), list(arguments), [])
+
+
+def _square(node: ast.expr) -> ast.expr:
+    return ast.BinOp(node, ast.Pow(), ast.Constant(2))
+
+
+class _Printer:
+    """An expression tree to LaTeX; names are shown as told, private helpers are those of ``helpers``."""
+
+    def __init__(self, shown: Shown, helpers: Mapping[str, Any]):
         self.shown = shown
+        self.helpers = helpers
 
     def latex(self, node: ast.expr, within: int = _SUM) -> str:
         text, level = self._print(node)
@@ -75,29 +129,38 @@ class _Printer:
                 raise Unprintable
             case ast.Constant(value=complex() as value):
                 return ("i" if value == 1j else rf"\num{{{value.imag:g}}}\,i"), _ATOM
+            case ast.Constant(value=_Degrees() as value):
+                return rf"\num{{{value:g}}}^{{\circ}}", _ATOM
             case ast.Constant(value=value):
                 return rf"\num{{{value:g}}}", _ATOM
+            case ast.Name(id="pi") | ast.Attribute(attr="pi"):
+                return r"\pi", _ATOM
             case ast.Name(id=name):
                 return self._name(name)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return "-" + self._second(operand, _PRODUCT), _UNARY
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self._print(operand)
-            case ast.BinOp(left=left, op=ast.Add(), right=right):
-                return f"{self.latex(left)} + {self._second(right, _SUM)}", _SUM
-            case ast.BinOp(left=left, op=ast.Sub(), right=right):
-                return f"{self.latex(left)} - {self._second(right, _PRODUCT)}", _SUM
+            case ast.BinOp(op=ast.Add() | ast.Sub()):
+                return self._sum(node), _SUM
             case ast.BinOp(op=ast.Mult()):
                 return self._product(node), _PRODUCT
-            case ast.BinOp(left=left, op=ast.Div(), right=right):
-                return rf"\frac{{{self.latex(left)}}}{{{self.latex(right)}}}", _ATOM
+            case ast.BinOp(op=ast.Div()):
+                return self._fraction(node)
             case ast.BinOp(left=left, op=ast.Pow(), right=right):
                 return self._power(left, right)
             case ast.Attribute(value=value, attr="real" | "imag" as part):
                 name = r"\operatorname{Re}" if part == "real" else r"\operatorname{Im}"
                 return rf"{name}\left({self.latex(value)}\right)", _ATOM
-            case ast.Call(func=function, args=arguments, keywords=[]):
-                return self._call(function, arguments)
+            case ast.Subscript(value=value, slice=ast.Tuple(elts=[])):
+                return self._print(value)
+            case ast.Call(
+                func=ast.Attribute(attr="stack"),
+                args=[ast.Call(func=ast.Attribute(attr="broadcast_arrays"), args=coordinates)],
+            ):
+                return rf"\left({self._listed(coordinates)}\right)", _ATOM
+            case ast.Call(args=arguments, keywords=[]):
+                return self._call(_called(node), arguments)
         raise Unprintable
 
     def _second(self, node: ast.expr, within: int) -> str:
@@ -105,16 +168,61 @@ class _Printer:
         text = self.latex(node, within)
         return rf"\left({text}\right)" if text.startswith(("-", r"\num{-")) else text
 
+    def _listed(self, nodes: Sequence[ast.expr]) -> str:
+        return r";\ ".join(self.latex(node) for node in nodes)
+
     def _name(self, name: str) -> tuple[str, int]:
-        if name == "pi":
-            return r"\pi", _ATOM
         if name not in self.shown:
             raise Unprintable
-        text, is_number = self.shown[name]
+        text, is_number, *_ = self.shown[name]
         if not is_number and re.search(r"(?<=[\w}]) [+-] ", text):
             return text, _SUM  # a symbol that is a sum by itself: "s + l"
         negative = text.startswith(r"\num{-") or text.startswith("-")
         return text, (_UNARY if negative else _ATOM) if is_number else _ATOM
+
+    def _kind(self, name: str) -> str:
+        return Told(*self.shown[name]).kind if name in self.shown else ""
+
+    # ------------------------------------------------------------- sums, angles
+
+    def _sum(self, node: ast.expr) -> str:
+        node = self._in_degrees(node) if self._is_angle(node) else node
+        if isinstance(node.op, ast.Add):
+            return f"{self.latex(node.left)} + {self._second(node.right, _SUM)}"
+        return f"{self.latex(node.left)} - {self._second(node.right, _PRODUCT)}"
+
+    def _is_angle(self, node: ast.expr) -> bool:
+        """Whether an expression is an angle in degrees."""
+        match node:
+            case ast.Constant(value=value):
+                return isinstance(value, _Degrees)
+            case ast.Name(id=name):
+                return self._kind(name) == "angle"
+            case ast.UnaryOp(operand=operand):
+                return self._is_angle(operand)
+            case ast.BinOp(left=left, op=ast.Div(), right=right):
+                return self._is_angle(left) and not self._is_angle(right)
+            case ast.BinOp(left=left, op=ast.Add() | ast.Sub() | ast.Mult(), right=right):
+                return self._is_angle(left) or self._is_angle(right)
+            case ast.Call(args=arguments):
+                name = _called(node)
+                return name in _DIRECTIONS or (name in ("abs", "wrap") and self._is_angle(arguments[0]))
+        return False
+
+    def _in_degrees(self, node: ast.expr) -> ast.expr:
+        """A term of a sum of angles: its constant is one, ``180`` or the ``90`` of ``90 * sense``."""
+        match node:
+            case ast.Constant(value=int() | float() as value):
+                return ast.Constant(_Degrees(value))
+            case ast.UnaryOp(op=op, operand=operand):
+                return ast.UnaryOp(op, self._in_degrees(operand))
+            case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
+                return ast.BinOp(self._in_degrees(left), op, self._in_degrees(right))
+            case ast.BinOp(left=left, op=ast.Mult() as op, right=right) if not self._is_angle(node):
+                return ast.BinOp(self._in_degrees(left), op, right)
+        return node
+
+    # ------------------------------------------------- products, fractions, powers
 
     def _factors(self, node: ast.expr) -> list[ast.expr]:
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
@@ -125,10 +233,19 @@ class _Printer:
         factors = self._factors(node)
         texts = [self.latex(f, _PRODUCT if i == 0 else _POWER) for i, f in enumerate(factors)]
         out = texts[0]
-        for text in texts[1:]:
+        for pair, text in zip(itertools.pairwise(factors), texts[1:], strict=True):
             before_digit = text.startswith(r"\num") or re.match(r"\\left\(\\num\{-", text)
-            out += (r" \times " if before_digit else r"\,") + text
+            apart = before_digit or any(self._is_segment(factor) for factor in pair)
+            out += (r" \times " if apart else r"\,") + text
         return out
+
+    def _is_segment(self, factor: ast.expr) -> bool:
+        return isinstance(factor, ast.Name) and _is_segment(self.shown[factor.id][0])
+
+    def _fraction(self, node: ast.expr) -> tuple[str, int]:
+        over, is_negative = _without_sign(node.left)
+        text = rf"\frac{{{self.latex(over)}}}{{{self.latex(node.right)}}}"
+        return ("-" + text, _UNARY) if is_negative else (text, _ATOM)
 
     def _power(self, left: ast.expr, right: ast.expr) -> tuple[str, int]:
         if isinstance(right, ast.Constant) and right.value == 0.5:
@@ -149,24 +266,119 @@ class _Printer:
             base = rf"\left({text}\right)"
         return rf"{base}^{{{self.latex(right)}}}", _POWER
 
-    def _call(self, function: ast.expr, arguments: list[ast.expr]) -> tuple[str, int]:
-        name = function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
-        if name == "sqrt":
-            return rf"\sqrt{{{self.latex(arguments[0])}}}", _ATOM
-        if name in ("abs", "absolute"):
-            return rf"\left|{self.latex(arguments[0])}\right|", _ATOM
-        if name == "polar":
-            length = self.latex(arguments[0], _PRODUCT)
-            if isinstance(arguments[0], ast.Constant) and arguments[0].value == 1:
-                length = ""
-            joint = r"\," if length else ""
-            return rf"{length}{joint}e^{{i\,{self.latex(arguments[1], _POWER)}}}", _PRODUCT
-        if name == "wrap":
-            return self._print(arguments[0])
+    # ----------------------------------------------------------------- functions
+
+    def _call(self, name: str, arguments: Sequence[ast.expr]) -> tuple[str, int]:
+        match name, arguments:
+            case "sqrt", [inside]:
+                return rf"\sqrt{{{self.latex(inside)}}}", _ATOM
+            case "hypot", [one, other]:
+                return self._print(_call("sqrt", ast.BinOp(_square(one), ast.Add(), _square(other))))
+            case "abs" | "absolute", [inside]:
+                return rf"\left|{self.latex(inside)}\right|", _ATOM
+            case "polar", [length, theta]:
+                return self._polar(length, theta), _PRODUCT
+            case "wrap", [inside]:
+                return self._print(inside)
+            case "where", [_, ast.Attribute(attr="nan"), inside]:
+                return self._print(inside)  # like a guard, for arrays
+            case "angle", [vector] if (parts := self._components(vector)) and parts[1]:
+                return self._call("atan2", [_added(parts[1]), _added(parts[0])])
+        if name.startswith("_"):
+            return self._helper(name, arguments)
         if name not in _FUNCTIONS:
             raise Unprintable
-        inner = r";\ ".join(self.latex(a) for a in arguments)
-        return rf"{_FUNCTIONS[name]}\left({inner}\right)", _POWER
+        return rf"{_FUNCTIONS[name]}\left({self._listed(arguments)}\right)", _POWER
+
+    def _polar(self, length: ast.expr, theta: ast.expr) -> str:
+        turn = rf"e^{{i\,{self.latex(theta, _POWER)}}}"
+        if isinstance(length, ast.Constant) and length.value == 1:
+            return turn
+        return rf"{self.latex(length, _PRODUCT)}\,{turn}"
+
+    def _components(self, node: ast.expr) -> tuple[list, list] | None:
+        """The terms of a sum of polar and Cartesian vectors along x and along y; None where one is neither.
+
+        A term is its sign, whether it is subtracted, and its tree.
+        """
+        match node:
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return _turned(self._components(operand))
+            case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
+                one, other = self._components(left), self._components(right)
+                other = _turned(other) if isinstance(op, ast.Sub) else other
+                return one and other and (one[0] + other[0], one[1] + other[1])
+            case ast.BinOp(left=ast.Constant(value=1j), op=ast.Mult(), right=along):
+                return [], [(False, along)]
+            case ast.Call(args=[length, theta]) if _called(node) == "polar":
+                along, across = _times(length, _call("cos", theta)), _times(length, _call("sin", theta))
+                return [(False, along)], [(False, across)]
+            case ast.Name(id=name) if self._kind(name) != "complex":
+                return [(False, node)], []
+        return None
+
+    def _helper(self, name: str, arguments: Sequence[ast.expr]) -> tuple[str, int]:
+        """A private function that is one expression, with these arguments in place of its parameters."""
+        helper = self.helpers.get(name)
+        if not inspect.isfunction(helper):
+            raise Unprintable
+        parameters = tuple(inspect.signature(helper).parameters)
+        if len(parameters) != len(arguments):
+            raise Unprintable
+        put_in = _PutIn(dict(zip(parameters, arguments, strict=True)))
+        body = put_in.visit(copy.deepcopy(_expression(helper)))
+        return _Printer(self.shown, {**self.helpers, **helper.__globals__})._print(body)
+
+
+class _PutIn(ast.NodeTransformer):
+    """Trees in place of names."""
+
+    def __init__(self, trees: Mapping[str, ast.expr]):
+        self.trees = trees
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return self.trees.get(node.id, node)
+
+
+def _turned(parts: tuple[list, list] | None) -> tuple[list, list] | None:
+    return parts and tuple([(not minus, tree) for minus, tree in part] for part in parts)
+
+
+def _times(length: ast.expr, ratio: ast.expr) -> ast.expr:
+    is_one = isinstance(length, ast.Constant) and length.value == 1
+    return ratio if is_one else ast.BinOp(length, ast.Mult(), ratio)
+
+
+def _added(terms: Sequence[tuple[bool, ast.expr]]) -> ast.expr:
+    """Terms with their signs as one sum; 0 where there are none."""
+    if not terms:
+        return ast.Constant(0)
+    (minus, total), *others = terms
+    total = ast.UnaryOp(ast.USub(), total) if minus else total
+    for minus, term in others:
+        total = ast.BinOp(total, ast.Sub() if minus else ast.Add(), term)
+    return total
+
+
+def _without_sign(node: ast.expr) -> tuple[ast.expr, bool]:
+    """A product without the sign that it begins with, and whether it has one: it stands before its fraction."""
+    match node:
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return operand, True
+        case ast.BinOp(left=left, op=ast.Mult() as op, right=right):
+            left, is_negative = _without_sign(left)
+            return ast.BinOp(left, op, right), is_negative
+    return node, False
+
+
+def _is_segment(symbol: str) -> bool:
+    r"""Whether a symbol is of several letters, as ``OB`` or ``\angle DOB``: side by side they would be a product."""
+    if "(" in symbol or symbol.startswith((r"\frac", r"\num")):
+        return False
+    base = re.sub(r"\\mathrm\{\w*\}", "x", symbol)
+    while (less := re.sub(r"[_^](\{[^{}]*\}|\w)", "", base)) != base:
+        base = less
+    return len(re.findall(r"\\[a-zA-Z]+|[a-zA-Z]", re.sub(r"\\d*dot|\\vec", "", base))) > 1
 
 
 def formula_latex(function: Callable[..., Any], shown: Shown) -> str:
@@ -175,20 +387,20 @@ def formula_latex(function: Callable[..., Any], shown: Shown) -> str:
     if template is not None:
         return re.sub(r"<(\w+)>", lambda m: _in_template(shown, m), template)
     try:
-        return _Printer(shown).latex(_expression(function))
+        return _Printer(shown, getattr(function, "__globals__", {})).latex(_expression(function))
     except Unprintable:
         return ""
 
 
 @lru_cache(maxsize=1024)
-def formula_in_symbols(function: Callable[..., Any], symbols: tuple[tuple[str, str], ...]) -> str:
-    """The same with the symbol of each name: what all students of an exercise read."""
-    return formula_latex(function, {name: (symbol, False) for name, symbol in symbols})
+def formula_in_symbols(function: Callable[..., Any], symbols: tuple[tuple[str, str, str], ...]) -> str:
+    """The same with the symbol and kind of each name: what all students of an exercise read."""
+    return formula_latex(function, {name: Told(symbol, False, kind) for name, symbol, kind in symbols})
 
 
 def _in_template(shown: Shown, name: re.Match[str]) -> str:
     """A name of a stated formula; a negative number in brackets unless an opening bracket stands before it."""
-    text, is_number = shown[name.group(1)]
+    text, is_number, *_ = shown[name.group(1)]
     if not is_number or not text.startswith((r"\num{-", "-")):
         return text
     before, after = name.string[: name.start()].rstrip(), name.string[name.end() :].lstrip()
