@@ -10,12 +10,14 @@ from math import pi
 
 import numpy as np
 
-from coursework.degrees import acos, atan2, cos, polar, sin, sqrt, wrap
+from coursework.degrees import acos, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.errors import CannotAssemble, Undefined
+from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
-from coursework.kinematics.cycle import turning_points
-from coursework.kinematics.dyads import rrp, rrr, side_of
-from coursework.kinematics.margins import grashof_margins
+from coursework.kinematics.dyads import rrp, side_of
+from coursework.kinematics.rocker_slider import RockerSlider
+from coursework.kinematics.triangles import corner, corner_beside, third_side
+from coursework.kinematics.vectors import cross
 from coursework.polygons import (
     crank_a,
     crank_v,
@@ -80,12 +82,6 @@ LOOPS = {
 RATES = {"xC": ("v_C", "a_C")}
 
 
-def _refuse_negative(message, *margins):
-    """Stop on a scalar that does not close; arrays say NaN by their square roots."""
-    if isinstance(margins[0], float) and min(margins) < 0:
-        raise CannotAssemble(message)
-
-
 @formula(r"\sqrt{<r2>^2 + <r3>^2 - 2 \times <r2> \times <r3> \times \cos <angle_OAB>}")
 def OB(r2, r3, angle_OAB):
     """The law of cosines in triangle OAB, as a sum of two squares; its angle at A is from 0 to 180."""
@@ -95,35 +91,19 @@ def OB(r2, r3, angle_OAB):
             raise Undefined(f"the angle OAB of a triangle lies from 0 to 180 deg; found {angle_OAB:g}")
     else:
         angle_OAB = np.where(inside, angle_OAB, np.nan)
-    return sqrt((r3 - r2) ** 2 + 4 * r2 * r3 * sin(angle_OAB / 2) ** 2)
+    return third_side(r2, r3, Degrees(angle_OAB))
 
 
 @formula(r"\arccos \left(\frac{<r1>^2 + <OB>^2 - <r4>^2}{2 \times <r1> \times <OB>}\right)")
 def DOB(r1, r4, OB):
-    """Angle at O of triangle ODB, by its half."""
-    short, long = (r4 - r1 + OB) * (r4 + r1 - OB), (r1 + OB - r4) * (r1 + OB + r4)
-    _refuse_negative(
-        f"the linkage does not close: with OB = {OB:.6g}, OD = {r1:.6g} and DB = {r4:.6g}, "
-        "the longest exceeds the two others together"
-        if isinstance(short, float)
-        else "",
-        short,
-        long,
-    )
-    return 2 * atan2(sqrt(short), sqrt(long))
+    """Angle at O of triangle ODB."""
+    return from_radians(corner(r1, OB, r4))
 
 
 @formula(r"\arccos \left(\frac{<r2>^2 + <OB>^2 - <r3>^2}{2 \times <r2> \times <OB>}\right)")
 def AOB(r2, r3, angle_OAB, OB):
-    """Angle at O of triangle OAB, by its sine and cosine together."""
-    exact = (r3 - r2) ** 2 + 4 * r2 * r3 * sin(angle_OAB / 2) ** 2
-    # A distance OB that is not that of the data (given, or a student's) moves both margins.
-    change = (OB - sqrt(exact)) * (OB + sqrt(exact))
-    longer = 4 * r2 * r3 * cos(angle_OAB / 2) ** 2 - change
-    shorter = 4 * r2 * r3 * sin(angle_OAB / 2) ** 2 + change
-    _refuse_negative("no triangle OAB has these three sides", longer, shorter)
-    along = 2 * r2 * ((r2 - r3) + 2 * r3 * sin(angle_OAB / 2) ** 2) + change
-    return atan2(sqrt(longer * shorter), along)
+    """Angle at O of triangle OAB; a distance OB that is not that of the data (given, or a student's) counts."""
+    return from_radians(corner_beside(r2, r3, Degrees(angle_OAB), OB))
 
 
 def _to_the(side, theta, turn):
@@ -235,49 +215,7 @@ def mode(r1, r2, r3, r4, angle_OAB, B_side, A_side):
     length = OB(r2, r3, angle_OAB)
     to_B = _to_the(B_side, 0.0, DOB(r1, r4, length))
     crank = polar(r2, _to_the(A_side, to_B, AOB(r2, r3, angle_OAB, length)))
-    return np.where(_cross(r1 - crank, polar(length, to_B) - crank) >= 0, "open", "crossed")
-
-
-def _rocker_and_coupler(theta, r1, theta1, r2, r3, r4, side):
-    """Vectors DB, AB and OA at the crank angle ``theta``, in radians."""
-    crank, frame = r2 * np.exp(1j * theta), r1 * np.exp(1j * theta1)
-    inner = rrr(crank, frame, r3, r4, side)
-    return inner - frame, inner - crank, crank
-
-
-def _cross(u, v):
-    return u.real * v.imag - u.imag * v.real
-
-
-def _rocker_speed(rocker, coupler, crank):
-    return _cross(coupler, crank) / _cross(coupler, rocker)
-
-
-def _rise_of_B(theta, r1, theta1, r2, r3, r4, side):
-    """Derivative of yB with respect to the crank angle."""
-    rocker, coupler, crank = _rocker_and_coupler(theta, r1, theta1, r2, r3, r4, side)
-    return _rocker_speed(rocker, coupler, crank) * rocker.real
-
-
-def _advance_of_C(theta, r1, theta1, r2, r3, r4, side, r5, h):
-    """Derivative of xC with respect to the crank angle."""
-    rocker, coupler, crank = _rocker_and_coupler(theta, r1, theta1, r2, r3, r4, side)
-    rise = h - r1 * np.sin(theta1) - rocker.imag
-    with np.errstate(invalid="ignore"):
-        run = np.sqrt((r5 - rise) * (r5 + rise))
-    return _rocker_speed(rocker, coupler, crank) * (rocker.real * rise / run - rocker.imag)
-
-
-def _closes_all_turn(linkage, r5, h):
-    """By how much the crank turns fully, and the rod reaches its line, at every crank angle; mm."""
-    r1, theta1, r2, r3, r4, _ = linkage
-    stretched, folded = grashof_margins(r1, r2, r3, r4)
-    crank = np.minimum(stretched, folded) / (r1 + r2 + r3 + r4)
-    at_ends = turning_points(_rise_of_B, linkage)
-    with np.errstate(invalid="ignore"):
-        rocker = _rocker_and_coupler(at_ends, *[p[:, None] for p in linkage])[0]
-        rise = abs((h - r1 * np.sin(theta1))[:, None] - rocker.imag)
-    return crank, r5 - np.where(np.isnan(rise), 0.0, rise).max(axis=1)
+    return np.where(cross(r1 - crank, polar(length, to_B) - crank) >= 0, "open", "crossed")
 
 
 def _corner(near, other, opposite):
@@ -295,22 +233,14 @@ def DOB_near(r1, r2, r3, r4):
     return _corner(r1, r3 - r2, r4)
 
 
-def _all_turns(r1, theta1, r2, r3, r4, r5, h, mode):
+def _linkage(r1, theta1, r2, r3, r4, r5, h, mode):
+    """The mechanism over a turn, by the numeric core."""
+    return RockerSlider(r1, np.radians(theta1), r2, r3, r4, side_of(mode), r5, h)
+
+
+def _all_turns(_linkage):
     """Crank angles at which C turns back, over a whole turn; the last axis runs over them, then NaN."""
-    alone = isinstance(r1 + theta1 + r2 + r3 + r4 + r5 + h, float) and np.ndim(mode) == 0
-    given = np.broadcast_arrays(r1, np.radians(theta1), r2, r3, r4, side_of(mode), r5, h)
-    shape = given[0].shape
-    *linkage, r5, h = [np.atleast_1d(np.asarray(p, dtype=float)).ravel() for p in given]
-    crank, rod = _closes_all_turn(linkage, r5, h)
-    if alone and not crank[0] > 0:
-        raise CannotAssemble(
-            f"the crank does not turn fully: the linkage lacks {-crank[0]:.3g} mm to close at every angle"
-        )
-    if alone and not rod[0] > 0:
-        raise CannotAssemble(f"the rod does not reach its line all turn: it is {-rod[0]:.3g} mm too short")
-    angles = turning_points(_advance_of_C, [*linkage, r5, h])
-    angles[~((crank > 0) & (rod > 0))] = np.nan
-    return wrap(np.degrees(angles)).reshape(*shape, angles.shape[1])
+    return wrap(np.degrees(_linkage.turning_points()))
 
 
 @stable(_all_turns)
@@ -320,15 +250,10 @@ def theta2_turns(theta1, B_turn, DOB_far, DOB_near):
     return wrap(np.stack(np.broadcast_arrays(*turns), axis=-1))
 
 
-def _last_axis(value):
-    return np.asarray(value)[..., None]
-
-
-def _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
+def _positions(_linkage, r1, theta1, r5, h, theta2_turns):
     """xC where C turns back, along the last axis."""
-    linkage = [_last_axis(p) for p in (r1, np.radians(theta1), r2, r3, r4, side_of(mode))]
-    rocker = _rocker_and_coupler(np.radians(theta2_turns), *linkage)[0]
-    return rrp(_last_axis(polar(r1, theta1)) + rocker, _last_axis(r5), _last_axis(h)).real
+    pivot, rod, line = (np.asarray(value)[..., None] for value in (polar(r1, theta1), r5, h))
+    return rrp(pivot + _linkage.rocker_vectors(np.radians(theta2_turns)), rod, line).real
 
 
 def theta4_far(r1, theta1, r2, r3, r4, B_turn):
@@ -363,27 +288,15 @@ def xC_near(r1, theta1, r4, r5, h, theta4_near):
     return _piston_at(r1, theta1, r4, r5, h, theta4_near)
 
 
-def _farthest(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
-    """The farthest of the positions where C turns back."""
-    found = _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns)
-    highest = np.where(np.isnan(found), -np.inf, found).max(axis=-1)
-    return np.where(np.isfinite(highest), highest, np.nan)
-
-
-def _nearest(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns):
-    """The nearest of the positions where C turns back."""
-    found = _positions(r1, theta1, r2, r3, r4, r5, h, mode, theta2_turns)
-    lowest = np.where(np.isnan(found), np.inf, found).min(axis=-1)
-    return np.where(np.isfinite(lowest), lowest, np.nan)
-
-
-@stable(_farthest)
+@stable(lambda _positions: np.fmax.reduce(_positions, axis=-1))
 def xC_max(xC_far, xC_near):
+    """The farthest of the positions where C turns back."""
     return np.maximum(xC_far, xC_near)
 
 
-@stable(_nearest)
+@stable(lambda _positions: np.fmin.reduce(_positions, axis=-1))
 def xC_min(xC_far, xC_near):
+    """The nearest of them."""
     return np.minimum(xC_far, xC_near)
 
 

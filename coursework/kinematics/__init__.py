@@ -10,6 +10,8 @@ function computes what it is asked for and nothing beyond: rates only when rates
 ``dyads``         the Assour groups RRR, RRP, RPR, PRP, RPP in any orientation, and the drivers
 ``chains``        any closed chain, by Newton's method with a certificate
 ``cycle``         turning points over one turn
+``rocker_slider`` a slider moved by the rocker of a four-bar: where it turns back
+``triangles``     sides and angles, of flat triangles too
 
 They rest on ``angles`` (crank angles as exact sines and cosines), ``margins`` and ``closing`` (by how
 much a loop closes, without rounding), ``vectors``, ``scaling`` (exact powers of two) and ``blocks`` (long

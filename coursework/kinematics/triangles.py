@@ -1,0 +1,86 @@
+"""Sides and angles of a triangle that keep their digits when it is flat or its angle is small.
+
+Lengths in one common unit, positive; scalars or arrays that broadcast. An angle that is given is in radians or a
+heading (:mod:`angles`), one that is found is in radians in [0, pi]. What is no triangle raises
+:class:`CannotAssemble` when every argument is a scalar, and is NaN there and only there in arrays.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from coursework.errors import CannotAssemble
+from coursework.kinematics.angles import half_angle
+
+
+def third_side(one: Any, other: Any, angle: Any) -> Any:
+    """The side opposite to the angle between two sides.
+
+    Source: the law of cosines as a sum of two squares, ``(other - one)^2 + 4 one other sin^2(angle/2)``.
+    """
+    return np.sqrt(_square_of_third(one, other, half_angle(angle)[1]))
+
+
+def corner(near: Any, other: Any, opposite: Any) -> Any:
+    """The angle between the sides ``near`` and ``other``.
+
+    Raises
+    ------
+    CannotAssemble
+        Scalars only: one side exceeds the two others together.
+
+    Source
+    ------
+    The half-angle formula: its tangent squared is ``(s - near)(s - other) / (s (s - opposite))``.
+    """
+    across = (opposite - near + other) * (opposite + near - other)
+    along = (near + other - opposite) * (near + other + opposite)
+    _refuse_if_negative(across, along, near, other, opposite)
+    with np.errstate(invalid="ignore"):
+        return 2 * _direction(np.sqrt(across), np.sqrt(along))
+
+
+def corner_beside(one: Any, other: Any, angle: Any, third: Any) -> Any:
+    """The angle between ``one`` and the third side, where the angle between ``one`` and ``other`` is known too.
+
+    ``third`` counts: where it is not what the two sides and their angle make, because it was rounded or measured, the
+    angle is that of the triangle of the three sides. Where it is, no digit is lost in a flat triangle.
+
+    Raises
+    ------
+    CannotAssemble
+        Scalars only: the three sides make no triangle.
+
+    Source
+    ------
+    Sine and cosine together: Heron's formula and the law of cosines, each as the value that the angle gives and
+    what the third side changes of it.
+    """
+    half_cos, half_sin = half_angle(angle)
+    square = _square_of_third(one, other, half_sin)
+    change = (third - np.sqrt(square)) * (third + np.sqrt(square))
+    longer = 4 * one * other * half_cos**2 - change
+    shorter = 4 * one * other * half_sin**2 + change
+    _refuse_if_negative(longer, shorter, one, other, third)
+    along = 2 * one * ((one - other) + 2 * other * half_sin**2) + change
+    with np.errstate(invalid="ignore"):
+        return _direction(np.sqrt(longer * shorter), along)
+
+
+def _direction(y: Any, x: Any) -> Any:
+    return math.atan2(y, x) if np.ndim(y) == 0 else np.arctan2(y, x)
+
+
+def _square_of_third(one: Any, other: Any, half_sin: Any) -> Any:
+    return (other - one) ** 2 + 4 * one * other * half_sin**2
+
+
+def _refuse_if_negative(margin: Any, other_margin: Any, *sides: Any) -> None:
+    if np.ndim(margin) == 0 and min(margin, other_margin) < 0:
+        told = ", ".join(f"{side:.6g}" for side in sides[:2])
+        raise CannotAssemble(
+            f"the sides {told} and {sides[2]:.6g} make no triangle: the longest exceeds the two others together"
+        )

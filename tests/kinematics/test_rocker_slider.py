@@ -1,0 +1,105 @@
+"""Where a slider that a rocker moves turns back, against fifty digits and by symmetry."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from reference import exact, four_bar, mp
+
+from coursework.errors import CannotAssemble
+from coursework.kinematics.rocker_slider import RockerSlider
+
+ORDINARY = RockerSlider(80.0, math.radians(30), 20.0, 70.0, 70.0, 1, 300.0, 100.0)
+#: The rod lines up with the rocker within its swing, so that the slider turns back four times.
+FOUR_TIMES = RockerSlider(80.0, math.radians(60), 30.0, 90.0, 60.0, 1, 100.0, 60.0)
+
+
+def position(mechanism, crank_angle):
+    """The slider's abscissa."""
+    ground, turn, crank, coupler, rocker, _, rod, line = exact(*mechanism)
+    joint = four_bar(ground, crank, coupler, rocker, mp.mpf(crank_angle) - turn, mechanism.side)[2] * mp.expj(
+        turn
+    )
+    return mp.re(joint) + mp.sqrt(rod**2 - (line - mp.im(joint)) ** 2)
+
+
+def turned_back(mechanism, near):
+    """The crank angle at which it stands still."""
+    return mp.findroot(
+        lambda angle: mp.diff(lambda t: position(mechanism, t), angle), mp.mpf(near), tol=1e-40
+    )
+
+
+def spread(angle):
+    return math.remainder(angle, 2 * math.pi)
+
+
+@pytest.mark.parametrize(("mechanism", "count"), [(ORDINARY, 2), (FOUR_TIMES, 4)])
+@pytest.mark.parametrize("side", [1, -1])
+def test_the_slider_stands_still_there_and_nowhere_else(mechanism, count, side):
+    mechanism = mechanism._replace(side=side)
+    found = mechanism.turning_points()
+    assert found.shape == (count,)
+    for angle in found:
+        assert abs(turned_back(mechanism, angle) - angle) < 1e-14
+    # Between them it moves one way: as many changes of sense in a plain sweep.
+    swept = [float(position(mechanism, angle)) for angle in np.arange(0, 2 * math.pi, 0.02)]
+    sense = np.sign(np.diff([*swept, swept[0]]))
+    assert (sense != np.roll(sense, 1)).sum() == count
+
+
+def test_without_a_rod_in_line_it_turns_back_where_crank_and_coupler_are_in_line():
+    """Triangles 50-70-80 folded, with 60 degrees at O, and 90-70-80 stretched, with cosine 2/3."""
+    found = sorted(spread(angle) for angle in ORDINARY.turning_points())
+    stretched = math.radians(30) + math.acos(2 / 3)
+    folded = spread(math.radians(30) + math.radians(60) + math.pi)
+    assert found == pytest.approx(sorted([stretched, folded]), abs=1e-13)
+
+
+@pytest.mark.parametrize("mechanism", [ORDINARY, FOUR_TIMES])
+def test_upside_down_it_turns_back_at_the_opposite_angles(mechanism):
+    mirrored = mechanism._replace(
+        ground_angle=-mechanism.ground_angle, side=-mechanism.side, line=-mechanism.line
+    )
+    found = sorted(spread(angle) for angle in mechanism.turning_points())
+    seen = sorted(-spread(angle) for angle in mirrored.turning_points())
+    assert seen == pytest.approx(found, abs=1e-13)
+
+
+@pytest.mark.parametrize("size", [1e-3, 7.0, 1e5])
+def test_its_size_does_not_matter(size):
+    lengths = {
+        n: size * getattr(FOUR_TIMES, n) for n in ("ground", "crank", "coupler", "rocker", "rod", "line")
+    }
+    larger = FOUR_TIMES._replace(**lengths)
+    assert larger.turning_points() == pytest.approx(FOUR_TIMES.turning_points(), abs=1e-12)
+
+
+def test_the_vector_of_the_rocker_is_that_of_two_circles():
+    for side in (1, -1):
+        mechanism = ORDINARY._replace(side=side)
+        angles = np.array([0.3, 1.7, -2.5])
+        pivot = mechanism.ground * np.exp(1j * mechanism.ground_angle)
+        for angle, vector in zip(angles, mechanism.rocker_vectors(angles), strict=True):
+            ground, turn, crank, coupler, rocker = exact(*mechanism[:5])
+            joint = four_bar(ground, crank, coupler, rocker, mp.mpf(angle) - turn, side)[2] * mp.expj(turn)
+            assert abs(joint - (vector + pivot)) < 1e-12
+            assert abs(vector) == pytest.approx(mechanism.rocker, rel=1e-13)
+
+
+def test_what_cannot_turn_is_refused_or_nan_in_its_row_alone():
+    with pytest.raises(CannotAssemble, match="crank does not turn fully: the linkage lacks"):
+        ORDINARY._replace(crank=60.0).turning_points()
+    with pytest.raises(CannotAssemble, match="rod does not reach its line all turn"):
+        ORDINARY._replace(rod=30.0).turning_points()
+    found = ORDINARY._replace(crank=np.array([20.0, 60.0]), rod=np.array([[300.0], [30.0]])).turning_points()
+    assert found.shape[:-1] == (2, 2)
+    assert np.isnan(found).all(axis=-1).tolist() == [[False, True], [True, True]]
+    assert found[0, 0][np.isfinite(found[0, 0])].tolist() == ORDINARY.turning_points().tolist()
+
+
+def test_a_mechanism_with_fewer_turns_than_its_neighbour_ends_in_nan():
+    both = RockerSlider(*(np.array(pair) for pair in zip(ORDINARY, FOUR_TIMES, strict=True)))
+    assert np.isfinite(both.turning_points()).sum(axis=-1).tolist() == [2, 4]
