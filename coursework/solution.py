@@ -7,9 +7,9 @@
 * a function marked :func:`mistake` is a wrong way to get a quantity;
 * a function marked :func:`judge` says which answers are right, where many are;
 * ``residual`` gives the governing equations, written independently, relative to their terms: 0 when right;
-* ``KNOWN`` lists pairs (given values, expected values); an expected text such as ``"319.80"`` is
-  right to its last printed digit, a number to 1e-9 relative; a third item names the case's effects,
-  where they are not those of the exercise's own parts;
+* ``KNOWN`` lists pairs (given values, expected values), best written ``given(r1=200).gives(rA=300)``
+  (:func:`given`); an expected text such as ``"319.80"`` is right to its last printed digit, a number to 1e-9
+  relative; a third item names the case's effects, where they are not those of the exercise's own parts;
 * ``motion`` gives points that move, as a dict of :class:`Moving`, for animations;
 * ``FILM``, a :class:`Film`, states a picture of its own for the animation, where the statement's figure cannot move;
 * ``polygons`` gives the velocity and acceleration polygons, each a :class:`~coursework.polygons.Polygon`;
@@ -111,6 +111,34 @@ def stable(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Calla
         return formula
 
     return mark
+
+
+@dataclass(frozen=True)
+class Case:
+    """The given values of a known case, and the effects that it calls for: None where they are the exercise's own."""
+
+    values: Mapping[str, Any]
+    effects: tuple[str, ...] | None = None
+
+    def under(self, *effects: str) -> Case:
+        """The same under these effects, or under none."""
+        return Case(self.values, effects)
+
+    def gives(self, **expected: Any) -> tuple[Any, ...]:
+        """The case as ``KNOWN`` lists it, with what is known to come out."""
+        case = (self.values, expected)
+        return case if self.effects is None else (*case, self.effects)
+
+
+def given(**values: Any) -> Case:
+    """A known case by its given values; ``KNOWN`` reads as a list of sentences::
+
+    KNOWN = (
+        given(r1=200, r2=100, theta2=90).gives(rA=300, theta4=90),
+        given(r2=40, F=-400).under("load").gives(torque=-12),
+    )
+    """
+    return Case(values)
 
 
 @dataclass(frozen=True)

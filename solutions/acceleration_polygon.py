@@ -8,7 +8,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.marking.drawn_polygons import Asked, Read, met, to_paper, turned, verdicts
 from coursework.polygons import crank_a, polygon_of_accelerations, two_bars_a
-from coursework.solution import judge, mistake
+from coursework.solution import given, judge, mistake
 
 from ._drawn_acceleration import *
 
@@ -255,11 +255,8 @@ def residual(r1, r2, r3, r4, theta2, omega2, mode, ka, a, n, m, b, bb_t, pa_b, a
 
 KNOWN = (
     # Crank along the frame, ABC a 3-4-5 triangle, right-angled at B; both turn at -3 rad/s.
-    (
-        {"r1": 80, "r2": 30, "r3": 40, "r4": 30, "theta2": 0, "omega2": 5, "mode": "open"},
-        {
-            "ka": 10, "a": (-75, 0), "n": (-75 - 28.8, -21.6), "m": (16.2, -21.6), "alpha3": -18,
-            "alpha4": 32, "b": (-60.6, -79.2), "bb_t": 72, "a_B": 30 * (32**2 + 9**2) ** 0.5,
-        },
+    given(r1=80, r2=30, r3=40, r4=30, theta2=0, omega2=5, mode="open").gives(
+        ka=10, a=(-75, 0), n=(-75 - 28.8, -21.6), m=(16.2, -21.6), alpha3=-18, alpha4=32, b=(-60.6, -79.2),
+        bb_t=72, a_B=30 * (32**2 + 9**2) ** 0.5,
     ),
 )  # fmt: skip

@@ -8,7 +8,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.marking.drawn_polygons import Asked, Read, met, verdicts
 from coursework.polygons import crank_a, polygon_of_accelerations, slider_a
-from coursework.solution import judge, mistake
+from coursework.solution import given, judge, mistake
 
 from ._drawn_acceleration import *
 
@@ -190,16 +190,11 @@ def residual(r2, r3, theta2, omega2, ka, a, n, b, bb_t, pa_b, r1_ddot, alpha3):
 
 KNOWN = (
     # Crank upright: a 3-4-5 triangle, the rod in translation at this instant.
-    (
-        {"r2": 30, "r3": 50, "theta2": 90, "omega2": 8},
-        {
-            "ka": 50, "a": (0, -38.4), "n": (0, -38.4), "b": (28.8, 0), "bb_t": 48, "pa_b": 28.8,
-            "r1_ddot": 1440, "alpha3": 48,
-        },
+    given(r2=30, r3=50, theta2=90, omega2=8).gives(
+        ka=50, a=(0, -38.4), n=(0, -38.4), b=(28.8, 0), bb_t=48, pa_b=28.8, r1_ddot=1440, alpha3=48
     ),
     # Outer dead centre: the rod turns at 2 rad/s, the other way, and does not accelerate.
-    (
-        {"r2": 40, "r3": 120, "theta2": 0, "omega2": -6},
-        {"ka": 20, "a": (-72, 0), "n": (-96, 0), "bb_t": 0, "r1_ddot": -1920, "alpha3": 0},
+    given(r2=40, r3=120, theta2=0, omega2=-6).gives(
+        ka=20, a=(-72, 0), n=(-96, 0), bb_t=0, r1_ddot=-1920, alpha3=0
     ),
-)  # fmt: skip
+)

@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from coursework.quantities.columns import each
-from coursework.solution import mistake
+from coursework.solution import given, mistake
 from coursework.structure import assour
 from coursework.structure.joints import FRAME, JointGraph, copied
 from coursework.structure.library import LIBRARY
@@ -195,20 +195,20 @@ def _held(graph, own, placed):
     return total
 
 
-def _known(figure, driven, expected):
-    return {"joints": LIBRARY[figure].records(), "driver": [1, driven]}, expected
+def _known(figure, driven, **classes):
+    return given(joints=LIBRARY[figure].records(), driver=[1, driven]).gives(**classes)
 
 
 KNOWN = (
-    _known("figure_3", 2, {"group_count": 1, "group_size": 2, "group_class": "II", "assour_class": "II"}),
-    _known("figure_8a_motor", 2, {"group_count": 0, "assour_class": "I"}),
-    _known("figure_8b_engine", 2, {"assour_class": "II"}),
-    _known("figure_8c_shaper", 2, {"group_count": 1, "group_size": 4, "assour_class": "III"}),
-    _known("figure_8d", 2, {"group_count": 1, "group_size": 4, "group_class": "IV", "assour_class": "IV"}),
-    _known("figure_13", 2, {"group_count": 2, "assour_class": "II"}),
+    _known("figure_3", 2, group_count=1, group_size=2, group_class="II", assour_class="II"),
+    _known("figure_8a_motor", 2, group_count=0, assour_class="I"),
+    _known("figure_8b_engine", 2, assour_class="II"),
+    _known("figure_8c_shaper", 2, group_count=1, group_size=4, assour_class="III"),
+    _known("figure_8d", 2, group_count=1, group_size=4, group_class="IV", assour_class="IV"),
+    _known("figure_13", 2, group_count=2, assour_class="II"),
     # The driver chosen changes the class.
-    _known("figure_14", 2, {"group_count": 3, "assour_class": "II"}),
-    _known("figure_14", 4, {"group_count": 3, "assour_class": "II"}),
-    _known("figure_14", 5, {"group_count": 2, "group_size": 2, "group_class": "II", "assour_class": "III"}),
-    _known("figure_27", 2, {"group_count": 2, "assour_class": "II"}),
+    _known("figure_14", 2, group_count=3, assour_class="II"),
+    _known("figure_14", 4, group_count=3, assour_class="II"),
+    _known("figure_14", 5, group_count=2, group_size=2, group_class="II", assour_class="III"),
+    _known("figure_27", 2, group_count=2, assour_class="II"),
 )

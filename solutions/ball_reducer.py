@@ -8,7 +8,7 @@ import numpy as np
 
 from coursework.degrees import polar
 from coursework.figures import Figure, circle, contact, line, note, point, trace, wheel
-from coursework.solution import Film, Moving, formula, mistake
+from coursework.solution import Film, Moving, formula, given, mistake
 
 UNITS = {"phi_ddot": "rad/s^2"}
 
@@ -364,37 +364,16 @@ def _norm(vector):
 
 KNOWN = (
     # R = 2 r: the ball turns as fast as the input, backwards, and all ratios are thirds.
-    (
-        {"R": 20, "r": 10, "psi_dot": 30, "psi_ddot": 6},
-        {
-            "mobility": 1,
-            "omega": -30,
-            "phi_dot": 10,
-            "theta_dot": 20,
-            "rho": 2 / 3,
-            "v_O3": 300,
-            "a_O3_x": -3000,
-            "a_O3_y": 60,
-            "rolling_D": -30,
-            "spin_D": -50,
-        },
+    given(R=20, r=10, psi_dot=30, psi_ddot=6).gives(
+        mobility=1, omega=-30, phi_dot=10, theta_dot=20, rho=2 / 3, v_O3=300, a_O3_x=-3000, a_O3_y=60,
+        rolling_D=-30, spin_D=-50,
     ),
     # R = 3 r, input the other way and gaining speed.
-    (
-        {"R": 60, "r": 20, "psi_dot": -80, "psi_ddot": -40},
-        {
-            "omega": 120,
-            "phi_dot": -30,
-            "theta_dot": -60,
-            "rho": 0.75,
-            "v_O3": -2400,
-            "a_O3_x": -72000,
-            "a_O3_y": -1200,
-            "rolling_D": 120,
-            "spin_D": 180,
-        },
+    given(R=60, r=20, psi_dot=-80, psi_ddot=-40).gives(
+        omega=120, phi_dot=-30, theta_dot=-60, rho=0.75, v_O3=-2400, a_O3_x=-72000, a_O3_y=-1200,
+        rolling_D=120, spin_D=180,
     ),
     # A ball bearing of pitch diameter 100 with balls of 20, inner ring driven: its cage turns at
     # (1 - 20/100)/2 of the ring.
-    ({"R": 40, "r": 10, "psi_dot": 5, "psi_ddot": 0}, {"phi_dot": 2, "a_O3_y": 0, "theta_dot": 4}),
-)
+    given(R=40, r=10, psi_dot=5, psi_ddot=0).gives(phi_dot=2, a_O3_y=0, theta_dot=4),
+)  # fmt: skip

@@ -6,6 +6,7 @@ import numpy as np
 
 from coursework.quantities.columns import each, each_stacked
 from coursework.solids import aligned, each_distinct
+from coursework.solution import given
 
 from ._chains import *
 from ._solids import _sum_of
@@ -106,40 +107,20 @@ def _revolutes(points, axes):
 
 KNOWN = (
     # A plane four-bar as a mechanism of space: the closure has rank 3.
-    (
-        {"joints": _revolutes([(0, 0, 0), (0, 40, 0), (100, 80, 0), (120, 0, 0)], [_Z] * 4)},
-        {
-            "gamma": 1,
-            "Nc": 4,
-            "rc": 3,
-            "m": 1,
-            "Ns": 20,
-            "rs": 17,
-            "h": 3,
-            "i": -2,
-            "m_internal": 0,
-            "m_useful": 1,
-        },
+    given(joints=_revolutes([(0, 0, 0), (0, 40, 0), (100, 80, 0), (120, 0, 0)], [_Z] * 4)).gives(
+        gamma=1, Nc=4, rc=3, m=1, Ns=20, rs=17, h=3, i=-2, m_internal=0, m_useful=1,
     ),
     # Bricard's six hinges along edges of a cube: the count says that nothing moves, and it does.
-    (
-        {
-            "joints": _revolutes(
-                [(0, 0, 0), (1, 0, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1), (0, 0, 1)], [_Z, _Y, _X, _Z, _Y, _X]
-            )
-        },
-        {"gamma": 1, "Nc": 6, "rc": 5, "m": 1, "Ns": 30, "h": 1, "i": 0, "statics": "hyperstatic"},
-    ),
+    given(
+        joints=_revolutes([(0, 0, 0), (1, 0, 0), (1, 1, 0), (1, 1, 1), (0, 1, 1), (0, 0, 1)], [_Z, _Y, _X, _Z, _Y, _X]),
+    ).gives(gamma=1, Nc=6, rc=5, m=1, Ns=30, h=1, i=0, statics="hyperstatic"),
     # Crank, rod on two balls, rocker: the rod turns about itself.
-    (
-        {
-            "joints": [
-                {"between": [0, 1], "joint": "revolute", "axis": _Z, "point": (0, 0, 0)},
-                {"between": [1, 2], "joint": "spherical", "point": (30, 10, 0)},
-                {"between": [2, 3], "joint": "spherical", "point": (90, 40, 50)},
-                {"between": [3, 0], "joint": "revolute", "axis": _X, "point": (90, 0, 0)},
-            ]
-        },
-        {"Nc": 8, "rc": 6, "m": 2, "h": 0, "i": 2, "m_internal": 1, "m_useful": 1, "statics": "isostatic"},
-    ),
-)
+    given(
+        joints=[
+            {"between": [0, 1], "joint": "revolute", "axis": _Z, "point": (0, 0, 0)},
+            {"between": [1, 2], "joint": "spherical", "point": (30, 10, 0)},
+            {"between": [2, 3], "joint": "spherical", "point": (90, 40, 50)},
+            {"between": [3, 0], "joint": "revolute", "axis": _X, "point": (90, 0, 0)},
+        ],
+    ).gives(Nc=8, rc=6, m=2, h=0, i=2, m_internal=1, m_useful=1, statics="isostatic"),
+)  # fmt: skip

@@ -5,7 +5,7 @@ import numpy as np
 from coursework.errors import WrongValue
 from coursework.quantities.columns import each, each_stacked
 from coursework.solids import aligned, each_distinct
-from coursework.solution import mistake
+from coursework.solution import given, mistake
 
 from ..exercises._complex import DIRECTIONS, LAYOUTS, points_of
 from ._chains import *
@@ -102,85 +102,43 @@ _FOUR_BAR = [
 
 KNOWN = (
     # A four-bar that drives a slide by a rod: plane, six times hyperstatic in space.
-    (
-        {
-            "joints": [
-                *_FOUR_BAR,
-                _at(3, 4, "revolute", (150, 60, 0)),
-                _at(4, 5, "revolute", (300, 0, 0)),
-                _at(5, 0, "prismatic", (300, 0, 0), _X),
-            ],
-            "input_body": 1,
-            "output_body": 5,
-        },
-        {
-            "n": 5,
-            "gamma": 2,
-            "Nc": 7,
-            "Ns": 35,
-            "rc": 6,
-            "m": 1,
-            "i": -5,
-            "h": 6,
-            "m_internal": 0,
-            "m_useful": 1,
-            "role": "transforms",
-        },
-    ),
+    given(
+        joints=[
+            *_FOUR_BAR,
+            _at(3, 4, "revolute", (150, 60, 0)),
+            _at(4, 5, "revolute", (300, 0, 0)),
+            _at(5, 0, "prismatic", (300, 0, 0), _X),
+        ],
+        input_body=1, output_body=5,
+    ).gives(n=5, gamma=2, Nc=7, Ns=35, rc=6, m=1, i=-5, h=6, m_internal=0, m_useful=1, role="transforms"),
     # The coupler on a ball and a cylinder, the rod on two balls: nothing is forced, and the rod turns about itself.
-    (
-        {
-            "joints": [
-                _FOUR_BAR[0],
-                _at(1, 2, "spherical", (0, 40, 0)),
-                _at(2, 3, "cylindrical", (100, 80, 0)),
-                _FOUR_BAR[3],
-                _at(3, 4, "spherical", (150, 60, 0)),
-                _at(4, 5, "spherical", (300, 0, 0)),
-                _at(5, 0, "prismatic", (300, 0, 0), _X),
-            ],
-            "input_body": 1,
-            "output_body": 5,
-        },
-        {"Nc": 14, "rc": 12, "m": 2, "m_internal": 1, "h": 0, "i": 2, "m_useful": 1, "statics": "isostatic"},
-    ),
+    given(
+        joints=[
+            _FOUR_BAR[0],
+            _at(1, 2, "spherical", (0, 40, 0)),
+            _at(2, 3, "cylindrical", (100, 80, 0)),
+            _FOUR_BAR[3],
+            _at(3, 4, "spherical", (150, 60, 0)),
+            _at(4, 5, "spherical", (300, 0, 0)),
+            _at(5, 0, "prismatic", (300, 0, 0), _X),
+        ],
+        input_body=1, output_body=5,
+    ).gives(Nc=14, rc=12, m=2, m_internal=1, h=0, i=2, m_useful=1, statics="isostatic"),
     # A plane triangle hung on a rocker: nothing moves in the plane.
-    (
-        {
-            "joints": [
-                *_FOUR_BAR,
-                _at(3, 4, "revolute", (150, 60, 0)),
-                _at(4, 0, "revolute", (300, 0, 0)),
-            ],
-            "input_body": 1,
-            "output_body": 3,
-        },
-        {"n": 4, "gamma": 2, "Nc": 6, "rc": 6, "m": 0, "h": 6, "m_useful": 0, "role": "clamp"},
-    ),
+    given(
+        joints=[*_FOUR_BAR, _at(3, 4, "revolute", (150, 60, 0)), _at(4, 0, "revolute", (300, 0, 0))],
+        input_body=1, output_body=3,
+    ).gives(n=4, gamma=2, Nc=6, rc=6, m=0, h=6, m_useful=0, role="clamp"),
     # Two screws in a row between one pair of bodies and a slide beside them: a table that is set by two handles.
-    (
-        {
-            "joints": [
-                _at(0, 1, "revolute", (0, 0, 0), _X),
-                {**_at(1, 2, "helical", (0, 0, 0), _X), "pitch": 4},
-                _at(0, 2, "prismatic", (0, 30, 0), _X),
-                _at(2, 3, "revolute", (0, 0, 50), _X),
-                {**_at(3, 4, "helical", (0, 0, 50), _X), "pitch": 2},
-                _at(2, 4, "prismatic", (0, 30, 50), _X),
-            ],
-            "input_body": 1,
-            "output_body": 4,
-        },
-        {
-            "n": 4,
-            "gamma": 2,
-            "Nc": 6,
-            "rc": 4,
-            "m": 2,
-            "h": 8,
-            "m_internal": 0,
-            "m_useful": 2,
-            "role": "adjusted",
-        },
-    ),
-)
+    given(
+        joints=[
+            _at(0, 1, "revolute", (0, 0, 0), _X),
+            {**_at(1, 2, "helical", (0, 0, 0), _X), "pitch": 4},
+            _at(0, 2, "prismatic", (0, 30, 0), _X),
+            _at(2, 3, "revolute", (0, 0, 50), _X),
+            {**_at(3, 4, "helical", (0, 0, 50), _X), "pitch": 2},
+            _at(2, 4, "prismatic", (0, 30, 50), _X),
+        ],
+        input_body=1, output_body=4,
+    ).gives(n=4, gamma=2, Nc=6, rc=4, m=2, h=8, m_internal=0, m_useful=2, role="adjusted"),
+)  # fmt: skip

@@ -7,7 +7,7 @@ import numpy as np
 from coursework.degrees import polar, wrap
 from coursework.errors import Undefined
 from coursework.figures import Figure, angle_mark, ground_pivot, line, point, slider, slot_link, vector
-from coursework.solution import mistake
+from coursework.solution import given, mistake
 
 SYMBOLS = {"sense": r"\sigma"}
 UNITS = {"sense": "1"}
@@ -114,20 +114,16 @@ def residual(omega, r_dot, theta, a_coriolis, direction):
 
 KNOWN = (
     # The four combinations of signs of Figure 25: outwards or inwards, anticlockwise or clockwise.
-    (
-        {"omega": 2, "r_dot": 100, "theta": 30},
-        {"a_coriolis": 400, "direction": 120, "relative_motion": "same_point_different_bodies"},
+    given(omega=2, r_dot=100, theta=30).gives(
+        a_coriolis=400, direction=120, relative_motion="same_point_different_bodies"
     ),
-    (
-        {"omega": -2, "r_dot": 100, "theta": -120, "points": "C4_P4"},
-        {"a_coriolis": 400, "direction": 150, "relative_motion": "different_points_same_body"},
+    given(omega=-2, r_dot=100, theta=-120, points="C4_P4").gives(
+        a_coriolis=400, direction=150, relative_motion="different_points_same_body"
     ),
-    (
-        {"omega": 3, "r_dot": -50, "theta": 90, "points": "C3_C3"},
-        {"a_coriolis": 300, "direction": 0, "relative_motion": "same_point_same_body"},
+    given(omega=3, r_dot=-50, theta=90, points="C3_C3").gives(
+        a_coriolis=300, direction=0, relative_motion="same_point_same_body"
     ),
-    (
-        {"omega": -0.5, "r_dot": -10, "theta": 170, "points": "C3_P4"},
-        {"a_coriolis": 10, "direction": -100, "relative_motion": "different_points_different_bodies"},
+    given(omega=-0.5, r_dot=-10, theta=170, points="C3_P4").gives(
+        a_coriolis=10, direction=-100, relative_motion="different_points_different_bodies"
     ),
 )

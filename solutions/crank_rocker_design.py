@@ -9,7 +9,7 @@ import numpy as np
 
 from coursework.degrees import acos, cos, polar, sin, sqrt
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
-from coursework.solution import Judged, formula, judge, mistake
+from coursework.solution import Judged, formula, given, judge, mistake
 
 from ._slow_arc import *
 
@@ -236,15 +236,9 @@ def residual(r4, psi, Q, alpha, r1, r2, r3):
 
 
 KNOWN = (
-    ({"Q": 1.5}, {"alpha": 216}),
-    ({"r4": 100, "psi": 60}, {"chord": 100}),
+    given(Q=1.5).gives(alpha=216),
+    given(r4=100, psi=60).gives(chord=100),
     # O as the meeting point of two rays from B1 and B2, the transmission angle over 3600 crank angles.
-    (
-        {"r4": 100, "psi": 60, "Q": 1.2},
-        {"beta": 153, "r1": "122.384", "r2": "47.814", "r3": "113.328"},
-    ),
-    (
-        {"r4": 150, "psi": 40, "Q": 1.1},
-        {"beta": 162, "r1": "190.787", "r2": "49.980", "r3": "162.758"},
-    ),
+    given(r4=100, psi=60, Q=1.2).gives(beta=153, r1="122.384", r2="47.814", r3="113.328"),
+    given(r4=150, psi=40, Q=1.1).gives(beta=162, r1="190.787", r2="49.980", r3="162.758"),
 )

@@ -19,7 +19,7 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, mistake, stable
+from coursework.solution import Moving, formula, given, mistake, stable
 
 from ._four_bar import *
 
@@ -205,42 +205,23 @@ _RIGHT_ANGLE = {"r1": 80, "r2": 30, "r3": 40, "r4": 30, "theta2": 0, "omega2": 5
 
 KNOWN = (
     # A rectangle that is a parallelogram: the coupler only translates, B moves as A does.
-    (
-        {
-            "r1": 100, "r2": 50, "r3": 100, "r4": 50, "theta2": 90, "omega2": 2, "alpha2": 3,
-            "mode": "open",
-        },
-        {
-            "theta3": 0, "theta4": 90, "omega3": 0, "omega4": 2, "alpha3": 0, "alpha4": 3,
-            "v_B": 100, "a_B": 250, "v_BA": 0, "a_BA_n": 0, "a_BA_t": 0,
-        },
+    given(r1=100, r2=50, r3=100, r4=50, theta2=90, omega2=2, alpha2=3, mode="open").gives(
+        theta3=0, theta4=90, omega3=0, omega4=2, alpha3=0, alpha4=3, v_B=100, a_B=250, v_BA=0, a_BA_n=0,
+        a_BA_t=0,
     ),
     # Crank along the frame, ABC a 3-4-5 triangle, right-angled at B: coupler and rocker turn alike.
-    (
-        {**_RIGHT_ANGLE, "mode": "open"},
-        {
-            "theta3": "36.8699", "theta4": "126.8699", "omega3": -3, "omega4": -3, "alpha3": -24, "alpha4": 26,
-            "v_B": 90, "a_B": 30 * 757**0.5, "v_BA": 120, "a_BA_n": 360, "a_BA_t": -960,
-        },
+    given(**_RIGHT_ANGLE, mode="open").gives(
+        theta3="36.8699", theta4="126.8699", omega3=-3, omega4=-3, alpha3=-24, alpha4=26, v_B=90,
+        a_B=30 * 757**0.5, v_BA=120, a_BA_n=360, a_BA_t=-960,
     ),
     # Its mirror image: what omega2 squared brings changes sign, what alpha2 brings does not.
-    (
-        {**_RIGHT_ANGLE, "mode": "crossed"},
-        {
-            "theta3": "-36.8699", "theta4": "-126.8699", "omega3": -3, "omega4": -3, "alpha3": 12,
-            "alpha4": -38, "a_BA_t": 480,
-        },
+    given(**_RIGHT_ANGLE, mode="crossed").gives(
+        theta3="-36.8699", theta4="-126.8699", omega3=-3, omega4=-3, alpha3=12, alpha4=-38, a_BA_t=480,
     ),
     # Crank and coupler stretched out: the rocker turns back. OCB has a right angle at C, 60 degrees at O.
-    (
-        {
-            "r1": 60, "r2": 30, "r3": 90, "r4": 60 * 3**0.5, "theta2": 60, "omega2": 3, "alpha2": 6,
-            "mode": "open",
-        },
-        {
-            "theta3": 60, "theta4": 90, "omega3": -1, "omega4": 0, "alpha3": 4 * 3**0.5 - 2,
-            "alpha4": 4 * 3**0.5, "v_B": 0, "a_B": 720, "v_BA": 90, "a_BA_n": 90,
-        },
+    given(r1=60, r2=30, r3=90, r4=60 * 3**0.5, theta2=60, omega2=3, alpha2=6, mode="open").gives(
+        theta3=60, theta4=90, omega3=-1, omega4=0, alpha3=4 * 3**0.5 - 2, alpha4=4 * 3**0.5, v_B=0, a_B=720,
+        v_BA=90, a_BA_n=90,
     ),
 )  # fmt: skip
 

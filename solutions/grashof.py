@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coursework.solution import mistake
+from coursework.solution import given, mistake
 from coursework.structure import grashof
 
 UNITS = {"s": "mm", "l": "mm"}
@@ -117,23 +117,17 @@ def residual(r1, r2, r3, r4, s_plus_l, p_plus_q, linkage_type):
 
 KNOWN = (
     # The shortest bar beside the frame, on the other side, as the frame, opposite to it.
-    (
-        {"r1": 100, "r2": 40, "r3": 90, "r4": 80},
-        {"s_plus_l": 140, "p_plus_q": 170, "linkage_type": "crank-rocker"},
-    ),
-    ({"r1": 100, "r2": 90, "r3": 80, "r4": 40}, {"linkage_type": "rocker-crank"}),
-    ({"r1": 40, "r2": 90, "r3": 80, "r4": 100}, {"linkage_type": "double-crank"}),
-    ({"r1": 100, "r2": 90, "r3": 40, "r4": 80}, {"linkage_type": "double-rocker"}),
-    (
-        {"r1": 100, "r2": 50, "r3": 60, "r4": 70},
-        {"s_plus_l": 150, "p_plus_q": 130, "linkage_type": "triple-rocker"},
-    ),
+    given(r1=100, r2=40, r3=90, r4=80).gives(s_plus_l=140, p_plus_q=170, linkage_type="crank-rocker"),
+    given(r1=100, r2=90, r3=80, r4=40).gives(linkage_type="rocker-crank"),
+    given(r1=40, r2=90, r3=80, r4=100).gives(linkage_type="double-crank"),
+    given(r1=100, r2=90, r3=40, r4=80).gives(linkage_type="double-rocker"),
+    given(r1=100, r2=50, r3=60, r4=70).gives(s_plus_l=150, p_plus_q=130, linkage_type="triple-rocker"),
     # A parallelogram, a kite, and an equality that doubles miss: 0.1 + 0.6 = 0.3 + 0.4.
-    ({"r1": 90, "r2": 50, "r3": 90, "r4": 50}, {"s_plus_l": 140, "linkage_type": "change-point"}),
-    ({"r1": 90, "r2": 90, "r3": 50, "r4": 50}, {"linkage_type": "change-point"}),
-    ({"r1": 0.3, "r2": 0.1, "r3": 0.4, "r4": 0.6}, {"linkage_type": "change-point"}),
+    given(r1=90, r2=50, r3=90, r4=50).gives(s_plus_l=140, linkage_type="change-point"),
+    given(r1=90, r2=90, r3=50, r4=50).gives(linkage_type="change-point"),
+    given(r1=0.3, r2=0.1, r3=0.4, r4=0.6).gives(linkage_type="change-point"),
     # A bar as long as the three others together, or longer.
-    ({"r1": 200, "r2": 60, "r3": 60, "r4": 80}, {"linkage_type": "impossible"}),
-    ({"r1": 40, "r2": 250, "r3": 60, "r4": 80}, {"p_plus_q": 140, "linkage_type": "impossible"}),
-    ({"r1": 0.6, "r2": 0.1, "r3": 0.2, "r4": 0.3}, {"linkage_type": "impossible"}),
+    given(r1=200, r2=60, r3=60, r4=80).gives(linkage_type="impossible"),
+    given(r1=40, r2=250, r3=60, r4=80).gives(p_plus_q=140, linkage_type="impossible"),
+    given(r1=0.6, r2=0.1, r3=0.2, r4=0.3).gives(linkage_type="impossible"),
 )

@@ -6,7 +6,7 @@ from coursework.degrees import polar
 from coursework.figures import Figure, circle, contact, ground_pivot, link, pin, slot_link, vector
 from coursework.marking.drawn_polygons import scale_for, to_paper
 from coursework.polygons.hand_drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_paper, vector_fault
-from coursework.solution import Judged, judge, mistake
+from coursework.solution import Judged, given, judge, mistake
 
 VECTORS = ("v10", "v40", "v14", "v24", "v20", "v30")
 _WIDTH = 2 * TOLERANCE_MM
@@ -337,11 +337,8 @@ def residual(d, r2, r3, b, theta1, omega1, kv, v10, v40, v14, v24, v20, v30, ome
 
 KNOWN = (
     # Crank upright: O4O1A1 is a 3-4-5 triangle; scale 4 mm/s for 1 mm.
-    (
-        {"d": 30, "r2": 25, "r3": 15, "b": 25, "theta1": 90, "omega1": 5},
-        {
-            "kv": 5, "v10": (-40, 0), "v40": (-25.6, 19.2), "v14": (-14.4, -19.2), "v24": (-14.4, -19.2),
-            "v20": (-52.8, 9.6), "v30": (-24, 0), "omega4": 3.2, "omega3": 8,
-        },
+    given(d=30, r2=25, r3=15, b=25, theta1=90, omega1=5).gives(
+        kv=5, v10=(-40, 0), v40=(-25.6, 19.2), v14=(-14.4, -19.2), v24=(-14.4, -19.2), v20=(-52.8, 9.6),
+        v30=(-24, 0), omega4=3.2, omega3=8,
     ),
 )  # fmt: skip

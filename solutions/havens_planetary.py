@@ -13,7 +13,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.polygons import Side, crank_v, guide_v, polygon_of_velocities, turning
-from coursework.solution import Moving, mistake, stable
+from coursework.solution import Moving, given, mistake, stable
 
 UNITS = {"e": "mm"}
 LOOPS = {
@@ -251,35 +251,21 @@ _OF_3_4_5 = math.degrees(math.atan2(4, 3))
 
 KNOWN = (
     # Crank upright: O4O1A1 is a 3-4-5 triangle.
-    (
-        {"d": 30, "r2": 25, "r3": 15, "b": 25, "theta1": 90, "omega1": 5},
-        {
-            "nature_42": "translation", "theta4": _OF_3_4_5, "rA": 50, "omega4": 3.2, "omega2": 3.2,
-            "v_A1_4": 160, "v_slide": -120, "v_B2_x": -264, "v_B2_y": 48, "omega3": 8, "v_I": 120,
-        },
+    given(d=30, r2=25, r3=15, b=25, theta1=90, omega1=5).gives(
+        nature_42="translation", theta4=_OF_3_4_5, rA=50, omega4=3.2, omega2=3.2, v_A1_4=160, v_slide=-120,
+        v_B2_x=-264, v_B2_y=48, omega3=8, v_I=120,
     ),
     # Crank along the frame, away from O4: nothing slides.
-    (
-        {"d": 20, "r2": 40, "r3": 20, "b": 30, "theta1": 0, "omega1": 4},
-        {
-            "theta4": 0, "rA": 80, "omega4": 3, "v_slide": 0, "v_B2_x": 0, "v_B2_y": 330, "omega3": 6,
-            "v_I": 120,
-        },
+    given(d=20, r2=40, r3=20, b=30, theta1=0, omega1=4).gives(
+        theta4=0, rA=80, omega4=3, v_slide=0, v_B2_x=0, v_B2_y=330, omega3=6, v_I=120,
     ),
     # And towards O4: the pinion happens to stand still.
-    (
-        {"d": 20, "r2": 40, "r3": 20, "b": 30, "theta1": 180, "omega1": 4},
-        {
-            "theta4": 180, "rA": 40, "omega4": 6, "v_slide": 0, "v_B2_x": 0, "v_B2_y": -420, "omega3": 0,
-            "v_I": 0,
-        },
+    given(d=20, r2=40, r3=20, b=30, theta1=180, omega1=4).gives(
+        theta4=180, rA=40, omega4=6, v_slide=0, v_B2_x=0, v_B2_y=-420, omega3=0, v_I=0,
     ),
     # A guide that swings, at the end of its swing: A1 moves along the slot, S2 only translates.
-    (
-        {"d": 50, "r2": 20, "r3": 10, "b": 10, "theta1": 180 - _OF_3_4_5, "omega1": 2},
-        {
-            "theta4": 90 - _OF_3_4_5, "rA": 40, "omega4": 0, "v_slide": -60, "v_A1_4": 0, "v_B2_x": -48,
-            "v_B2_y": -36, "omega3": 6, "v_I": 60,
-        },
+    given(d=50, r2=20, r3=10, b=10, theta1=180 - _OF_3_4_5, omega1=2).gives(
+        theta4=90 - _OF_3_4_5, rA=40, omega4=0, v_slide=-60, v_A1_4=0, v_B2_x=-48, v_B2_y=-36, omega3=6,
+        v_I=60,
     ),
 )  # fmt: skip

@@ -11,7 +11,7 @@ from coursework.errors import Undefined
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
 from coursework.kinematics.dyads import side_of
 from coursework.polygons import crank_v, polygon_of_velocities, two_bars_v
-from coursework.solution import Moving, mistake
+from coursework.solution import Moving, given, mistake
 
 from ._four_bar import *
 
@@ -202,28 +202,17 @@ def residual(
 
 KNOWN = (
     # A parallelogram passes on forces and torques as they are.
-    (
-        {
-            "r1": 100, "r2": 50, "r3": 100, "r4": 50, "theta2": 90, "omega2": -3, "mode": "open", "F_e": 80,
-        },
-        {"omega4": -3, "mechanical_advantage": 1, "F_s": 80, "torque_ratio": 1, "Gamma_s": 4},
+    given(r1=100, r2=50, r3=100, r4=50, theta2=90, omega2=-3, mode="open", F_e=80).gives(
+        omega4=-3, mechanical_advantage=1, F_s=80, torque_ratio=1, Gamma_s=4
     ),
     # Crank on the frame, ABC a 3-4-5 triangle: coupler and rocker turn alike, by -40/50 of the crank.
-    (
-        {"r1": 90, "r2": 40, "r3": 40, "r4": 30, "theta2": 0, "omega2": 5, "mode": "open", "F_e": 90},
-        {
-            "theta4": "126.8699", "omega4": -4, "mechanical_advantage": 5 / 3, "F_s": 150,
-            "torque_ratio": 1.25, "Gamma_s": 4.5,
-        },
+    given(r1=90, r2=40, r3=40, r4=30, theta2=0, omega2=5, mode="open", F_e=90).gives(
+        theta4="126.8699", omega4=-4, mechanical_advantage=5 / 3, F_s=150, torque_ratio=1.25, Gamma_s=4.5
     ),
     # The crank pointing away from C: 20/100 of its speed, in its own sense.
-    (
-        {"r1": 80, "r2": 20, "r3": 60, "r4": 80, "theta2": 180, "omega2": 10, "mode": "crossed", "F_e": 60},
-        {
-            "omega3": 2, "omega4": 2, "mechanical_advantage": 1.25, "F_s": 75, "torque_ratio": 5,
-            "Gamma_e": 1.2, "Gamma_s": 6,
-        },
+    given(r1=80, r2=20, r3=60, r4=80, theta2=180, omega2=10, mode="crossed", F_e=60).gives(
+        omega3=2, omega4=2, mechanical_advantage=1.25, F_s=75, torque_ratio=5, Gamma_e=1.2, Gamma_s=6
     ),
     # A torque that is given instead of the force, and an advantage that is known.
-    ({"r2": 30, "Gamma_e": 3, "mechanical_advantage": 2}, {"F_e": 100, "F_s": 200}),
-)  # fmt: skip
+    given(r2=30, Gamma_e=3, mechanical_advantage=2).gives(F_e=100, F_s=200),
+)

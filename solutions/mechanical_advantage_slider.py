@@ -11,7 +11,7 @@ from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.polygons import crank_v, polygon_of_velocities, slider_v
-from coursework.solution import Moving, mistake, stable
+from coursework.solution import Moving, given, mistake, stable
 
 UNITS = {
     "p": "mm",
@@ -149,26 +149,19 @@ def residual(r2, r3, e, theta2, omega2, Gamma_e, theta3, omega3, r1_dot, mechani
 
 KNOWN = (
     # Crank upright: the rod translates at this instant, piston and crank pin go alike.
-    (
-        {"r2": 30, "r3": 50, "theta2": 90, "omega2": 8, "Gamma_e": 6},
-        {"r1_dot": -240, "mechanical_advantage": 1, "F_e": 200, "F_s": 200},
+    given(r2=30, r3=50, theta2=90, omega2=8, Gamma_e=6).gives(
+        r1_dot=-240, mechanical_advantage=1, F_e=200, F_s=200
     ),
     # Rod and crank equal: r1 = 2 r2 cos theta2, so that at 30 degrees piston and crank pin go alike.
-    (
-        {"r2": 100, "r3": 100, "theta2": 30, "omega2": 5, "Gamma_e": 10},
-        {"r1_dot": -500, "mechanical_advantage": 1, "F_e": 100, "F_s": 100},
+    given(r2=100, r3=100, theta2=30, omega2=5, Gamma_e=10).gives(
+        r1_dot=-500, mechanical_advantage=1, F_e=100, F_s=100
     ),
     # And where sin theta2 = 1/4, half as fast.
-    (
-        {"r2": 100, "r3": 100, "theta2": float(np.degrees(np.arcsin(0.25))), "omega2": -2, "Gamma_e": 10},
-        {"r1_dot": 100, "mechanical_advantage": 2, "F_s": 200},
+    given(r2=100, r3=100, theta2=float(np.degrees(np.arcsin(0.25))), omega2=-2, Gamma_e=10).gives(
+        r1_dot=100, mechanical_advantage=2, F_s=200
     ),
     # A is 10 above O and the line 20 below, a 3-4-5 triangle.
-    (
-        {"r2": 20, "r3": 50, "e": -20, "theta2": 30, "omega2": 4, "Gamma_e": 1},
-        {
-            "omega3": -(3**0.5), "r1_dot": -40 - 30 * 3**0.5, "F_e": 50,
-            "mechanical_advantage": 80 / (40 + 30 * 3**0.5),
-        },
+    given(r2=20, r3=50, e=-20, theta2=30, omega2=4, Gamma_e=1).gives(
+        omega3=-(3**0.5), r1_dot=-40 - 30 * 3**0.5, F_e=50, mechanical_advantage=80 / (40 + 30 * 3**0.5)
     ),
-)  # fmt: skip
+)

@@ -1,7 +1,7 @@
 """Structure of a mechanism: solution. Count the bodies and the pairs; the formulas do the rest."""
 
 from coursework.quantities.columns import each
-from coursework.solution import mistake
+from coursework.solution import given, mistake
 from coursework.structure.joints import FRAME, JointGraph, copied
 from coursework.structure.library import LIBRARY
 from coursework.structure.numbered import to_count
@@ -134,7 +134,7 @@ def residual(joints, n, b, h, w, gamma):
 
 
 def _known(figure, **counts):
-    return {"joints": LIBRARY[figure].records()}, counts
+    return given(joints=LIBRARY[figure].records()).gives(**counts)
 
 
 KNOWN = (
@@ -148,16 +148,13 @@ KNOWN = (
     _known("figure_14", n=7, b=10, h=0, w=1, L=10, N=8, gamma=3),
     # Three bodies on one pivot.
     _known("figure_27", n=5, b=7, h=0, w=1, L=7, N=6, gamma=2),
-    (
-        {
-            "joints": [
-                {"between": [1, 2], "kind": "revolute", "at": "O"},
-                {"between": [3, 4], "kind": "revolute", "at": "A"},
-                {"between": [3, 2], "kind": "revolute", "at": "A"},
-                {"between": [3, 1], "kind": "higher"},
-                {"between": [4, 1], "kind": "prismatic"},
-            ]
-        },
-        {"n": 3, "b": 4, "h": 1, "w": 0, "L": 5, "N": 4, "gamma": 2},
-    ),
+    given(
+        joints=[
+            {"between": [1, 2], "kind": "revolute", "at": "O"},
+            {"between": [3, 4], "kind": "revolute", "at": "A"},
+            {"between": [3, 2], "kind": "revolute", "at": "A"},
+            {"between": [3, 1], "kind": "higher"},
+            {"between": [4, 1], "kind": "prismatic"},
+        ]
+    ).gives(n=3, b=4, h=1, w=0, L=5, N=4, gamma=2),
 )

@@ -4,7 +4,7 @@ import numpy as np
 
 from coursework.quantities.columns import each_stacked
 from coursework.solids import FREEDOMS, aligned, each_distinct, joint_of
-from coursework.solution import mistake
+from coursework.solution import given, mistake
 
 from ._solids import _direction, _parallel_of, _point_of_axis, _stiffest
 
@@ -108,51 +108,33 @@ _O = (0, 0, 0)
 
 KNOWN = (
     # A shaft in a ball bearing that holds it and one that lets it slide: a hinge, isostatic.
-    (
-        {
-            "joints": [
-                {"joint": "spherical", "point": (0, 0, 0)},
-                {"joint": "annular", "axis": _X, "point": (200, 0, 0)},
-            ]
-        },
-        {"Ns": 5, "rs": 5, "h": 0, "m": 1, "equivalent": "revolute", "axis_dir": np.array([1.0, 0.0, 0.0])},
-    ),
+    given(
+        joints=[
+            {"joint": "spherical", "point": (0, 0, 0)},
+            {"joint": "annular", "axis": _X, "point": (200, 0, 0)},
+        ]
+    ).gives(Ns=5, rs=5, h=0, m=1, equivalent="revolute", axis_dir=np.array([1.0, 0.0, 0.0])),
     # A door on two hinges.
-    (
-        {"joints": [{"joint": "revolute", "axis": _Z, "point": (0, 0, c)} for c in (300, 1700)]},
-        {"Ns": 10, "rs": 5, "h": 5, "m": 1, "equivalent": "revolute"},
+    given(joints=[{"joint": "revolute", "axis": _Z, "point": (0, 0, c)} for c in (300, 1700)]).gives(
+        Ns=10, rs=5, h=5, m=1, equivalent="revolute"
     ),
     # The table of the course: three legs, then a fourth.
-    (
-        {"joints": [{"joint": "point_contact", "normal": _Z, "point": p} for p in (_O, _X, _Y)]},
-        {"Ns": 3, "rs": 3, "h": 0, "m": 3, "equivalent": "planar"},
+    given(joints=[{"joint": "point_contact", "normal": _Z, "point": p} for p in (_O, _X, _Y)]).gives(
+        Ns=3, rs=3, h=0, m=3, equivalent="planar"
     ),
-    (
-        {"joints": [{"joint": "point_contact", "normal": _Z, "point": p} for p in (_O, _X, _Y, (1, 1, 0))]},
-        {"Ns": 4, "rs": 3, "h": 1, "m": 3, "equivalent": "planar"},
-    ),
+    given(
+        joints=[{"joint": "point_contact", "normal": _Z, "point": p} for p in (_O, _X, _Y, (1, 1, 0))]
+    ).gives(Ns=4, rs=3, h=1, m=3, equivalent="planar"),
     # Two planes that meet: a slide along their common line.
-    (
-        {
-            "joint_1": "planar",
-            "direction_1": "z",
-            "joint_2": "planar",
-            "direction_2": "y",
-            "x2": 0,
-            "y2": 20,
-            "z2": 40,
-        },
-        {"Ns": 6, "rs": 5, "h": 1, "m": 1, "equivalent": "prismatic", "axis_dir": np.array([1.0, 0.0, 0.0])},
+    given(joint_1="planar", direction_1="z", joint_2="planar", direction_2="y", x2=0, y2=20, z2=40).gives(
+        Ns=6, rs=5, h=1, m=1, equivalent="prismatic", axis_dir=np.array([1.0, 0.0, 0.0])
     ),
     # Maxwell's clamp: three points, two points of a line across, one across both: nothing moves.
-    (
-        {
-            "joints": [
-                *[{"joint": "point_contact", "normal": _Z, "point": p} for p in (_O, _X, _Y)],
-                *[{"joint": "point_contact", "normal": _Y, "point": p} for p in (_O, _X)],
-                {"joint": "point_contact", "normal": _X, "point": _O},
-            ]
-        },
-        {"Ns": 6, "rs": 6, "h": 0, "m": 0, "equivalent": "rigid"},
-    ),
+    given(
+        joints=[
+            *[{"joint": "point_contact", "normal": _Z, "point": p} for p in (_O, _X, _Y)],
+            *[{"joint": "point_contact", "normal": _Y, "point": p} for p in (_O, _X)],
+            {"joint": "point_contact", "normal": _X, "point": _O},
+        ]
+    ).gives(Ns=6, rs=6, h=0, m=0, equivalent="rigid"),
 )

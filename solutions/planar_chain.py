@@ -5,7 +5,7 @@ import numpy as np
 from coursework.errors import WrongValue
 from coursework.quantities.columns import each_stacked
 from coursework.solids import aligned, each_distinct, joints_of, planar_kind
-from coursework.solution import mistake
+from coursework.solution import given, mistake
 
 from ._counts import *
 from ._solids import _chain_of, _planar_chain_of
@@ -238,55 +238,27 @@ def _loop(*names):
 
 KNOWN = (
     # The four-bar: isostatic in the plane, three times hyperstatic in space.
-    (
-        {"joints": _loop(*[("revolute", _Z)] * 4)},
-        {
-            "planar_1": "revolute",
-            "gamma": 1,
-            "Nc": 4,
-            "rc": 3,
-            "m": 1,
-            "Ns": 8,
-            "rs": 8,
-            "h": 0,
-            "i": 1,
-            "Nc_space": 4,
-            "h_space": 3,
-            "comparison": "hidden",
-        },
+    given(joints=_loop(*[("revolute", _Z)] * 4)).gives(
+        planar_1="revolute", gamma=1, Nc=4, rc=3, m=1, Ns=8, rs=8, h=0, i=1, Nc_space=4, h_space=3,
+        comparison="hidden",
     ),
     # Its joints loosened until nothing is forced: pivot, ball, ball in a groove along z, pivot.
-    (
-        {"joints": _loop(("revolute", _Z), ("spherical", _Z), ("annular", _Z), ("revolute", _Z))},
-        {"Nc": 4, "m": 1, "h": 0, "Nc_space": 9, "h_space": 0, "comparison": "sound"},
+    given(joints=_loop(("revolute", _Z), ("spherical", _Z), ("annular", _Z), ("revolute", _Z))).gives(
+        Nc=4, m=1, h=0, Nc_space=9, h_space=0, comparison="sound",
     ),
     # Three slides in one plane: any of them could be fixed.
-    (
-        {
-            "joints": _loop(("prismatic", _X), ("prismatic", _Y), ("prismatic", (1, 0, 0))),
-        },
-        {"gamma": 1, "Nc": 3, "rc": 2, "m": 1, "Ns": 6, "h": 1, "h_space": 4, "comparison": "plane"},
+    given(joints=_loop(("prismatic", _X), ("prismatic", _Y), ("prismatic", (1, 0, 0)))).gives(
+        gamma=1, Nc=3, rc=2, m=1, Ns=6, h=1, h_space=4, comparison="plane",
     ),
     # A cam: pivot, contact at a point, slide.
-    (
-        {"joints": _loop(("revolute", _Z), ("point_contact", _Y), ("prismatic", _Y))},
-        {
-            "planar_2": "point_contact",
-            "planar_3": "prismatic",
-            "Nc": 4,
-            "rc": 3,
-            "m": 1,
-            "h": 0,
-            "h_space": 0,
-        },
+    given(joints=_loop(("revolute", _Z), ("point_contact", _Y), ("prismatic", _Y))).gives(
+        planar_2="point_contact", planar_3="prismatic", Nc=4, rc=3, m=1, h=0, h_space=0,
     ),
     # The table of the course: each column one joint.
-    (
-        {"joints": _loop(("cylindrical", _Z), ("cylindrical", _X), ("annular", _X), ("planar", _Z))},
-        {"planar_1": "revolute", "planar_2": "prismatic", "planar_3": "point_contact", "planar_4": "free"},
+    given(joints=_loop(("cylindrical", _Z), ("cylindrical", _X), ("annular", _X), ("planar", _Z))).gives(
+        planar_1="revolute", planar_2="prismatic", planar_3="point_contact", planar_4="free",
     ),
-    (
-        {"joints": _loop(("annular", _Z), ("planar", _X), ("point_contact", _X), ("point_contact", _Z))},
-        {"planar_1": "revolute", "planar_2": "prismatic", "planar_3": "point_contact", "planar_4": "free"},
+    given(joints=_loop(("annular", _Z), ("planar", _X), ("point_contact", _X), ("point_contact", _Z))).gives(
+        planar_1="revolute", planar_2="prismatic", planar_3="point_contact", planar_4="free",
     ),
-)
+)  # fmt: skip

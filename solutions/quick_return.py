@@ -28,48 +28,23 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, mistake, stable
+from coursework.solution import Moving, formula, given, mistake, stable
 
 from ._strokes import *
 
 UNITS = {
-    "xC_max": "mm",
-    "xC_min": "mm",
-    "OB": "mm",
-    "DOB": "deg",
-    "AOB": "deg",
-    "phi": "deg",
-    "B_turn": "1",
-    "A_turn": "1",
-    "theta2_turns": "deg",
-    "theta4_far": "deg",
-    "theta4_near": "deg",
-    "xC_far": "mm",
-    "xC_near": "mm",
-    "DOB_far": "deg",
-    "DOB_near": "deg",
-    "yB": "mm",
-    "alpha4": "rad/s^2",
+    "xC_max": "mm", "xC_min": "mm", "OB": "mm", "DOB": "deg", "AOB": "deg", "phi": "deg", "B_turn": "1",
+    "A_turn": "1", "theta2_turns": "deg", "theta4_far": "deg", "theta4_near": "deg", "xC_far": "mm",
+    "xC_near": "mm", "DOB_far": "deg", "DOB_near": "deg", "yB": "mm", "alpha4": "rad/s^2",
     "alpha5": "rad/s^2",
-}
+}  # fmt: skip
 SYMBOLS = {
-    "OB": "OB",
-    "DOB": r"\angle DOB",
-    "AOB": r"\angle AOB",
-    "phi": r"\varphi",
-    "B_turn": r"\varepsilon_B",
-    "A_turn": r"\varepsilon_A",
-    "theta4_far": r"\theta_{4+}",
-    "theta4_near": r"\theta_{4-}",
-    "xC_far": r"x_{C+}",
-    "xC_near": r"x_{C-}",
-    "DOB_far": r"\angle DOB_{+}",
-    "DOB_near": r"\angle DOB_{-}",
-    "yB": "y_B",
-    "theta2_turns": r"\theta_{2,\mathrm{ext}}",
-    "xC_max": r"x_{C,\mathrm{max}}",
+    "OB": "OB", "DOB": r"\angle DOB", "AOB": r"\angle AOB", "phi": r"\varphi", "B_turn": r"\varepsilon_B",
+    "A_turn": r"\varepsilon_A", "theta4_far": r"\theta_{4+}", "theta4_near": r"\theta_{4-}",
+    "xC_far": r"x_{C+}", "xC_near": r"x_{C-}", "DOB_far": r"\angle DOB_{+}", "DOB_near": r"\angle DOB_{-}",
+    "yB": "y_B", "theta2_turns": r"\theta_{2,\mathrm{ext}}", "xC_max": r"x_{C,\mathrm{max}}",
     "xC_min": r"x_{C,\mathrm{min}}",
-}
+}  # fmt: skip
 LOOPS = {
     "loop_1": (
         Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", "theta1", -1), Vector("r4", "theta4", -1),
@@ -104,11 +79,6 @@ def DOB(r1, r4, OB):
 def AOB(r2, r3, angle_OAB, OB):
     """Angle at O of triangle OAB; a distance OB that is not that of the data (given, or a student's) counts."""
     return from_radians(corner_beside(r2, r3, Degrees(angle_OAB), OB))
-
-
-def _to_the(side, theta, turn):
-    """A direction turned anticlockwise for ``left``, clockwise for ``right``."""
-    return wrap(theta + side_of(side) * turn)
 
 
 def B_turn(B_side):
@@ -213,8 +183,8 @@ def a_C(r4, omega4, alpha4, theta4, r5, omega5, alpha5, theta5):
 def mode(r1, r2, r3, r4, angle_OAB, B_side, A_side):
     """Of the dyad A-B-D, kept over the turn: open when B lies to the left of the line from A to D."""
     length = OB(r2, r3, angle_OAB)
-    to_B = _to_the(B_side, 0.0, DOB(r1, r4, length))
-    crank = polar(r2, _to_the(A_side, to_B, AOB(r2, r3, angle_OAB, length)))
+    to_B = side_of(B_side) * DOB(r1, r4, length)
+    crank = polar(r2, to_B + side_of(A_side) * AOB(r2, r3, angle_OAB, length))
     return np.where(cross(r1 - crank, polar(length, to_B) - crank) >= 0, "open", "crossed")
 
 
@@ -478,79 +448,22 @@ def residual(
 
 KNOWN = (
     # O-A-B is a 3-4-5 triangle with A on the x axis and B above it, B-C another: all by hand.
-    (
-        {
-            "r1": 72,
-            "theta1": 0,
-            "r2": 30,
-            "r3": 40,
-            "r4": 58,
-            "r5": 50,
-            "h": 10,
-            "omega2": 1,
-            "angle_OAB": 90,
-            "B_side": "left",
-            "A_side": "right",
-        },
-        {
-            "theta2": 0,
-            "theta3": 90,
-            "theta4": "136.3972",
-            "xC": 70,
-            "theta5": "-36.8699",
-            "omega3": -5 / 7,
-            "omega4": -5 / 7,
-            "omega5": -0.75,
-            "v_C": 85 / 14,
-            "alpha4": 0,
-            "a_C": 150 / 7 - 45 / 2 + 0.75 * (1000 / 49 - 135 / 8),
-            "T": 2 * math.pi,
-            "mechanical_advantage": 84 / 17,
-        },
+    given(
+        r1=72, theta1=0, r2=30, r3=40, r4=58, r5=50, h=10, omega2=1, angle_OAB=90, B_side="left",
+        A_side="right",
+    ).gives(
+        theta2=0, theta3=90, theta4="136.3972", xC=70, theta5="-36.8699", omega3=-5 / 7, omega4=-5 / 7,
+        omega5=-0.75, v_C=85 / 14, alpha4=0, a_C=150 / 7 - 45 / 2 + 0.75 * (1000 / 49 - 135 / 8),
+        T=2 * math.pi, mechanical_advantage=84 / 17,
     ),
     # r1^2 + r2^2 = r3^2 + r4^2: both extreme positions of B are in line with O, and the strokes last alike.
-    (
-        {
-            "r1": 80,
-            "theta1": 0,
-            "r2": 10,
-            "r3": 70,
-            "r4": 40,
-            "r5": 100,
-            "h": 0,
-            "omega2": 3,
-            "angle_OAB": 90,
-            "B_side": "left",
-            "A_side": "left",
-        },
-        {
-            "alpha": 180,
-            "beta": 180,
-            "Q": 1,
-            "stroke": 17.5 + 8500**0.5 - 9156.25**0.5,
-            "t_advance": math.pi / 3,
-        },
-    ),
+    given(
+        r1=80, theta1=0, r2=10, r3=70, r4=40, r5=100, h=0, omega2=3, angle_OAB=90, B_side="left",
+        A_side="left",
+    ).gives(alpha=180, beta=180, Q=1, stroke=17.5 + 8500**0.5 - 9156.25**0.5, t_advance=math.pi / 3),
     # Crank and coupler in line make the triangles 50-70-80, with 60 degrees at O, and 90-70-80, with cosine 2/3.
-    (
-        {
-            "r1": 80,
-            "theta1": 30,
-            "r2": 20,
-            "r3": 70,
-            "r4": 70,
-            "r5": 300,
-            "h": 100,
-            "omega2": -2,
-            "angle_OAB": 100,
-            "B_side": "left",
-            "A_side": "left",
-        },
-        {
-            "alpha": "191.8103",
-            "beta": "168.1897",
-            "T": math.pi,
-            "Q": 191.810314895778592 / 168.189685104221401,
-        },
-    ),
-)
+    given(
+        r1=80, theta1=30, r2=20, r3=70, r4=70, r5=300, h=100, omega2=-2, angle_OAB=100, B_side="left",
+        A_side="left",
+    ).gives(alpha="191.8103", beta="168.1897", T=math.pi, Q=191.810314895778592 / 168.189685104221401),
+)  # fmt: skip

@@ -9,7 +9,7 @@ import numpy as np
 
 from coursework.degrees import asin, sqrt, tan
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.solution import Judged, formula, judge, mistake
+from coursework.solution import Judged, formula, given, judge, mistake
 
 from ._in_line import _in_line
 from ._slow_arc import *
@@ -144,15 +144,9 @@ def _leans(r2, stroke, Q):
 
 KNOWN = (
     # The slow stroke takes three fifths, two thirds of a turn.
-    ({"Q": 1.5}, {"alpha": 216}),
-    ({"Q": 2}, {"alpha": 240}),
+    given(Q=1.5).gives(alpha=216),
+    given(Q=2).gives(alpha=240),
     # The best of 400 000 points of the arc that sees the stroke under 16.36 and 23.48 degrees.
-    (
-        {"stroke": 100, "Q": 1.2, "mode": "inward"},
-        {"r2": "47.047", "r3": "127.911", "e": "39.859", "lean": "42.799"},
-    ),
-    (
-        {"stroke": 150, "Q": 1.3, "mode": "outward"},
-        {"r2": "69.205", "r3": "158.043", "e": "-53.620", "lean": "51.002"},
-    ),
+    given(stroke=100, Q=1.2, mode="inward").gives(r2="47.047", r3="127.911", e="39.859", lean="42.799"),
+    given(stroke=150, Q=1.3, mode="outward").gives(r2="69.205", r3="158.043", e="-53.620", lean="51.002"),
 )

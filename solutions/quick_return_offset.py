@@ -16,7 +16,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.polygons import crank_v, polygon_of_velocities, slider_v
-from coursework.solution import Moving, formula, mistake, stable
+from coursework.solution import Moving, formula, given, mistake, stable
 
 from ._in_line import _in_line
 from ._strokes import *
@@ -235,34 +235,21 @@ _ROOT3 = 3**0.5
 
 KNOWN = (
     # Stretched a 60-144-156 triangle, folded a 60-80-100 one; upright, C is 32 above A and the rod in translation.
-    (
-        {"r2": 28, "r3": 128, "e": 60, "theta2": 90, "omega2": 5},
-        {
-            "xC": (96 * 160) ** 0.5, "v_C": -140, "x1": 80, "x2": 144, "stroke": 64,
-            "alpha": "194.250", "beta": "165.750", "Q": "1.17195",
-        },
+    given(r2=28, r3=128, e=60, theta2=90, omega2=5).gives(
+        xC=(96 * 160) ** 0.5, v_C=-140, x1=80, x2=144, stroke=64, alpha="194.250", beta="165.750", Q="1.17195"
     ),
     # Dead: the piston stands still at the far end.
-    (
-        {"r2": 28, "r3": 128, "e": -60, "theta2": "-22.619864948040426 deg", "omega2": -5},
-        {"xC": 144, "v_C": 0, "alpha": "194.250"},
+    given(r2=28, r3=128, e=-60, theta2="-22.619864948040426 deg", omega2=-5).gives(
+        xC=144, v_C=0, alpha="194.250"
     ),
     # A is 10 above O and the line 20 below: the rod falls by 30, a 3-4-5 triangle.
-    (
-        {"r2": 20, "r3": 50, "e": -20, "theta2": 30, "omega2": 4},
-        {"xC": 40 + 10 * _ROOT3, "v_C": -40 - 30 * _ROOT3},
-    ),
+    given(r2=20, r3=50, e=-20, theta2=30, omega2=4).gives(xC=40 + 10 * _ROOT3, v_C=-40 - 30 * _ROOT3),
     # A rod only just long enough: folded, it stands square to the line; stretched, it leans by 30 degrees.
-    (
-        {"r2": 40, "r3": 120, "e": 80, "theta2": 90, "omega2": -math.pi},
-        {
-            "x1": 0, "stroke": 80 * _ROOT3, "alpha": 240, "beta": 120, "Q": 2,
-            "t_advance": 4 / 3, "t_return": 2 / 3,
-        },
+    given(r2=40, r3=120, e=80, theta2=90, omega2=-math.pi).gives(
+        x1=0, stroke=80 * _ROOT3, alpha=240, beta=120, Q=2, t_advance=4 / 3, t_return=2 / 3
     ),
     # In line with the crank the strokes last alike.
-    (
-        {"r2": 30, "r3": 100, "e": 0, "theta2": 180, "omega2": 2 * math.pi},
-        {"xC": 70, "v_C": 0, "stroke": 60, "alpha": 180, "beta": 180, "Q": 1, "t_advance": 0.5},
+    given(r2=30, r3=100, e=0, theta2=180, omega2=2 * math.pi).gives(
+        xC=70, v_C=0, stroke=60, alpha=180, beta=180, Q=1, t_advance=0.5
     ),
-)  # fmt: skip
+)

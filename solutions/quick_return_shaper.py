@@ -13,7 +13,7 @@ import numpy as np
 from coursework.degrees import acos, asin, atan2, cos, polar, sin, sqrt
 from coursework.errors import CannotAssemble, Undefined
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin, point, rotation_arrow
-from coursework.solution import mistake, stable
+from coursework.solution import given, mistake, stable
 
 from ._slotted_ram import *
 from ._strokes import *
@@ -208,35 +208,21 @@ def residual(
 
 KNOWN = (
     # The course's slotted mechanism, where A and the guide are; the crank is half the frame: 30 degrees either side.
-    (
-        {"r1": 228.6, "r2": 114.3, "r4": 400, "r5": 200, "h": 380, "theta2": 135, "omega2": 1},
-        {"rA": "319.80", "theta4": "104.64", "sigma": 30, "alpha": 240, "beta": 120, "Q": 2, "stroke": 400},
+    given(r1=228.6, r2=114.3, r4=400, r5=200, h=380, theta2=135, omega2=1).gives(
+        rA="319.80", theta4="104.64", sigma=30, alpha=240, beta=120, Q=2, stroke=400
     ),
     # The guide upright, A above O2; P-C a 3-4-5 triangle.
-    (
-        {"r1": 200, "r2": 100, "r4": 450, "r5": 100, "h": 390, "theta2": 90, "omega2": 3},
-        {"theta4": 90, "omega4": 1, "xC": 80, "v_C": -450, "stroke": 450},
+    given(r1=200, r2=100, r4=450, r5=100, h=390, theta2=90, omega2=3).gives(
+        theta4=90, omega4=1, xC=80, v_C=-450, stroke=450
     ),
     # The guide upright, A below O2: the guide turns back, and faster.
-    (
-        {"r1": 200, "r2": 100, "r4": 450, "r5": 100, "h": 390, "theta2": -90, "omega2": math.pi},
-        {
-            "theta4": 90,
-            "omega4": -math.pi,
-            "xC": 80,
-            "v_C": 450 * math.pi,
-            "t_advance": 4 / 3,
-            "t_return": 2 / 3,
-        },
+    given(r1=200, r2=100, r4=450, r5=100, h=390, theta2=-90, omega2=math.pi).gives(
+        theta4=90, omega4=-math.pi, xC=80, v_C=450 * math.pi, t_advance=4 / 3, t_return=2 / 3
     ),
     # The end of the swing, a 3-4-5 triangle at O4 too: P at (300, 400), the rod level.
-    (
-        {"r1": 250, "r2": 150, "r4": 500, "r5": 130, "h": 400, "theta2": -36.86989764584402, "omega2": -7},
-        {"rA": 200, "xC": 430, "v_C": 0, "stroke": 600, "alpha": "253.7398", "beta": "106.2602"},
+    given(r1=250, r2=150, r4=500, r5=130, h=400, theta2=-36.86989764584402, omega2=-7).gives(
+        rA=200, xC=430, v_C=0, stroke=600, alpha="253.7398", beta="106.2602"
     ),
     # The rod lines up with the guide before the right end of the swing: the ram goes farther than at that end.
-    (
-        {"r1": 100, "r2": 60, "r4": 200, "r5": 100, "h": 256, "theta2": 90, "omega2": 1},
-        {"stroke": 92 + 24464**0.5},
-    ),
+    given(r1=100, r2=60, r4=200, r5=100, h=256, theta2=90, omega2=1).gives(stroke=92 + 24464**0.5),
 )

@@ -14,7 +14,7 @@ from coursework.degrees import acos, asin, atan, atan2, cos, polar, sin, sqrt
 from coursework.errors import CannotAssemble, Undefined
 from coursework.figures import Figure, circle, ground_pivot, line, link, pin, point, rotation_arrow
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.solution import mistake, stable
+from coursework.solution import given, mistake, stable
 
 from ._slotted_ram import *
 from ._strokes import *
@@ -254,34 +254,21 @@ _LINE = {"r1": 50, "r2": 100, "r4": 60, "r5": 100, "h": 0}
 
 KNOWN = (
     # A straight above O2: the guide upright, P-C a 3-4-5 triangle; on the strokes the angles at A are 30 degrees.
-    (
-        {**_LINE, "theta2": 90, "omega2": 3},
-        {
-            "rA": 150, "theta4": 90, "omega4": 2, "xC": 80, "v_C": -120,
-            "stroke": 120, "alpha": 240, "beta": 120, "Q": 2,
-        },
+    given(**_LINE, theta2=90, omega2=3).gives(
+        rA=150, theta4=90, omega4=2, xC=80, v_C=-120, stroke=120, alpha=240, beta=120, Q=2
     ),
     # Straight below, where A is three times nearer to O4.
-    (
-        {**_LINE, "theta2": -90, "omega2": 2 * math.pi},
-        {
-            "rA": 50, "theta4": -90, "omega4": 4 * math.pi, "xC": 80, "v_C": 240 * math.pi,
-            "t_advance": 2 / 3, "t_return": 1 / 3,
-        },
+    given(**_LINE, theta2=-90, omega2=2 * math.pi).gives(
+        rA=50, theta4=-90, omega4=4 * math.pi, xC=80, v_C=240 * math.pi, t_advance=2 / 3, t_return=1 / 3
     ),
     # The guide along x: a 60-80-100 triangle holds the crank, a 30-40-50 one the rod.
-    (
-        {"r1": 60, "r2": 100, "r4": 50, "r5": 50, "h": 40, "theta2": -36.86989764584402, "omega2": 3},
-        {"rA": 80, "theta4": 0, "omega4": 3, "xC": 80, "v_C": 200},
+    given(r1=60, r2=100, r4=50, r5=50, h=40, theta2=-36.86989764584402, omega2=3).gives(
+        rA=80, theta4=0, omega4=3, xC=80, v_C=200
     ),
     # Stretched a 60-144-156 triangle, folded a 60-80-100 one, where the law of sines gives 30 degrees at A.
-    (
-        {"r1": 50, "r2": 80, "r4": 28, "r5": 128, "h": 60, "theta2": 0, "omega2": 1},
-        {"x1": 80, "x2": 144, "stroke": 64, "psi1": 30, "alpha": "259.48", "beta": "100.52"},
+    given(r1=50, r2=80, r4=28, r5=128, h=60, theta2=0, omega2=1).gives(
+        x1=80, x2=144, stroke=64, psi1=30, alpha="259.48", beta="100.52"
     ),
     # The line as far below: guide and line now lean against each other.
-    (
-        {"r1": 50, "r2": 80, "r4": 28, "r5": 128, "h": -60, "theta2": 0, "omega2": 1},
-        {"stroke": 64, "alpha": "230.98"},
-    ),
-)  # fmt: skip
+    given(r1=50, r2=80, r4=28, r5=128, h=-60, theta2=0, omega2=1).gives(stroke=64, alpha="230.98"),
+)

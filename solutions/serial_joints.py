@@ -6,7 +6,7 @@ import numpy as np
 
 from coursework.quantities.columns import each, each_stacked
 from coursework.solids import FREEDOMS, aligned, each_distinct, joint_of
-from coursework.solution import mistake
+from coursework.solution import given, mistake
 
 from ._solids import _direction, _freest, _in_parallel, _number, _point_of_axis, _series_of, _sum_of
 
@@ -168,50 +168,24 @@ _O = (0, 0, 0)
 
 KNOWN = (
     # A ball in a shoe that slides on a plane: a point contact, and the ball may spin about the normal unseen.
-    (
-        {"joints": [{"joint": "planar", "normal": _Z}, {"joint": "spherical", "point": _O}]},
-        {
-            "Nc": 6,
-            "m": 6,
-            "m_useful": 5,
-            "m_internal": 1,
-            "h": 0,
-            "equivalent": "point_contact",
-            "axis_dir": np.array([0.0, 0.0, 1.0]),
-        },
+    given(joints=[{"joint": "planar", "normal": _Z}, {"joint": "spherical", "point": _O}]).gives(
+        Nc=6, m=6, m_useful=5, m_internal=1, h=0, equivalent="point_contact",
+        axis_dir=np.array([0.0, 0.0, 1.0]),
     ),
     # A universal joint: two hinges whose axes meet at right angles.
-    (
-        {
-            "joint_1": "revolute",
-            "direction_1": "x",
-            "joint_2": "revolute",
-            "direction_2": "y",
-            "x2": 0,
-            "y2": 0,
-            "z2": 0,
-        },
-        {"Nc": 2, "m_useful": 2, "m_internal": 0, "equivalent": "spherical_pin"},
+    given(joint_1="revolute", direction_1="x", joint_2="revolute", direction_2="y", x2=0, y2=0, z2=0).gives(
+        Nc=2, m_useful=2, m_internal=0, equivalent="spherical_pin",
     ),
     # A drawing board's two-hinged arm with a third hinge holds a plane against the board.
-    (
-        {"joints": [{"joint": "revolute", "axis": _Z, "point": p} for p in (_O, (300, 0, 0), (300, 400, 0))]},
-        {"Nc": 3, "m_useful": 3, "m_internal": 0, "equivalent": "planar"},
-    ),
+    given(
+        joints=[{"joint": "revolute", "axis": _Z, "point": p} for p in (_O, (300, 0, 0), (300, 400, 0))],
+    ).gives(Nc=3, m_useful=3, m_internal=0, equivalent="planar"),
     # A shaft that turns in a sleeve which turns in the frame about the same axis.
-    (
-        {"joints": [{"joint": "revolute", "axis": _Y, "point": (5, y, 7)} for y in (0, 30)]},
-        {"Nc": 2, "m": 2, "m_useful": 1, "m_internal": 1, "equivalent": "revolute"},
+    given(joints=[{"joint": "revolute", "axis": _Y, "point": (5, y, 7)} for y in (0, 30)]).gives(
+        Nc=2, m=2, m_useful=1, m_internal=1, equivalent="revolute",
     ),
     # A rod between two balls: it pushes along its line and turns about it.
-    (
-        {"joints": [{"joint": "spherical", "point": p} for p in (_O, (0, 80, 0))]},
-        {
-            "Nc": 6,
-            "m_useful": 5,
-            "m_internal": 1,
-            "equivalent": "point_contact",
-            "axis_dir": np.array([0.0, 1.0, 0.0]),
-        },
+    given(joints=[{"joint": "spherical", "point": p} for p in (_O, (0, 80, 0))]).gives(
+        Nc=6, m_useful=5, m_internal=1, equivalent="point_contact", axis_dir=np.array([0.0, 1.0, 0.0]),
     ),
-)
+)  # fmt: skip

@@ -26,7 +26,7 @@ from coursework.polygons import (
     slider_a,
     slider_v,
 )
-from coursework.solution import Moving, formula, mistake, stable
+from coursework.solution import Moving, formula, given, mistake, stable
 
 GRAVITY = 9.81  #: m/s^2, along -y
 
@@ -393,43 +393,29 @@ _UPRIGHT = {"r2": 30, "r3": 50, "theta2": 90}
 
 KNOWN = (
     # Crank upright, a 3-4-5 triangle: the load of 400 N makes 500 N in the rod, and 12 N*m to hold.
-    (
-        {**_UPRIGHT, "F": -400},
-        {"torque": -12, "N_guide": 300, "R_A": 500, "R_B": 500, "R_O": 500},
-        ("load",),
-    ),
+    given(**_UPRIGHT, F=-400).under("load").gives(torque=-12, N_guide=300, R_A=500, R_B=500, R_O=500),
     # Friction of coefficient 1/2 helps to hold: 400 = R (4/5 + 3/5 / 2), with R in the rod.
-    (
-        {**_UPRIGHT, "F": -400, "f": 0.5, "omega2": 2},
-        {"torque": -96 / 11, "N_guide": 2400 / 11, "R_A": 4000 / 11},
-        ("load", "friction"),
-    ),
+    given(**_UPRIGHT, F=-400, f=0.5, omega2=2)
+    .under("load", "friction")
+    .gives(torque=-96 / 11, N_guide=2400 / 11, R_A=4000 / 11),
     # The other way round, the rod presses the piston harder onto the guide: 400 = R (4/5 - 3/5 / 2).
-    (
-        {**_UPRIGHT, "F": -400, "f": 0.5, "omega2": -2},
-        {"torque": -19.2, "N_guide": 480, "R_A": 800},
-        ("load", "friction"),
-    ),
+    given(**_UPRIGHT, F=-400, f=0.5, omega2=-2)
+    .under("load", "friction")
+    .gives(torque=-19.2, N_guide=480, R_A=800),
     # Crank and rod level: a quarter of the rod's weight rests on the piston, the rest on the crank pin.
-    (
-        {"r2": 40, "r3": 120, "theta2": 0, "s3": 0.25, "m3": 2, "m4": 1},
-        {"torque": 0.5886, "N_guide": 14.715, "R_A": 14.715, "R_B": 4.905},
-        ("gravity",),
-    ),
+    given(r2=40, r3=120, theta2=0, s3=0.25, m3=2, m4=1)
+    .under("gravity")
+    .gives(torque=0.5886, N_guide=14.715, R_A=14.715, R_B=4.905),
     # Outer dead centre at a constant rate: the piston is held back at 1.92 m/s^2, G at 1.68 m/s^2.
-    (
-        {"r2": 40, "r3": 120, "theta2": 0, "omega2": 6, "s3": 0.5, "m3": 2, "J3": 1, "m4": 1, "J2": 1},
-        {"torque": 0, "N_guide": 0, "R_A": 5.28, "R_B": 1.92},
-        ("inertia",),
-    ),
+    given(r2=40, r3=120, theta2=0, omega2=6, s3=0.5, m3=2, J3=1, m4=1, J2=1)
+    .under("inertia")
+    .gives(torque=0, N_guide=0, R_A=5.28, R_B=1.92),
     # Starting from rest with the crank upright: rod and piston begin to move as one mass of 3 kg.
-    (
-        {**_UPRIGHT, "omega2": 0, "alpha2": 10, "s3": 0.5, "m3": 2, "J3": 1, "m4": 1, "J2": 0.05},
-        {"torque": 0.5 + 3 * 0.3 * 0.03, "N_guide": -0.45, "R_A": 0.45 * 5**0.5, "R_B": 0.15 * 13**0.5},
-        ("inertia",),
-    ),
+    given(**_UPRIGHT, omega2=0, alpha2=10, s3=0.5, m3=2, J3=1, m4=1, J2=0.05)
+    .under("inertia")
+    .gives(torque=0.5 + 3 * 0.3 * 0.03, N_guide=-0.45, R_A=0.45 * 5**0.5, R_B=0.15 * 13**0.5),
     # Nothing called for, nothing borne.
-    (_UPRIGHT, {"torque": 0, "N_guide": 0, "R_A": 0, "R_B": 0, "R_O": 0}, ()),
+    given(**_UPRIGHT).under().gives(torque=0, N_guide=0, R_A=0, R_B=0, R_O=0),
 )
 
 # A crank spun up from rest but for a nudge: some turns, and the inertia of the rod felt in each.

@@ -26,7 +26,7 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, mistake, stable
+from coursework.solution import Moving, formula, given, mistake, stable
 
 UNITS = {"A": "1", "side": "1"}
 SYMBOLS = {"side": r"\varepsilon"}
@@ -385,34 +385,20 @@ def _degrees_of(y, x):
 KNOWN = (
     # Coupler parallel to the crank: A moves square to it, as B would have to, so the rocker stands still.
     # A = (40, 120), B = (160, 120), slider at (448, 0): triangles 3-4-5 and 5-12-13.
-    (
-        {"r1": 120, "r2": 40, "r3": 120, "r4": 200, "r5": 312, "theta2": 0, "omega2": 9, "mode": "open"},
-        {
-            "mobility": 1, "cycles": 2,
-            "a": 9600, "b": 28800, "c": 9600, "B": -320, "C": -57344,
-            "theta3": 0, "theta4": _degrees_of(3, 4), "r6": 448, "theta5": _degrees_of(5, -12),
-            "omega3": -3, "omega4": 0, "omega5": 0, "r6_dot": 0,
-            "alpha3": 48, "alpha4": 36, "alpha5": -20, "r6_ddot": -6720,
-        },
+    given(r1=120, r2=40, r3=120, r4=200, r5=312, theta2=0, omega2=9, mode="open").gives(
+        mobility=1, cycles=2, a=9600, b=28800, c=9600, B=-320, C=-57344, theta3=0, theta4=_degrees_of(3, 4),
+        r6=448, theta5=_degrees_of(5, -12), omega3=-3, omega4=0, omega5=0, r6_dot=0, alpha3=48, alpha4=36,
+        alpha5=-20, r6_ddot=-6720,
     ),
     # The same crank, B mirrored in the line AD: B = (-56, 192); the rod is parallel to the coupler.
-    (
-        {"r1": 120, "r2": 40, "r3": 120, "r4": 200, "r5": 320, "theta2": 0, "omega2": 15, "mode": "crossed"},
-        {
-            "theta3": _degrees_of(3, -4), "theta4": _degrees_of(24, -7), "r6": 200,
-            "theta5": _degrees_of(3, -4),
-            "omega3": 8, "omega4": 3, "omega5": 21 / 32, "r6_dot": -450,
-        },
+    given(r1=120, r2=40, r3=120, r4=200, r5=320, theta2=0, omega2=15, mode="crossed").gives(
+        theta3=_degrees_of(3, -4), theta4=_degrees_of(24, -7), r6=200, theta5=_degrees_of(3, -4), omega3=8,
+        omega4=3, omega5=21 / 32, r6_dot=-450,
     ),
     # Crank in line with the frame, coupler and rocker equal: an isosceles triangle, B = (80, 60),
     # whose two sides turn alike.
-    (
-        {"r1": 100, "r2": 20, "r3": 100, "r4": 100, "r5": 156, "theta2": 90, "omega2": 6, "mode": "open"},
-        {
-            "a": 0, "b": 24000, "c": -14400, "B": -160, "C": -14336,
-            "theta3": _degrees_of(-3, 4), "theta4": _degrees_of(3, 4), "r6": 224,
-            "theta5": _degrees_of(5, -12),
-            "omega3": 1, "omega4": 1, "omega5": -5 / 9, "r6_dot": -280 / 3,
-        },
+    given(r1=100, r2=20, r3=100, r4=100, r5=156, theta2=90, omega2=6, mode="open").gives(
+        a=0, b=24000, c=-14400, B=-160, C=-14336, theta3=_degrees_of(-3, 4), theta4=_degrees_of(3, 4), r6=224,
+        theta5=_degrees_of(5, -12), omega3=1, omega4=1, omega5=-5 / 9, r6_dot=-280 / 3,
     ),
 )  # fmt: skip

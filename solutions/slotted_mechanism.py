@@ -21,7 +21,7 @@ from coursework.polygons import (
     polygon_of_accelerations,
     polygon_of_velocities,
 )
-from coursework.solution import Moving, formula, mistake, stable
+from coursework.solution import Moving, formula, given, mistake, stable
 
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
 SYMBOLS = {"delta": r"\delta"}
@@ -202,25 +202,19 @@ def residual(r1, r2, theta1, theta2, omega2, alpha2, rA, theta4, rA_dot, omega4,
 
 KNOWN = (
     # The course's own numbers.
-    (
-        {"r1": 228.6, "r2": 114.3, "theta1": 90, "theta2": 135, "omega2": 1},
-        {"rA": "319.80", "theta4": "104.64", "guide": "oscillates", "swing": "60.000"},
+    given(r1=228.6, r2=114.3, theta1=90, theta2=135, omega2=1).gives(
+        rA="319.80", theta4="104.64", guide="oscillates", swing="60.000"
     ),
     # Crank along the frame: the guide is at its greatest length and turns with the least slide.
-    (
-        {"r1": 200, "r2": 100, "theta1": 90, "theta2": 90, "omega2": 3},
-        {"rA": 300, "theta4": 90, "rA_dot": 0, "omega4": 1, "a_coriolis": 0, "a_centripetal": -300},
+    given(r1=200, r2=100, theta1=90, theta2=90, omega2=3).gives(
+        rA=300, theta4=90, rA_dot=0, omega4=1, a_coriolis=0, a_centripetal=-300
     ),
     # Crank square to the guide at the end of the swing: the guide stands still.
-    (
-        {"r1": 200, "r2": 100, "theta1": 90, "theta2": -150, "omega2": 4},
-        {"rA": 100 * 3**0.5, "theta4": 120, "omega4": 0, "rA_dot": -400},
+    given(r1=200, r2=100, theta1=90, theta2=-150, omega2=4).gives(
+        rA=100 * 3**0.5, theta4=120, omega4=0, rA_dot=-400
     ),
     # Frame and crank equal: the guide turns at half the crank's speed, wherever it is.
-    (
-        {"r1": 150, "r2": 150, "theta1": 90, "theta2": -80, "omega2": 10},
-        {"omega4": 5, "alpha4": 0, "theta4": 5},
-    ),
+    given(r1=150, r2=150, theta1=90, theta2=-80, omega2=10).gives(omega4=5, alpha4=0, theta4=5),
 )
 
 ACCURACY = Study(

@@ -31,7 +31,7 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, mistake, stable
+from coursework.solution import Moving, formula, given, mistake, stable
 
 from ._first_four_bar import *
 
@@ -481,31 +481,21 @@ def _degrees_of(y, x):
 
 KNOWN = (
     # O-A-B-C a parallelogram: the coupler translates with A. E = (0, 100), DE = (75, 100), DF its double.
-    (
-        {
-            "xC": 100, "yC": 0, "xD": -75, "yD": 0, "r2": 40, "r3": 100, "r4": 40, "r5": 250, "r6": 60,
-            "beta": 90, "r7": 130, "d3": 150, "theta2": 90, "omega2": 5, "mode": "open",
-        },
-        {
-            "theta3": 0, "theta4": 90, "theta5": _degrees_of(4, 3), "d5": 125,
-            "theta7": _degrees_of(-5, 12), "x8": 195,
-            "omega3": 0, "omega4": 5, "omega5": 1.28, "d5_dot": -120, "omega7": -1.6, "x8_dot": -336,
-            "alpha3": 0, "alpha4": 0, "alpha5": -2.3424, "d5_ddot": -595.2, "alpha7": 4.592,
-            "x8_ddot": 145.12,
-        },
+    given(
+        xC=100, yC=0, xD=-75, yD=0, r2=40, r3=100, r4=40, r5=250, r6=60, beta=90, r7=130, d3=150, theta2=90,
+        omega2=5, mode="open",
+    ).gives(
+        theta3=0, theta4=90, theta5=_degrees_of(4, 3), d5=125, theta7=_degrees_of(-5, 12), x8=195, omega3=0,
+        omega4=5, omega5=1.28, d5_dot=-120, omega7=-1.6, x8_dot=-336, alpha3=0, alpha4=0, alpha5=-2.3424,
+        d5_ddot=-595.2, alpha7=4.592, x8_ddot=145.12,
     ),
     # Crank along OC, ABC a 3-4-5 triangle; AE and the bar upright, E = (30, 50), F = (30, 130).
-    (
-        {
-            "xC": 80, "yC": 0, "xD": 30, "yD": -50, "r2": 30, "r3": 40, "r4": 30, "r5": 180, "r6": 50,
-            "beta": _degrees_of(4, 3), "r7": 100, "d3": 190, "theta2": 0, "omega2": 5, "mode": "open",
-        },
-        {
-            "theta3": _degrees_of(3, 4), "theta4": _degrees_of(4, -3), "theta5": 90, "d5": 100,
-            "theta7": _degrees_of(3, 4), "x8": 110,
-            "omega3": -3, "omega4": -3, "omega5": -1.5, "d5_dot": 150, "omega7": 0, "x8_dot": 270,
-            "alpha3": -18, "alpha4": 32, "alpha5": 3, "d5_ddot": -225, "alpha7": 5.0625,
-            "x8_ddot": -843.75,
-        },
+    given(
+        xC=80, yC=0, xD=30, yD=-50, r2=30, r3=40, r4=30, r5=180, r6=50, beta=_degrees_of(4, 3), r7=100,
+        d3=190, theta2=0, omega2=5, mode="open",
+    ).gives(
+        theta3=_degrees_of(3, 4), theta4=_degrees_of(4, -3), theta5=90, d5=100, theta7=_degrees_of(3, 4),
+        x8=110, omega3=-3, omega4=-3, omega5=-1.5, d5_dot=150, omega7=0, x8_dot=270, alpha3=-18, alpha4=32,
+        alpha5=3, d5_ddot=-225, alpha7=5.0625, x8_ddot=-843.75,
     ),
 )  # fmt: skip

@@ -27,7 +27,7 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, mistake, stable
+from coursework.solution import Moving, formula, given, mistake, stable
 
 from ._first_four_bar import *
 
@@ -438,29 +438,19 @@ def residual(
 KNOWN = (
     # Both loops are 3-4-5 triangles over a driver in line with its frame: there the two rods turn alike.
     # A = (30, 0) and B = (62, 24), C = (80, 0); D = (60, 0) and E = (42, 24), F = (10, 0).
-    (
-        {
-            "xC": 80, "yC": 0, "xF": 10, "yF": 0, "r2": 30, "r3": 40, "r4": 30, "r5": 20,
-            "beta": 180 - math.degrees(math.atan2(4, -3)), "r6": 30, "r7": 40, "theta2": 0, "omega2": 5,
-            "mode_1": "open", "mode_2": "crossed",
-        },
-        {
-            "mobility": 1, "cycles": 2,
-            "theta3": "36.8699", "theta4": "126.8699", "theta6": "126.8699", "theta7": "36.8699",
-            "omega3": -3, "omega4": -3, "omega6": 1.2, "omega7": 1.2,
-            "alpha3": -18, "alpha4": 32, "alpha6": -6.08, "alpha7": -16.58,
-        },
+    given(
+        xC=80, yC=0, xF=10, yF=0, r2=30, r3=40, r4=30, r5=20, beta=180 - math.degrees(math.atan2(4, -3)),
+        r6=30, r7=40, theta2=0, omega2=5, mode_1="open", mode_2="crossed",
+    ).gives(
+        mobility=1, cycles=2, theta3="36.8699", theta4="126.8699", theta6="126.8699", theta7="36.8699",
+        omega3=-3, omega4=-3, omega6=1.2, omega7=1.2, alpha3=-18, alpha4=32, alpha6=-6.08, alpha7=-16.58,
     ),
     # Two parallelograms: the plate and the second rocker turn as the crank does, the rods do not turn.
-    (
-        {
-            "xC": 60, "yC": 80, "xF": 180, "yF": 30, "r2": 40, "r3": 100, "r4": 40, "r5": 30, "beta": 40,
-            "r6": 130, "r7": 30, "theta2": 20, "omega2": -6, "mode_1": "crossed", "mode_2": "open",
-        },
-        {
-            "theta3": "53.1301", "theta4": 20, "theta6": "-22.6199", "theta7": 60,
-            "omega3": 0, "omega4": -6, "omega6": 0, "omega7": -6,
-            "alpha3": 0, "alpha4": 0, "alpha6": 0, "alpha7": 0,
-        },
+    given(
+        xC=60, yC=80, xF=180, yF=30, r2=40, r3=100, r4=40, r5=30, beta=40, r6=130, r7=30, theta2=20,
+        omega2=-6, mode_1="crossed", mode_2="open",
+    ).gives(
+        theta3="53.1301", theta4=20, theta6="-22.6199", theta7=60, omega3=0, omega4=-6, omega6=0, omega7=-6,
+        alpha3=0, alpha4=0, alpha6=0, alpha7=0,
     ),
 )  # fmt: skip

@@ -7,7 +7,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.marking.drawn_polygons import Asked, Read, verdicts
 from coursework.polygons import crank_v, polygon_of_velocities, two_bars_v
-from coursework.solution import judge, mistake
+from coursework.solution import given, judge, mistake
 
 from ._drawn_velocity import *
 
@@ -146,15 +146,11 @@ def residual(r1, r2, r3, r4, theta2, omega2, mode, kv, a, b, ab, pv_b, v_B, omeg
 
 KNOWN = (
     # Crank along the frame, ABC a 3-4-5 triangle, right-angled at B: coupler and rocker turn at -3 rad/s.
-    (
-        {"r1": 80, "r2": 30, "r3": 40, "r4": 30, "theta2": 0, "omega2": 5, "mode": "open"},
-        {
-            "kv": 2, "a": (0, 75), "b": (36, 27), "ab": 60, "pv_b": 45, "v_B": 90, "omega3": -3, "omega4": -3,
-        },
+    given(r1=80, r2=30, r3=40, r4=30, theta2=0, omega2=5, mode="open").gives(
+        kv=2, a=(0, 75), b=(36, 27), ab=60, pv_b=45, v_B=90, omega3=-3, omega4=-3
     ),
     # A parallelogram: the coupler only translates, a and b are one.
-    (
-        {"r1": 100, "r2": 50, "r3": 100, "r4": 50, "theta2": 90, "omega2": 2, "mode": "open"},
-        {"kv": 1, "a": (-100, 0), "b": (-100, 0), "ab": 0, "v_B": 100, "omega4": 2},
+    given(r1=100, r2=50, r3=100, r4=50, theta2=90, omega2=2, mode="open").gives(
+        kv=1, a=(-100, 0), b=(-100, 0), ab=0, v_B=100, omega4=2
     ),
-)  # fmt: skip
+)

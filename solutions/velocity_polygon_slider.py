@@ -7,7 +7,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.marking.drawn_polygons import Asked, Read, verdicts
 from coursework.polygons import crank_v, polygon_of_velocities, slider_v
-from coursework.solution import judge, mistake
+from coursework.solution import given, judge, mistake
 
 from ._drawn_velocity import *
 
@@ -139,13 +139,11 @@ def residual(r2, r3, theta2, omega2, kv, a, b, ab, pv_b, r1_dot, omega3):
 
 KNOWN = (
     # Crank upright: the rod translates, and the piston goes left at the speed of the pin.
-    (
-        {"r2": 30, "r3": 50, "theta2": 90, "omega2": 8},
-        {"kv": 2, "a": (-120, 0), "b": (-120, 0), "ab": 0, "pv_b": 120, "r1_dot": -240, "omega3": 0},
+    given(r2=30, r3=50, theta2=90, omega2=8).gives(
+        kv=2, a=(-120, 0), b=(-120, 0), ab=0, pv_b=120, r1_dot=-240, omega3=0
     ),
     # Rod and crank equal: an isosceles triangle, r1 = 2 r2 cos theta2.
-    (
-        {"r2": 100, "r3": 100, "theta2": 60, "omega2": 5},
-        {"kv": 10, "r1_dot": -500 * 3**0.5, "omega3": -5, "ab": 50, "pv_b": 50 * 3**0.5},
+    given(r2=100, r3=100, theta2=60, omega2=5).gives(
+        kv=10, r1_dot=-500 * 3**0.5, omega3=-5, ab=50, pv_b=50 * 3**0.5
     ),
 )

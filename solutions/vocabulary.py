@@ -9,7 +9,7 @@ from pathlib import Path
 
 from coursework.course.texts import constants
 from coursework.errors import BadCourse
-from coursework.solution import mistake
+from coursework.solution import given, mistake
 
 from ..exercises.vocabulary import BANK, CASES
 
@@ -46,15 +46,8 @@ def residual():
 
 
 KNOWN = (
-    (
-        {},
-        {
-            "shortest_frame": "two_cranks",
-            "shortest_beside": "crank_rocker",
-            "shortest_opposite": "two_rockers",
-            "two_slides": "angle",
-            "class_engine": "II",
-            "four_legs": "one",
-        },
+    given().gives(
+        shortest_frame="two_cranks", shortest_beside="crank_rocker", shortest_opposite="two_rockers",
+        two_slides="angle", class_engine="II", four_legs="one",
     ),
-)
+)  # fmt: skip

@@ -13,8 +13,19 @@ from coursework.authoring.check_report import Report, notes, table
 from coursework.authoring.checks import agrees, check
 from coursework.cli.printing import print_table
 from coursework.language.words import file_of
+from coursework.solution import given
 
 X = "return r * cos(theta)"
+
+
+def test_a_known_case_is_a_sentence_or_a_pair():
+    assert given(r=200, theta=60).gives(x=100, y="173.2") == (
+        {"r": 200, "theta": 60},
+        {"x": 100, "y": "173.2"},
+    )
+    assert given(F=2).under("load", "friction").gives(T=1) == ({"F": 2}, {"T": 1}, ("load", "friction"))
+    assert given().under().gives(T=0) == ({}, {"T": 0}, ())
+
 
 BREAKS = {
     "a wrong formula": ("solutions/crank_pin.py", X, "return r * sin(theta)", "known case"),
