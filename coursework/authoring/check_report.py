@@ -25,6 +25,9 @@ class Report:
     acceptance: float = math.nan
     conditioning: tuple[float, float] = (math.nan, math.nan)  #: median and largest, of what may be issued
     cases: dict[str, Counter[str]] = field(default_factory=dict)  #: branches that students met, by quantity
+    unproved: dict[str, str] = field(
+        default_factory=dict
+    )  #: why a step's formula proves nothing, by quantity
 
     @property
     def passed(self) -> bool:
@@ -50,6 +53,7 @@ class Report:
                 for name, value in zip(("median", "largest"), self.conditioning, strict=True)
             },
             "cases": {n: dict(c) for n, c in self.cases.items()},
+            "unproved": self.unproved,
             "failures": self.failures,
         }
 
@@ -80,6 +84,7 @@ def _tried(report: Report) -> dict[str, int]:
         "loops": counts["loops told"],
         "followed": counts["follow-through"],
         "nonsense": counts["nonsense"],
+        "formulas": counts["formulas proved"],
     }
     return {kind: count for kind, count in kinds.items() if count}
 
@@ -105,12 +110,22 @@ def notes(reports: Sequence[Report]) -> list[str]:
                 continue  # a question of a bank: its answer is the same wherever it is asked
             met = ", ".join(f"{case} {100 * n / r.variants:.0f} %" for case, n in cases.most_common())
             told.append(f"{name}: {met}")
+        if r.unproved:
+            told.append(f"formulas not proved: {_by_reason(r.unproved)}")
         if r.refused:
             flaws = ", ".join(f"{flaw} ({n})" for flaw, n in r.refused.most_common(3))
             told.append(f"passed over most for {flaws}")
         if told:
             lines.append(f"{r.name}: {'; '.join(told)}")
     return lines
+
+
+def _by_reason(unproved: Mapping[str, str]) -> str:
+    """``ka, p (told in words), q (r has no value)``."""
+    names: dict[str, list[str]] = {}
+    for name, why in unproved.items():
+        names.setdefault(why, []).append(name)
+    return ", ".join(f"{', '.join(those)} ({why})" for why, those in names.items())
 
 
 def _share_worthy(report: Report) -> str:

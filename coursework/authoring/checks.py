@@ -20,6 +20,7 @@ from coursework.authoring.check_answers import (
     check_rounding_students,
     check_slips,
 )
+from coursework.authoring.check_formulas import check_formulas
 from coursework.authoring.check_loops import check_loops
 from coursework.authoring.check_report import RESIDUAL, Report
 from coursework.course import draws
@@ -145,6 +146,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
     for variant in drawn[:NONSENSICAL]:
         check_nonsense(variant, report)
     check_loops(drawn[0], report)
+    check_formulas(drawn, report)
     for name in exercise.solution.mistakes:
         tally = report.mistakes.setdefault(name, Counter())
         if count >= 50 and not tally["shown"]:

@@ -1,0 +1,116 @@
+"""The promise that the formula on paper gives the number on paper.
+
+Each step of a worked solution that prints a formula with its numbers is read back from the print and evaluated. It must
+give the printed value, up to what the rounding of the printed numbers can do: each number that may be rounded is moved
+by half of its last digit, alone, and the moves of the result add up. Angles are the same after a full turn.
+
+What cannot be told is never taken for proved: a step that words alone tell, a formula that holds what has no value,
+and numbers whose rounding moves the result by more than a tenth of it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from coursework.authoring.check_report import Report
+from coursework.course.variant import Variant
+from coursework.reading.printed_formulas import DEGREE, NotEvaluable, Reading, read
+from coursework.sheets.answer_sheet import PRINTED_DIGITS, answer_sheet
+from coursework.sheets.sheet import AnswerSheet, Step
+
+TRIED = 20  #: variants whose worked solutions are read back
+TELLS_SHARE = 0.1  #: of a value: a wider bound proves nothing
+TELLS_DEGREES = 2.0  #: the same of an angle
+_BEYOND_FIRST_ORDER = 1.1  #: rounding errors compound a little
+_LAST_BITS = 1e-9  #: of a value: what computing it two ways may differ by
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What evaluating a step's formula says: it gives the printed value, another one, or nothing for a reason."""
+
+    holds: bool = False
+    gives: str = ""
+    why_not: str = ""
+
+
+def check_formulas(drawn: Sequence[Variant], report: Report) -> None:
+    """The printed formula of each step gives its printed value; a step that fails is told once."""
+    failed = set()
+    for variant in drawn[:TRIED]:
+        sheet = answer_sheet(variant, polygons=False)
+        shown = _shown_by_symbol(sheet)
+        for step in sheet.steps:
+            proof = prove(step, shown)
+            if proof is None:
+                continue
+            report.counts["formulas proved"] += proof.holds
+            if proof.why_not:
+                report.counts["formulas not proved"] += 1
+                report.unproved.setdefault(step.name, proof.why_not)
+            elif not proof.holds and step.name not in failed:
+                failed.add(step.name)
+                report.fail(
+                    f"seed {variant.seed}: the printed formula of {step.name}, {step.formula}, with its numbers "
+                    f"{step.substitution or step.formula}, gives {proof.gives}; printed is {step.value}"
+                )
+
+
+def _shown_by_symbol(sheet: AnswerSheet) -> dict[str, str]:
+    """The printed number of each quantity of a sheet, by its symbol."""
+    given = {g.symbol: rf"\num{{{g.value}}}" for g in sheet.handout.given if g.is_number}
+    return given | {step.symbol: _number_of(step.value) for step in sheet.steps}
+
+
+def prove(step: Step, shown: Mapping[str, str]) -> Proof | None:
+    """Whether a step's formula gives its value; None where it prints no number. ``shown``: printed numbers by symbol."""
+    printed = _number_of(step.value)
+    is_angle = printed.endswith(r"^{\circ}")
+    try:
+        value = read(printed, PRINTED_DIGITS)
+    except NotEvaluable:
+        return None  # an equation, a case
+    if not step.formula:
+        return Proof(why_not="told in words")
+    if not step.substitution and step.formula in shown:
+        return _compared(value, read(shown[step.formula], PRINTED_DIGITS), is_angle)
+    try:
+        found = read(step.substitution or step.formula, PRINTED_DIGITS, is_angle=is_angle)
+    except NotEvaluable as fault:
+        return Proof(why_not=str(fault))
+    return _compared(value, found, is_angle)
+
+
+def _number_of(value: str) -> str:
+    """The LaTeX of a printed value without its unit."""
+    return value.partition(r"\ \mathrm")[0]
+
+
+def _compared(value: Reading, found: Reading, is_angle: bool) -> Proof:
+    gives = _told(found, is_angle)
+    if len(value.values) != len(found.values):
+        return Proof(gives=gives)
+    is_told = True
+    for printed, width, evaluated, moved in zip(
+        value.values, value.widths, found.values, found.widths, strict=True
+    ):
+        allowed = _BEYOND_FIRST_ORDER * moved + width + _LAST_BITS * abs(printed)
+        gap = evaluated - printed
+        if is_angle:
+            gap = _turn_less(gap.real)
+        if not abs(gap) <= allowed and math.isfinite(allowed):
+            return Proof(gives=gives)
+        enough = TELLS_DEGREES * DEGREE if is_angle else TELLS_SHARE * abs(printed)
+        is_told = is_told and (allowed <= enough or evaluated == printed)
+    return Proof(holds=True) if is_told else Proof(why_not="its rounded numbers do not tell")
+
+
+def _turn_less(angle: float) -> float:
+    return math.remainder(angle, 2 * math.pi) if math.isfinite(angle) else angle
+
+
+def _told(found: Reading, is_angle: bool) -> str:
+    scale, unit = (1 / DEGREE, " deg") if is_angle else (1.0, "")
+    return "; ".join(f"{complex(v * scale):.7g}".replace("+0j", "") for v in found.values) + unit
