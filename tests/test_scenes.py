@@ -7,10 +7,12 @@ import json
 
 import numpy as np
 import pytest
+from scipy.optimize import bisect
 
 from coursework.cli import run
-from coursework.errors import BadCourse, UnknownName, WrongValue
-from coursework.motion.scenes import Scene
+from coursework.errors import BadCourse, Undefined, UnknownName, WrongValue
+from coursework.motion.scenes import Scene, _Motion
+from coursework.quantities.graph import Replacement
 
 GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "omega2": 5.0, "alpha2": 0.0}
 
@@ -166,3 +168,43 @@ def test_dead_centres_are_rows_where_the_piston_stands_still(course):
     assert np.abs(table.columns["r1_dot"][dead]).max() < 1e-6 * fastest
     assert table.notes[-1] == f"{dead.sum()} dead centres"
     assert scene.in_time(0.0, 0.15, count=10).notes[-1] == "1 dead centre"
+
+
+def shaken(motion, units=2):
+    """The same motion on a processor that rounds otherwise: each quantity is off by some units in its last place."""
+    last, rng = np.finfo(float).eps, np.random.default_rng(0)
+
+    def observe(name, value):
+        return value * (1 + last * rng.integers(-units, units + 1)) if isinstance(value, float) else value
+
+    motion.graph = motion.graph.observed(observe)
+    return motion
+
+
+@pytest.mark.parametrize(
+    "effects", [("inertia",), ("load", "gravity", "inertia"), ("load", "inertia", "friction")]
+)
+@pytest.mark.parametrize("speed", [0.0, 30.0])
+def test_an_acceleration_does_not_hang_on_a_last_bit(course, effects, speed):
+    """Least where it goes through 0 and the terms of the torque cancel: there all that is left is rounding."""
+    scene = torque_scene(course, *effects)
+    plain, other = _Motion(scene, 0.0), shaken(_Motion(scene, 0.0))
+    angles = np.radians(np.arange(0.0, 361.0, 10.0)).tolist()
+    found = [plain.acceleration(angle, speed) for angle in angles]
+    crossed = [k for k in range(36) if found[k] * found[k + 1] < 0]
+    zeros = [bisect(plain.acceleration, angles[k], angles[k + 1], (speed,), xtol=1e-15) for k in crossed]
+    assert zeros or (effects == ("inertia",) and not speed), "at rest and without a load it is 0 everywhere"
+    for angle in angles + zeros:
+        found = plain.acceleration(angle, speed)
+        allowed = plain.rounding(angle, speed, found) / plain.inertia(angle)
+        assert other.acceleration(angle, speed) == pytest.approx(found, abs=allowed)
+
+
+@pytest.mark.parametrize("short", [1e-9, 1.0])
+def test_a_drive_that_nothing_balances_is_not_taken_for_rounding(course, short):
+    """A torque that is never negative, and a drive that is, be it ever so little."""
+    motion = _Motion(torque_scene(course, "inertia"), -short)
+    motion.graph = motion.graph.replacing(Replacement(("torque",), lambda torque: abs(torque)))
+    for angle in range(0, 360, 30):
+        with pytest.raises(Undefined, match=f"no acceleration balances the drive at {angle} degrees"):
+            motion.acceleration(np.radians(angle), 30.0)

@@ -28,6 +28,7 @@ LEVELS: Mapping[str, tuple[str, ...]] = {
 CORIOLIS = "a_coriolis"
 EFFORTS = ("N", "N*m")
 INERTIA, FRICTION = "inertia", "friction"
+ROUNDING = 1e-13  #: of a term: some hundred times the rounding of one operation
 
 
 @dataclass(frozen=True)
@@ -239,18 +240,40 @@ class _Motion:
     def acceleration(self, angle: float, speed: float) -> float:
         """The acceleration at which the effort asked is the drive's.
 
-        Without friction the effort is affine in it; with friction nearly so, and a few corrections do.
+        Without friction the effort is affine in it; with friction nearly so, and a few corrections do. They
+        end where what is lacking is nothing beside the drive and the inertia, or, where these are small beside
+        terms of the effort that cancel, where it no longer shrinks and is within the rounding of those terms.
+
+        Raises
+        ------
+        Undefined
+            What is lacking stays: no acceleration balances the drive.
         """
         own, inertia = self.scene._own, self.inertia(angle)
-        value = 0.0
+        value, least = 0.0, math.inf
         for _ in range(60):
             lacking = self.drive - self.effort(angle, speed, value, own)
             value += lacking / inertia
-            if abs(lacking) <= 1e-13 * (abs(self.drive) + abs(value) * inertia):
+            if abs(lacking) <= ROUNDING * (abs(self.drive) + abs(value) * inertia):
                 return value
+            if abs(lacking) >= least and abs(lacking) <= self.rounding(angle, speed, value):
+                return value
+            least = min(least, abs(lacking))
         raise Undefined(
             f"no acceleration balances the drive at {math.degrees(angle):.4g} degrees: the guide jams"
         )
+
+    def rounding(self, angle: float, speed: float, acceleration: float) -> float:
+        """How far rounding may put the effort off, by the size of the terms that it is made of.
+
+        A quantity x has a part |x d(effort)/dx| in them, whether or not the parts cancel: the effort changes by
+        that much, times ``ROUNDING``, when x does by ``ROUNDING`` of itself.
+        """
+        name, own = self.driver.effort, self.scene._own
+        at = self._at(angle, speed, acceleration)
+        effort = self.effort(angle, speed, acceleration, own)
+        changed = ({**at, n: v * (1 + ROUNDING)} for n, v in at.items() if isinstance(v, float))
+        return sum(abs(float(self.graph.evaluate((name,), one, own)[name]) - effort) for one in changed)
 
     def derivative(self, t: float, state: Sequence[float]) -> list[float]:
         """Speed, acceleration, and the power that goes into kinetic energy."""
