@@ -164,6 +164,17 @@ def test_a_source_names_its_paper_and_its_language():
     assert "{-}12{,}5" in source, "a French decimal comma"
 
 
+@with_pdflatex
+@every_language
+def test_a_sheet_compiles_with_a_tex_that_lacks_its_language(lang, tmp_path):
+    """Its words are then left whole, and babel is not asked for."""
+    (tmp_path / "figure.pdf").write_bytes(RENDERER.figure_pdf(handout(lang)))
+    source = RENDERER.tex(handout(lang), "figure.pdf")
+    lacking = re.sub(r"(french|english)(?=\.ldf|\]\{babel)", r"\1ofnowhere", source)
+    assert lacking.count("ofnowhere") == 2
+    assert "babel.sty" not in compile_latex(lacking, tmp_path).replace("\n", "")
+
+
 @every_language
 def test_a_students_source_holds_no_answer(lang):
     assert not any(
