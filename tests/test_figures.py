@@ -40,7 +40,7 @@ from coursework.figures import (
     trace,
     vector,
 )
-from coursework.figures.text import read
+from coursework.figures.text import Run, advance, read
 
 
 def polar(r, degrees):
@@ -440,6 +440,15 @@ def test_a_label_box_is_wider_than_its_letters(label, italic):
     measured = float(found.strip("[]"))
     width = figure.labels()[0].width
     assert measured < width < 1.25 * measured + 0.3
+
+
+def test_a_label_is_as_wide_in_every_version_of_python():
+    """To the last bit, so that a rounded place is the same: the built-in ``sum`` is not."""
+    run, width = Run("0123456789" * 3, italic=True), 0.0
+    for letter in run.text:
+        width += Run(letter, italic=True).width
+    assert run.width == width
+    assert advance([run] * 3) == width + width + width
 
 
 def test_the_font_of_the_text_is_one_that_typst_brings():

@@ -27,6 +27,7 @@ from coursework.figures.ink import (
     WHITE,
     Disc,
     Path,
+    added,
     turn,
 )
 from coursework.figures.paper import Paper
@@ -116,7 +117,7 @@ class bar(Element):
             for before, corner, after in zip(points, points[1:], points[2:], strict=False):
                 _gusset(paper, before, corner, after)
         if plate:
-            center = sum(points) / len(points)
+            center = added(points) / len(points)
             paper.toward(self.label, center, 1j, -read(self.label).box[1] / 2 if self.label else 0.0, SIDES)
         else:
             longest = max(pairwise(points), key=lambda pair: abs(pair[1] - pair[0]))
@@ -214,7 +215,7 @@ class section(Element):
             paper.draw(Path((a, b), THIN, layer=FILLS))
         paper.draw(Path(points, EDGE, closed=True, layer=GUIDES, solid=True))
         if hole:
-            paper.inside(self.label, sum(hole) / 4, read(self.label).box[1])
+            paper.inside(self.label, added(hole) / 4, read(self.label).box[1])
         else:
             paper.beside(self.label, *max(_sides(points), key=lambda side: abs(side[1] - side[0])), AWAY)
 
@@ -240,7 +241,7 @@ def _hole(points: tuple[complex, ...], box: tuple[float, float]) -> tuple[comple
         return min(distance(center + z, a, b) for z in rim for a, b in pairwise(closed))
 
     fitting = [center for center in grid if all(within(center + z, closed) for z in rim)]
-    middle = sum(grid) / len(grid)
+    middle = added(grid) / len(grid)
     best = max(fitting, key=lambda z: (round(room(z), 1), -round(abs(z - middle), 3)), default=None)
     return () if best is None else tuple(best + z for z in corners)
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable
+import operator
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, reduce
+from typing import TypeVar
 
 BAR, EDGE, THIN = 0.6, 0.35, 0.2  #: line widths, mm
 DASHED, CHAIN, DOTTED = "1.6 1", "4 1 0.6 1", "0.8 0.8"
@@ -17,6 +19,7 @@ WHITE, TINT, BLACK, NONE = "#fff", "#e4e4e4", "#000", "none"
 FILLS, LINES, GUIDES, BLOCKS, BARS, PINS, MARKS = range(7)
 
 Place = Callable[[complex], complex]
+Number = TypeVar("Number", float, complex)
 
 
 def number(x: float) -> str:
@@ -27,6 +30,11 @@ def number(x: float) -> str:
 
 def pair(z: complex) -> str:
     return f"{number(z.real)} {number(z.imag)}"
+
+
+def added(numbers: Iterable[Number]) -> Number | float:
+    """Numbers added one after the other: how ``sum`` rounds depends on the version of Python."""
+    return reduce(operator.add, numbers, 0.0)
 
 
 def turn(degrees: float) -> complex:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 from coursework.errors import WrongValue, unknown
+from coursework.figures.ink import added
 
 SIZE = 3.7  #: letter size, mm on paper
 SMALL = 0.72  #: size of a subscript relative to its base
@@ -68,7 +69,7 @@ class Run:
     @cached_property
     def width(self) -> float:
         table = _WIDTHS[self.italic]
-        return self.size * sum(table.get(letter, 0.75) for letter in self.text)
+        return self.size * added(table.get(letter, 0.75) for letter in self.text)
 
     @cached_property
     def top(self) -> float:
@@ -122,7 +123,7 @@ class Text:
 
 def advance(runs: Sequence[Run]) -> float:
     """How far letters set one after the other come to the right."""
-    return sum(run.width - run.back for run in runs)
+    return added(run.width - run.back for run in runs)
 
 
 @lru_cache(maxsize=2048)

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Sequence
 from itertools import combinations
 
 from coursework.figures import Figure, circle, contact, line, note
+from coursework.figures.ink import added
 from coursework.structure.joints import FRAME, Joint, JointGraph, Record
 
 _LETTERS = {"revolute": "R", "prismatic": "P", "higher": "H"}
@@ -51,7 +52,7 @@ def _between(p: complex, q: complex, *, ends: bool = True) -> Line:
 
 def _hub(joint: Joint, places: dict[int, complex]) -> complex:
     """Where a multiple pivot is drawn: amid its bodies, drawn towards the middle of the figure."""
-    return 0.8 * sum(places[body] for body in joint.bodies) / len(joint.bodies)
+    return 0.8 * added(places[body] for body in joint.bodies) / len(joint.bodies)
 
 
 def _places(graph: JointGraph) -> dict[int, complex]:

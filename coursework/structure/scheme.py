@@ -25,6 +25,7 @@ from coursework.figures import (
     wheel,
 )
 from coursework.figures.base import BLOCK
+from coursework.figures.ink import added
 from coursework.structure.joints import FRAME, Joint, JointGraph, Record
 from coursework.structure.layout import BEYOND, places, slides
 from coursework.structure.likeness import drawn_in_course
@@ -181,7 +182,7 @@ class _Scheme:
             b for k, j in enumerate(self.graph.joints) if abs(self.at[k] - here) < 1e-6 for b in j.bodies
         }
         ways = [z - here for b in bodies - {FRAME} for z in self._rigid(b) if abs(z - here) > 1]
-        crowd = sum((way / abs(way) / side).real for way in ways)
+        crowd = added((way / abs(way) / side).real for way in ways)
         return -side if crowd > 0.3 else side
 
     def _slide(self, index: int) -> list[Element]:
@@ -207,7 +208,7 @@ class _Scheme:
         others = [self.at[k] for k in self._own(body) if self.graph.joints[k] != joint]
         if body == FRAME or not others:
             return 0j
-        way = here - sum(others) / len(others)
+        way = here - added(others) / len(others)
         return way / (abs(way) or 1.0)
 
     def _inward(self, index: int, body: int) -> complex:
@@ -259,7 +260,7 @@ class _Scheme:
                 middle, half = self._gap(here)
                 return [rotation_arrow(here, 6.0, middle - half, middle + half)]
             along = 1j * self._below(k)
-            crowd = sum(((z - here) / along).real for z in self._rigid(self.driven))
+            crowd = added(((z - here) / along).real for z in self._rigid(self.driven))
             along = -along if crowd > 0 else along
             return [vector(here + 4.5 * along, 7 * along)]
         return []
@@ -279,7 +280,7 @@ def _degrees(way: complex) -> float:
 
 def _around(points: Sequence[complex]) -> list[complex]:
     """The ends of a bar, or the corners of a plate in order round their middle."""
-    middle = sum(points) / len(points)
+    middle = added(points) / len(points)
     return sorted(points, key=lambda z: cmath.phase(z - middle))
 
 
