@@ -217,6 +217,7 @@ class Solution:
     """A loaded solution."""
 
     name: str
+    source: str  #: its file, for messages
     graph: Graph
     mistakes: Mapping[str, Mistake]
     known: Sequence[tuple[Any, ...]]
@@ -232,8 +233,8 @@ class Solution:
     film: Film | None = None
 
     @staticmethod
-    def of(name: str, module: ModuleType) -> Solution:
-        """Read a solution module.
+    def of(name: str, module: ModuleType, source: str) -> Solution:
+        """Read a solution module; ``source`` is what messages call its file.
 
         Raises
         ------
@@ -253,11 +254,11 @@ class Solution:
         special = {"residual", "figure", "motion", "polygons"}
         functions = {k: f for k, f in own.items() if k not in {*special, *mistakes, *judges}}
         if not functions:
-            raise BadCourse(f"solutions/{name}.py defines no quantity; a quantity is a function of its name")
+            raise BadCourse(f"{source} defines no quantity; a quantity is a function of its name")
         functions |= _hidden(functions, module)
         needed = frozenset().union(*(Node.of(f).needs for f in functions.values()))
         loops = stated(
-            f"solutions/{name}.py",
+            source,
             getattr(module, "LOOPS", {}),
             getattr(module, "RATES", {}),
             functions.keys(),
@@ -269,12 +270,13 @@ class Solution:
             try:
                 graph.replacing(wrong.replacement)
             except CourseworkError as fault:
-                raise BadCourse(f"solutions/{name}.py: mistake {wrong.name!r}: {fault}") from fault
+                raise BadCourse(f"{source}: mistake {wrong.name!r}: {fault}") from fault
         units = dict(getattr(module, "UNITS", {}))
         for quantity, unit in units.items():
-            check_unit(f"solutions/{name}.py: UNITS of {quantity}", unit)
+            check_unit(f"{source}: UNITS of {quantity}", unit)
         return Solution(
             name,
+            source,
             graph,
             mistakes,
             tuple(getattr(module, "KNOWN", ())),
@@ -287,7 +289,7 @@ class Solution:
             judges,
             own.get("polygons"),
             loops,
-            _film(name, module),
+            _film(source, module),
         )
 
     def judge(self, name: str) -> Callable[..., Any]:
@@ -340,21 +342,25 @@ class Solution:
             The solution states no residual.
         """
         if self.residual is None:
-            raise BadCourse(f"solutions/{self.name}.py states no residual; write the governing equations")
+            raise BadCourse(f"{self.source} states no residual; write the governing equations")
         return self.graph.with_functions({"residual": self.residual})
 
 
-def _film(name: str, module: ModuleType) -> Film | None:
+def _film(source: str, module: ModuleType) -> Film | None:
     film = getattr(module, "FILM", None)
     if film is not None and not isinstance(film, Film):
-        raise BadCourse(f"solutions/{name}.py: FILM is a Film(…); found {str(film)[:60]}")
+        raise BadCourse(f"{source}: FILM is a Film(…); found {str(film)[:60]}")
     return film
 
 
 def _belongs(function: Any, module: ModuleType) -> bool:
     """Whether a function is the module's own, or comes from a module that solutions share: ``_strokes``."""
     home = getattr(function, "__module__", None) or ""
-    return home == module.__name__ or home.startswith(f"{module.__package__}._")
+    if home == module.__name__:
+        return True
+    shared, _, last = home.rpartition(".")
+    solutions = module.__name__.split(".")[:2]  # the course's package and its folder; topics lie within
+    return last.startswith("_") and shared.split(".")[:2] == solutions
 
 
 def _hidden(functions: Mapping[str, Callable[..., Any]], module: ModuleType) -> dict[str, Callable[..., Any]]:

@@ -61,7 +61,9 @@ def test_a_course_overrides_one_template_and_takes_the_others_from_the_built_in_
 
 
 def test_exercises_never_import_solutions(course):
-    for path in (course.folder.root / "exercises").glob("*.py"):
+    files = list((course.folder.root / "exercises").rglob("*.py"))
+    assert len(files) >= len(course)
+    for path in files:
         text = path.read_text("utf-8")
         assert not re.search(r"^\s*(from|import)\s.*\bsolutions?\b", text, re.MULTILINE), path.name
 

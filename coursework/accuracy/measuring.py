@@ -71,7 +71,9 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Row]:
         ) from None
     study = study_of(exercise)
     if study is None:
-        raise BadInput(f"solutions/{exercise.name}.py states no ACCURACY = Study(…): nothing to measure")
+        raise BadInput(
+            f"{exercise.folder.source('solutions', exercise.name)} states no ACCURACY = Study(…): nothing to measure"
+        )
     for place in (GENERIC, HARD):
         if study.positions and (place == GENERIC or study.hard):
             yield from _Trial(exercise, study, place, quick).rows()

@@ -180,7 +180,9 @@ def check_texts(exercise: CourseExercise, report: Report) -> None:
     for lang in languages():
         words(lang)  # a file of words that cannot be used says so here
         if lang not in exercise.languages:
-            report.fail(f"no statement in {lang!r}: exercises/{exercise.name}.{lang}.md.j2 is missing")
+            report.fail(
+                f"no statement in {lang!r}: {exercise.folder.relative(exercise.texts.file('exercises', lang))} is missing"
+            )
             continue
         if exercise.folder.lacks_title(lang):
             report.fail(
@@ -218,7 +220,7 @@ def check_needs(exercise: CourseExercise, report: Report) -> bool:
         exercise.plan([part.quantity for part in exercise.spec.parts], effects=exercise.spec.effects)
     except MissingQuantity as fault:
         near = nearest(fault.names[0], ({*exercise.spec.given} | exercise.quantity_names) - {*fault.names})
-        report.fail(f"solutions/{exercise.name}.py: {fault.needed}{near}")
+        report.fail(f"{exercise.solution.source}: {fault.needed}{near}")
         return False
     except CourseworkError:
         pass  # it is told by what needs it
@@ -233,7 +235,7 @@ def check_symbols(exercise: CourseExercise, report: Report) -> None:
         stated = name in exercise.spec.symbols
         if name in on_the_sheet and not stated and symbol != exercise.symbol(name):
             report.fail(
-                f"SYMBOLS of solutions/{exercise.name}.py names {name!r}, which is given or asked: its symbol belongs "
+                f"SYMBOLS of {exercise.solution.source} names {name!r}, which is given or asked: its symbol belongs "
                 f"in Exercise(symbols=…), else the sheet shows it as {exercise.symbol(name)}"
             )
 

@@ -46,7 +46,7 @@ class CourseExercise(Generic[V]):
         self._variant = variant
         spec = getattr(folder.module("exercises", name), "EXERCISE", None)
         if not isinstance(spec, Exercise):
-            raise BadCourse(f"exercises/{name}.py states no EXERCISE = Exercise(…)")
+            raise BadCourse(f"{folder.source('exercises', name)} states no EXERCISE = Exercise(…)")
         self.spec: Exercise = spec
         self.texts = ExerciseTexts(folder, name)
         draws.check_conditions(name, spec)
@@ -79,7 +79,8 @@ class CourseExercise(Generic[V]):
                 f"it lacks {self.name}.py" if self.folder.has_solutions else "it looks like a students' copy"
             )
             raise NoSolution(f"no solution of {self.name!r} in {self.folder.label}: {why}")
-        return Solution.of(self.name, self.folder.module("solutions", self.name))
+        source = self.folder.source("solutions", self.name)
+        return Solution.of(self.name, self.folder.module("solutions", self.name), source)
 
     @cached_property
     def units(self) -> Mapping[str, str]:

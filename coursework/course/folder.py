@@ -111,6 +111,11 @@ class Folder:
             else (home.parent / name, home.parent)
         )
 
+    def source(self, kind: str, name: str) -> str:
+        """What messages call the file of ``KIND/NAME``."""
+        home = self.home(kind, name)
+        return f"{kind}/{name}.py" if home is None else self.relative(home)
+
     def relative(self, path: Path) -> str:
         """What messages call a file."""
         return path.relative_to(self.root).as_posix()
@@ -174,7 +179,7 @@ class Folder:
             The file cannot be imported; the message names the file, the line and the fault.
         """
         home = self.home(kind, name)
-        source = f"{kind}/{name}.py" if home is None else self.relative(home)
+        source = self.source(kind, name)
         steps = (kind, name) if home is None else home.relative_to(self.root).with_suffix("").parts
         dotted = ".".join((self._package, *steps)).removesuffix(".__init__")
         try:

@@ -45,7 +45,7 @@ def judged(
         The judge takes no ``answers``, says nothing of one though none is missing, or names a mistake that
         is none.
     """
-    solution, source = variant.exercise.solution, f"solutions/{variant.exercise.name}.py: judge {name!r}"
+    solution, source = variant.exercise.solution, f"{variant.exercise.solution.source}: judge {name!r}"
     computed = [n for n in _needs(variant, name) if n in variant.exercise.quantity_names]
     values = {
         **variant.given,
@@ -69,7 +69,7 @@ def _needs(variant: Variant, name: str) -> list[str]:
     first, *needs = _parameters(variant.exercise.solution.judge(name))
     if first != "answers":
         raise BadCourse(
-            f"solutions/{variant.exercise.name}.py: judge {name!r}: its first parameter must be 'answers'; "
+            f"{variant.exercise.solution.source}: judge {name!r}: its first parameter must be 'answers'; "
             f"found {first!r}"
         )
     return needs

@@ -95,7 +95,7 @@ class Animation:
             if effect != "position" and effect not in self.available:
                 raise WrongValue(
                     f"{variant.exercise.name}: no {effect} to show; "
-                    f"solutions/{variant.exercise.name}.py states none in motion(…)"
+                    f"{variant.exercise.folder.source('solutions', variant.exercise.name)} states none in motion(…)"
                 )
         self.effects = tuple(e for e in EFFECTS if e in effects) or ("position",)
 
@@ -178,7 +178,7 @@ class Animation:
 
     def _reel(self, film: Film) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
         """The same for a film: from 0, by equal steps and a last one that may be shorter."""
-        place = f"solutions/{self.variant.exercise.name}.py: FILM"
+        place = f"{self.variant.exercise.solution.source}: FILM"
         if film.speed not in self.variant.given:
             given = ", ".join(self.variant.given)
             raise BadCourse(f"{place}: speed={film.speed!r} is no given quantity; there are {given}")

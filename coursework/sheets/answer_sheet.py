@@ -96,7 +96,7 @@ def _step(
         substitution = formula_latex(function, numbers) if formula and value else ""
     except KeyError as fault:
         raise BadCourse(
-            f"solutions/{exercise.name}.py: the formula of {name} names {fault}, which is not among its quantities"
+            f"{exercise.solution.source}: the formula of {name} names {fault}, which is not among its quantities"
         ) from fault
     symbol = _symbol(variant, name)
     return Step(

@@ -47,9 +47,9 @@ def stated_polygons(variant: Variant) -> tuple[Construction, ...]:
     except BrokenFunction:  # it names its file itself
         raise
     except BadCourse as fault:
-        raise BadCourse(f"solutions/{solution.name}.py: {fault}") from fault
+        raise BadCourse(f"{solution.source}: {fault}") from fault
     if not isinstance(stated, (tuple, list)) or not all(isinstance(p, Polygon) for p in stated):
         raise BadCourse(
-            f"solutions/{solution.name}.py: polygons(…) returns a tuple of Polygon; found {str(stated)[:60]}"
+            f"{solution.source}: polygons(…) returns a tuple of Polygon; found {str(stated)[:60]}"
         )
     return tuple(Construction(p, variant.lang) for p in stated if p.size > 0)

@@ -18,13 +18,13 @@ from coursework.language.words import languages
 
 COURSE = coursework.open_course()
 EXERCISE = COURSE["vocabulary"]
-ROOT = COURSE.folder.root
-THEMES = tomllib.loads((ROOT / "exercises" / "vocabulary.toml").read_text("utf-8"))
-ANSWERS = tomllib.loads((ROOT / "solutions" / "vocabulary.toml").read_text("utf-8"))
+EXERCISES, SOLUTIONS = (COURSE.folder.home(kind, "vocabulary").parent for kind in ("exercises", "solutions"))
+THEMES = tomllib.loads((EXERCISES / "vocabulary.toml").read_text("utf-8"))
+ANSWERS = tomllib.loads((SOLUTIONS / "vocabulary.toml").read_text("utf-8"))
 
 
 def labels(lang):
-    return list(constants(ROOT / "exercises" / f"vocabulary.{lang}.md.j2").labels)
+    return list(constants(EXERCISES / f"vocabulary.{lang}.md.j2").labels)
 
 
 @pytest.mark.parametrize("lang", languages())
@@ -38,7 +38,7 @@ def test_each_question_has_the_same_cases_in_the_same_order_in_every_language(la
 @pytest.mark.parametrize("lang", languages())
 def test_remarks_are_to_wrong_cases_and_the_same_in_every_language(lang):
     def remarks(one):
-        texts = constants(ROOT / "solutions" / f"vocabulary.{one}.md.j2").texts
+        texts = constants(SOLUTIONS / f"vocabulary.{one}.md.j2").texts
         return {name.removeprefix("mistake ") for name in texts if name.startswith("mistake ")}
 
     wrong = {f"{question}_{case}" for question, case in labels(lang) if ANSWERS[question] != case}
@@ -75,10 +75,11 @@ def test_who_is_wrong_is_told_what_was_confused():
 
 @pytest.fixture
 def own_course(tmp_path):
-    for folder in ("exercises", "solutions"):
-        (tmp_path / folder).mkdir()
-        for path in (ROOT / folder).glob("vocabulary.*"):
-            shutil.copy(path, tmp_path / folder)
+    for folder in (EXERCISES, SOLUTIONS):
+        own = tmp_path / ("exercises" if folder == EXERCISES else "solutions")
+        own.mkdir()
+        for path in folder.glob("vocabulary.*"):
+            shutil.copy(path, own)
     return tmp_path
 
 

@@ -7,7 +7,7 @@ from coursework.quantities.columns import each, each_stacked
 from coursework.solids import aligned, each_distinct
 from coursework.solution import given, mistake
 
-from ..exercises._complex import DIRECTIONS, LAYOUTS, points_of
+from ...exercises.chains._complex import DIRECTIONS, LAYOUTS, points_of
 from ._chains import *
 from ._solids import _planar_chain
 

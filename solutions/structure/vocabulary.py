@@ -11,7 +11,7 @@ from coursework.course.texts import constants
 from coursework.errors import BadCourse
 from coursework.solution import given, mistake
 
-from ..exercises.vocabulary import BANK, CASES
+from ...exercises.structure.vocabulary import BANK, CASES
 
 _ANSWERS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 _REMARKS = constants(min(Path(__file__).parent.glob("vocabulary.*.md.j2"))).texts

@@ -2,7 +2,7 @@
 
 from coursework.model import Exercise
 
-from ._drawn import (
+from .._drawn import (
     FOUR_BAR,
     PAPER_MM,
     all_long,

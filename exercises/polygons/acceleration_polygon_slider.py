@@ -2,7 +2,7 @@
 
 from coursework.model import Exercise
 
-from ._drawn import (
+from .._drawn import (
     PAPER_MM,
     SLIDER_CRANK,
     all_long,

@@ -3,7 +3,7 @@
 from coursework.degrees import polar
 from coursework.model import Exercise, Part, drawn
 
-from ._drawn import all_long, told_angle, told_number
+from .._drawn import all_long, told_angle, told_number
 from .havens_planetary import arm, figure, speeds, velocity_of_B2
 
 REASONS = ("fixed_pivot", "slot", "translation", "composition", "no_slip", "equiprojectivity")

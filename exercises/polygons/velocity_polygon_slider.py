@@ -3,7 +3,7 @@
 from coursework.degrees import cos, polar, sin
 from coursework.model import Exercise
 
-from ._drawn import (
+from .._drawn import (
     PAPER_MM,
     SLIDER_CRANK,
     all_long,

@@ -11,8 +11,8 @@ from coursework.degrees import asin, sqrt, tan
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import Judged, formula, given, judge, mistake
 
+from .._slow_arc import *
 from ._in_line import _in_line
-from ._slow_arc import *
 
 UNITS = {"phi": "deg", "side": "1", "lean": "deg"}
 SYMBOLS = {"phi": r"\varphi", "side": r"\varepsilon", "lean": r"\left|\theta_3\right|_{\max}"}

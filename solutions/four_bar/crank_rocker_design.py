@@ -11,7 +11,7 @@ from coursework.degrees import acos, cos, polar, sin, sqrt
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
 from coursework.solution import Judged, formula, given, judge, mistake
 
-from ._slow_arc import *
+from .._slow_arc import *
 
 UNITS = {
     "phi": "deg",
