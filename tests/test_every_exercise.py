@@ -165,7 +165,7 @@ def test_handouts_render_identically_without_solutions(name, lang, students_copy
     here, there = COURSE[name].variant(5, lang), students_copy[name].variant(5, lang)
     assert there.record == here.record
     for render in ("html", "notebook", "typst"):
-        assert getattr(students_copy.renderer, render)(there.handout("A")) == getattr(
+        assert getattr(renderer_of(students_copy.folder), render)(there.handout("A")) == getattr(
             renderer_of(COURSE.folder), render
         )(here.handout("A"))
     with pytest.raises(NoSolution, match="students' copy"):
