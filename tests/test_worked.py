@@ -63,6 +63,10 @@ def sum_with_a_complex_quantity(a, arm, theta):
     return angle(polar(a, theta) + arm)
 
 
+def difference_of_squares(a, b):
+    return sqrt((a - 2 * b) * (a + 2 * b))
+
+
 def _corner(near, other, opposite):
     """The law of cosines."""
     return acos((near**2 + other**2 - opposite**2) / (2 * near * other))
@@ -171,6 +175,11 @@ NUMBERS = {
             r"\operatorname{arg}\left(a\,e^{i\,\theta} + \vec{r}\right)",
             r"\operatorname{arg}\left(\num{3}\,e^{i\,\num{60}^{\circ}} + "
             r"\left(\num{1} - \num{2}\,i\right)\right)",
+        ),
+        (
+            difference_of_squares,
+            r"\sqrt{a^{\num{2}} - \left(\num{2}\,b\right)^{\num{2}}}",
+            r"\sqrt{\num{3}^{\num{2}} - \left(\num{2} \times \left(\num{-4}\right)\right)^{\num{2}}}",
         ),
         (
             corner,

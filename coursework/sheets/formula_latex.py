@@ -144,7 +144,8 @@ class _Printer:
             case ast.BinOp(op=ast.Add() | ast.Sub()):
                 return self._sum(node), _SUM
             case ast.BinOp(op=ast.Mult()):
-                return self._product(node), _PRODUCT
+                squares = _difference_of_squares(node)
+                return (self._sum(squares), _SUM) if squares else (self._product(node), _PRODUCT)
             case ast.BinOp(op=ast.Div()):
                 return self._fraction(node)
             case ast.BinOp(left=left, op=ast.Pow(), right=right):
@@ -369,6 +370,17 @@ def _without_sign(node: ast.expr) -> tuple[ast.expr, bool]:
             left, is_negative = _without_sign(left)
             return ast.BinOp(left, op, right), is_negative
     return node, False
+
+
+def _difference_of_squares(product: ast.BinOp) -> ast.BinOp | None:
+    """``a^2 - b^2`` for ``(a - b) * (a + b)``, the way to compute it that keeps its digits."""
+    match product.left, product.right:
+        case (ast.BinOp(a, ast.Sub(), b), ast.BinOp(c, ast.Add(), d)) | (
+            ast.BinOp(a, ast.Add(), b),
+            ast.BinOp(c, ast.Sub(), d),
+        ) if ast.dump(a) == ast.dump(c) and ast.dump(b) == ast.dump(d):
+            return ast.BinOp(_square(a), ast.Sub(), _square(b))
+    return None
 
 
 def _is_segment(symbol: str) -> bool:

@@ -94,7 +94,6 @@ def B(r4, theta4):
     return -2 * r4 * cos(theta4)
 
 
-@formula(r"<r4>^2 - <r5>^2")
 def C(r4, r5):
     return (r4 - r5) * (r4 + r5)
 

@@ -6,7 +6,6 @@ vanishes: where crank and coupler are in line, and wherever the rod would line u
 """
 
 import math
-from math import pi
 
 import numpy as np
 
@@ -51,7 +50,7 @@ LOOPS = {
     ),
     "loop_2": (
         Vector("r1", "theta1"), Vector("r4", "theta4"), Vector("r5", "theta5"),
-        Vector("xC", 0.0, -1), Vector("h", pi / 2, -1),
+        Vector("xC", 0.0, -1), Vector("h", math.pi / 2, -1),
     ),
 }  # fmt: skip
 RATES = {"xC": ("v_C", "a_C")}
@@ -115,27 +114,25 @@ def yB(r1, theta1, r4, theta4):
     return r1 * sin(theta1) + r4 * sin(theta4)
 
 
-@formula(r"<r1> \cos <theta1> + <r4> \cos <theta4> + \sqrt{<r5>^2 - \left(<h> - <yB>\right)^2}")
 def xC(r1, theta1, r4, theta4, r5, h, yB):
     """C to the right of B."""
-    return r1 * cos(theta1) + r4 * cos(theta4) + _run(r5, h, yB)
+    return r1 * cos(theta1) + r4 * cos(theta4) + _run(r5, h - yB)
 
 
 @formula(r"\arcsin \left(\frac{<h> - <yB>}{<r5>}\right)")
 def theta5(r5, h, yB):
     """Direction of BC, between -90 and 90 degrees."""
-    return atan2(h - yB, _run(r5, h, yB))
+    return atan2(h - yB, _run(r5, h - yB))
 
 
-def _run(r5, h, yB):
-    """How far C lies to the right of B."""
-    above, below = r5 - (h - yB), r5 + (h - yB)
-    if isinstance(above, float) and min(above, below) < 0:
+def _run(rod, rise):
+    """How far C lies to the right of B, for how far it lies above."""
+    if np.ndim(rod - rise) == 0 and abs(rise) > rod:
         raise CannotAssemble(
-            f"the rod does not reach the line: it is {abs(h - yB):.6g} from B, the rod is {r5:.6g} long "
-            f"(gap {abs(h - yB) - r5:.3g})"
+            f"the rod does not reach the line: it is {abs(rise):.6g} from B, the rod is {rod:.6g} long "
+            f"(gap {abs(rise) - rod:.3g})"
         )
-    return sqrt(above * below)
+    return sqrt((rod - rise) * (rod + rise))
 
 
 def omega3(r2, omega2, r3, theta2, theta3, theta4):
@@ -208,14 +205,12 @@ def _linkage(r1, theta1, r2, r3, r4, r5, h, mode):
     return RockerSlider(r1, np.radians(theta1), r2, r3, r4, side_of(mode), r5, h)
 
 
-def _all_turns(_linkage):
-    """Crank angles at which C turns back, over a whole turn; the last axis runs over them, then NaN."""
-    return wrap(np.degrees(_linkage.turning_points()))
-
-
-@stable(_all_turns)
+@stable(lambda _linkage: wrap(np.degrees(_linkage.turning_points())))
 def theta2_turns(theta1, B_turn, DOB_far, DOB_near):
-    """Where the rod never lines up with the rocker: along OB stretched, away from it folded."""
+    """Crank angles at which C turns back, along the last axis, then NaN.
+
+    Where the rod never lines up with the rocker: along OB stretched, away from it folded.
+    """
     turns = [theta1 + B_turn * DOB_far, theta1 + B_turn * DOB_near + 180]
     return wrap(np.stack(np.broadcast_arrays(*turns), axis=-1))
 
@@ -238,22 +233,13 @@ def theta4_near(r1, theta1, r2, r3, r4, B_turn):
 
 def _piston_at(r1, theta1, r4, r5, h, direction):
     """xC for a direction of the rocker."""
-    rise = h - r1 * sin(theta1) - r4 * sin(direction)
-    return r1 * cos(theta1) + r4 * cos(direction) + sqrt((r5 - rise) * (r5 + rise))
+    return r1 * cos(theta1) + r4 * cos(direction) + _run(r5, h - r1 * sin(theta1) - r4 * sin(direction))
 
 
-@formula(
-    r"<r1> \cos <theta1> + <r4> \cos <theta4_far>"
-    r" + \sqrt{<r5>^2 - \left(<h> - <r1> \sin <theta1> - <r4> \sin <theta4_far>\right)^2}"
-)
 def xC_far(r1, theta1, r4, r5, h, theta4_far):
     return _piston_at(r1, theta1, r4, r5, h, theta4_far)
 
 
-@formula(
-    r"<r1> \cos <theta1> + <r4> \cos <theta4_near>"
-    r" + \sqrt{<r5>^2 - \left(<h> - <r1> \sin <theta1> - <r4> \sin <theta4_near>\right)^2}"
-)
 def xC_near(r1, theta1, r4, r5, h, theta4_near):
     return _piston_at(r1, theta1, r4, r5, h, theta4_near)
 
