@@ -27,15 +27,15 @@ def sides_and_angles(one, other, angle):
 
 
 def test_triangles_known_by_hand():
-    assert third_side(3.0, 4.0, Degrees(90)) == pytest.approx(5, rel=2 * EPS)
-    assert third_side(5.0, 8.0, Degrees(60)) == pytest.approx(7, rel=EPS)
+    assert third_side(3.0, 4.0, Degrees(90)) == pytest.approx(5, rel=4 * EPS)
+    assert third_side(5.0, 8.0, Degrees(60)) == pytest.approx(7, rel=4 * EPS)
     assert third_side(2.0, 7.0, Degrees(180)) == 9
     assert third_side(2.0, 7.0, 0.0) == 5
-    assert corner(3.0, 4.0, 5.0) == pytest.approx(math.pi / 2, rel=EPS)
-    assert corner(5.0, 8.0, 7.0) == pytest.approx(math.pi / 3, rel=2 * EPS)
+    assert corner(3.0, 4.0, 5.0) == pytest.approx(math.pi / 2, rel=4 * EPS)
+    assert corner(5.0, 8.0, 7.0) == pytest.approx(math.pi / 3, rel=4 * EPS)
     assert corner(3.0, 4.0, 7.0) == math.pi
     assert corner(3.0, 7.0, 4.0) == 0
-    assert corner_beside(3.0, 4.0, Degrees(90), 5.0) == pytest.approx(math.atan2(4, 3), rel=2 * EPS)
+    assert corner_beside(3.0, 4.0, Degrees(90), 5.0) == pytest.approx(math.atan2(4, 3), rel=4 * EPS)
 
 
 @given(sides, sides, angles)
