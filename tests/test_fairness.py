@@ -52,6 +52,14 @@ def test_what_is_no_number_is_not_rounded():
     assert half_step(319.8, 4) == pytest.approx(0.05)
 
 
+@pytest.mark.parametrize("exponent", range(-6, 9))
+def test_the_last_digit_kept_does_not_hang_on_a_last_bit(exponent):
+    power = 10.0**exponent
+    for off in range(-20, 21):
+        number = power * (1 + off * np.finfo(float).eps)
+        assert half_step(number, 4) == pytest.approx(0.0005 * power, rel=1e-12)
+
+
 @every_exercise
 @pytest.mark.parametrize("digits", KEPT_DIGITS)
 def test_who_rounds_at_every_step_is_right(name, digits):

@@ -60,3 +60,18 @@ def test_words_that_cannot_be_used_are_one_line_with_file_and_place(spanish, cap
 def test_a_language_that_is_not_there_names_the_file_that_would_make_it_one():
     with pytest.raises(UnknownName, match=r"no language 'it'; there is en, fr; .*language.it\.toml"):
         language.words("it")
+
+
+@pytest.mark.parametrize(
+    ("halfway", "digits", "text"),
+    [
+        (46.75, 3, "46.8"),
+        (223.5, 3, "224"),
+        (0.0625, 2, "0.062"),
+        (-1234.5, 4, "-1234"),
+        (62.5e9, 2, "6.2e10"),
+    ],
+)
+def test_a_number_halfway_between_two_is_printed_alike_whatever_its_last_bits(halfway, digits, text):
+    for off in range(-100, 101):
+        assert language.significant(halfway * (1 + off * 2.0**-52), digits) == text

@@ -528,6 +528,18 @@ def test_a_line_of_a_vector_that_vanishes_is_drawn_by_its_way():
     assert [row.paper for row in drawn.rows][1] == "0.0"
 
 
+def test_a_length_on_paper_does_not_hang_on_a_last_bit():
+    """46.75 mm, halfway between two tenths, as one processor or another comes by it."""
+    printed = []
+    for bits in range(-9, 10):
+        length = 2 * 46.75 * (1 + bits * 2.0**-52)
+        sides = (Side("p_v", "a", "V_A", length, "x", "1"), Side("p_v", "b", "V_B", 100j, "y", "1"))
+        drawn = Construction(Polygon("velocity", sides), "en")
+        assert drawn.scale == 2
+        printed.append([row.paper for row in drawn.rows])
+    assert printed == [["46.8", "50.0"]] * 19
+
+
 @pytest.mark.parametrize(
     ("sides", "said"),
     [

@@ -30,18 +30,27 @@ def plain(value: float) -> str:
 _EXACT = 1e-9  #: of a number that is printed as it is, and no rounded one
 
 
+def settled(value: float) -> float:
+    """A computed number to twelve digits, its last bits set aside, which differ from one processor to another.
+
+    Halfway between two printed numbers, as 46.75 is to a tenth, they would choose between the two.
+    """
+    return float(f"{value:.12g}")
+
+
 def significant(value: float, digits: int = 4) -> str:
     """A number rounded to significant digits, as a text with a point; for templates only.
 
     Zeros at its end say that it is rounded there: ``197.10`` for 197.104, ``138`` for 138.
     """
-    text = f"{float(value):.{digits}g}"
+    value = settled(value)
+    text = f"{value:.{digits}g}"
     if abs(float(text) - value) > _EXACT * abs(value):
-        text = f"{float(value):#.{digits}g}".removesuffix(".")
+        text = f"{value:#.{digits}g}".removesuffix(".")
     if "e" in text:
         mantissa, exponent = text.split("e")
         if -4 <= int(exponent) < 10:
-            text = f"{float(value):.{max(0, digits - 1 - int(exponent))}f}"
+            text = f"{value:.{max(0, digits - 1 - int(exponent))}f}"
         else:
             text = f"{mantissa}e{int(exponent)}"
     return "0" if float(text) == 0 else text

@@ -14,7 +14,7 @@ from itertools import groupby
 
 from coursework.figures import Beginning, Element, Figure, line, point, scale_bar, vector
 from coursework.language.numbers import localise, significant, unit_text
-from coursework.language.words import languages, listed, no_language, words
+from coursework.language.words import languages, listed, no_language, settled, words
 from coursework.polygons.polygon import Polygon, Side, Stage
 
 BOX_MM = (110.0, 90.0)  #: width and height of a whole drawing on paper
@@ -116,7 +116,7 @@ class Construction:
                 side.direction,
                 side.length,
                 f"{side.start}\\,{side.end}",
-                self._number(f"{abs(side.value) / self.scale:.1f}"),
+                self._number(f"{settled(abs(side.value) / self.scale):.1f}"),
                 self._number(significant(abs(side.value), 4)),
             )
             for side in self.polygon.sides

@@ -38,10 +38,13 @@ def rounded(value: Any, digits: int) -> Any:
 
 
 def half_step(value: Any, digits: int) -> np.ndarray:
-    """Half of the last of so many digits: what rounding moves a number by at most; 0 for 0."""
+    """Half of the last of so many digits: what rounding moves a number by at most; 0 for 0.
+
+    A number that a last bit keeps below a power of ten has the digits of the power.
+    """
     size = np.abs(np.asarray(value, dtype=float))
     with np.errstate(all="ignore"):
-        decade = np.floor(np.log10(np.where(size > 0, size, 1.0)))
+        decade = np.floor(np.log10(np.where(size > 0, size, 1.0)) + 1e-12)
     return np.where(size > 0, 0.5 * 10.0 ** (decade + 1 - digits), 0.0)
 
 
