@@ -13,8 +13,8 @@ from functools import cached_property
 from itertools import groupby
 
 from coursework.figures import Beginning, Element, Figure, line, point, scale_bar, vector
-from coursework.language.numbers import localise, significant, unit_text
-from coursework.language.words import languages, listed, no_language, settled, words
+from coursework.language.numbers import localise, settled, significant, unit_text
+from coursework.language.words import languages, listed, no_language, words
 from coursework.polygons.polygon import Polygon, Side, Stage
 
 BOX_MM = (110.0, 90.0)  #: width and height of a whole drawing on paper
