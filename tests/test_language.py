@@ -10,6 +10,7 @@ import pytest
 from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName
 from coursework.language import words as language
+from coursework.language.numbers import significant
 
 
 @pytest.fixture
@@ -74,4 +75,4 @@ def test_a_language_that_is_not_there_names_the_file_that_would_make_it_one():
 )
 def test_a_number_halfway_between_two_is_printed_alike_whatever_its_last_bits(halfway, digits, text):
     for off in range(-100, 101):
-        assert language.significant(halfway * (1 + off * 2.0**-52), digits) == text
+        assert significant(halfway * (1 + off * 2.0**-52), digits) == text
