@@ -45,6 +45,7 @@ docs: $(VENV)/docs-ready  ## The documentation, in build/site
 	mkdir -p build
 	cp -r docs build/docs
 	$(BIN)/python docs/gallery.py build/docs/gallery
+	$(BIN)/python docs/house.py build/docs/gallery/rooms.svg
 	$(BIN)/sphinx-build -W --keep-going -q -b html -d build/doctrees build/docs build/site
 	@echo "open build/site/index.html"
 

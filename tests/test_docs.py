@@ -67,8 +67,8 @@ def read_command(arguments: list[str]) -> tuple[str, dict]:
     return name, {n: value for n, value in options.items() if isinstance(value, (str, tuple))}
 
 
-def gallery():
-    spec = importlib.util.spec_from_file_location("gallery", DOCS / "gallery.py")
+def gallery(name="gallery"):
+    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -84,7 +84,7 @@ def test_every_internal_link_leads_somewhere(page):
             continue
         path, _, anchor = target.partition("#")
         if path.startswith("gallery/"):
-            assert Path(path).stem in (*COURSE.names, "index"), target
+            assert Path(path).stem in (*COURSE.names, "index", "rooms"), target
             continue
         there = (page.parent / path).resolve() if path else page
         assert there.exists(), target
@@ -150,6 +150,21 @@ def test_every_python_block_runs(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)  # a study keeps its answers beside itself
     for number, block in enumerate(blocks(page, "python")):
         exec(compile(block, f"{page.name}, block {number + 1}", "exec"), {"__name__": "shown"})
+
+
+# ----------------------------------------------------------------- architecture
+
+
+def test_the_page_on_architecture_tells_of_every_room_and_draws_it():
+    house = gallery("house")
+    page = (DOCS / "architecture.md").read_text("utf-8")
+    rooms = house.rooms()
+    assert {f"`{room}`" for room in rooms} <= set(re.findall(r"`\w+`", page))
+    plan = house.floors(rooms)
+    height = {room: floor for floor, row in enumerate(plan) for room in row}
+    assert all(height[below] < height[room] for room, needs in rooms.items() for below in needs)
+    drawn = house.drawing().svg()
+    assert all(f">{room}<" in drawn for room in rooms)
 
 
 # ---------------------------------------------------------------------- gallery

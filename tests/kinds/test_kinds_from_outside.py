@@ -146,7 +146,17 @@ def test_it_is_marked_by_its_own_rule(own_course, answer, verdict):
 
 def test_it_is_printed_handed_in_and_marked_by_the_commands(own_course, tmp_path):
     out, marks = tmp_path / "out", tmp_path / "marks"
-    build = ["build", "--variants", "3", "--formats", "pdf,ipynb,html,tex", "--lang", "fr,en", "--out", str(out)]
+    build = [
+        "build",
+        "--variants",
+        "3",
+        "--formats",
+        "pdf,ipynb,html,tex",
+        "--lang",
+        "fr,en",
+        "--out",
+        str(out),
+    ]
     assert run(["--course", str(own_course), *build]) == 0
     key = json.loads((out / "instructor" / "key.json").read_text("utf-8"))
     assert all(len(record["answers"]["reach"]["value"]) == 2 for record in key)
@@ -158,7 +168,9 @@ def test_it_is_printed_handed_in_and_marked_by_the_commands(own_course, tmp_path
         writer.writerow(["student", "exercise", "seed", "part", "answer"])
         for record in key:
             low, high = record["answers"]["reach"]["value"]
-            writer.writerow([f"s{record['seed']}", "two_cranks", record["seed"], "reach", f"[{low:.4g} ; {high:.4g}] mm"])
+            writer.writerow(
+                [f"s{record['seed']}", "two_cranks", record["seed"], "reach", f"[{low:.4g} ; {high:.4g}] mm"]
+            )
     grade = ["grade", str(answers), "--issued", str(out / "issued.json"), "--out", str(marks)]
     assert run(["--course", str(own_course), *grade]) == 0
     with (marks / "marks.csv").open(encoding="utf-8-sig", newline="") as file:
