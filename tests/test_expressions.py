@@ -5,10 +5,10 @@ import math
 
 import numpy as np
 import pytest
-from coursework.sheets.equation_latex import latex_of_equation
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from coursework.kinds.equation_latex import latex_of_equation
 from coursework.reading.equations import parse_equation
 from coursework.reading.equivalence import same_equation
 from coursework.reading.expressions import parse_expression

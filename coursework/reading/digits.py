@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from coursework.reading.reading import Stop
-from coursework.reading.units import Unit, convert, find_unit, parse_unit, same_dimension
+from coursework.reading.units import Unit, convert, parse_unit, plain_unit, same_dimension
 
 
 @dataclass(frozen=True)
@@ -86,7 +86,7 @@ def _rest_unit(rest: str) -> Unit | None:
     """The unit after a number: ``mm``, ``*m/s``, ``/s``, ``[mm]``."""
     if rest[0] == "*":
         rest = rest[1:]
-    return find_unit("1" + rest if rest[0:1] == "/" else rest.strip())
+    return plain_unit("1" + rest if rest[0:1] == "/" else rest.strip())
 
 
 def in_unit(value: Fraction | float, unit: Unit, target: Unit) -> float:

@@ -10,9 +10,9 @@ from numbers import Real
 
 import numpy as np
 
-from coursework.reading.expressions import parse_expression
+from coursework.reading.expressions import plain_expression
 from coursework.reading.reading import Reading, bare_value, reading_of
-from coursework.reading.spelling import shorten, tidy
+from coursework.reading.spelling import plain_spelling, shorten
 from coursework.reading.trees import Expression, Operation
 from coursework.reading.vocabulary import MAX_LENGTH, Unreadable, Value
 
@@ -113,14 +113,20 @@ def parse_equation(text: str, variables: Iterable[str]) -> Equation:
     if len(text) > MAX_LENGTH:
         message = f"an equation of {len(text)} characters is not read; at most {MAX_LENGTH} are"
         raise Unreadable(message, code="too_long", found=text)
-    sides = re.split("==?", tidy(text).strip("$ "))
+    return plain_equation(plain_spelling(text), variables, text)
+
+
+def plain_equation(plain: str, variables: Iterable[str], text: str = "") -> Equation:
+    """:func:`parse_equation` of a text whose spelling is plain; ``text`` is how it was written."""
+    text = text or plain
+    sides = re.split("==?", plain.strip("$ "))
     if len(sides) != 2:
         code = "no_equals_sign" if len(sides) == 1 else "two_equals_signs"
         raise Unreadable(
             f"an equation has one equals sign, {shorten(text)!r} has {len(sides) - 1}", code=code, found=text
         )
     variables = tuple(variables)
-    left, right = (parse_expression(side, variables) for side in sides)
+    left, right = (plain_expression(side.strip(), variables) for side in sides)
     return Equation(text, left, right)
 
 
@@ -143,6 +149,6 @@ def read_equation(text: object, variables: Iterable[str]) -> Reading:
 
     def read(plain: str) -> Reading:
         plain = plain.rstrip(" .;,")
-        return Reading(text, "read", (parse_equation(plain, tuple(variables)),), (plain,))
+        return Reading(text, "read", (plain_equation(plain, tuple(variables)),), (plain,))
 
     return reading_of(text, read)

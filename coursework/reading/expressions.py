@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from coursework.errors import nearest
-from coursework.reading.spelling import primes_as_dots, shorten, spelled_out, tidy, without_latex
+from coursework.reading.spelling import plain_spelling, primes_as_dots, shorten, spelled_out
 from coursework.reading.trees import MAX_EXPONENT, Expression, Operation, compute
 from coursework.reading.vocabulary import (
     FUNCTIONS,
@@ -305,8 +305,14 @@ def parse_expression(text: str, variables: Iterable[str] = ()) -> Expression:
     if len(text) > MAX_LENGTH:
         message = f"a text of {len(text)} characters is not read; at most {MAX_LENGTH} are"
         raise Unreadable(message, code="too_long", found=text)
+    return plain_expression(plain_spelling(text), variables, text)
+
+
+def plain_expression(plain: str, variables: Iterable[str] = (), text: str = "") -> Expression:
+    """:func:`parse_expression` of a text whose spelling is plain; ``text`` is how it was written."""
+    text = text or plain
     vocabulary = vocabulary_of(tuple(variables))
-    plain = spelled_out(without_latex(tidy(text)))
+    plain = spelled_out(plain)
     if vocabulary.variables and ("'" in plain or '"' in plain):
         plain = primes_as_dots(plain)
     if "x" not in vocabulary.variables:

@@ -32,11 +32,11 @@ from coursework.reading.digits import (
     short_number,
     written_amount,
 )
-from coursework.reading.expressions import parse_expression
+from coursework.reading.expressions import plain_expression
 from coursework.reading.reading import Reading, Stop, bare_value, reading_of
 from coursework.reading.spelling import shorten
 from coursework.reading.trees import Expression
-from coursework.reading.units import Unit, find_unit, parse_unit
+from coursework.reading.units import Unit, parse_unit, plain_unit
 from coursework.reading.vocabulary import MAX_LENGTH, Unreadable
 
 _MAX_INTEGER = 10**15
@@ -67,11 +67,11 @@ def _formula(text: str, target: Unit) -> list[Amount]:
     starts = [m.start() for m in _UNIT_START.finditer(text) if m.start() > 0 and len(text) - m.start() <= 60]
     for start in [*starts[-_MAX_PIECES:], len(text)]:
         unit_text = text[start:]
-        unit = find_unit(unit_text) if unit_text else None
+        unit = plain_unit(unit_text) if unit_text else None
         if unit_text and unit is None:
             continue
         try:
-            expression = parse_expression(text[:start].rstrip("* " if unit else " "))
+            expression = plain_expression(text[:start].rstrip("* " if unit else " "))
         except Unreadable as error:
             first = first or error
             continue
@@ -209,7 +209,7 @@ def _written_twice(text: str, target: Unit, thousands: bool) -> list[Amount] | N
     """
     if (checked := _CHECKED.fullmatch(text)) and (inside := _inside(checked[2])):
         unit = checked[3] and f" {checked[3]}"
-        if unit and find_unit(checked[3]) is None:
+        if unit and plain_unit(checked[3]) is None:
             return None
         return _checked(checked[1] + unit, inside, unit, target, thousands)
     pieces = _EQUALS.split(text)
@@ -294,15 +294,6 @@ def _from_amounts(text: str, amounts: Sequence[Amount]) -> Reading:
     )
 
 
-def _plain_reading(text: str, value: float, digits: str) -> Reading:
-    """What ``Reading(text, "read", (value,), (digits,))`` is, without the checks of a frozen class."""
-    reading = Reading.__new__(Reading)
-    reading.__dict__.update(
-        text=text, status="read", values=(value,), read_as=(digits,), unit_given=False, code="", found=""
-    )
-    return reading
-
-
 def _from_real(answer: Real) -> Reading:
     text = repr(float(answer)) if isinstance(answer, float) else str(answer)
     try:
@@ -335,7 +326,7 @@ def read_number(text: object, unit: str, *, thousands: bool = True) -> Reading:
         digits = plain[1].replace(",", ".")
         value = float(digits)
         if value - value == 0:
-            return _plain_reading(text, value, digits)
+            return Reading.plain(text, value, digits)
     target, text = target_unit(unit), bare_value(text)
     if isinstance(text, Real) and not isinstance(text, bool):
         return _from_real(text)

@@ -9,8 +9,8 @@ from numbers import Real
 from coursework.reading.digits import in_unit, written_amount
 from coursework.reading.numbers import NAME, RATIO, read_amounts, target_unit, without_name
 from coursework.reading.reading import Reading, Stop, bare_value, reading_of
-from coursework.reading.spelling import shorten
-from coursework.reading.units import Unit, find_unit
+from coursework.reading.spelling import plain_spelling, shorten
+from coursework.reading.units import Unit, plain_unit
 from coursework.reading.vocabulary import Unreadable
 
 # --- points -----------------------------------------------------------------------------
@@ -38,7 +38,7 @@ def _coordinates(pieces: Sequence[str], unit: str, target: Unit) -> list[tuple[t
     columns = [read_amounts(piece, target) for piece in pieces]
     units = {column[0].unit for column in columns}
     if not unit and len(units) == 2 and "" in units:
-        unit = (units - {""}).pop()
+        unit = plain_spelling((units - {""}).pop())  # it was made to be shown
         columns = [
             column if column[0].unit else read_amounts(f"{without_name(piece)} {unit}", target)
             for piece, column in zip(pieces, columns, strict=True)
@@ -81,7 +81,7 @@ def _point(text: str, original: str, target: Unit, count: int) -> Reading:
     inside, unit = _bare_point(text)
     source = target
     if unit:
-        source = find_unit(unit)
+        source = plain_unit(unit)
         if source is None:
             raise Stop("unknown_unit", unit)
         in_unit(0.0, source, target)

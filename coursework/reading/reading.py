@@ -8,7 +8,7 @@ from numbers import Real
 
 import numpy as np
 
-from coursework.reading.spelling import shorten, tidy, unwrapped, without_latex
+from coursework.reading.spelling import plain_spelling, shorten, unwrapped
 from coursework.reading.vocabulary import MAX_LENGTH, Unreadable
 
 
@@ -30,6 +30,15 @@ class Reading:
     unit_given: bool = False
     code: str = ""
     found: str = ""
+
+    @staticmethod
+    def plain(text: str, value: float, digits: str) -> Reading:
+        """A number in plain digits: most of what comes back, made without the checks of a frozen class."""
+        reading = Reading.__new__(Reading)
+        reading.__dict__.update(
+            text=text, status="read", values=(value,), read_as=(digits,), unit_given=False, code="", found=""
+        )
+        return reading
 
 
 class Stop(Exception):
@@ -67,7 +76,7 @@ def reading_of(answer: object, read: Callable[[str], Reading]) -> Reading:
     if len(text) > MAX_LENGTH and len(text.strip()) > MAX_LENGTH:
         return Reading(text, "unreadable", code="too_long", found=shorten(text))
     try:
-        plain = without_latex(tidy(unwrapped(text)))
+        plain = plain_spelling(unwrapped(text))
         return read(plain) if plain else Reading(text, "missing")
     except Stop as stop:
         return Reading(text, stop.status, code=stop.code, found=shorten(stop.found or plain))

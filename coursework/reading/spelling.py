@@ -77,7 +77,7 @@ def tidy(text: str) -> str:
 
 _LATEX = (
     (re.compile(r"\\(?:left|right|displaystyle|quad|qquad)(?![A-Za-z])"), " "),
-    (re.compile(r"\\[,;:! ]|~"), " "),
+    (re.compile(r"\\+[,;:! ]|~"), " "),
     (re.compile(r"\{,\}"), ","),
     (re.compile(r"\^\s*\{?\s*\\circ(?![A-Za-z])\s*\}?|\\degree(?![A-Za-z])|\^\s*°"), "°"),
     (re.compile(r"\\(?:cdot|times)(?![A-Za-z])"), "*"),
@@ -99,6 +99,11 @@ def without_latex(text: str) -> str:
         for pattern, plain in _LATEX:
             text = pattern.sub(plain, text)
     return text.strip()
+
+
+def plain_spelling(text: str) -> str:
+    """A text as the parsers take it: tidy, its commonest LaTeX spelled plainly. Once made plain, a text is handed on."""
+    return without_latex(tidy(text))
 
 
 _DOTS = re.compile(r"\\(d?dot)\s*(?:\{([^{}]*)\}|(\\[A-Za-z]+|[^\W\d_]))")

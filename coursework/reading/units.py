@@ -16,7 +16,7 @@ from fractions import Fraction
 from functools import lru_cache
 
 from coursework.errors import BadCourse, WrongUnit
-from coursework.reading.spelling import shorten, tidy, without_latex
+from coursework.reading.spelling import plain_spelling, shorten
 
 #: What the entries of a dimension count. A cycle is a count (1 Hz is one a second) that is a turn
 #: where an angle is expected.
@@ -260,11 +260,16 @@ def _chain(tokens: list[tuple[str, int]], text: str, depth: int = 0) -> Unit:
 
 @lru_cache(maxsize=4096)
 def _analyse(text: str) -> tuple[Unit | None, str]:
-    """The unit, or the piece that is not understood."""
+    """The unit of a text, or the piece that is not understood."""
+    return _analyse_plain(plain_spelling(text) if len(text) <= _MAX_LENGTH else text, text)
+
+
+@lru_cache(maxsize=4096)
+def _analyse_plain(plain: str, text: str) -> tuple[Unit | None, str]:
     if len(text) > _MAX_LENGTH:
         return None, text
     try:
-        plain = _PER.sub("/", without_latex(tidy(text)))
+        plain = _PER.sub("/", plain)
         tokens = _tokens(_HYPHEN.sub("*", plain))
         unit = _chain(tokens, text)
     except _UnknownPiece as piece:
@@ -278,6 +283,11 @@ def _analyse(text: str) -> tuple[Unit | None, str]:
 def find_unit(text: str) -> Unit | None:
     """The unit that a text names, or ``None``."""
     return _analyse(text)[0]
+
+
+def plain_unit(plain: str) -> Unit | None:
+    """:func:`find_unit` of a text whose spelling is plain."""
+    return _analyse_plain(plain, plain)[0]
 
 
 def parse_unit(text: str) -> Unit:
