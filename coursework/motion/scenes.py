@@ -28,7 +28,7 @@ LEVELS: Mapping[str, tuple[str, ...]] = {
 CORIOLIS = "a_coriolis"
 EFFORTS = ("N", "N*m")
 INERTIA, FRICTION = "inertia", "friction"
-ROUNDING = 1e-13  #: of a term: some hundred times the rounding of one operation
+ROUNDING = 1e-13  #: of a term: some 450 units in its last place
 
 
 @dataclass(frozen=True)
