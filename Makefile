@@ -23,7 +23,7 @@ test: $(VENV)/ready lint  ## Every test
 	$(BIN)/python -m pytest -n auto -q
 
 # The tests of numbers, where a last bit would show.
-NUMBERS := exercises kinematics solids structure test_draws.py test_graph.py test_scenes.py
+NUMBERS := exercises kinematics solids structure course/test_draws.py quantities/test_graph.py motion/test_scenes.py
 
 # The vector units that numpy has found here and would use; nothing where it names none.
 VECTOR_UNITS := import numpy; print(*numpy.show_config('dicts').get('SIMD Extensions', {}).get('found', []))
@@ -50,8 +50,9 @@ docs: $(VENV)/docs-ready  ## The documentation, in build/site
 	@echo "open build/site/index.html"
 
 # What a wheel could lack are files: numbers, figures and verdicts, which take longest to test, need no second time.
-TESTED_ONCE := exercises kinematics solids structure test_accuracy.py test_alternatives.py test_every_figure.py \
-	test_fairness.py test_formula_widths.py test_loops.py test_motion.py test_polygons.py test_reader_fuzz.py test_statistics.py
+TESTED_ONCE := exercises kinematics solids structure accuracy motion polygons statistics marking/test_fairness.py \
+	marking/test_loops.py promises/test_every_figure.py reading/test_reader_fuzz.py rendering/test_alternatives.py \
+	rendering/test_formula_widths.py
 
 # The wheel in an environment of its own, the tests beside it, and no source in reach.
 wheel-test: $(VENV)/ready

@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
-PACKAGE = Path(__file__).resolve().parent.parent / "coursework"
+import coursework
+
+PACKAGE = Path(coursework.__file__).resolve().parent
 
 #: From the ground up.
 ROOMS = (

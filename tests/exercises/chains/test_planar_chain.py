@@ -1,7 +1,7 @@
 """Plane chains: the answers against exact motions of the bodies in the plane and in space, and the course's table."""
 
 import pytest
-from exact import freedoms, hindered
+from exact_chains import freedoms, hindered
 
 import coursework
 from coursework.errors import CannotTell, WrongValue

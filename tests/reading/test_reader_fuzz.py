@@ -1,6 +1,6 @@
 """Nasty texts: no reader fails, runs away, or finds a number where there is none.
 
-The texts are the same at each run. ``python tests/test_reader_fuzz.py --count 1000000`` tries more of them and
+The texts are the same at each run. ``python tests/reading/test_reader_fuzz.py --count 1000000`` tries more of them and
 says which took longest.
 """
 

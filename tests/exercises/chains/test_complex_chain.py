@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from exact import freedoms, held, hindered
+from exact_chains import freedoms, held, hindered
 
 import coursework
 from coursework.errors import CannotTell

@@ -8,8 +8,8 @@ import subprocess
 from dataclasses import replace
 
 import pytest
+from formula_samples import FORMULAS, call
 from rendering_samples import ANSWER_DIGITS, answer_sheet, handout, many_given
-from test_rendering import FORMULAS, call
 
 from coursework.cli import run
 from coursework.cli.options import DONE

@@ -15,7 +15,7 @@ from itertools import accumulate
 
 import numpy as np
 import pytest
-from test_figures import SVG, crossed, kinds, overlapping
+from drawn_svg import SVG, crossed, kinds, overlapping
 
 import coursework
 from coursework.cli import run

@@ -13,7 +13,7 @@ from coursework.reading.numbers import read_number
 from coursework.reading.units import convert
 
 CASES = json.loads((Path(__file__).parent / "peer_cases.json").read_text(encoding="utf-8"))["cases"]
-PAGE = Path(__file__).parent.parent / "docs" / "fair_marking.md"
+PAGE = Path(__file__).parents[2] / "docs" / "fair_marking.md"
 
 #: What a verdict of theirs is called among ours; "partial" has no counterpart.
 ALIKE = {

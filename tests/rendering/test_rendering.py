@@ -15,6 +15,7 @@ from importlib import resources
 import nbformat
 import pytest
 import typst
+from formula_samples import FORMULAS, call
 from rendering_samples import ANSWER_DIGITS, answer_sheet, feedback_sheet, handout, many_given
 
 from coursework.course.builtin import builtin_root
@@ -45,31 +46,12 @@ from coursework.sheets.sheet import Given
 TEMPLATES = builtin_root() / "templates"
 RENDERER = Renderer([TEMPLATES])
 SHEETS = {"handout": handout, "many given": many_given, "answers": answer_sheet, "feedback": feedback_sheet}
-
 every_language = pytest.mark.parametrize("lang", ["fr", "en"])
 every_sheet = pytest.mark.parametrize("make", SHEETS.values(), ids=SHEETS)
-
-FORMULAS = (
-    r"\theta_4 = \arctan\left(\frac{r_1\sin\theta_1 + r_2\sin\theta_2}{r_1\cos\theta_1}\right)",
-    r"\dot r_A = \num{-1.25e-3}\,\mathrm{mm/s^2}",
-    r"\overrightarrow{O_4A} + \vec{v} = \vec{0} \quad \hat u \tilde u \bar u \underline{u}",
-    r"\sqrt{r_1^2 + r_2^2} \neq \sqrt[3]{x}",
-    r"\begin{aligned} x &= \num{4.21} \\ y &= 2 \end{aligned}",
-    r"f(x) = \begin{cases} 1 & \text{si } x > 0 \\ 0 & \text{sinon} \end{cases}",
-    r"A = \begin{pmatrix} 1 & 2 \\ 3 & 4 \end{pmatrix} \begin{bmatrix} a \\ b \end{bmatrix}",
-    r"\left\lvert \dfrac{a}{b} \right\rvert \le \lvert x \rvert < \Vert y \Vert, \left. f \right|_{0}",
-    r"\sum_{i=1}^{n} i + \int_0^1 x\,\mathrm{d}x, \max_t x, \lim_{h \to 0} h",
-    r"\mathbb{R} \in \mathcal{R} \mathbf{v} \boldsymbol{v} \displaystyle\frac12",
-    r"f'(x) + B'' = 90^\circ \% \{ a ; b \} [c, d] / e : f ! | g",
-    r"\operatorname{atan2}(y, x) \Rightarrow \text{a\_b}",
-)
 
 
 def mathless(tex: str, lang: str) -> str:
     return re.sub(r"<[^>]*>", "", to_mathml(tex, lang))
-
-
-# -- formulas ---------------------------------------------------------------------------------------
 
 
 @every_language
@@ -89,21 +71,6 @@ def test_a_formula_of_every_kind_is_well_formed_mathml(tex, lang):
     root = ElementTree.fromstring(to_mathml(tex, lang))
     assert root.tag == "math"
     assert root.attrib["alttext"].strip()
-
-
-def call(macro: str) -> str:
-    """The macro with what it needs around it."""
-    if macro in ("left", "right"):
-        return r"\left( x \right)"
-    if macro in ("begin", "end"):
-        return r"\begin{cases} x \\ y \end{cases}"
-    if macro == "\\":
-        return r"\begin{matrix} x \\ y \end{matrix}"
-    if macro in ("frac", "dfrac", "tfrac"):
-        return rf"\{macro}{{a}}{{b}}"
-    if macro == "num":
-        return r"\num{1}"
-    return rf"\{macro}{{x}}"
 
 
 @pytest.mark.parametrize("macro", sorted(MACROS))
@@ -245,9 +212,6 @@ def test_a_dot_over_a_letter_leaves_its_subscript_outside():
     assert to_typst(r"\dot\theta_4", "en") == "attach(dot(θ), b: 4)"
 
 
-# -- words and typography ---------------------------------------------------------------------------
-
-
 def keys(table: dict, path: str = "") -> set[str]:
     return {
         key
@@ -318,8 +282,6 @@ def test_margins_are_said_once_each_with_their_questions():
     alike = [replace(q, tolerance="within 1%") for q in handout("en").questions]
     assert tolerances(alike, "en") == (("", "within 1%"),)
 
-
-# -- markup -----------------------------------------------------------------------------------------
 
 NASTY = '#let x = 1 `a` *b* _c_ $d <e> @f ~g [h] {i} = j - k + l / m // n \\ o " p -- q ... 1. r & s'
 
@@ -393,9 +355,6 @@ def test_an_image_in_a_text_is_refused():
     for write in (to_html, to_typst_markup, to_text):
         with pytest.raises(BadStatement, match="one figure"):
             write("![x](http://example.org/x.png)", "en")
-
-
-# -- PDF --------------------------------------------------------------------------------------------
 
 
 @every_language
@@ -520,9 +479,6 @@ def test_the_words_of_a_solutions_own_figure_stand_in_place_of_the_sheets(lang):
     assert handout(lang).figure_alt in RENDERER.html(answer_sheet(lang))
 
 
-# -- what a student's sheet never holds --------------------------------------------------------------
-
-
 @every_language
 def test_a_handout_holds_no_answer(lang):
     sheet = handout(lang)
@@ -550,9 +506,6 @@ def test_every_given_value_is_on_the_sheet_as_the_language_writes_it(lang):
         assert value in RENDERER.terminal(handout(lang))
 
 
-# -- web pages --------------------------------------------------------------------------------------
-
-
 @every_language
 @every_sheet
 def test_a_page_fetches_nothing_and_runs_nothing(make, lang):
@@ -577,9 +530,6 @@ def test_a_page_has_a_labelled_box_for_every_answer_and_words_for_its_figure(lan
             assert f'<label for="answer-{question.id}">' in page
             assert f'id="answer-{question.id}"' in page
     assert f'alt="{sheet.figure_alt}"' in page
-
-
-# -- notebooks --------------------------------------------------------------------------------------
 
 
 def cells(book: dict, kind: str) -> list[str]:
@@ -662,9 +612,6 @@ def test_a_notebook_carries_its_figure():
     (shown,) = [cell for cell in book["cells"] if "attachments" in cell]
     assert shown["attachments"]["figure.png"]["image/png"].startswith("iVBORw0KGgo")
     assert handout("en").figure_alt in "".join(shown["source"])
-
-
-# -- templates --------------------------------------------------------------------------------------
 
 
 def test_a_course_replaces_one_template_and_takes_the_others(tmp_path):

@@ -13,6 +13,7 @@ from itertools import pairwise
 
 import pytest
 import typst
+from drawn_svg import SVG, assert_readable, crossed, kinds, strokes
 
 from coursework.errors import UnknownName, WrongValue
 from coursework.figures import (
@@ -220,88 +221,7 @@ SAMPLES = {
     "slider_crank": slider_crank,
     "two_loops": two_loops,
 }
-
-
 every_sample = pytest.mark.parametrize("name", SAMPLES)
-SVG = "{http://www.w3.org/2000/svg}"
-
-
-# Reading a figure back from its SVG, without the package's own geometry.
-
-
-def arc_points(a, b, radius, clockwise):
-    """Points of an SVG arc of less than half a turn, y down."""
-    half = abs(b - a) / 2
-    up = 1j * (b - a) / abs(b - a) * (1 if clockwise else -1)
-    center = (a + b) / 2 + up * math.sqrt(max(0.0, radius**2 - half**2))
-    turn = 2 * math.asin(min(1.0, half / radius)) * (1 if clockwise else -1)
-    return [center + (a - center) * cmath.exp(1j * turn * k / 20) for k in range(21)]
-
-
-def path_points(d):
-    points = []
-    for command, text in re.findall(r"([MLAZ])([^MLAZ]*)", d):
-        numbers = [float(x) for x in text.split()]
-        if command in "ML":
-            points.append(complex(*numbers))
-        elif command == "A":
-            points += arc_points(points[-1], complex(*numbers[5:]), numbers[0], numbers[4] == 1)
-        else:
-            points.append(points[0])
-    return points
-
-
-def strokes(figure):
-    """Every line of the drawing as a list of points, mm from the top left corner, y down."""
-    found = []
-    drawing = ET.fromstring(figure.svg()).findall(SVG + "g")[0]
-    for item in drawing:
-        if item.tag == SVG + "path":
-            found.append(path_points(item.get("d")))
-        else:
-            center, radius = complex(float(item.get("cx")), float(item.get("cy"))), float(item.get("r"))
-            found.append([center + radius * cmath.exp(1j * math.tau * k / 90) for k in range(91)])
-    return found
-
-
-def crossed(figure):
-    """Labels that a stroke passes through."""
-    boxes = figure.labels()
-    bad = []
-    for points in strokes(figure):
-        for a, b in pairwise(points):
-            steps = max(1, math.ceil(abs(b - a) / 0.25))
-            for k in range(steps + 1):
-                z = a + (b - a) * k / steps
-                bad += [
-                    box.label
-                    for box in boxes
-                    if 0 < z.real - box.x < box.width and 0 < z.imag - box.y < box.height
-                ]
-    return bad
-
-
-def overlapping(figure):
-    boxes = figure.labels()
-    return [
-        (a.label, b.label)
-        for k, a in enumerate(boxes)
-        for b in boxes[:k]
-        if a.x < b.x + b.width and b.x < a.x + a.width and a.y < b.y + b.height and b.y < a.y + a.height
-    ]
-
-
-def assert_readable(figure):
-    assert overlapping(figure) == []
-    assert crossed(figure) == []
-    width, height = figure.size_mm
-    assert width <= figure.paper_mm[0]
-    assert height <= figure.paper_mm[1]
-    for box in figure.labels():
-        assert box.x >= 0
-        assert box.y >= 0
-        assert box.x + box.width <= width
-        assert box.y + box.height <= height
 
 
 def drawn_at_random(kind, seed):
@@ -479,14 +399,6 @@ def test_symbols_are_italic_with_subscripts_and_words_are_upright():
     assert float(two.get("dy")) > 0
     word = ET.fromstring(Figure(link(0, 90), pin(0, "bielle")).svg()).find(f".//{SVG}text")
     assert (word.text, word.get("font-style")) == ("bielle", None)
-
-
-def kinds(text):
-    """Where the index and the exponent start, and where the label ends, em."""
-    placed = [(run, text.start(k)) for k, run in enumerate(text.runs)]
-    index = [x for run, x in placed if run.rise < 0]
-    exponent = [x for run, x in placed if run.rise > 0 or set(run.text) == {"′"}]
-    return min(index, default=None), min(exponent, default=None), max(x + run.width for run, x in placed)
 
 
 @pytest.mark.parametrize(

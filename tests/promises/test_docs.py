@@ -15,7 +15,7 @@ from coursework.cli import run
 from coursework.cli.commands import commands as cli
 from coursework.rendering.renderer import renderer_of
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 # Beside an installed wheel there is no README.
 PAGES = [*sorted(DOCS.glob("*.md")), *(p for p in [ROOT / "README.md"] if p.exists())]
