@@ -8,6 +8,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from reference import mp
+from strategies import side
 
 from coursework.errors import CannotAssemble, Undefined
 from coursework.kinematics import dyads
@@ -19,7 +20,6 @@ coordinate = st.floats(-50, 50)
 point = st.builds(complex, coordinate, coordinate)
 length = st.floats(1, 100)
 angle = st.floats(-4, 4)
-side = st.sampled_from([1, -1])
 
 
 def unit(theta):

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from reference import away, four_bar, mp, turned
+from strategies import side
 
 from coursework.kinematics.four_bar import FourBar
 from coursework.system.blocks import BLOCK
@@ -15,7 +16,6 @@ from coursework.system.blocks import BLOCK
 EPS = 2.0**-52
 length = st.floats(1.0, 1000.0)
 angle = st.floats(-7.0, 7.0)
-side = st.sampled_from([1, -1])
 
 
 @st.composite

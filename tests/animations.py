@@ -1,0 +1,43 @@
+"""The exercises of the course that move, and their animations, made once each."""
+
+from __future__ import annotations
+
+from html.parser import HTMLParser
+
+import coursework
+from coursework.rendering.displayed import DisplayedAnimation as Animation
+
+COURSE = coursework.open_course()
+DRIVEN = [n for n in COURSE.names if COURSE[n].spec.driver is not None]
+MOVING = [n for n in COURSE.names if COURSE[n].is_animated]
+FILMED = [n for n in MOVING if COURSE[n].film is not None]
+WITH_POINTS = [n for n in MOVING if COURSE[n].solution.motion is not None]
+SVG = "{http://www.w3.org/2000/svg}"
+_kept: dict[tuple, Animation] = {}
+
+
+def animation(name, seed=1, lang="fr", effects=()):
+    key = (name, seed, lang, tuple(effects))
+    if key not in _kept:
+        plain = COURSE[name].variant(seed, lang).animation()
+        shown = plain.available if effects == "all" else effects
+        _kept[key] = COURSE[name].variant(seed, lang).animation(shown, count=36)
+    return _kept[key]
+
+
+class Page(HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.data, self._in_data = [], "", False
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+        self._in_data = dict(attrs).get("id") == "motion-data"
+
+    def handle_data(self, data):
+        if self._in_data:
+            self.data += data
+
+    def handle_endtag(self, tag):
+        self._in_data = False

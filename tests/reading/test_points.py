@@ -1,0 +1,85 @@
+"""Points and directions are read however they are written."""
+
+import pytest
+from strategies import NARROW, NBSP
+
+from coursework.reading.points import read_point
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        *[(s, ((12.3, 4.5),)) for s in (
+            "(12,3 ; 4,5) mm", "12.3, 4.5", "12,3 ; 4,5", "12,3;4,5 mm", "(12.3, 4.5)", "[12.3 4.5]",
+            "12,3 4,5",
+            "12,3, 4,5", "12,3,4,5", "12.3,4.5", "12,3 mm ; 4,5 mm", "1.23 cm, 0.45 cm", "(1,23 ; 0,45) cm",
+            "A = (12.3 ; 4.5)", "A(12,3 ; 4,5)", "x = 12.3 ; y = 4.5", "x=12,3 mm; y=4,5 mm", "{12.3 ; 4.5}",
+            "12,3 mm ; 0,45 cm", "1.23, 0.45 cm", f"(12,3{NBSP};{NBSP}4,5){NARROW}mm", "24.6/2 ; 4.5",
+            "(12.3 | 4.5)",
+            [12.3, 4.5], ["12,3", "4,5"], (12.3, "4.5 mm"),
+        )],
+        ("1,5", ((1, 5),)),
+        ("1,234 ; 5", ((1.234, 5), (1234, 5))),
+        ("1 234,5 ; −2", ((1234.5, -2),)),
+    ],
+)  # fmt: skip
+def test_a_point_is_read_however_it_is_written(text, values):
+    reading = read_point(text, "mm", 2)
+    assert reading.status == "read", reading
+    assert reading.values == tuple(pytest.approx(v) for v in values)
+
+
+@pytest.mark.parametrize(
+    "text", ["[1, 0, 1]", "1;0;1", "(1 0 1)", "1,0,1", "(1 ; 0 ; 1)", "1, 0, 1", "1,0 ; 0 ; 2/2"]
+)
+def test_a_direction_of_three_coordinates_is_read(text):
+    assert read_point(text, "1", 3).values == ((1, 0, 1),)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        *[(s, (0, 1, 0)) for s in ("y", "Y", "\\vec y", "\\vec{y}", "$\\vec{y}$", "y\u20d7", "vec y", "axe y", "l'axe y", "y axis", "y-axis")],
+        *[(s, (0, 0, -1)) for s in ("-z", "−z", "-\\vec z", "- \\overrightarrow{z}")],
+        ("x", (1, 0, 0)),
+    ],
+)  # fmt: skip
+def test_an_axis_is_a_direction(text, value):
+    reading = read_point(text, "1", 3)
+    assert (reading.values, reading.read_as) == ((value,), (f"({value[0]:g}; {value[1]:g}; {value[2]:g})",))
+
+
+@pytest.mark.parametrize("text", ["w", "xy", "x, y", "x+y", "5", "y2", "2y", "axe", "\\vec", "--y"])
+def test_what_is_no_axis_is_no_direction(text):
+    assert read_point(text, "1", 3).status == "unreadable"
+
+
+def test_an_axis_is_no_point_and_none_of_the_plane_has_a_third():
+    assert read_point("y", "mm", 3).status == read_point("z", "1", 2).status == "unreadable"
+
+
+@pytest.mark.parametrize(
+    ("text", "status", "code"),
+    [
+        ("1,2,3", "unreadable", "wrong_count"),
+        ("5", "unreadable", "wrong_count"),
+        (5, "unreadable", "wrong_count"),
+        ([1, 2, 3], "unreadable", "wrong_count"),
+        ("(1 ; 2) kg", "wrong_unit", "other_dimension"),
+        ("(1 ; 2 kg)", "wrong_unit", "other_dimension"),
+        ("(1 ; 2) frogs", "unreadable", "unknown_unit"),
+        ("1 ; nan", "unreadable", "not_finite"),
+        ([1, None], "unreadable", "unknown_symbol"),
+        (True, "unreadable", "not_a_number"),
+    ],
+)
+def test_what_is_no_point_says_why(text, status, code):
+    reading = read_point(text, "mm", 2)
+    assert (reading.status, reading.code) == (status, code)
+
+
+def test_a_point_says_whether_a_unit_is_written():
+    assert read_point("(12,3 ; 4,5) mm", "mm", 2).unit_given
+    assert read_point("12,3 ; 4,5 mm", "mm", 2).unit_given
+    assert not read_point("1.2e1 ; 4.5", "mm", 2).unit_given
+    assert read_point("(12,3 ; 4,5) mm", "mm", 2).read_as == ("(12.3; 4.5) mm",)

@@ -1,0 +1,116 @@
+"""Curves are drawn to scale; a right point lies on its own."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from study_words import BOTH, SAID, flat, start_of
+
+import coursework
+from coursework.errors import UnknownName, WrongValue
+from coursework.figures.plot import Axis, Plot, Spot
+from coursework.selfstudy import predictions
+
+
+def test_a_right_answer_within_a_wide_tolerance_is_the_curves_own(here):
+    session = coursework.study("slider_crank", seed=8, lang="en")
+    value = session.variant.walk["ab_n"] + 0.9 * session.variant.key.half_width(
+        next(p for p in session.variant.parts if p.id == "ab_n")
+    )
+    assert "✓" in str(session.check({"ab_n": f"{value:.4g}"}))
+    assert "another" not in str(session.plot("ab_n"))
+
+
+@BOTH
+def test_a_right_answer_of_another_choice_is_not_marked_on_the_curve(lang, here):
+    session = coursework.study("four_bar_positions", seed=1, lang=lang)
+    names = [p.id for p in predictions.moving(session.variant)]
+    session.check({"theta3_open": f"{session.variant.walk['theta3_crossed']:.3f}"})
+    assert "theta3_open" in names
+    shown = session.plot("theta3_open")
+    assert not any("<circle" in getattr(piece, "svg", "") for piece in shown.pieces)
+    assert start_of(SAID[lang]["beside_curve"]) in flat(shown)
+
+
+def points_of(svg: str) -> list[np.ndarray]:
+    """The curve's pieces, mm, y down."""
+    (path,) = re.findall(r'<path d="([^"]*)" fill="none" stroke="#1b3a57" stroke-width="0.5"', svg)
+    return [np.array([p.split() for p in run.split("L")], dtype=float) for run in path.split("M")[1:]]
+
+
+def test_a_curve_is_drawn_to_scale_and_the_same_twice():
+    x = np.linspace(0, 360, 25)
+    plot = Plot(Axis(r"\theta_2", "°", x), [Axis("y", "mm", 2 * x + 5)], "en")
+    (curve,) = points_of(plot.svg())
+    assert plot.svg() == plot.svg()
+    step = np.diff(curve, axis=0)
+    assert np.ptp(step, axis=0) == pytest.approx([0, 0], abs=0.021)
+    assert (step * [1, -1] > 0).all()
+
+
+def test_a_curve_is_cut_where_it_has_no_value_and_where_a_direction_turns_over():
+    x = np.arange(8.0)
+    y = np.array([1, 2, np.nan, 3, 4, 5, 4, 3.0])
+    assert len(points_of(Plot(Axis("x", "", x), [Axis("y", "mm", y)]).svg())) == 2
+    y = np.array([170, 175, 179, -178, -170, -160, -150, -140.0])
+    assert len(points_of(Plot(Axis("x", "", x), [Axis("y", "°", y)]).svg())) == 2
+    assert len(points_of(Plot(Axis("x", "", x), [Axis("y", "mm", y)]).svg())) == 1
+
+
+def test_a_right_point_lies_on_its_curve_and_is_told_from_a_wrong_one():
+    x = np.linspace(0, 10, 11)
+    spots = [[Spot(4, 16, True)], [Spot(4, 60, False)]]
+    plot = Plot(Axis("x", "", x), [Axis("y", "mm", x**2), Axis("z", "mm", x**2)], "en", 4, spots)
+    svg = plot.svg()
+    cx, cy = map(float, re.search(r'<circle cx="([\d.]+)" cy="([\d.]+)" r="1.3"', svg).groups())
+    first = points_of(Plot(plot.horizontal, plot.panels[:1], "en", 4, spots[:1]).svg())[0]
+    assert [cx, cy] == pytest.approx(first[4].tolist(), abs=0.011)
+    assert svg.count('stroke="#b3261e"') == 1
+
+
+def test_a_point_far_off_its_curve_is_an_arrow_at_the_edge_with_its_number():
+    x = np.linspace(0, 10, 11)
+    for y, is_far in ((60.0, False), (900.0, True), (-900.0, True)):
+        plot = Plot(Axis("x", "", x), [Axis("y", "mm", x**2)], "en", 4, [[Spot(4, y, False, 246.7)]])
+        cross, arrow = (s in plot.svg() for s in ('stroke="#b3261e"', 'z" fill="#b3261e"'))
+        assert (plot.has_outside, cross, arrow) == ((is_far,), not is_far, is_far)
+    far, near = (
+        Plot(plot.horizontal, plot.panels, "en", 4, [[Spot(4, 900.0, False, w)]]) for w in (1.0, 246.7)
+    )
+    assert far.svg() != near.svg()
+
+
+@BOTH
+def test_a_wrong_angle_is_not_drawn_as_if_it_were_nearly_right(lang, here):
+    session = coursework.study("slotted_mechanism", seed=1, lang=lang)
+    session.check({"theta4": "246,7"})
+    shown = session.plot("theta4")
+    assert start_of(SAID[lang]["outside"]) in flat(shown)
+    (svg,) = (piece.svg for piece in shown.pieces if hasattr(piece, "svg"))
+    # 246.7° is above the curve, which reaches 114°.
+    assert re.search(r'h2.8l-1.4 -2z" fill="#b3261e"', svg)
+
+
+def test_a_plot_says_what_it_cannot_draw():
+    x = np.arange(3.0)
+    for panels in ([], [Axis("y", "", np.arange(2.0))], [Axis("y", "", x * np.nan)]):
+        with pytest.raises(WrongValue, match=r"curve|plot"):
+            Plot(Axis("x", "", x), panels)
+
+
+def test_the_curves_of_a_session_pass_through_the_answers(here):
+    for name in ("slotted_mechanism", "slider_crank", "three_loop_shaper"):
+        session = coursework.study(name, seed=2, lang="en")
+        variant = session.variant
+        driver = variant.exercise.spec.driver.angle
+        for part in predictions.moving(variant):
+            angles, values = predictions.curve(variant, part.quantity)
+            at = np.argmin(np.abs((angles - variant.given[driver] + 180) % 360 - 180))
+            gap = values[at] - variant.walk[part.quantity]
+            gap = (gap + 180) % 360 - 180 if part.kind == "angle" else gap
+            assert abs(gap) <= 1e-6 * np.nanmax(np.abs(values))
+        assert "largest" in str(session.predict({})) or session.plot().pieces
+        with pytest.raises(UnknownName):
+            session.plot("nothing")

@@ -1,0 +1,227 @@
+"""Self-study notebooks run from top to bottom, in every language, and hold no answer."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import shutil
+
+import pytest
+from study_words import BOTH, SAID, flat
+
+import coursework
+from coursework.cli import run
+from coursework.errors import BadCourse, BadInput, CourseworkError, Starved, UnknownName
+from coursework.language.words import words
+from coursework.rendering.renderer import renderer_of
+
+COURSE = coursework.open_course()
+every_exercise = pytest.mark.parametrize("name", COURSE.names)
+
+
+def code_cells(text: str) -> list[str]:
+    return ["".join(c["source"]) for c in json.loads(text)["cells"] if c["cell_type"] == "code"]
+
+
+def run_cells(sources: list[str]) -> list[str]:
+    """Run cells as a notebook does, and give what each shows, as plain text."""
+    names: dict[str, object] = {}
+    shown = []
+    for source in sources:
+        body = ast.parse(source).body
+        last = body.pop() if body and isinstance(body[-1], ast.Expr) else None
+        exec(compile(ast.Module(body, []), "cell", "exec"), names)
+        if last is not None:
+            value = eval(compile(ast.Expression(last.value), "cell", "eval"), names)
+            shown.append(str(value))
+            for bundle in getattr(value, "bundles", list)():
+                assert bundle["text/plain"]
+    return shown
+
+
+IN_BOTH = ("assour", "four_bar_motion", "slotted_mechanism")
+
+
+@pytest.mark.parametrize(("name", "lang"), [(n, "fr") for n in COURSE.names] + [(n, "en") for n in IN_BOTH])
+def test_a_self_study_notebook_runs_from_top_to_bottom_twice(name, lang, here):
+    cells = code_cells(renderer_of(COURSE.folder).study(COURSE[name].variant(3, lang).study_sheet()))
+    assert any("study.check(answers)" in source for source in cells)
+    assert run_cells(cells) == run_cells(cells)
+
+
+@pytest.mark.parametrize(("name", "lang"), [("slotted_mechanism", "en"), ("mobility", "fr")])
+def test_a_self_study_notebook_runs_in_a_kernel(name, lang, tmp_path):
+    import nbformat
+    from nbclient import NotebookClient
+
+    text = renderer_of(COURSE.folder).study(COURSE[name].variant(3, lang).study_sheet())
+    book = nbformat.reads(text, as_version=4)
+    resources = {"metadata": {"path": str(tmp_path)}}
+    NotebookClient(book, timeout=120, kernel_name="python3", resources=resources).execute()
+    outputs = [o for cell in book.cells for o in cell.get("outputs", ())]
+    assert all(o.output_type in ("display_data", "execute_result") for o in outputs)
+    assert any("text/markdown" in o.data for o in outputs)
+
+
+@every_exercise
+def test_a_self_study_notebook_is_the_same_twice_and_has_one_cell_of_answers(name):
+    first, second = (
+        renderer_of(COURSE.folder).study(COURSE[name].variant(3, "fr").study_sheet()) for _ in range(2)
+    )
+    assert first == second
+    book = json.loads(first)
+    (answers,) = [c for c in book["cells"] if "answers" in c["metadata"].get("tags", ())]
+    (line,) = ast.parse("".join(answers["source"])).body
+    assert ast.literal_eval(line.value).keys() == {"student", *COURSE[name].variant(3).part_ids}
+    assert len({c["id"] for c in book["cells"]}) == len(book["cells"])
+    assert book["metadata"]["coursework"]["record"] == COURSE[name].variant(3).record
+
+
+@every_exercise
+def test_a_notebook_to_hand_in_holds_no_answer_and_no_way_to_one(name):
+    for seed in (0, 1):
+        variant = COURSE[name].variant(seed, "en")
+        text = renderer_of(COURSE.folder).notebook(variant.handout("Zoé"))
+        words = re.sub(r'"image/png": "[^"]*"', "", text)
+        assert "coursework.study" not in words
+        for source in code_cells(text):
+            tree = ast.parse(source)
+            assert not any(isinstance(n, (ast.Call, ast.Import, ast.ImportFrom)) for n in ast.walk(tree))
+        given = {float(v) for v in variant.given.values() if not isinstance(v, str)}
+        for part in variant.parts:
+            value = variant.solution()[part.quantity]
+            if part.kind == "number" and abs(value) not in {abs(g) for g in given} and value != round(value):
+                assert f"{abs(value):.5g}" not in words
+
+
+def test_a_filled_self_study_notebook_is_marked(tmp_path, capsys):
+    assert (
+        run(["build", "slotted_mechanism", "--practice", "--formats", "ipynb", "--out", str(tmp_path)]) == 0
+    )
+    (path,) = (tmp_path / "handouts").rglob("*.ipynb")
+    book = json.loads(path.read_text("utf-8"))
+    cell = next(c for c in book["cells"] if "answers" in c["metadata"].get("tags", ()))
+    seed = book["metadata"]["coursework"]["seed"]
+    value = COURSE["slotted_mechanism"].variant(seed).solution()["rA"]
+    source = "".join(cell["source"]).replace('"student": ""', '"student": "Zoé"')
+    cell["source"] = source.replace('"rA": ""', f'"rA": "{value:.6g} mm"').splitlines(keepends=True)
+    path.write_text(json.dumps(book), "utf-8")
+    run(["grade", str(path), "--issued", str(tmp_path / "issued.json"), "--out", str(tmp_path / "marks")])
+    marks = (tmp_path / "marks" / "marks.csv").read_text("utf-8")
+    assert re.search(rf"Zoé,slotted_mechanism,{seed},rA,.*,correct,1", marks)
+
+
+def test_the_command_writes_a_notebook_for_every_exercise_of_a_course_of_ones_own(
+    small_course, monkeypatch, capsys
+):
+    out = small_course.parent / "notebooks"
+    assert run(["--course", str(small_course), "notebook", "--lang", "fr,en", "--out", str(out)]) == 0
+    assert {p.name for p in out.iterdir()} == {"crank_pin.en.ipynb", "crank_pin.fr.ipynb"}
+    monkeypatch.chdir(out)
+    for path in sorted(out.iterdir()):
+        shown = run_cells(code_cells(path.read_text("utf-8")))
+        assert shown
+    monkeypatch.chdir("/")
+    with pytest.raises(BadCourse, match="small"):
+        coursework.study("crank_pin", course="small")
+    for place in (small_course, str(small_course)):
+        assert coursework.study("crank_pin", course=place, folder=out).variant.exercise.name == "crank_pin"
+
+
+def test_a_students_copy_says_that_its_solutions_are_missing(small_course, monkeypatch):
+    shutil.rmtree(small_course / "solutions")
+    monkeypatch.chdir(small_course.parent)
+    variant = coursework.open_course(small_course)["crank_pin"].variant(0, "en")
+    shown = run_cells(code_cells(renderer_of(variant.exercise.folder).study(variant.study_sheet())))
+    session = coursework.study("crank_pin", lang="en", course="small", folder=small_course)
+    for said in (
+        session.check({"x": "1"}),
+        session.hint("x"),
+        session.reveal("x"),
+        session.plot(),
+        session.motion(),
+    ):
+        assert "solutions are not in this copy" in str(said)
+    assert session.answers == {"x": "1"}
+    assert any("solutions are not in this copy" in text for text in shown)
+
+
+def test_a_notebook_of_another_version_is_refused(here):
+    with pytest.raises(BadInput, match=r"version 99.*coursework notebook slotted_mechanism"):
+        coursework.study("slotted_mechanism", version=99)
+
+
+MISTYPED = {
+    "question": (lambda s: s.check({"theta44": "1"}), UnknownName, "theta4"),
+    "no name": (lambda s: s.check({33: "1"}), UnknownName, "omega4"),
+    "no dictionary": (lambda s: s.check(["1"]), BadInput, "study.check"),
+    "a text": (lambda s: s.predict("theta4"), BadInput, "study.predict"),
+    "prediction": (lambda s: s.predict({"theta5": "1"}), UnknownName, "theta4"),
+    "hint": (lambda s: s.hint("tehta4"), UnknownName, "theta4"),
+    "hint of a list": (lambda s: s.hint(["theta4"]), UnknownName, "theta4"),
+    "step": (lambda s: s.hint("theta4", "two"), BadInput, "two"),
+    "reveal": (lambda s: s.reveal("thta4"), UnknownName, "theta4"),
+    "curve": (lambda s: s.plot("omega44"), UnknownName, "omega4"),
+    "curves": (lambda s: s.plot(["rA"]), UnknownName, "rA"),
+    "effect": (lambda s: s.motion("speed"), UnknownName, "velocity"),
+    "fresh": (lambda s: s.fresh("2"), BadInput, "'2'"),
+}
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+@pytest.mark.parametrize("mistyped", MISTYPED)
+def test_what_is_mistyped_is_said_in_the_language_of_the_notebook(mistyped, lang, here):
+    call, kind, would_do = MISTYPED[mistyped]
+    with pytest.raises(kind) as refused:
+        call(coursework.study("slotted_mechanism", lang=lang))
+    (line,) = refused.value._render_traceback_()
+    assert would_do in line
+    sentences = words(lang)["study"]["refused"].values()
+    assert any(max(re.split(r"\{\w+\}", sentence), key=len) in line for sentence in sentences)
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_the_effects_that_a_motion_has_are_each_named_once(lang, here):
+    with pytest.raises(BadInput, match=r": position, velocity, acceleration\.$"):
+        coursework.study("four_bar_motion", lang=lang).motion("coriolis")
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_a_notebook_that_cannot_begin_says_so_in_its_language(lang, here):
+    said = words(lang)["study"]["refused"]
+    for told, start in (
+        ({"exercise": "sloted_mechanism"}, said["exercise"]),
+        ({"exercise": "slotted_mechanism", "version": 99}, said["version"]),
+        ({"exercise": "slotted_mechanism", "course": "nowhere"}, said["course"]),
+    ):
+        with pytest.raises(CourseworkError, match=re.escape(start.partition("{")[0])):
+            coursework.study(**told, lang=lang)
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_more_fresh_variants_than_there_are_is_said_in_the_language_of_the_notebook(lang, small_course, here):
+    source = small_course / "exercises" / "crank_pin.py"
+    few = source.read_text("utf-8").replace("drawn(50, 200, step=5", "drawn(50, 55, step=5")
+    few = few.replace("drawn(-175, 180, step=5", "drawn(-160, 160, step=40").replace(
+        "drawn(2, 20", "drawn(2, 3"
+    )
+    source.write_text(few, "utf-8")
+    with pytest.raises(Starved) as refused:
+        coursework.study("crank_pin", lang=lang, course=small_course).fresh(100)
+    assert str(refused.value) == words(lang)["study"]["refused"]["starved"].format(number=100)
+
+
+@BOTH
+def test_the_answers_cell_of_a_self_study_notebook_is_run(lang, here):
+    variant = COURSE["coriolis"].variant(3, lang)
+    books = [
+        renderer_of(COURSE.folder).study(variant.study_sheet()),
+        renderer_of(COURSE.folder).notebook(variant.handout()),
+    ]
+    texts = [flat(" ".join("".join(c["source"]) for c in json.loads(book)["cells"])) for book in books]
+    helps = (SAID[lang]["answers_help"], words(lang)["notebook"]["answers_help"])
+    for k, text in enumerate(texts):
+        last = [flat(said.strip().rpartition("\n")[2])[:40] in text for said in helps]
+        assert last == [k == 0, k == 1]
+    assert '`"rA": rA`' in texts[0]
