@@ -1,4 +1,5 @@
-# Two commands do the job on a machine with Python and make: `make demo` and `make test`. `make docs` builds the pages.
+# Two commands do the job on a machine with Python and make: `make demo` and `make test`. `make docs` builds the pages,
+# `make test-all` runs the long ends of the sweeps as well.
 # PYTHON chooses the interpreter, at least 3.11.
 
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
@@ -6,7 +7,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test test-plain docs lint wheel-test clean
+.PHONY: demo test test-all test-plain docs lint wheel-test clean
 .DEFAULT_GOAL := demo
 
 # Installed anew when the requirements change; edited code needs no reinstallation.
@@ -19,8 +20,14 @@ $(VENV)/ready: pyproject.toml
 demo: $(VENV)/ready  ## The whole job on a class of twelve
 	$(BIN)/coursework demo --out demo
 
-test: $(VENV)/ready lint  ## Every test
-	$(BIN)/python -m pytest -n auto -q
+PYTEST := python -m pytest -n auto -q
+
+# Of each sweep over seeds, exercises or languages the first few: see tests/sweeps.py.
+test: $(VENV)/ready lint  ## Every promise, sweeps in short
+	$(BIN)/$(PYTEST) -m "not slow"
+
+test-all: $(VENV)/ready lint  ## Every test, sweeps at full length
+	$(BIN)/$(PYTEST)
 
 # The tests of numbers, where a last bit would show.
 NUMBERS := exercises kinematics solids structure course/test_draws.py quantities/test_graph.py motion/test_scenes.py
@@ -33,7 +40,7 @@ VECTOR_UNITS := import numpy; print(*numpy.show_config('dicts').get('SIMD Extens
 test-plain: $(VENV)/ready  ## The numbers once more, with other last bits
 	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c "$(VECTOR_UNITS)")" OPENBLAS_CORETYPE=Nehalem \
 	GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable \
-	$(BIN)/python -m pytest -n auto -q $(NUMBERS:%=tests/%)
+	$(BIN)/$(PYTEST) -m "not slow" $(NUMBERS:%=tests/%)
 
 $(VENV)/docs-ready: $(VENV)/ready
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
@@ -62,7 +69,7 @@ wheel-test: $(VENV)/ready
 	$(PYTHON) -m venv build/wheel/venv
 	build/wheel/venv/bin/python -m pip install --quiet --disable-pip-version-check "$$(ls build/wheel/*.whl)[test]"
 	cp -r tests docs pyproject.toml build/wheel/
-	cd build/wheel && venv/bin/python -P -m pytest -n auto -q $(TESTED_ONCE:%=--ignore=tests/%)
+	cd build/wheel && venv/bin/python -P -m pytest -n auto -q -m "not slow" $(TESTED_ONCE:%=--ignore=tests/%)
 	cd build/wheel && venv/bin/coursework demo --out demo
 
 lint: $(VENV)/ready

@@ -2,7 +2,6 @@
 
 import hypothesis.strategies as st
 
-
 NBSP, THIN, NARROW = "\u00a0", "\u2009", "\u202f"
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
 SPACES = st.sampled_from(["", " ", NBSP, THIN, NARROW, "  "])

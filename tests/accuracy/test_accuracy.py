@@ -6,6 +6,7 @@ import json
 import math
 
 import pytest
+from sweeps import sampled
 
 from coursework.accuracy.closure import Closure
 from coursework.accuracy.measuring import HARD, measure, study_of
@@ -89,7 +90,7 @@ def test_rows_are_whole(rows):
         assert len({(r.what, r.method, r.place) for r in own}) == len(own)
 
 
-@pytest.mark.parametrize("lang", languages())
+@pytest.mark.parametrize("lang", sampled(languages(), ["fr"]))
 def test_the_page_reads_the_rows_in_every_language(course, rows, lang):
     every = [row for own in rows.values() for row in own]
     page = report(course, every, lang)

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
+import io
+import shutil
+
 import pytest
 from class_of_three import ROSTER
 
@@ -21,14 +25,25 @@ def cli(capsys):
     return call
 
 
-@pytest.fixture
-def built(cli, tmp_path):
-    (tmp_path / "class.csv").write_text(ROSTER, "utf-8")
-    out = tmp_path / "out"
-    status, said, _ = cli(
-        "build", "slotted_mechanism", "four_bar_positions", "--roster", tmp_path / "class.csv", "--out", out,
-        "--formats", "pdf,ipynb", "--seed", 7,
-    )  # fmt: skip
+@pytest.fixture(scope="session")
+def built_once(tmp_path_factory):
+    """A class of three with sheets of two exercises; nobody writes in it."""
+    folder = tmp_path_factory.mktemp("built")
+    (folder / "class.csv").write_text(ROSTER, "utf-8")
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said):
+        status = run(
+            [
+                "build", "slotted_mechanism", "four_bar_positions", "--roster", str(folder / "class.csv"),
+                "--out", str(folder / "out"), "--formats", "pdf,ipynb", "--seed", "7",
+            ]
+        )  # fmt: skip
     assert status == 0
-    assert str(out) in said
-    return out
+    assert str(folder / "out") in said.getvalue()
+    return folder
+
+
+@pytest.fixture
+def built(built_once, tmp_path):
+    """A copy of the small build to write in, with the roster beside it."""
+    return shutil.copytree(built_once, tmp_path, dirs_exist_ok=True) / "out"

@@ -9,6 +9,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 import pytest
 from animations import COURSE, FILMED, MOVING, SVG, Page, animation
+from sweeps import sampled
 
 import coursework
 from coursework.cli import run
@@ -18,6 +19,11 @@ from coursework.figures.riding import ride
 from coursework.figures.text import read
 from coursework.motion.animation import EFFECTS
 
+#: A crank, a coupler, and the film of a ball always; all that move, slow.
+few_moving = pytest.mark.parametrize(
+    "name", sampled(MOVING, ["slotted_mechanism", "four_bar_motion", "ball_reducer"])
+)
+
 
 def outward_references(text):
     """Addresses and style imports that a reader of the file would go and fetch."""
@@ -26,7 +32,7 @@ def outward_references(text):
     return [f for f in found if not f.startswith("data:")]
 
 
-@pytest.mark.parametrize("name", MOVING)
+@few_moving
 def test_the_svg_moves_without_script_fetches_nothing_and_is_small(name):
     text = animation(name, effects="all").svg()
     svg = ET.fromstring(text)
@@ -38,7 +44,7 @@ def test_the_svg_moves_without_script_fetches_nothing_and_is_small(name):
     assert len(COURSE[name].variant(1).animation(animation(name, effects="all").effects).svg()) < 600_000
 
 
-@pytest.mark.parametrize("name", MOVING)
+@few_moving
 def test_every_animated_value_begins_as_the_still_picture_and_a_loop_ends_so(name):
     svg = ET.fromstring(animation(name).svg())
     animated = 0
@@ -62,7 +68,7 @@ def test_who_wants_no_motion_sees_the_first_instant():
     assert ".coursework-still{display:inline}" in reduced
 
 
-@pytest.mark.parametrize("name", MOVING)
+@few_moving
 def test_nothing_drawn_leaves_the_view_box(name):
     shown = animation(name, effects="all").drawing(EFFECTS)
     for track in shown.tracks:
@@ -71,7 +77,7 @@ def test_nothing_drawn_leaves_the_view_box(name):
             assert track.numbers[:, column::2].max() <= size
 
 
-@pytest.mark.parametrize("name", MOVING)
+@few_moving
 @pytest.mark.parametrize(("lang", "play"), [("fr", "Animer"), ("en", "Play")])
 def test_the_page_is_one_file_in_its_language(name, lang, play):
     text = animation(name, 1, lang).html()
@@ -86,7 +92,7 @@ def test_the_page_is_one_file_in_its_language(name, lang, play):
     assert "angle" in labelled
 
 
-@pytest.mark.parametrize("name", MOVING)
+@few_moving
 def test_the_page_holds_every_instant_of_everything_that_moves(name):
     moved = animation(name, effects="all")
     page = Page(moved.html())
@@ -112,14 +118,14 @@ def test_an_effect_that_is_not_called_for_is_there_and_switched_off():
     assert checked == {e: not off for e, off in hidden.items()}
 
 
-@pytest.mark.parametrize("name", ["slotted_mechanism", "three_loop_shaper"])
+@pytest.mark.parametrize("name", sampled(["slotted_mechanism", "three_loop_shaper"]))
 def test_the_same_variant_gives_the_same_bytes(name):
     one, other = (COURSE[name].variant(4).animation() for _ in range(2))
     assert one.svg() == other.svg()
     assert one.html() == other.html()
 
 
-@pytest.mark.parametrize("name", MOVING)
+@few_moving
 def test_labels_on_the_move_lie_on_no_label_and_hardly_ever_on_a_line(name, monkeypatch):
     """Counted at every instant; a label that a line must pass under has a white rim."""
     seen = {}

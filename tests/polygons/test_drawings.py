@@ -11,11 +11,13 @@ from itertools import accumulate
 import numpy as np
 import pytest
 from courses_polygons import (
+    PLACES,
     constructions,
     every_exercise,
     variants,
 )
 from drawn_svg import SVG, crossed, kinds, overlapping
+from sweeps import sampled
 
 from coursework.figures import Figure, vector
 from coursework.figures.text import SIZE, read
@@ -51,7 +53,7 @@ def test_a_millimetre_of_the_file_is_a_millimetre_on_paper(name):
     assert longest == pytest.approx(expected, abs=0.3)
 
 
-@every_exercise
+@pytest.mark.parametrize("name", sampled(PLACES))
 def test_no_label_lies_on_a_line_or_on_another(name):
     for drawn in constructions(name):
         for figure in (drawn.figure, drawn.steps[-1].figure.whole):

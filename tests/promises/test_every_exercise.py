@@ -7,6 +7,8 @@ from functools import cache
 
 import numpy as np
 import pytest
+import sweeps
+from sweeps import slow
 
 import coursework
 from coursework.authoring import checks
@@ -17,15 +19,16 @@ from coursework.language.words import languages
 from coursework.rendering.renderer import renderer_of
 
 COURSE = coursework.open_course()
-VARIANTS = 30
+FEW, MANY = 5, 30  #: variants
 
 every_exercise = pytest.mark.parametrize("name", COURSE.names)
 every_language = pytest.mark.parametrize("lang", languages())
+every_seed = sweeps.seeds(FEW, MANY)
 
 
 @cache
-def keys(name):
-    return [v.key for v in COURSE[name].variants(range(VARIANTS))]
+def keys(name, seeds=range(FEW)):
+    return [v.key for v in COURSE[name].variants(seeds)]
 
 
 def failures(name, check, *arguments):
@@ -41,25 +44,29 @@ def test_known_cases_come_out(name):
 
 
 @every_exercise
-def test_answers_satisfy_the_governing_equations(name):
-    for key in keys(name):
+@every_seed
+def test_answers_satisfy_the_governing_equations(name, seeds):
+    for key in keys(name, seeds):
         assert failures(name, checks.check_solves, key.variant, key) == []
 
 
 @every_exercise
-def test_arrays_give_what_scalars_give(name):
-    assert failures(name, checks.check_arrays, COURSE[name], [k.variant for k in keys(name)]) == []
+@every_seed
+def test_arrays_give_what_scalars_give(name, seeds):
+    assert failures(name, checks.check_arrays, COURSE[name], [k.variant for k in keys(name, seeds)]) == []
 
 
 @every_exercise
-def test_right_answers_mark_right_in_every_spelling(name):
-    for key in keys(name):
+@every_seed
+def test_right_answers_mark_right_in_every_spelling(name, seeds):
+    for key in keys(name, seeds):
         assert failures(name, checks.check_right_answers, key.variant, key) == []
 
 
 @every_exercise
-def test_each_mistake_marks_as_that_mistake(name):
-    for key in keys(name):
+@every_seed
+def test_each_mistake_marks_as_that_mistake(name, seeds):
+    for key in keys(name, seeds):
         assert failures(name, checks.check_mistakes, key.variant, key) == []
     assert len(COURSE[name].solution.mistakes) >= 3
 
@@ -75,15 +82,17 @@ def test_texts_are_complete_in_every_language(name):
 
 
 @every_exercise
-def test_sheets_render_in_every_format_and_language(name):
+@pytest.mark.parametrize("count", [1, pytest.param(2, marks=slow)])
+def test_sheets_render_in_every_format_and_language(name, count):
     report = Report(name)
-    checks.check_rendering(COURSE[name], 2, report)
-    assert report.counts["sheets rendered"] == 2 * 5 * len(languages())
+    checks.check_rendering(COURSE[name], count, report)
+    assert report.counts["sheets rendered"] == count * 5 * len(languages())
 
 
 @every_exercise
-def test_just_beyond_the_tolerance_is_not_right(name):
-    for key in keys(name)[:10]:
+@every_seed
+def test_just_beyond_the_tolerance_is_not_right(name, seeds):
+    for key in keys(name, seeds):
         for part in key.variant.parts:
             if part.kind not in ("number", "angle") or not part.has_margin:
                 continue
@@ -140,8 +149,9 @@ def test_a_seed_draws_the_same_alone_and_in_company(name):
 
 
 @every_exercise
-def test_given_values_are_the_decimals_that_are_printed(name):
-    for key in keys(name):
+@every_seed
+def test_given_values_are_the_decimals_that_are_printed(name, seeds):
+    for key in keys(name, seeds):
         handout = key.variant.handout()
         for given in handout.given:
             if given.is_number:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import sweeps
 
 import coursework
 from coursework.figures import Figure, link, pin
@@ -16,7 +17,6 @@ from coursework.sheets.drawings import solution_figure
 
 COURSE = coursework.open_course()
 WITH_FIGURE = [n for n in COURSE.names if COURSE[n].spec.figure is not None]
-VARIANTS = 200
 SVG = "{http://www.w3.org/2000/svg}"
 
 _RING = np.exp(2j * np.pi * np.arange(61) / 60)
@@ -76,10 +76,11 @@ def faults(figure):
     return found + [f"{boxes[i].label} off the paper" for i in np.flatnonzero(off)]
 
 
+@sweeps.seeds(8, 200)
 @pytest.mark.parametrize("name", WITH_FIGURE)
-def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(name):
+def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(name, seeds):
     found = {}
-    for variant in COURSE[name].variants(range(VARIANTS)):
+    for variant in COURSE[name].variants(seeds):
         room = views.room(variant.handout())
         drawn = (variant.figure, solution_figure(variant))
         figures = [figure.fitted(*room) for figure in drawn if figure is not None]

@@ -9,6 +9,7 @@ import shutil
 
 import pytest
 from study_words import BOTH, SAID, flat
+from sweeps import slow
 
 import coursework
 from coursework.cli import run
@@ -43,14 +44,22 @@ def run_cells(sources: list[str]) -> list[str]:
 IN_BOTH = ("assour", "four_bar_motion", "slotted_mechanism")
 
 
-@pytest.mark.parametrize(("name", "lang"), [(n, "fr") for n in COURSE.names] + [(n, "en") for n in IN_BOTH])
+FEW_RUN = {("slotted_mechanism", "en"), ("ball_reducer", "fr"), ("assour", "fr"), ("velocity_polygon", "fr")}
+EVERY = [(n, "fr") for n in COURSE.names] + [(n, "en") for n in IN_BOTH]
+
+
+@pytest.mark.parametrize(
+    ("name", "lang"), [p if p in FEW_RUN else pytest.param(*p, marks=slow) for p in EVERY]
+)
 def test_a_self_study_notebook_runs_from_top_to_bottom_twice(name, lang, here):
     cells = code_cells(renderer_of(COURSE.folder).study(COURSE[name].variant(3, lang).study_sheet()))
     assert any("study.check(answers)" in source for source in cells)
     assert run_cells(cells) == run_cells(cells)
 
 
-@pytest.mark.parametrize(("name", "lang"), [("slotted_mechanism", "en"), ("mobility", "fr")])
+@pytest.mark.parametrize(
+    ("name", "lang"), [("slotted_mechanism", "en"), pytest.param("mobility", "fr", marks=slow)]
+)
 def test_a_self_study_notebook_runs_in_a_kernel(name, lang, tmp_path):
     import nbformat
     from nbclient import NotebookClient

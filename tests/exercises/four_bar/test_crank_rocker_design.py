@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from sweeps import sampled
 
 import coursework
 
@@ -38,7 +39,7 @@ def on_the_arc(r4, psi, phi, beta):
     return abs(B1 + near * ways[0]), (far - near) / 2, (far + near) / 2
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", sampled(range(12), range(2)))
 def test_every_place_on_the_arc_is_judged_as_its_motion_is(seed):
     variant = EXERCISE.variant(seed, "en")
     given = variant.given

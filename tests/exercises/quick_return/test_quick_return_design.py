@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from sweeps import sampled
 
 import coursework
 from coursework.language.numbers import significant
@@ -36,7 +37,7 @@ def through_a_crank(stroke, Q, r2):
     return (far + near) / 2, e
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", sampled(range(12), range(2)))
 def test_every_crank_shorter_than_half_the_stroke_is_judged_as_its_motion_is(seed):
     variant = EXERCISE.variant(seed, "en")
     given = variant.given
