@@ -75,9 +75,10 @@ def test_who_is_wrong_is_told_what_was_confused():
 
 @pytest.fixture
 def own_course(tmp_path):
-    for folder in (EXERCISES, SOLUTIONS):
-        own = tmp_path / ("exercises" if folder == EXERCISES else "solutions")
-        own.mkdir()
+    """The bank alone, in its topic: a solution reads the exercise of the same folder."""
+    for kind, folder in (("exercises", EXERCISES), ("solutions", SOLUTIONS)):
+        own = tmp_path / kind / folder.name
+        own.mkdir(parents=True)
         for path in folder.glob("vocabulary.*"):
             shutil.copy(path, own)
     return tmp_path
@@ -88,15 +89,21 @@ def add(path: Path, text: str) -> None:
 
 
 def test_a_teacher_adds_a_question_by_texts_alone(own_course):
-    add(own_course / "exercises" / "vocabulary.toml", '\n[belts]\nask = 1\nquestions = ["belt_sense"]\n')
-    add(own_course / "solutions" / "vocabulary.toml", 'belt_sense = "same"\n')
+    add(
+        own_course / "exercises" / EXERCISES.name / "vocabulary.toml",
+        '\n[belts]\nask = 1\nquestions = ["belt_sense"]\n',
+    )
+    add(own_course / "solutions" / SOLUTIONS.name / "vocabulary.toml", 'belt_sense = "same"\n')
     for lang, asks in (
         ("fr", "Une courroie ouverte fait tourner les poulies :"),
         ("en", "An open belt turns pulleys:"),
     ):
         statement = f"\n## belt_sense\n{asks}\n- same: + +\n- opposite: + -\n"
-        add(own_course / "exercises" / f"vocabulary.{lang}.md.j2", statement)
-        add(own_course / "solutions" / f"vocabulary.{lang}.md.j2", "\n## mistake belt_sense_opposite\n×\n")
+        add(own_course / "exercises" / EXERCISES.name / f"vocabulary.{lang}.md.j2", statement)
+        add(
+            own_course / "solutions" / SOLUTIONS.name / f"vocabulary.{lang}.md.j2",
+            "\n## mistake belt_sense_opposite\n×\n",
+        )
     exercise = coursework.open_course(own_course)["vocabulary"]
     report = checks.check(exercise, 20, rendered=1)
     assert report.failures == []
@@ -106,11 +113,14 @@ def test_a_teacher_adds_a_question_by_texts_alone(own_course):
 
 
 def test_a_question_without_answer_or_without_words_is_said(own_course):
-    add(own_course / "exercises" / "vocabulary.toml", '\n[belts]\nask = 1\nquestions = ["belt_sense"]\n')
+    add(
+        own_course / "exercises" / EXERCISES.name / "vocabulary.toml",
+        '\n[belts]\nask = 1\nquestions = ["belt_sense"]\n',
+    )
     with pytest.raises(BadCourse, match="'belt_sense', which has no section"):
         coursework.open_course(own_course)["vocabulary"]
     add(
-        own_course / "exercises" / "vocabulary.en.md.j2",
+        own_course / "exercises" / EXERCISES.name / "vocabulary.en.md.j2",
         "\n## belt_sense\nWhich?\n- same: + +\n- opposite: + -\n",
     )
     exercise = Course(Folder(own_course), Variant)["vocabulary"]
@@ -119,7 +129,7 @@ def test_a_question_without_answer_or_without_words_is_said(own_course):
 
 
 def test_an_answer_that_is_no_case_is_found_by_the_check(own_course):
-    path = own_course / "solutions" / "vocabulary.toml"
+    path = own_course / "solutions" / SOLUTIONS.name / "vocabulary.toml"
     path.write_text(path.read_text("utf-8").replace('spin = "normal"', 'spin = "normale"'), "utf-8")
     report = checks.check(coursework.open_course(own_course)["vocabulary"], 5, rendered=0)
     assert any("residual" in failure for failure in report.failures)
