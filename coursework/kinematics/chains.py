@@ -128,6 +128,10 @@ class Chain:
             found = self._newton(values, np.stack(rest[2 * len(directions) :], axis=1), exponents)
             return tuple(x.reshape(shape) for x in found)
 
+        found: list[Any]
+        residual: Any
+        condition: Any
+        converged: Any
         *found, residual, condition, converged = in_blocks(kernel, *inputs)
         for i, name in enumerate(self.unknowns):
             if name in self._lengths:
@@ -178,10 +182,10 @@ class Chain:
                 np.broadcast_arrays(*[x for z in sums for x in (-np.real(z), -np.imag(z))]), axis=-1
             )
             shape = np.broadcast_shapes(jacobian.shape[:-1], right.shape)
-            found = _steps(
+            steps = _steps(
                 np.broadcast_to(jacobian, (*shape, shape[-1])), np.broadcast_to(right, shape), np.nan
             )
-            rates |= {name: (*rates[name], found[..., i]) for i, name in enumerate(self.unknowns)}
+            rates |= {name: (*rates[name], steps[..., i]) for i, name in enumerate(self.unknowns)}
         found = {
             name: tuple((scaled(x, exponent) if name in self._lengths else x)[()] for x in rates[name])
             for name in self.unknowns

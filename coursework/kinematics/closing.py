@@ -117,9 +117,8 @@ class Opening:
     def __init__(self, close: Closing, swept: Sweep):
         self._close, self._swept = close, swept
         self._smooth = swept.cos is not None
-        self._flat_p, self._flat_q = (
-            (close.stretched == 0, close.folded == 0) if self._smooth else (False, False)
-        )
+        self._flat_p: Any = self._smooth and close.stretched == 0
+        self._flat_q: Any = self._smooth and close.folded == 0
 
     @cached_property
     def rho(self) -> Any:

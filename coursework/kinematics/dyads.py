@@ -253,7 +253,8 @@ def _solved(kernel: Callable, failure: Callable[..., CourseworkError], *given: A
 
 def _rates(known: Callable, first: Any, second: Any, count: int) -> tuple[tuple, tuple]:
     """Order after order: ``first * x + second * y`` = what is known of that order."""
-    xs, ys = [], []
+    xs: list[Any] = []
+    ys: list[Any] = []
     with np.errstate(all="ignore"):
         for n in range(1, count + 1):
             x, y = components(known(n, xs, ys), first, second)

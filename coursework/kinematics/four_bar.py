@@ -191,9 +191,10 @@ class FourBar:
         dead point."""
         return self._evaluate(_conditioning, crank_angle)[0]
 
-    def _scaled_lengths(self) -> list[Any]:
-        found = [scaled(x, -self._exponent) for x in self.lengths]
-        return [x if x.ndim else float(x) for x in found]
+    def _scaled_lengths(self) -> tuple[Any, Any, Any, Any]:
+        found = (scaled(x, -self._exponent) for x in self.lengths)
+        d, a, b, c = (x if x.ndim else float(x) for x in found)
+        return d, a, b, c
 
     def _evaluate(self, formula: Any, crank_angle: Any, *rates: Any, order: int | None = None) -> tuple:
         # A numpy number where the angle is one: its quotient by zero is NaN, not an error.

@@ -231,7 +231,8 @@ def _lengths(crank: Any, rod: Any, offset: Any) -> tuple[Any, Any, Any]:
                 raise WrongValue(f"the length of the {name} is {length}, where a positive number is needed")
         return float(crank), float(rod), float(offset)
     r, l, e = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in (crank, rod, offset)))
-    return *(np.where((x > 0) & (x < math.inf), x, math.nan) for x in (r, l)), e
+    r, l = (np.where((x > 0) & (x < math.inf), x, math.nan) for x in (r, l))
+    return r, l, e
 
 
 def _plain(value: Any) -> Any:

@@ -78,7 +78,7 @@ def motion(
     def kernel(d: Any, r: Any, *inputs: Any) -> tuple:
         return _motion(_Pose(d, r, heading(*inputs[: len(parts)])), *inputs[len(parts) :])
 
-    found = list(in_blocks(kernel, d, r, *parts, *rates))
+    found: list[Any] = list(in_blocks(kernel, d, r, *parts, *rates))
     found[1::2] = [scaled(value, exponent) for value in found[1::2]]
     if not np.ndim(found[0]):
         found = _defined([value.item() for value in found])

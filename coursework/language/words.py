@@ -27,7 +27,7 @@ def languages() -> tuple[str, ...]:
 
 
 @cache
-def words(lang: str) -> Mapping[str, object]:
+def words(lang: str) -> Mapping[str, Any]:
     """The engine's words in one language, as nested tables of texts.
 
     Raises

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import WrongValue
-from coursework.solids.joints import Joint, Measure, Vector, joints_of
+from coursework.solids.joints import Joint, Measure, Vector, read_joints
 from coursework.solids.ranks import Rank, decompose, rank_of
 
 
@@ -31,9 +31,7 @@ class _Loops:
         inputs: int | None = None,
         outputs: int | None = None,
     ):
-        joints = tuple(joints)
-        is_known = joints and all(isinstance(joint, Joint) for joint in joints)
-        self.joints: tuple[Joint, ...] = joints if is_known else joints_of(joints)
+        self.joints = read_joints(joints)
         self.inputs, self.outputs = inputs, outputs
         self._ends = [joint.between for joint in self.joints]
         self.n = max(max(ends) for ends in self._ends)  #: moving bodies

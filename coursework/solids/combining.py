@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.solids.joints import Joint, Measure, joints_of
+from coursework.solids.joints import Joint, Measure, read_joints
 from coursework.solids.ranks import Rank, decompose
 from coursework.solids.recognition import Equivalent, recognise
 
@@ -22,19 +22,12 @@ def in_parallel(joints: Iterable[Joint | Mapping[str, Any]]) -> Parallel:
     WrongValue, UnknownName
         As :func:`~coursework.solids.joints.joint_of`.
     """
-    return Parallel(_known(joints))
+    return Parallel(read_joints(joints))
 
 
 def in_series(joints: Iterable[Joint | Mapping[str, Any]]) -> Series:
     """Joints in a row: the motions that they leave free add up. Errors are those of :func:`in_parallel`."""
-    return Series(_known(joints))
-
-
-def _known(joints: Iterable[Joint | Mapping[str, Any]]) -> tuple[Joint, ...]:
-    joints = tuple(joints)
-    if joints and all(isinstance(joint, Joint) for joint in joints):
-        return joints
-    return joints_of(joints)
+    return Series(read_joints(joints))
 
 
 def _unit_rows(rows: list[list[float]]) -> np.ndarray:

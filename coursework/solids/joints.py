@@ -125,7 +125,8 @@ class Joint:
         """From the origin to its point, in lengths."""
         if self.point is None:
             return (0.0, 0.0, 0.0)
-        return tuple((p - o) / length for p, o in zip(self.point, origin, strict=True))
+        x, y, z = ((p - o) / length for p, o in zip(self.point, origin, strict=True))
+        return x, y, z
 
 
 def _named(frame: Sequence[Vector], letters: str) -> list[Vector]:
@@ -174,6 +175,15 @@ def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
     return joints
 
 
+def read_joints(given: Iterable[Joint | Mapping[str, Any]]) -> tuple[Joint, ...]:
+    """Joints as they are, or read from their mappings: all of one sort."""
+    every: tuple[Any, ...] = tuple(given)
+    known = tuple(joint for joint in every if isinstance(joint, Joint))
+    if known and len(known) == len(every):
+        return known
+    return joints_of(every)
+
+
 def _frame(given: Mapping[str, Any], kind: Kind, name: str) -> tuple[Vector, Vector, Vector]:
     if not {"axis", "normal"} & set(kind.needs):
         return (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
@@ -193,7 +203,8 @@ def _vector(given: Mapping[str, Any], key: str) -> Vector:
     values = given[key]
     if isinstance(values, str) or not hasattr(values, "__len__") or len(values) != 3:
         raise WrongValue(f"{key!r} is three numbers; found {str(values)[:60]!r}")
-    return tuple(_number(value, key) for value in values)
+    x, y, z = (_number(value, key) for value in values)
+    return x, y, z
 
 
 def _direction(given: Mapping[str, Any], key: str) -> Vector:
@@ -237,7 +248,8 @@ class Measure:
             first = points[0]
             offsets = [[p - f for p, f in zip(point, first, strict=True)] for point in points]
             mean = [math.fsum(column) / len(points) for column in zip(*offsets, strict=True)]
-            origin = tuple(f + m for f, m in zip(first, mean, strict=True))
+            x, y, z = (f + m for f, m in zip(first, mean, strict=True))
+            origin = x, y, z
             reach = max(math.dist(offset, mean) for offset in offsets)
             if reach <= _TOGETHER * max(max(map(abs, point)) for point in points):
                 reach = 0.0

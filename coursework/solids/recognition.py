@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -87,9 +86,10 @@ class _Space:
         return _tidy(found, max(self.measure.length, *map(abs, self.measure.origin)))
 
 
-def _tidy(vector: Sequence[float], size: float) -> tuple[float, float, float]:
+def _tidy(vector: np.ndarray, size: float) -> tuple[float, float, float]:
     """Without what rounding leaves of zeros."""
-    return tuple(0.0 if abs(x) <= 1e-12 * size else float(x) for x in vector)
+    x, y, z = (0.0 if abs(x) <= 1e-12 * size else float(x) for x in vector)
+    return x, y, z
 
 
 def _along(vector: np.ndarray) -> tuple[float, float, float]:
@@ -108,7 +108,7 @@ def _common_point(rows: np.ndarray) -> np.ndarray | None:
     system = np.concatenate([_crossing(row[:3]) for row in rows])
     right = np.concatenate([row[3:] for row in rows])
     arm, *_ = np.linalg.lstsq(system, right, rcond=None)
-    gap = np.linalg.norm(system @ arm - right) / max(1.0, float(np.linalg.norm(arm)))
+    gap = float(np.linalg.norm(system @ arm - right)) / max(1.0, float(np.linalg.norm(arm)))
     return arm if is_zero(gap, "the axes meet in one point") else None
 
 
@@ -170,7 +170,7 @@ def _four(twists: _Space, wrenches: _Space) -> Equivalent:
             return Equivalent("annular", axis=_along(along), point=wrenches.place(centre))
     elif len(forces) == 1:
         force, moment, couple = forces[0, :3], forces[0, 3:], couples[0] / np.linalg.norm(couples[0])
-        square = is_zero(float(force @ couple) / np.linalg.norm(force), "the couple is square to the force")
+        square = is_zero(float(force @ couple / np.linalg.norm(force)), "the couple is square to the force")
         if square and is_zero(float(force @ moment / (force @ force)), "the action is a force"):
             return Equivalent(
                 "line_contact",

@@ -51,10 +51,10 @@ def in_blocks(kernel: Callable[..., Sequence[np.ndarray]], *inputs: Any) -> tupl
             return tuple(_whole(part, shape) for part in kernel(*inputs))
         # An input with one value is handed over as it is: cutting it would cost more than using it.
         axes = [_varying(given, len(shape)) if np.size(given) > 1 else None for given in inputs]
-        results = None
+        results: tuple[np.ndarray, ...] = ()
         for place in _places(shape):
             parts = kernel(*[_cut(g, a, place) for g, a in zip(inputs, axes, strict=True)])
-            if results is None:
+            if not results:
                 results = tuple(np.empty(shape, dtype=part.dtype) for part in parts)
             for result, part in zip(results, parts, strict=True):
                 result[place] = part
