@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import cmath
 import math
-from dataclasses import fields
+from collections.abc import Callable
+from dataclasses import dataclass, fields
 from functools import lru_cache
+from typing import Any
 
 from coursework.errors import CourseworkError, WrongValue
 from coursework.figures.ink import EDGE, PINS, WHITE, Disc, turn
@@ -21,12 +23,19 @@ AWAY = 1.15  #: where a label starts, from a line
 Bars = tuple[tuple[complex, complex], ...]
 
 
+@dataclass(frozen=True)
 class Element:
     """A part of a figure, in mechanism coordinates: complex numbers, mm, y up; degrees from +x."""
 
     def __post_init__(self) -> None:
-        for name, kind in _fields(type(self)):
+        for name, kind in self._told():
             object.__setattr__(self, name, self._checked(name, kind))
+
+    @classmethod
+    @lru_cache(maxsize=128)
+    def _told(cls) -> tuple[tuple[str, str], ...]:
+        """The name of each value and its type, as written."""
+        return tuple((item.name, str(item.type)) for item in fields(cls))
 
     def _checked(self, name: str, kind: str) -> object:
         value = getattr(self, name)
@@ -43,7 +52,7 @@ class Element:
 
     def reach(self) -> tuple[complex, ...]:
         """Points that bound the element."""
-        return tuple(z for name, _ in _fields(type(self)) for z in _points(getattr(self, name)))
+        return tuple(z for name, _ in self._told() for z in _points(getattr(self, name)))
 
     def bars(self) -> Bars:
         """Segments of the links, which labels and supports of pins keep away from."""
@@ -51,12 +60,6 @@ class Element:
 
     def draw(self, paper: Paper) -> None:
         raise NotImplementedError
-
-
-@lru_cache(maxsize=128)
-def _fields(element: type[Element]) -> tuple[tuple[str, str], ...]:
-    """What a kind of element is told: the name of each value and its type, as written."""
-    return tuple((item.name, str(item.type)) for item in fields(element))
 
 
 def _points(value: object) -> tuple[complex, ...]:
@@ -79,7 +82,7 @@ def _positive(value: float) -> float:
     return float(value)
 
 
-_READ = {
+_READ: dict[str, Callable[[Any], object]] = {
     "complex": complex,
     "float": float,
     "Positive": _positive,

@@ -210,14 +210,15 @@ class section(Element):
 
     def draw(self, paper: Paper) -> None:
         points = tuple(map(paper.at, self.points))
-        hole = _hole(points, read(self.label).box) if self.label else ()
+        label = self.label or ""
+        hole = _hole(points, read(label).box) if label else ()
         for a, b in _hatching((points, hole), turn(self.angle), self.spacing):
             paper.draw(Path((a, b), THIN, layer=FILLS))
         paper.draw(Path(points, EDGE, closed=True, layer=GUIDES, solid=True))
         if hole:
-            paper.inside(self.label, added(hole) / 4, read(self.label).box[1])
+            paper.inside(label, added(hole) / 4, read(label).box[1])
         else:
-            paper.beside(self.label, *max(_sides(points), key=lambda side: abs(side[1] - side[0])), AWAY)
+            paper.beside(label, *max(_sides(points), key=lambda side: abs(side[1] - side[0])), AWAY)
 
 
 def _sides(points: tuple[complex, ...]) -> Bars:

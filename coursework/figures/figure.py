@@ -74,11 +74,11 @@ class _Layout:
                 [(self.drew[k], lines[k]) for k in pile],
                 list(zip(self.named, texts, strict=True)),
             )
-        kept = (
+        lines, texts = (
             [text for element, text in pieces_ if count is None or element < count]
             for pieces_ in self._written[lettering]
         )
-        return written(*kept, self.size_mm, lettering)
+        return written(lines, texts, self.size_mm, lettering)
 
     def letters(self, count: int | None) -> tuple[Letters, ...]:
         """The letters of the labels of the first elements."""

@@ -8,14 +8,15 @@ instants, so that nothing jumps.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
 from coursework.errors import WrongValue
-from coursework.figures.base import Bars, Element
+from coursework.figures.base import Element
 from coursework.figures.elements import rail
 from coursework.figures.ink import (
     BLACK,
@@ -129,7 +130,11 @@ class _Stage(Paper):
     """Paper for one instant: nothing is rounded, and the same marks are drawn whatever their size."""
 
     def __init__(
-        self, scale: float, bars: Bars, middle: complex, ground: Callable[[complex], complex]
+        self,
+        scale: float,
+        bars: Iterable[tuple[complex, complex]],
+        middle: complex,
+        ground: Callable[[complex], complex],
     ) -> None:
         super().__init__(scale, bars, middle)
         self.ground = ground
@@ -239,7 +244,9 @@ def _settled(frames: list[list[Element]]) -> list[list[Element]]:
 
 def _settled_one(column: tuple[Element, ...]) -> tuple[Element, ...]:
     first = column[0]
-    if isinstance(first, rotation_arrow) and all(abs(e.center - first.center) < 1e-9 for e in column):
+    if isinstance(first, rotation_arrow) and all(
+        isinstance(e, rotation_arrow) and abs(e.center - first.center) < 1e-9 for e in column
+    ):
         return (first,) * len(column)
     if isinstance(first, rail | centre_line) or (isinstance(first, line) and not first.label):
         return _on_one_line(column)
@@ -302,9 +309,10 @@ def _drawn(stages: Sequence[_Stage]) -> list[Track]:
 
 def _track(things: Sequence[Ink]) -> Track:
     first = things[0]
-    if all(isinstance(thing, Disc) and thing.radius == first.radius for thing in things):
+    discs = [thing for thing in things if isinstance(thing, Disc)]
+    if isinstance(first, Disc) and [disc.radius for disc in discs] == [first.radius] * len(things):
         mark = f'<circle r="{number(first.radius)}"{_paint(first.width, first.fill, first.dash)}/>'
-        return Track(_flat([[thing.center] for thing in things]), mark=mark, layer=first.layer)
+        return Track(_flat([[disc.center] for disc in discs]), mark=mark, layer=first.layer)
     closed = isinstance(first, Path) and first.closed
     fill = first.fill if isinstance(first, Path | Disc) else "none"
     points = [_points_of(thing) for thing in things]
@@ -323,7 +331,7 @@ def _points_of(thing: Ink) -> list[complex]:
     return list(thing.outline())
 
 
-def _flat(points: Sequence[Sequence[complex]]) -> np.ndarray:
+def _flat(points: Sequence[Sequence[complex]] | np.ndarray) -> np.ndarray:
     """Rows of x, y, x, y, …; y up as yet."""
     grid = np.asarray(points, dtype=complex)
     return np.stack([grid.real, grid.imag], axis=-1).reshape(len(grid), -1)
@@ -339,7 +347,7 @@ def _spot_tracks(spot: Spot, scale: float) -> list[Track]:
     colour, count = COLOURS["position"], len(spot.p)
     way = spot.p * scale
     path = Track(
-        np.repeat(_flat([way]), count, axis=0),
+        np.repeat(_flat(way[None]), count, axis=0),
         f' stroke="{colour}"{_paint(0.25, "none")}',
         spot.closed,
         layer=FILLS,
@@ -361,10 +369,10 @@ def _arrow_tracks(arrow: Arrow, scale: float) -> list[Track]:
     colour = COLOURS[arrow.effect]
     shaft = f' stroke="{colour}"{_paint(ARROW, "none")}'
     head = f' stroke="none" fill="{colour}"'
-    which = {"layer": MARKS, "effect": arrow.effect, "point": arrow.point}
+    named = partial(Track, layer=MARKS, effect=arrow.effect, point=arrow.point)
     return [
-        Track(_flat(np.stack([tail, tip - 0.8 * way * size], axis=-1)), shaft, **which),
-        Track(_flat(np.stack([tip, base + wing, base - wing], axis=-1)), head, True, **which),
+        named(_flat(np.stack([tail, tip - 0.8 * way * size], axis=-1)), shaft),
+        named(_flat(np.stack([tip, base + wing, base - wing], axis=-1)), head, True),
     ]
 
 

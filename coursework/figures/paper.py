@@ -69,7 +69,12 @@ class Paper:
         return min((abs(b - a) for a, b in self._bars if p in (a, b)), default=math.inf)
 
     def around(
-        self, label: str, p: complex, start: float, taken: Sequence[complex] = (), toward: float | None = None
+        self,
+        label: str | None,
+        p: complex,
+        start: float,
+        taken: Sequence[complex] = (),
+        toward: float | None = None,
     ) -> None:
         """Asks for a label round a point: toward an angle if one is given, else in the widest gap
         between the bars that leave the point."""
@@ -78,7 +83,7 @@ class Paper:
             way = gap if toward is None else turn(toward)
             self.wishes.append(Wish(label, p, way, start, NAMES))
 
-    def toward(self, label: str, p: complex, way: complex, start: float, rank: int = ANGLES) -> None:
+    def toward(self, label: str | None, p: complex, way: complex, start: float, rank: int = ANGLES) -> None:
         if label:
             self.wishes.append(Wish(label, p, way / (abs(way) or 1.0), start, rank))
 
@@ -87,7 +92,9 @@ class Paper:
         # Starting half a height below, the first place tried is the point itself.
         self.wishes.append(Wish(label, center, 1j, -height / 2, INSIDE, inside=True))
 
-    def beside(self, label: str, p: complex, q: complex, start: float, way: complex | None = None) -> None:
+    def beside(
+        self, label: str | None, p: complex, q: complex, start: float, way: complex | None = None
+    ) -> None:
         """Asks for a label beside a segment, on the outer side of the figure unless told."""
         if not label:
             return

@@ -45,7 +45,7 @@ class Place(NamedTuple):
 @lru_cache(maxsize=4)
 def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
     """All places of a kind of label, cheapest first; the costs are in mm away from the best place."""
-    costed = []
+    costed: list[tuple[float, tuple[complex, float, float | None]]] = []
     if beside:
         for side in (1, -1):
             for fraction in _FRACTIONS:
@@ -59,8 +59,8 @@ def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
         for step in _STEPS[5:] if beside else _STEPS:
             costed.append((late + step + turning * away, (turn(22.5 * sixteenth), step, None)))
     rays: dict[tuple[complex, float | None], int] = {}
-    for _, (way, _, fraction) in costed:
-        rays.setdefault((way, fraction), len(rays))
+    for _, (way, _, along) in costed:
+        rays.setdefault((way, along), len(rays))
     tries = [
         (round(cost + more, 6), number, Place(*place, clear, number, rays[place[0], place[2]]))
         for number, (cost, place) in enumerate(costed)

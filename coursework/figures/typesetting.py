@@ -7,6 +7,7 @@ import re
 import threading
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import Literal, TypeAlias
 
 import typst
 
@@ -25,6 +26,8 @@ _LETTER = f"""#set page(width: auto, height: auto, margin: 0pt, fill: none)
 #set text(font: "{FONT}", size: 100pt, top-edge: "baseline", bottom-edge: "baseline")
 #text(style: sys.inputs.style, sys.inputs.letter)""".encode()
 
+Form: TypeAlias = Literal["png", "pdf", "svg"]
+
 _own = threading.local()
 
 
@@ -35,21 +38,28 @@ def _compiler() -> typst.Compiler:
     return _own.compiler
 
 
-def converted(svg: str, width_mm: float, form: str, ppi: float | None = None) -> bytes:
+def _compiled(page: bytes, form: Form, inputs: dict[str, str], ppi: float | None = None) -> bytes:
+    """A page that is one file: not the list of files that several pages of PNG or SVG are."""
+    found = _compiler().compile(input=page, format=form, ppi=ppi, sys_inputs=inputs, timestamp=0)
+    assert isinstance(found, bytes)
+    return found
+
+
+def converted(svg: str, width_mm: float, form: Form, ppi: float | None = None) -> bytes:
     """An SVG drawing as ``png`` or ``pdf``, with the fonts that typst brings and no other."""
     inputs = {"svg": svg, "width": str(width_mm)}
-    return _compiler().compile(input=_PAGE, format=form, ppi=ppi, sys_inputs=inputs, timestamp=0)
+    return _compiled(_PAGE, form, inputs, ppi)
 
 
 def pages(drawings: Sequence[tuple[str, float]]) -> bytes:
     """SVG drawings, each with its width in mm, as the pages of one PDF, each of its own size."""
     listed = json.dumps([{"svg": svg, "width": width} for svg, width in drawings])
-    return _compiler().compile(input=_PAGES, format="pdf", sys_inputs={"drawings": listed}, timestamp=0)
+    return _compiled(_PAGES, "pdf", {"drawings": listed})
 
 
 @lru_cache(maxsize=512)
 def glyph(letter: str, italic: bool) -> str:
     """SVG path of a letter, hundredths of an em, y up; empty for a space."""
     inputs = {"letter": letter, "style": "italic" if italic else "normal"}
-    page = _compiler().compile(input=_LETTER, format="svg", sys_inputs=inputs, timestamp=0).decode()
+    page = _compiled(_LETTER, "svg", inputs).decode()
     return " ".join(re.findall(r'<symbol[^>]*><path d="([^"]*)"', page)).strip()

@@ -162,10 +162,8 @@ def _latex(node: Node, lang: str) -> str:
             return _STYLES[style] % of(body)
         case Fraction(above, below, display):
             return rf"\{_FRACTIONS[display]}{{{of(above)}}}{{{of(below)}}}"
-        case Root(body, None):
-            return rf"\sqrt{{{of(body)}}}"
         case Root(body, index):
-            return rf"\sqrt[{{{of(index)}}}]{{{of(body)}}}"
+            return rf"\sqrt{'' if index is None else f'[{{{of(index)}}}]'}{{{of(body)}}}"
         case Accent(name, body):
             return rf"\{name}{{{of(body)}}}"
         case Script(base, below, above, primes):

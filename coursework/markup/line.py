@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 from coursework.markup.formula_tree import (
     Accent,
@@ -40,7 +41,7 @@ def _grouped(node: Node, lang: str) -> str:
     return text if is_simple(node) else f"({text})"
 
 
-def _raised(text: str, table: dict[int, str], mark: str) -> str:
+def _raised(text: str, table: Mapping[int, int], mark: str) -> str:
     """Small characters where Unicode has them all, else the mark and the text."""
     if all(ord(c) in table for c in text):
         return text.translate(table)

@@ -113,11 +113,10 @@ def _thin_space_between(left: Node, right: Node) -> bool:
     return _is_name(right) and is_term(left, "closing")
 
 
-def _is_sign(left: Node | None, right: Node) -> bool:
+def _is_sign(left: Node | None, right: Symbol) -> bool:
     """A plus or a minus after ``=``, ``(`` or a comma is a sign: it stands close to its number."""
     return (
-        isinstance(right, Symbol)
-        and right.text in f"+±{MINUS}"
+        right.text in f"+±{MINUS}"
         and isinstance(left, Symbol)
         and left.kind in ("relation", "opening", "punctuation")
     )
@@ -129,7 +128,10 @@ def _mathml_row(items: tuple[Node, ...], lang: str) -> str:
         if at and _thin_space_between(items[at - 1], item):
             parts.append('<mspace width="0.167em"></mspace>')
         before = next((left for left in reversed(items[:at]) if not isinstance(left, Space)), None)
-        parts.append(_operator(item.text, "prefix") if _is_sign(before, item) else _mathml(item, lang))
+        if isinstance(item, Symbol) and _is_sign(before, item):
+            parts.append(_operator(item.text, "prefix"))
+        else:
+            parts.append(_mathml(item, lang))
     return parts[0] if len(parts) == 1 else _tag("mrow", *parts)
 
 
@@ -219,10 +221,8 @@ def _mathml(node: Node, lang: str) -> str:
         case Fraction(above, below, display):
             drawn = _tag("mfrac", of(above), of(below))
             return drawn if display is None else _tag("mstyle", drawn, displaystyle=str(display).lower())
-        case Root(body, None):
-            return _tag("msqrt", of(body))
         case Root(body, index):
-            return _tag("mroot", of(body), of(index))
+            return _tag("msqrt", of(body)) if index is None else _tag("mroot", of(body), of(index))
         case Accent("underline", body):
             return _tag("munder", of(body), _operator("_", "", "true"))
         case Accent(name, body):

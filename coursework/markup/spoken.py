@@ -77,9 +77,9 @@ def _spoken(node: Node, lang: str, say: dict) -> str:
         case Fraction(above, below, _):
             simple = is_simple(above) and is_simple(below)
             return phrase("simple_fraction" if simple else "fraction", of(above), of(below))
-        case Root(body, None):
-            return phrase("simple_root" if is_simple(body) else "root", of(body))
         case Root(body, index):
+            if index is None:
+                return phrase("simple_root" if is_simple(body) else "root", of(body))
             return phrase("nth_root", of(index), of(body))
         case Accent(name, body):
             return phrase("accent_" + name, of(body))

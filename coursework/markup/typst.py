@@ -98,10 +98,8 @@ def _typst(node: Node, lang: str) -> str:
         case Fraction(above, below, display):
             drawn = f"frac({of(above)}, {of(below)})"
             return drawn if display is None else f"{'display' if display else 'inline'}({drawn})"
-        case Root(body, None):
-            return f"sqrt({of(body)})"
         case Root(body, index):
-            return f"root({of(index)}, {of(body)})"
+            return f"sqrt({of(body)})" if index is None else f"root({of(index)}, {of(body)})"
         case Accent(name, body):
             return f"{_TYPST_ACCENTS[name]}({of(body)})"
         case Script(base, below, above, primes):

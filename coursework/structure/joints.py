@@ -55,7 +55,7 @@ class JointGraph:
     joints: tuple[Joint, ...]
 
     @staticmethod
-    def of(records: JointGraph | Iterable[Record]) -> JointGraph:
+    def of(records: JointGraph | Iterable[Record | Joint]) -> JointGraph:
         """Read a list of joint records.
 
         Raises
@@ -110,7 +110,8 @@ class JointGraph:
         Each closes by one pair that no other cycle uses. A cycle of two bodies is two pairs between them.
         """
         parents = self._parents
-        closing = Counter(self.pairs()) - Counter(tuple(sorted(edge)) for edge in parents.items() if edge[1])
+        tree = Counter((min(edge), max(edge)) for edge in parents.items() if edge[1])
+        closing = Counter(self.pairs()) - tree
         return tuple(_cycle(parents, *pair) for pair in sorted(closing.elements()))
 
     @cached_property

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import combinations
 from typing import NamedTuple, TypeAlias
 
@@ -55,7 +55,7 @@ def slides(graph: JointGraph, at: Sequence[complex] = ()) -> dict[int, Slide]:
     found = {}
     for index, joint in enumerate(graph.joints):
         if joint.kind == "prismatic":
-            block, guide = sorted(joint.bodies, key=lambda body, index=index: rank(body, index))
+            block, guide = sorted(joint.bodies, key=partial(rank, index=index))
             found[index] = Slide(guide, block)
     return found
 
