@@ -97,6 +97,9 @@ def chosen(*choices: str, shown: bool = True) -> GivenSpec:
     return GivenSpec("1", choices=tuple(choices), shown=shown)
 
 
+_OF_ITS_KIND: Any = None  #: stands for a margin until the part has taken that of its kind
+
+
 @dataclass(frozen=True)
 class Part:
     """One question: which quantity, in which unit, for how many points, how judged.
@@ -120,8 +123,8 @@ class Part:
     points: float = 1
     kind: str = "number"
     id: str = ""
-    rtol: float | None = None
-    atol: float | None = None
+    rtol: float = _OF_ITS_KIND
+    atol: float = _OF_ITS_KIND
     choices: tuple[str, ...] = ()
     along: str = ""
     variables: tuple[str, ...] = ()

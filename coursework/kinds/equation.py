@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
-from typing import Any
+from typing import Any, ClassVar
 
 from coursework.kinds.equation_latex import latex_of_equation
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated
@@ -25,7 +25,7 @@ class Equation(Kind):
     family = "equation"
     wrong = "wrong_equation"
     quoted = ("unknown_unit", "unknown_symbol")
-    faults: Mapping[str, str] = {}
+    faults: ClassVar[Mapping[str, str]] = {}
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         return read_equation(answer, part.variables)

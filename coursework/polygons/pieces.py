@@ -7,23 +7,30 @@ and rate are called is told as LaTeX.
 
 from __future__ import annotations
 
+from itertools import chain
+from typing import TypeAlias
+
 from coursework.polygons.polygon import Polygon, Side, normal, tangential, turning
 
-
-def polygon_of_velocities(*pieces, scale=None):
-    return Polygon("velocity", sum(pieces, ()), scale)
+Sides: TypeAlias = tuple[Side, ...]
 
 
-def polygon_of_accelerations(*pieces, scale=None):
-    return Polygon("acceleration", sum(pieces, ()), scale)
+def polygon_of_velocities(*pieces: Sides, scale: float | None = None) -> Polygon:
+    return Polygon("velocity", tuple(chain.from_iterable(pieces)), scale)
 
 
-def crank_v(A, line, vector, omega, number="2", length="r_2"):
+def polygon_of_accelerations(*pieces: Sides, scale: float | None = None) -> Polygon:
+    return Polygon("acceleration", tuple(chain.from_iterable(pieces)), scale)
+
+
+def crank_v(
+    A: str, line: str, vector: complex, omega: float, number: str = "2", length: str = "r_2"
+) -> Sides:
     """A crank of known rate about a fixed point."""
     return (turning("p_v", A.lower(), A, line, vector, omega, rf"{length} \left|\omega_{number}\right|"),)
 
 
-def crank_a(A, line, vector, omega, alpha=0.0):
+def crank_a(A: str, line: str, vector: complex, omega: float, alpha: float = 0.0) -> Sides:
     """The same; one that turns steadily has no tangential part."""
     a = A.lower()
     square, growth = r"r_2\,\omega_2^2", r"r_2 \left|\alpha_2\right|"
@@ -35,7 +42,7 @@ def crank_a(A, line, vector, omega, alpha=0.0):
     )
 
 
-def two_bars_v(B, A, C, AB, omega, CB, omega_C):
+def two_bars_v(B: str, A: str, C: str, AB: complex, omega: float, CB: complex, omega_C: float) -> Sides:
     """The bar AB, whose end A is known, meets at B a bar that turns about the fixed point C."""
     a, b = A.lower(), B.lower()
     return (
@@ -44,7 +51,11 @@ def two_bars_v(B, A, C, AB, omega, CB, omega_C):
     )
 
 
-def two_bars_a(B, A, C, AB, omega, alpha, length, CB, omega_C, alpha_C, length_C):
+def two_bars_a(
+    B: str, A: str, C: str,
+    AB: complex, omega: float, alpha: float, length: str,
+    CB: complex, omega_C: float, alpha_C: float, length_C: str,
+) -> Sides:  # fmt: skip
     """The same: the normal parts are known from the velocities."""
     a, b = A.lower(), B.lower()
     return (
@@ -56,7 +67,7 @@ def two_bars_a(B, A, C, AB, omega, alpha, length, CB, omega_C, alpha_C, length_C
     )
 
 
-def slider_v(B, A, AB, omega, v):
+def slider_v(B: str, A: str, AB: complex, omega: float, v: complex) -> Sides:
     """The rod AB, whose end A is known, carries at B a slider that goes along x."""
     a, b = A.lower(), B.lower()
     return (
@@ -65,7 +76,9 @@ def slider_v(B, A, AB, omega, v):
     )
 
 
-def slider_a(B, A, AB, omega, alpha, length, acceleration):
+def slider_a(
+    B: str, A: str, AB: complex, omega: float, alpha: float, length: str, acceleration: complex
+) -> Sides:
     a, b = A.lower(), B.lower()
     return (
         normal(a, f"{b}'", f"{B}/{A}", A + B, AB, omega, rf"V_{{{B}/{A}}}^2 / {length}"),
@@ -74,7 +87,7 @@ def slider_a(B, A, AB, omega, alpha, length, acceleration):
     )
 
 
-def guide_v(A, of_guide, line, vector, omega, sliding):
+def guide_v(A: str, of_guide: str, line: str, vector: complex, omega: float, sliding: float) -> Sides:
     """A guide that turns about a fixed point, and the block A that slides on it; ``vector`` goes from the guide's
     pivot to A, ``sliding`` is positive away from it. ``of_guide`` is the guide's own point at A."""
     a, own = A.lower(), of_guide.lower()
@@ -85,7 +98,11 @@ def guide_v(A, of_guide, line, vector, omega, sliding):
     )
 
 
-def guide_a(A, of_guide, line, vector, omega, alpha, sliding, gain, length, rate):
+def guide_a(
+    A: str, of_guide: str, line: str,
+    vector: complex, omega: float, alpha: float, sliding: float, gain: float,
+    length: str, rate: str,
+) -> Sides:  # fmt: skip
     """The same; the Coriolis term is laid off back from the image of A, ``gain`` is the rate of ``sliding``."""
     a, own = A.lower(), of_guide.lower()
     along = vector / abs(vector)

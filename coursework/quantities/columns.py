@@ -26,7 +26,7 @@ def each(function: Callable[..., Any], *arguments: Any, dtype: Any = object) -> 
     return found.reshape(shape) if dtype is object else found.reshape(shape).astype(dtype)
 
 
-def each_stacked(read, whole):
+def each_stacked(read: Callable[[Any], Any], whole: Any) -> Any:
     """``read`` of one thing, or of each in an array of objects; vectors along a last axis."""
     if not isinstance(whole, np.ndarray):
         return read(whole)

@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -35,6 +35,8 @@ from coursework.errors import (
 from coursework.system.blocks import joined, pieces
 
 Value = Any  #: a float, a complex number, a text, or an array of them
+_Step: TypeAlias = tuple[str, Callable[..., Value], tuple[str, ...]]  #: name, function, arguments
+_Plan: TypeAlias = tuple[tuple[str, ...], list[_Step], dict[str, Value]]  #: names, steps, constants
 
 
 def _place(function: Callable[..., Value]) -> str:
@@ -142,7 +144,7 @@ class Graph:
         self._nodes = dict(nodes)
         self._shadowed = shadowed
         self._set_aside: frozenset[str] = frozenset()
-        self._plans: dict[object, tuple[tuple[str, ...], list, dict]] = {}
+        self._plans: dict[object, _Plan] = {}
         leaves = {a for node in nodes.values() for a in node.needs} - set(nodes)
         self._leaves = frozenset(leaves)
         self._known = frozenset(n for n in nodes if not _is_hidden(n)) | leaves
@@ -212,7 +214,7 @@ class Graph:
         given: frozenset[str],
         effects: frozenset[str],
         found: frozenset[str] = frozenset(),
-    ):
+    ) -> _Plan:
         key = (wanted, given, effects, found)
         if key not in self._plans:
             self._plans[key] = self._resolve(wanted, given, effects, found)
@@ -224,7 +226,7 @@ class Graph:
         given: frozenset[str],
         effects: frozenset[str],
         found: frozenset[str],
-    ):
+    ) -> _Plan:
         for effect in effects:
             if effect not in self._effects:
                 raise unknown("effect", effect, self._effects)

@@ -8,7 +8,7 @@ A solution states its loops once, as ``LOOPS = {"loop_1": (Vector("r2", "theta2"
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from coursework.errors import BadCourse, nearest
@@ -163,12 +163,14 @@ class Loop:
         right = [text for sign, text in terms if sign < 0]
         return f"{' + '.join(left) or '0'} = {' + '.join(right) or '0'}"
 
+    def _rates_of(self, name: str | float) -> tuple[str, str]:
+        return self.rates.get(name, ("", "")) if isinstance(name, str) else ("", "")
+
     def _pieces(self, link: Link, order: int) -> tuple[_Pieces, _Pieces]:
         """Radial and transverse factors of the derivative of a link."""
         v = link.vector
         length = v.length if isinstance(v.length, str) else f"{v.length:.12g}"
-        slide = self.rates.get(v.length, ("", ""))
-        turn = self.rates.get(v.angle, ("", ""))
+        slide, turn = self._rates_of(v.length), self._rates_of(v.angle)
         if order == 0:
             radial, transverse = [(1, length)], []
         elif order == 1:
@@ -195,7 +197,7 @@ class Loop:
                 yield Fault(kind, names, replace(self, links=tuple(links)))
 
     def _changed(
-        self, change: Callable[[Link], Collection[Link]]
+        self, change: Callable[[Link], Iterable[Link]]
     ) -> Iterator[tuple[tuple[str, ...], list[Link]]]:
         """The loop with one link in another way, for every link and every way."""
         for k, link in enumerate(self.links):

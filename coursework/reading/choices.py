@@ -7,6 +7,7 @@ import unicodedata
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from numbers import Real
+from typing import Any
 
 from coursework.language.words import languages, words
 from coursework.reading.reading import Reading, Stop, bare_value, reading_of
@@ -166,7 +167,9 @@ _REMARK = re.compile(r"(?P<said>[^()]+?)\s*\((?P<remark>[^()]+)\)\s*")
 def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choices that stand before a remark in brackets which names no other: ``oscille (r2 < r1)``."""
     found = _REMARK.fullmatch(text)
-    keys = _called(found["said"], choices) if found else []
+    if found is None:
+        return []
+    keys = _called(found["said"], choices)
     if len(keys) != 1 or any(key not in keys for key in _called(found["remark"], choices)):
         return []
     remark = f" {_folded(found['remark'])} "
@@ -227,7 +230,7 @@ def _called(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     return _by_beginning(said, choices) or _by_remark(text, choices)
 
 
-def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
+def read_choice(text: Any, choices: Mapping[str, Sequence[str]]) -> Reading:
     """The key of a choice, given by its key, a label of any language, its head or beginning, or the number there.
 
     ``choices`` maps each key to its labels. A letter or a number never counts places: no sheet prints any.
@@ -237,4 +240,4 @@ def read_choice(text: object, choices: Mapping[str, Sequence[str]]) -> Reading:
         text = str(text)
     if not (text is None or isinstance(text, str)):
         return Reading(str(text), "unreadable", code="not_a_choice", found=shorten(str(text)))
-    return reading_of(text, lambda _: _choice(text, choices))
+    return reading_of(text, lambda _: _choice(str(text), choices))

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from numbers import Real
+from typing import Any
 
 import numpy as np
 
@@ -141,7 +142,7 @@ def value_or_nan(expression: Expression, values: Mapping[str, np.ndarray]) -> Va
 # --- equations --------------------------------------------------------------------------
 
 
-def read_equation(text: object, variables: Iterable[str]) -> Reading:
+def read_equation(text: Any, variables: Iterable[str]) -> Reading:
     """An equation over the given variables; the value is an :class:`~coursework.reading.equations.Equation`."""
     text = bare_value(text)
     if isinstance(text, Real) and not isinstance(text, bool):

@@ -218,7 +218,8 @@ class _Parser:
             raise self.fail(f"a bracket {opening!r} is not closed", "not_a_number")
 
     def number(self) -> Operation:
-        text = _NUMBER.match(self.text, self.at)[0]
+        found = _NUMBER.match(self.text, self.at)
+        text = found[0] if found else ""
         if self.comma_separates and "," in text:
             text = text[: text.index(",")]
         digits = text.replace(" ", "").replace("'", "").replace(",", ".")

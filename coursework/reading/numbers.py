@@ -14,6 +14,7 @@ from dataclasses import replace
 from decimal import Decimal
 from functools import lru_cache
 from numbers import Real
+from typing import Any
 
 import numpy as np
 
@@ -78,6 +79,7 @@ def _formula(text: str, target: Unit) -> list[Amount]:
         if unit and expression.is_angle:
             continue
         return _evaluated(expression, unit, unit_text, target)
+    assert first is not None  # the last start leaves no unit: the whole text is a formula, or stops
     raise first
 
 
@@ -277,7 +279,7 @@ def _half_digit(amount: Amount, text: str, target: Unit) -> float:
         return 0.0
     digits = amount.echo.split()[0]
     scale = abs(amount.value / float(digits)) if float(digits) else 1.0
-    return 0.5 * 10.0 ** Decimal(digits).as_tuple().exponent * scale
+    return 0.5 * 10.0 ** int(Decimal(digits).as_tuple().exponent) * scale
 
 
 def _from_amounts(text: str, amounts: Sequence[Amount]) -> Reading:
@@ -310,7 +312,7 @@ def target_unit(unit: str) -> Unit:
     return parse_unit(unit)
 
 
-def read_number(text: object, unit: str, *, thousands: bool = True) -> Reading:
+def read_number(text: Any, unit: str, *, thousands: bool = True) -> Reading:
     """A number, with or without its unit, in the canonical ``unit``.
 
     Without a unit it is in ``unit``; where ``unit`` is ``deg`` and the formula speaks of radians (``π/3``),
@@ -357,7 +359,7 @@ _COUNTED = re.compile(
 )  #: what a whole number may be of
 
 
-def read_integer(text: object) -> Reading:
+def read_integer(text: Any) -> Reading:
     """A whole number, without unit: ``3``, ``3,0``, ``γ = 3``, ``1 ddl``; the values are ints."""
     text = bare_value(text)
     counted = _COUNTED.sub("", text) if isinstance(text, str) and len(text) < MAX_LENGTH else text

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from numbers import Real
+from typing import Any
 
 from coursework.reading.digits import in_unit, written_amount
 from coursework.reading.numbers import NAME, RATIO, read_amounts, target_unit, without_name
@@ -68,7 +69,9 @@ _AXIS = re.compile(
 def _axis(text: str, count: int) -> tuple[float, ...] | None:
     """The direction of an axis of coordinates that is named, or ``None``."""
     found = _AXIS.fullmatch(text)
-    place = "xyz".index(found["letter"].lower()) if found else count
+    if found is None:
+        return None
+    place = "xyz".index(found["letter"].lower())
     if place >= count:
         return None
     one = -1.0 if found["sign"] == "-" else 1.0
@@ -81,9 +84,10 @@ def _point(text: str, original: str, target: Unit, count: int) -> Reading:
     inside, unit = _bare_point(text)
     source = target
     if unit:
-        source = plain_unit(unit)
-        if source is None:
+        stated = plain_unit(unit)
+        if stated is None:
             raise Stop("unknown_unit", unit)
+        source = stated
         in_unit(0.0, source, target)
     readings: dict[tuple[float, ...], str] = {}
     given = bool(unit)
@@ -104,7 +108,7 @@ def _point(text: str, original: str, target: Unit, count: int) -> Reading:
     return Reading(original, "read", tuple(v for v, _ in kept), tuple(e for _, e in kept), given)
 
 
-def read_point(text: object, unit: str, count: int) -> Reading:
+def read_point(text: Any, unit: str, count: int) -> Reading:
     """The ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``; an axis is a direction.
 
     ``(12,3 ; 4,5) mm``, ``12.3, 4.5``, ``[1, 0, 1]``, ``(1 0 1)``, ``x = 1; y = 2``, or a list. A unit

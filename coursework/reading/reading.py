@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from numbers import Real
+from typing import Any
 
 import numpy as np
 
@@ -49,7 +50,7 @@ class Stop(Exception):
         self.code, self.found, self.status = code, found, status
 
 
-def bare_value(answer: object) -> object:
+def bare_value(answer: Any) -> Any:
     """What a cell's value holds: an array, or a list of one, is its number; a number of NumPy is Python's."""
     if answer.__class__ is str:
         return answer

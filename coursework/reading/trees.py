@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -76,7 +77,7 @@ def _power(base: Value, exponent: Value) -> Value:
     return base**exponent
 
 
-def compute(node: Operation, values: Mapping[str, object]) -> Value:
+def compute(node: Operation, values: Mapping[str, object]) -> Any:
     if node.kind == "number":
         return _number(float(node.name))
     if node.kind == "constant":
@@ -173,7 +174,7 @@ class Expression:
             return None
         return Expression(self.text, _calculated_in_degrees(self.root))
 
-    def evaluate(self, values: Mapping[str, object] | None = None) -> Value:
+    def evaluate(self, values: Mapping[str, object] | None = None) -> Any:
         """The value, of the shape to which the values broadcast; angles in radians.
 
         Raises

@@ -14,6 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from typing import Any
 
 from coursework.errors import BadCourse, WrongUnit
 from coursework.reading.spelling import plain_spelling, shorten
@@ -75,7 +76,7 @@ _PREFIX_WORDS = {
 }  # fmt: skip
 
 
-def _known(ratio: object, pi: int = 0, **powers: int) -> Unit:
+def _known(ratio: str | int | Fraction, pi: int = 0, **powers: int) -> Unit:
     return Unit("", Fraction(ratio), pi, _dimension(**powers))
 
 
@@ -144,8 +145,9 @@ def _word(name: str) -> Unit | None:
         return None
     for prefix, decades in _PREFIX_WORDS.items():
         symbol = _WORDS.get(low.removeprefix(prefix).removesuffix("s")) if low.startswith(prefix) else None
-        if symbol and (not prefix or symbol in _PREFIXED):
-            return _scaled(_symbol(symbol), decades)
+        unit = _symbol(symbol) if symbol and (not prefix or symbol in _PREFIXED) else None
+        if unit is not None:
+            return _scaled(unit, decades)
     return None
 
 
@@ -355,7 +357,7 @@ def _scale(source: Unit, target: Unit) -> tuple[Fraction, int]:
     return ratio, pi
 
 
-def convert(value: float, from_unit: str | Unit, to_unit: str | Unit) -> float:
+def convert(value: Any, from_unit: str | Unit, to_unit: str | Unit) -> Any:
     """A value, or an array of values, in another unit of the same dimension.
 
     A power of ten costs one rounding at most. A unit without angle, where the other has one, is in radians.
