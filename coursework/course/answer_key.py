@@ -103,7 +103,7 @@ class Key:
             return self._mistaken(name, reached)
         except CourseworkError:
             pass  # the wrong way leads nowhere for some quantity of this variant; the others are tried alone
-        values = {}
+        values: dict[str, Any] = {}
         for quantity in reached:
             with suppress(CourseworkError):
                 values |= self._mistaken(name, (quantity,))

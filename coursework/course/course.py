@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any, Generic, TypeVar
@@ -16,7 +16,7 @@ from coursework.errors import BadCourse, unknown
 V = TypeVar("V", bound=Variant)
 
 
-def opened(folder: str | Path | None, variant: type[V]) -> Course[V]:
+def opened(folder: str | Path | None, variant: Callable[..., V]) -> Course[V]:
     """Open a course folder, the built-in course where there is none; its variants are of this class.
 
     Raises
@@ -28,7 +28,7 @@ def opened(folder: str | Path | None, variant: type[V]) -> Course[V]:
 
 
 @cache
-def _opened(root: Path, variant: type[V]) -> Course[V]:
+def _opened(root: Path, variant: Callable[..., V]) -> Course[V]:
     if not root.is_dir():
         raise BadCourse(f"no course at {root}: there is no such folder; 'coursework new DIR' makes one")
     if not (root / "exercises").is_dir():
@@ -39,7 +39,7 @@ def _opened(root: Path, variant: type[V]) -> Course[V]:
 class Course(Generic[V]):
     """An open course: a mapping from names to exercises, whose variants are of one class."""
 
-    def __init__(self, folder: Folder, variant: type[V]):
+    def __init__(self, folder: Folder, variant: Callable[..., V]):
         self.folder = folder
         self._variant = variant
         self._exercises: dict[str, CourseExercise[V]] = {}

@@ -33,10 +33,16 @@ def _words(name: str, version: int, seed: int, block: int, width: int) -> np.nda
     return np.frombuffer(bits, "<u8").reshape(BLOCK, width)
 
 
-def _evaluate(bound: Bound, drawn: Mapping[str, np.ndarray]) -> Any:
+def _evaluate(bound: Bound | None, drawn: Mapping[str, np.ndarray]) -> Any:
     if not callable(bound):
         return bound
     return bound(*[drawn[n] for n in inspect.signature(bound).parameters])
+
+
+def _constant(spec: GivenSpec) -> float:
+    """The one value of a quantity that is fixed."""
+    assert spec.default is not None
+    return float(spec.default)
 
 
 @dataclass(frozen=True)
@@ -67,7 +73,7 @@ class _Grid:
         steps = to_whole(np.asarray(bound, dtype=float) * self.denominator / self.numerator + slack)
         return np.where(np.isfinite(steps), steps, without).astype(np.int64)
 
-    def value(self, k: np.ndarray) -> np.ndarray:
+    def value(self, k: Any) -> Any:
         return (k * self.numerator) / self.denominator
 
 
@@ -78,7 +84,7 @@ def _draw_one(spec: GivenSpec, words: np.ndarray, drawn: Mapping[str, np.ndarray
         picked = (high_half * np.uint64(len(spec.choices))) >> np.uint64(32)
         return np.array(spec.choices)[picked.astype(np.intp)]
     if spec.is_fixed:
-        return np.full(words.shape, float(spec.default))
+        return np.full(words.shape, _constant(spec))
     grid = _Grid.of(spec.step)
     low, high = grid.first(_evaluate(spec.low, drawn)), grid.last(_evaluate(spec.high, drawn))
     count = np.maximum(high - low + 1, 0)
@@ -205,7 +211,7 @@ def _all_values(spec: GivenSpec, partial: Mapping[str, Any]) -> list[float | str
     if spec.is_choice:
         return list(spec.choices)
     if spec.is_fixed:
-        return [float(spec.default)]
+        return [_constant(spec)]
     grid = _Grid.of(spec.step)
     low = int(grid.first(_evaluate(spec.low, partial)))
     high = int(grid.last(_evaluate(spec.high, partial)))

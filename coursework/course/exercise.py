@@ -14,16 +14,23 @@ from coursework.course import draws
 from coursework.course.folder import Folder
 from coursework.course.records import Records
 from coursework.course.requests import Intake
-from coursework.course.texts import ExerciseTexts
+from coursework.course.texts import ExerciseTexts, Text
 from coursework.errors import BadCourse, NoSolution, Undefined, WrongValue, unknown
-from coursework.model import Exercise, Part
+from coursework.model import Driver, Exercise, Part
 from coursework.quantities.graph import Graph, plain_scalar
 from coursework.solution import Film, Solution
 
 USUAL, ALL = "usual", "all"  #: what stands for several parts where parts are named
 
 
-V = TypeVar("V")
+class _Worded(Protocol):
+    """A variant, as far as an exercise asks it something."""
+
+    @property
+    def text(self) -> Text: ...
+
+
+V = TypeVar("V", bound=_Worded)
 
 
 class _Exercises(Protocol):
@@ -187,6 +194,11 @@ class CourseExercise(Generic[V]):
         """Whether there is an animation: a film, or a figure that a driver moves."""
         return self.film is not None or (self.spec.driver is not None and self.spec.figure is not None)
 
+    @property
+    def _driver(self) -> Driver:
+        assert self.spec.driver is not None, f"{self.name} names no driver"
+        return self.spec.driver
+
     def driver_angle(self, given: Mapping[str, Any]) -> float:
         """Where the driver stands for these given quantities, degrees.
 
@@ -195,11 +207,12 @@ class CourseExercise(Generic[V]):
         BadCourse
             Neither a given quantity nor a helper says it.
         """
-        name = self.spec.driver.angle
+        driver = self._driver
+        name = driver.angle
         if name in given:
             return float(given[name])
         helpers = Graph({f.__name__: f for f in self.spec.helpers})
-        if self.spec.driver.poses is None or name not in helpers.quantities:
+        if driver.poses is None or name not in helpers.quantities:
             raise BadCourse(
                 f"{self.name}: its driver's angle {name} is no given quantity; where it is an answer, "
                 "a helper of that name says it, and Driver(poses=…) moves the mechanism"
@@ -208,7 +221,7 @@ class CourseExercise(Generic[V]):
 
     def posed(self, given: Mapping[str, Any], angle: Any) -> dict[str, Any]:
         """What places the mechanism with its driver at an angle, degrees, or at each of an array of angles."""
-        driver = self.spec.driver
+        driver = self._driver
         if driver.poses is None:
             return {driver.angle: angle}
         graph = Graph({**{f.__name__: f for f in self.spec.helpers}, "poses": driver.poses})

@@ -29,12 +29,16 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 from weakref import WeakSet
 
 from coursework.course.folder import Folder
 from coursework.errors import BadCourse, BadStatement
 from coursework.language.words import languages
 from coursework.markup.proofreading import pair_dollars, read_formulas
+
+if TYPE_CHECKING:
+    import jinja2
 
 _HEADING = re.compile(r"^(#{1,2})\s+(.+?)\s*$", re.MULTILINE)
 _ENCODING = "utf-8-sig"  #: a mark of the byte order, which some editors write, is no part of the text
@@ -196,10 +200,10 @@ def _stands_alone(section: str) -> bool:
     return True
 
 
-_templates: dict[tuple, object] = {}
+_templates: dict[tuple, jinja2.Template | Text] = {}
 
 
-def _template(path: Path, changed: int, folders: tuple[Path, ...], source: str):
+def _template(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> jinja2.Template | Text:
     import jinja2
 
     key = (path, changed, folders)

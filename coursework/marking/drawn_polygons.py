@@ -1,13 +1,16 @@
 """What the drawn polygons have in common: points on paper, and the judge's words for what is wrong with them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from types import MappingProxyType
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from coursework.polygons.hand_drawn import HUNG, SENSE, ancestors, is_scale, judge_drawing
+from coursework.polygons.hand_drawn import HUNG, SENSE, Drawing, Fault, ancestors, is_scale, judge_drawing
+from coursework.polygons.polygon import Polygon
 from coursework.solution import Judged
+
+Answers: TypeAlias = Mapping[str, Any]  #: by part id, those that were read
 
 _BOX_MM = (130.0, 80.0)  #: in which the reference drawing fits
 
@@ -15,18 +18,18 @@ _BOX_MM = (130.0, 80.0)  #: in which the reference drawing fits
 _NOTHING_MM = 1e-9 * max(_BOX_MM)  #: what rounding leaves of a coordinate that is zero
 
 
-def to_paper(image, scale):
+def to_paper(image: Any, scale: Any) -> np.ndarray:
     """An image point as coordinates on paper, mm from the pole, shape (..., 2)."""
     return _coordinates(np.asarray(image / scale, dtype=complex))
 
 
-def _coordinates(on_paper):
+def _coordinates(on_paper: np.ndarray) -> np.ndarray:
     """Of complex points on paper, along a last axis."""
     found = np.stack([on_paper.real, on_paper.imag], axis=-1)
     return np.where(abs(found) < _NOTHING_MM, 0.0, found)
 
 
-def scale_for(*images):
+def scale_for(*images: Any) -> Any:
     """The least of 1, 2 and 5 times a power of ten at which the pole and these images fit the box."""
     images = (np.zeros_like(images[0]), *images)
     least = np.maximum(
@@ -47,9 +50,9 @@ class Read(NamedTuple):
 
     start: str
     end: str
-    value: object  #: function of the vector, in the polygon's unit
+    value: Callable[[complex], float]  #: function of the vector, in the polygon's unit
     gain: float  #: what a unit of its length is worth
-    wrong: Mapping = MappingProxyType(
+    wrong: Mapping[str, tuple[str, str, float]] = MappingProxyType(
         {}
     )  #: by mistake: the ends of the vector that is taken instead, and its gain
     sense: str = "value_sense"  #: the mistake of its sign
@@ -59,14 +62,14 @@ class Asked(NamedTuple):
     """What is asked of a drawing, each by part id."""
 
     scale: str
-    points: dict  #: to the image points, the pole among them
-    lengths: dict  #: to the ends of the segment
-    reads: dict  #: to what is read off
-    sides: dict  #: by ends, what a vector is called in the names of mistakes
-    hung: frozenset = frozenset()  #: names of mistakes that tell on what a vector hangs
+    points: Mapping[str, str]  #: to the image points, the pole among them
+    lengths: Mapping[str, tuple[str, str]]  #: to the ends of the segment
+    reads: Mapping[str, Read]  #: to what is read off
+    sides: Mapping[tuple[str, str], str]  #: by ends, what a vector is called in the names of mistakes
+    hung: frozenset[str] = frozenset()  #: names of mistakes that tell on what a vector hangs
 
 
-def verdicts(answers, polygon, asked):
+def verdicts(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judged]:
     """A :class:`Judged` for each answer that can be judged."""
     stated = float(answers[asked.scale]) if asked.scale in answers else None
     points = {asked.points[i]: complex(*answers[i]) for i in asked.points if i in answers}
@@ -94,12 +97,12 @@ def verdicts(answers, polygon, asked):
     return said | _lengths(answers, drawing, asked) | _reads(answers, drawing, asked)
 
 
-def _fits(drawing):
+def _fits(drawing: Drawing) -> bool:
     """Whether the drawing is at the stated scale, and the first vector from the pole right at it."""
     return drawing.fits_stated_scale and drawing.is_right(next(iter(drawing.polygon.hangs)))
 
 
-def _of_scale(scale, upside_down, drawing):
+def _of_scale(scale: float | None, upside_down: bool, drawing: Drawing) -> Judged:
     if scale is None:
         return Judged(0.0)
     if upside_down:
@@ -107,7 +110,7 @@ def _of_scale(scale, upside_down, drawing):
     return Judged() if drawing.fits_stated_scale else Judged(0.0, "scale_not_drawn")
 
 
-def _of_point(point, drawing, asked):
+def _of_point(point: str, drawing: Drawing, asked: Asked) -> Judged:
     if point == drawing.polygon.pole:
         others = [q for q in drawing.points if q != point]
         # A pole is right where some vector is: any pole is. Otherwise it shares the fault of the first.
@@ -117,14 +120,14 @@ def _of_point(point, drawing, asked):
     return _of_fault(point, drawing, asked)
 
 
-def _of_fault(point, drawing, asked):
+def _of_fault(point: str, drawing: Drawing, asked: Asked) -> Judged:
     fault = drawing.faults[point]
     names = [_named(point, f, asked) for f in fault.explanations]
     known = [name for name in names if name]
     return Judged(0.5 if fault.kind == SENSE else 0.0, known[0], also=tuple(known[1:]))
 
 
-def _named(point, fault, asked):
+def _named(point: str, fault: Fault, asked: Asked) -> str:
     """The mistake that a fault is; none where a vector hangs on a point of which no mistake tells."""
     parts = {image: i for i, image in asked.points.items()}
     if fault.side is None:
@@ -136,8 +139,8 @@ def _named(point, fault, asked):
     return name if name in asked.hung else ""
 
 
-def _lengths(answers, drawing, asked):
-    said = {}
+def _lengths(answers: Answers, drawing: Drawing, asked: Asked) -> dict[str, Judged]:
+    said: dict[str, Judged] = {}
     for part, (start, end) in asked.lengths.items():
         if part not in answers:
             continue
@@ -152,7 +155,7 @@ def _lengths(answers, drawing, asked):
     return said
 
 
-def _reads(answers, drawing, asked):
+def _reads(answers: Answers, drawing: Drawing, asked: Asked) -> dict[str, Judged]:
     """Right to the millimetres that the drawing may be off, a tenth at most; or as read off the student's own
     drawing, or from the student's own length."""
     said = {}
@@ -162,7 +165,7 @@ def _reads(answers, drawing, asked):
     return said
 
 
-def _of_value(found, read, drawing, answers, asked):
+def _of_value(found: float, read: Read, drawing: Drawing, answers: Answers, asked: Asked) -> Judged:
     ends, scale, images = (read.start, read.end), drawing.scale, drawing.polygon.points
     right = read.value(images[read.end] - images[read.start])
     millimetre = scale * read.gain
@@ -189,7 +192,7 @@ def _of_value(found, read, drawing, answers, asked):
     return Judged(0.5 if first == read.sense else 0.0, first, also=tuple(names[1:]))
 
 
-def _wrong_ways(found, read, values, drawing):
+def _wrong_ways(found: float, read: Read, values: Sequence[float], drawing: Drawing) -> Iterator[str]:
     """The mistakes that explain a value, from the right drawing or the student's own."""
     near = 2 * drawing.tolerance * drawing.scale * read.gain
     if any(abs(found + value) <= min(near, _MOST * abs(value)) for value in values):
@@ -206,21 +209,21 @@ def _wrong_ways(found, read, values, drawing):
             yield name
 
 
-def turned(p, a, degrees):
+def turned(p: np.ndarray, a: np.ndarray, degrees: Any) -> np.ndarray:
     """A point turned about another, coordinates on paper."""
     turn = np.exp(1j * np.radians(degrees))
     vector = (a[..., 0] - p[..., 0] + 1j * (a[..., 1] - p[..., 1])) * turn
     return p + np.stack([vector.real, vector.imag], axis=-1)
 
 
-def met(through, along, other, other_along):
+def met(through: np.ndarray, along: Any, other: np.ndarray, other_along: Any) -> np.ndarray:
     """Where two lines meet on paper; directions as complex numbers."""
     z, w = (q[..., 0] + 1j * q[..., 1] for q in (through, other))
     slope = (np.conj(along) * other_along).imag
     return _coordinates(z + along * (np.conj(w - z) * other_along).imag / slope)
 
 
-def off_both(b, lines, end):
+def off_both(b: np.ndarray, lines: Sequence[Any], end: np.ndarray) -> np.ndarray:
     """A point off both the lines that cross at b by as much, nearly half as far as b is from ``end``."""
     first, second = (line / abs(line) for line in lines)
     between = np.where(abs(first + second) < abs(first - second), first + second, first - second)

@@ -142,7 +142,8 @@ class LoopJudge:
     @cached_property
     def _in_degrees(self) -> tuple[_Points, _Points]:
         """The places with angles as numbers of degrees."""
-        return tuple(p.scaled(self.angles, 180 / math.pi) for p in (self._near, self._steps))
+        degrees = 180 / math.pi
+        return self._near.scaled(self.angles, degrees), self._steps.scaled(self.angles, degrees)
 
     @cached_property
     def _converted(self) -> _Points:
@@ -305,7 +306,8 @@ class LoopJudge:
         zero = np.zeros(_FAULTY)
         columns = {n: gaps(**{n: zero + self._sizes[n]}) - gaps(**{n: zero}) for n in names}
         largest = max((float(np.max(np.abs(c))) for c in columns.values()), default=0.0)
-        best, chosen = 1e-3, ()
+        best = 1e-3
+        chosen: tuple[str, ...] = ()
         for some in itertools.combinations(names, len(equations)):
             # Side by side, in the largest column: how far the symbols are from one direction, or from none.
             apart = float(np.min(np.abs(np.linalg.det(np.stack([columns[n] for n in some], axis=2)))))
@@ -387,7 +389,7 @@ def loop_verdicts(variant: Variant, readings: Mapping[str, Reading]) -> dict[str
             missed, about = _missed_beside(finding, others, 2 if form == "complex" else 1)
             right = finding.rank > 0 and not missed
             found[part.id] = Verdict(0, Judged(float(right)), slip=missed, about=about)
-            if right:
+            if right and finding.rows is not None:
                 others.append(finding.rows)
     return found
 

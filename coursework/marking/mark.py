@@ -51,7 +51,7 @@ class Mark(NamedTuple):
     @classmethod
     def received(cls, sent: tuple[Any, ...]) -> Mark:
         """The mark of what was :meth:`sent`."""
-        return cls(*sent[:-2], (Told(*sent[-2:]),))
+        return cls._make((*sent[:-2], (Told(*sent[-2:]),)))
 
 
 class Marking(Mapping[str, Mark]):

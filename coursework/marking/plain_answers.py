@@ -32,8 +32,9 @@ def plainly_right(
         texts = [sheet.get(part.id) for sheet in answers]
         values, _ = read_numbers(texts, part.unit)
         for i in np.flatnonzero(_within(part, values, np.asarray(column, dtype=float))):
-            if isinstance(texts[i], str):
-                found[i][part.id] = texts[i].strip().replace(",", ".")
+            text = texts[i]
+            if isinstance(text, str):
+                found[i][part.id] = text.strip().replace(",", ".")
     return found
 
 

@@ -28,6 +28,7 @@ from coursework.figures.moving import Arrow, Drawing, Key, Spot, drawing, extent
 from coursework.language.numbers import localise, significant, unit_text
 from coursework.language.words import words
 from coursework.markup.shown import Picture
+from coursework.model import Driver
 from coursework.motion.scenes import LEVELS, Scene
 from coursework.quantities.graph import Graph
 from coursework.solution import Film, Moving
@@ -107,13 +108,18 @@ class Animation:
     @property
     def driver(self) -> str:
         """The name of the driving angle."""
-        return (self.film or self.variant.exercise.spec.driver).angle
+        return self._drive.angle
 
     @property
     def _sign(self) -> int:
         """Which way the driver turns."""
-        speed = (self.film or self.variant.exercise.spec.driver).speed
-        return -1 if float(self.variant.given.get(speed, 1.0)) < 0 else 1
+        return -1 if float(self.variant.given.get(self._drive.speed, 1.0)) < 0 else 1
+
+    @property
+    def _drive(self) -> Film | Driver:
+        drive = self.film or self.variant.exercise.spec.driver
+        assert drive is not None  # what has neither is refused at the start
+        return drive
 
     def _with_driver_at(self, angle: Any) -> dict[str, Any]:
         """The given quantities, the driver at an angle, degrees, or at each of an array of angles."""
@@ -148,6 +154,7 @@ class Animation:
     @cached_property
     def _graph(self) -> Graph:
         spec = self.variant.exercise.spec
+        assert spec.figure is not None  # what has none is refused at the start
         return Graph({**{f.__name__: f for f in spec.helpers}, "figure": spec.figure})
 
     @cached_property
@@ -156,7 +163,9 @@ class Animation:
         if self.film is not None:
             return self._reel(self.film)
         start, step = self.variant.exercise.driver_angle(self.variant.given), 360.0 / self.count
-        found = {0: self.variant.figure.elements}
+        figure = self.variant.figure
+        assert figure is not None  # what has none is refused at the start
+        found = {0: figure.elements}
         for k in range(1, self.count):
             if (elements := self._elements(start + k * step)) is None:
                 break
@@ -173,8 +182,8 @@ class Animation:
             closing[start + k * step] = elements
         for way, last in ((1, max(closing)), (-1, min(closing))):
             closing |= self._toward_limit(last, way * step, min(len(closing) - 1, 2))
-        angles = sorted(closing)
-        return np.array(angles), [closing[a] for a in angles], angles.index(start), False
+        ordered = sorted(closing)
+        return np.array(ordered), [closing[a] for a in ordered], ordered.index(start), False
 
     def _reel(self, film: Film) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
         """The same for a film: from 0, by equal steps and a last one that may be shorter."""
@@ -291,7 +300,8 @@ class Animation:
         Coriolis terms are accelerations and have their scale.
         """
         low, high = extent(self.frames)
-        size, found = max((high - low).real, (high - low).imag), {}
+        size = max((high - low).real, (high - low).imag)
+        found: dict[str, float] = {}
         for kind in (("velocity",), ("acceleration", "coriolis")):
             lengths = [np.abs(v[self._inside]) for _, effect, v in self._vectors if effect in kind]
             longest = max((float(np.nanmax(one)) for one in lengths), default=0.0)

@@ -186,11 +186,13 @@ class _Printer:
 
     # ------------------------------------------------------------- sums, angles
 
-    def _sum(self, node: ast.expr) -> str:
-        node = self._in_degrees(node) if self._is_angle(node) else node
+    def _sum(self, node: ast.BinOp) -> str:
+        left, right = node.left, node.right
+        if self._is_angle(node):
+            left, right = self._in_degrees(left), self._in_degrees(right)
         if isinstance(node.op, ast.Add):
-            return f"{self.latex(node.left)} + {self._second(node.right, _SUM)}"
-        return f"{self.latex(node.left)} - {self._second(node.right, _PRODUCT)}"
+            return f"{self.latex(left)} + {self._second(right, _SUM)}"
+        return f"{self.latex(left)} - {self._second(right, _PRODUCT)}"
 
     def _is_angle(self, node: ast.expr) -> bool:
         """Whether an expression is an angle in degrees."""
@@ -243,7 +245,7 @@ class _Printer:
     def _is_segment(self, factor: ast.expr) -> bool:
         return isinstance(factor, ast.Name) and _is_segment(self.shown[factor.id][0])
 
-    def _fraction(self, node: ast.expr) -> tuple[str, int]:
+    def _fraction(self, node: ast.BinOp) -> tuple[str, int]:
         over, is_negative = _without_sign(node.left)
         text = rf"\frac{{{self.latex(over)}}}{{{self.latex(node.right)}}}"
         return ("-" + text, _UNARY) if is_negative else (text, _ATOM)
@@ -342,7 +344,10 @@ class _PutIn(ast.NodeTransformer):
 
 
 def _turned(parts: tuple[list, list] | None) -> tuple[list, list] | None:
-    return parts and tuple([(not minus, tree) for minus, tree in part] for part in parts)
+    if parts is None:
+        return None
+    along, across = ([(not minus, tree) for minus, tree in part] for part in parts)
+    return along, across
 
 
 def _times(length: ast.expr, ratio: ast.expr) -> ast.expr:
@@ -424,7 +429,7 @@ def number_latex(value: Any, unit: str, digits: int = 5) -> str:
     r"""A value as it stands in a substitution: ``\num{114.3}``, ``\num{135}^{\circ}``, ``\num{1}+\num{2}\,i``."""
     degree = r"^{\circ}" if unit == "deg" else ""
     if isinstance(value, (complex, np.complexfloating)):
-        imaginary = significant(value.imag, digits)
+        imaginary = significant(float(value.imag), digits)
         sign, size = ("-", imaginary[1:]) if imaginary.startswith("-") else ("+", imaginary)
-        return rf"\left(\num{{{significant(value.real, digits)}}} {sign} \num{{{size}}}\,i\right)"
+        return rf"\left(\num{{{significant(float(value.real), digits)}}} {sign} \num{{{size}}}\,i\right)"
     return rf"\num{{{significant(value, digits)}}}{degree}"
