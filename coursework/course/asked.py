@@ -19,6 +19,10 @@ class Asked(Protocol):
     def parts(self) -> tuple[Part, ...]: ...
 
     @property
+    def given(self) -> Mapping[str, Any]:
+        """All the given quantities."""
+
+    @property
     def used(self) -> Mapping[str, Any]:
         """The given quantities that the solution knows, in canonical units."""
 

@@ -21,9 +21,6 @@ class Keyed(Asked, Protocol):
 
     key: Key
 
-    @property
-    def given(self) -> Mapping[str, Any]: ...
-
 
 def keys_of(exercise: CourseExercise[Any], variants: Sequence[Keyed]) -> Batch:
     """Give many variants of one exercise keys that are computed together.

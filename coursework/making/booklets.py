@@ -15,8 +15,7 @@ from pathlib import Path
 from coursework.course.course import Course
 from coursework.making.issuing import Issue
 from coursework.rendering.renderer import Renderer
-from coursework.sheets.answer_sheet import answer_sheet
-from coursework.sheets.handout import handout
+from coursework.sheets.sheet import AnswerSheet, Handout
 from coursework.system.tables import csv_file
 from coursework.system.writing import File
 
@@ -35,12 +34,12 @@ class _Booklet:
     name: str
     polygons: bool
 
-    def handouts(self) -> list:
-        return [handout(i.variant.in_language(self.lang), i.student) for i in self.issues]
+    def handouts(self) -> list[Handout]:
+        return [i.variant.in_language(self.lang).handout(i.student) for i in self.issues]
 
-    def answer_sheets(self) -> list:
+    def answer_sheets(self) -> list[AnswerSheet]:
         return [
-            answer_sheet(i.variant.in_language(self.lang), i.student, polygons=self.polygons)
+            i.variant.in_language(self.lang).answer_sheet(i.student, polygons=self.polygons)
             for i in self.issues
         ]
 

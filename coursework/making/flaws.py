@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -21,6 +21,8 @@ from coursework.errors import CourseworkError
 from coursework.marking.judges import judged, judges_of
 from coursework.model import Part
 from coursework.solution import Judged
+
+V = TypeVar("V", bound=Variant)
 
 SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
 HIDDEN = 0.25  #: half-widths within which nothing can tell it
@@ -125,8 +127,8 @@ def try_judges(key: Key) -> None:
 
 
 def worthy(
-    exercise: CourseExercise, variants: Sequence[Variant], refused: Counter[str] | None = None
-) -> list[Variant]:
+    exercise: CourseExercise[V], variants: Sequence[V], refused: Counter[str] | None = None
+) -> list[V]:
     """Those of the variants that are worth issuing; ``refused`` counts the others by their first flaw."""
     keys_of(exercise, variants)
     found = []

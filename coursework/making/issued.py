@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from coursework.course.course import Course
-from coursework.course.variant import Variant
 from coursework.errors import BadInput
-from coursework.making.issuing import Issue
+from coursework.making.issuing import Issuable, Issue
 from coursework.making.students import folded
 
 ISSUED_FORMAT = 1
@@ -93,7 +92,7 @@ def plain_value(value: Any) -> Any:
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
-def record_with_answers(variant: Variant) -> dict[str, Any]:
+def record_with_answers(variant: Issuable) -> dict[str, Any]:
     """The record and, by part, the reference answer with its unit and accepted half-width.
 
     Raises

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, Protocol, Self, TypeVar
 
 from coursework.course import draws
+from coursework.course.answer_key import Key
+from coursework.course.asked import Asked
 from coursework.course.course import Course
 from coursework.course.exercise import ALL, USUAL, CourseExercise
 from coursework.course.variant import Variant
@@ -15,16 +18,19 @@ from coursework.errors import BadInput, Starved, counted, unknown
 from coursework.making.flaws import try_judges, worthy
 from coursework.making.roster import Student
 from coursework.making.students import file_stems
+from coursework.sheets.sheet import AnswerSheet, Handout, StudySheet
+
+V = TypeVar("V", bound=Variant)
 
 
 def distinct_variants(
-    exercise: CourseExercise,
+    exercise: CourseExercise[V],
     first_seed: int,
     count: int,
     lang: str,
     refused: Counter[str] | None = None,
     parts: Sequence[str] | None = None,
-) -> list[Variant]:
+) -> list[V]:
     """``count`` variants of different given values that are worth issuing, from the first seed on.
 
     ``parts`` are the ids of those to ask; a variant that asks none of them is passed over.
@@ -37,7 +43,7 @@ def distinct_variants(
     Starved
         Fewer exist, or so few that they are not found; says how many, and what refuses most.
     """
-    found: dict[tuple, Variant] = {}
+    found: dict[tuple, V] = {}
     refused = Counter() if refused is None else refused
     seed = first_seed
     limit = first_seed + 30 * count + 300
@@ -69,12 +75,33 @@ def distinct_variants(
     return list(found.values())
 
 
+class Issuable(Asked, Protocol):
+    """A variant that can say what its sheets show."""
+
+    @property
+    def key(self) -> Key: ...
+
+    @property
+    def seed(self) -> int: ...
+
+    @property
+    def record(self) -> dict[str, Any]: ...
+
+    def in_language(self, lang: str) -> Self: ...
+
+    def handout(self, student: str = "") -> Handout: ...
+
+    def answer_sheet(self, student: str = "", *, polygons: bool = True) -> AnswerSheet: ...
+
+    def study_sheet(self, student: str = "") -> StudySheet: ...
+
+
 @dataclass(frozen=True)
 class Issue:
     """One variant for one student, in the languages it is printed in."""
 
     student: str
-    variant: Variant
+    variant: Issuable
     langs: tuple[str, ...]
     stem: str  #: what its files are called
 
@@ -124,7 +151,7 @@ def issue(
 
 def chosen_parts(
     course: Course, names: Sequence[str], parts: Sequence[str] | None
-) -> dict[str, tuple[str, ...] | None]:
+) -> Mapping[str, tuple[str, ...] | None]:
     """For each exercise, those of the parts that it has; None for the usual ones.
 
     Raises
