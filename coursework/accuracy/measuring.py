@@ -6,11 +6,12 @@ import math
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 
-from coursework.accuracy.study import Study
+from coursework.accuracy.study import Motion, Study
 from coursework.accuracy.ways import MOTION, Values, exactly, ways
 from coursework.course.exercise import CourseExercise
 from coursework.errors import BadCourse, BadInput
@@ -78,7 +79,7 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Row]:
         if study.positions and (place == GENERIC or study.hard):
             yield from _Trial(exercise, study, place, quick).rows()
     if study.motion is not None:
-        yield from _motion_rows(exercise, study, quick)
+        yield from _motion_rows(exercise, study, study.motion, quick)
 
 
 class _Trial:
@@ -87,6 +88,7 @@ class _Trial:
     def __init__(self, exercise: CourseExercise, study: Study, place: str, quick: bool) -> None:
         self.exercise, self.study, self.place, self.quick = exercise, study, place, quick
         driver = exercise.spec.driver
+        assert driver is not None  # a study without one is refused
         self.driver, self.speed = driver.angle, driver.speed
         given = {**study.given, **(study.hard if place == HARD else {})}
         count = 10_000
@@ -116,7 +118,7 @@ class _Trial:
                 timed = compared[:10] if self.quick else compared[:50]
             found = way.compute(compared)
             error, failed = self._error(found, reference, len(compared))
-            seconds = best_time(lambda way=way, timed=timed: way.compute(timed), 0.004 if self.quick else 0.1)
+            seconds = best_time(partial(way.compute, timed), 0.004 if self.quick else 0.1)
             yield Row(
                 self.exercise.name, way.what, way.name, self.place, 1e9 * seconds / len(timed), error,
                 len(compared), failed, way.family, way.setting,
@@ -141,7 +143,7 @@ class _Trial:
 
     def _scale(self, unit: str) -> float:
         """What an error is counted in."""
-        speed = abs(self.given.get(self.speed, 1.0)) if isinstance(self.speed, str) else 1.0
+        speed = abs(float(self.given.get(self.speed, 1.0)))
         return {
             "deg": math.degrees(1.0),
             "mm": self.size,
@@ -190,9 +192,8 @@ def best_time(call: Callable[[], Any], at_least: float) -> float:
 # ---------------------------------------------------------------------- motion
 
 
-def _motion_rows(exercise: CourseExercise, study: Study, quick: bool) -> Iterator[Row]:
+def _motion_rows(exercise: CourseExercise, study: Study, motion: Motion, quick: bool) -> Iterator[Row]:
     """Integration in time at each tolerance, against the energy integral."""
-    motion = study.motion
     scene = Scene(exercise, {**study.given, **motion.given}, (INERTIA,))
     driver, runs = scene.driver, []
     for rtol in _RTOLS[:: 3 if quick else 1]:

@@ -25,8 +25,8 @@ def report(course: Course, rows: Sequence[Row], lang: str) -> Report:
     """A section an exercise and kind of quantity, in the order of the rows."""
     said = words(lang)["accuracy"]
     sections = []
-    for name, own in groupby(rows, key=lambda row: row.exercise):
-        own = list(own)
+    for name, of_one in groupby(rows, key=lambda row: row.exercise):
+        own = list(of_one)
         title = course[name].title(lang)
         for what, section in ((POSITION, _positions), (RATE, _rates), (MOTION, _motion)):
             chosen = [row for row in own if row.what == what]
@@ -61,15 +61,15 @@ def _rates(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: st
     charts = []
     for place in (GENERIC, HARD):
         shown = [r for r in rows if r.place == place and r.max_error is not None]
-        steps = [r.setting for r in shown if r.family == "differences"]
+        steps = [_set(r) for r in shown if r.family == "differences"]
         if steps:
             # What has no step is a level line.
             levels = {
-                _method(r, said): ([min(steps), max(steps)], [max(r.max_error, _LEAST)] * 2)
+                _method(r, said): ([min(steps), max(steps)], [max(_measured(r), _LEAST)] * 2)
                 for r in shown
                 if r.family != "differences"
             }
-            vee = _series([r for r in shown if r.family == "differences"], said, lambda row: row.setting)
+            vee = _series([r for r in shown if r.family == "differences"], said, _set)
             heading = said["chart_rates"].format(said["places"][place])
             charts.append(_chart({**vee, **levels}, heading, said["step"], said))
     return Section(
@@ -85,16 +85,16 @@ def _motion(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: s
     chart = _chart(points, said["chart_motion"], said["duration"], said)
     first, last = rows[0], rows[-1]
     text = said["reading"]["motion"].format(
-        loose=_number(first.setting),
-        tight=_number(last.setting),
+        loose=_number(_set(first)),
+        tight=_number(_set(last)),
         ratio=_number(last.ns_per_configuration / first.ns_per_configuration),
-        first=_number(first.max_error),
-        last=_number(last.max_error),
+        first=_number(_measured(first)),
+        last=_number(_measured(last)),
     )
     table = Table(
         (said["tolerance"], said["duration"], said["error"]),
         tuple(
-            (_number(r.setting), _number(r.ns_per_configuration * 1e-9), _number(r.max_error)) for r in rows
+            (_number(_set(r)), _number(r.ns_per_configuration * 1e-9), _number(_measured(r))) for r in rows
         ),
         (True, True, True),
     )
@@ -104,6 +104,7 @@ def _motion(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: s
 def _data(exercise: Any, said: Words, lang: str) -> str:
     """The data of both kinds of places."""
     study = study_of(exercise)
+    assert study is not None  # it was measured
 
     def listed(values: Mapping[str, Any]) -> str:
         shown = []
@@ -206,12 +207,12 @@ def _read_rates(rows: _Rows, said: Words) -> list[str]:
     reading = said["reading"]
     stable, complex_step = rows.one("stable"), rows.one("complex_step")
     found = []
-    best = min(rows.of("differences"), key=lambda r: r.max_error, default=None)
+    best = min(rows.of("differences"), key=_measured, default=None)
     if best is not None and stable is not None:
         key = "differences" if complex_step else "differences_plain"
         found.append(
             reading[key].format(
-                step=_number(best.setting),
+                step=_number(_set(best)),
                 error=_error(best, said),
                 stable=_error(stable, said),
                 complex=_error(complex_step, said) if complex_step else "",
@@ -219,7 +220,7 @@ def _read_rates(rows: _Rows, said: Words) -> list[str]:
         )
     hard, hard_stable = rows.of("differences", HARD), rows.one("stable", HARD)
     if hard and hard_stable:
-        least = min(hard, key=lambda r: r.max_error)
+        least = min(hard, key=_measured)
         found.append(
             reading["differences_hard"].format(error=_error(least, said), stable=_error(hard_stable, said))
         )
@@ -236,7 +237,7 @@ def _series(rows: Sequence[Row], said: Words, across: Any) -> dict[str, tuple[li
         name = said["series"].get(row.family) or _method(row, said)
         x, y = found.setdefault(name, ([], []))
         x.append(across(row))
-        y.append(max(row.max_error, _LEAST))
+        y.append(max(_measured(row), _LEAST))
     return found
 
 
@@ -263,6 +264,18 @@ def _table(rows: Sequence[Row], said: Words) -> Table:
         *(said["error_head"].format(said["places"][p]) for p in places),
     )
     return Table(heads, tuple(lines), (False, *[True] * (len(heads) - 1)))
+
+
+def _set(row: Row) -> float:
+    """The setting of a method that has one."""
+    assert row.setting is not None
+    return row.setting
+
+
+def _measured(row: Row) -> float:
+    """The error of a method that has answers."""
+    assert row.max_error is not None
+    return row.max_error
 
 
 def _error_cell(row: Row | None, said: Words) -> str:

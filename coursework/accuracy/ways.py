@@ -55,7 +55,9 @@ class _Bench:
 
     def __init__(self, exercise: CourseExercise, study: Study, given: Mapping[str, Any]) -> None:
         self.exercise, self.study = exercise, study
-        self.angle, self.speed = exercise.spec.driver.angle, exercise.spec.driver.speed
+        driver = exercise.spec.driver
+        assert driver is not None  # a study without one is refused
+        self.angle, self.speed = driver.angle, driver.speed
         self.given = given
         self.degrees = {n for n, unit in exercise.units.items() if unit == "deg"}
         self.closure = Closure(study.loops, study.unknowns) if study.loops else None
@@ -145,15 +147,24 @@ class _Bench:
         named = zip(self.study.unknowns, unknowns, strict=True)
         return {n: np.asarray(v) * (180 / math.pi) if n in self.degrees else v for n, v in named}
 
+    @property
+    def _loops(self) -> Closure:
+        """What the ways that need loops close: there are none without."""
+        assert self.closure is not None
+        return self.closure
+
     def _newton(self, steps: int) -> Callable[[np.ndarray], Values]:
+        closure = self._loops
+
         def compute(angle: np.ndarray) -> Values:
             with np.errstate(all="ignore"):
-                return self._in_degrees(self.closure.newton(self._known(angle), self._start(angle), steps))
+                return self._in_degrees(closure.newton(self._known(angle), self._start(angle), steps))
 
         return compute
 
     def _one_by_one(self, solve: Callable[..., np.ndarray | None]) -> Callable[[np.ndarray], Values]:
         """A library's solver, which takes one configuration at a time."""
+        closure = self._loops
 
         def compute(angle: np.ndarray) -> Values:
             starts = np.stack(self._start(angle), axis=-1)
@@ -165,12 +176,12 @@ class _Bench:
 
                 def gaps(x: np.ndarray, known: dict = known) -> list[float]:
                     values = {**known, **dict(zip(self.study.unknowns, map(float, x), strict=True))}
-                    return self.closure.gaps(values, math.cos, math.sin)
+                    return closure.gaps(values, math.cos, math.sin)
 
                 solved = solve(gaps, starts[i])
                 if solved is not None:
                     found[i] = solved
-            return self._in_degrees(found.T)
+            return self._in_degrees(list(found.T))
 
         return compute
 
@@ -231,14 +242,15 @@ class _Bench:
         """
         rate_of = dict(zip(self.study.positions, self.study.rates, strict=True))
         solve, speed, step = self._stable(self.study.unknowns), self.given[self.speed], 1e-40
+        closure = self._loops
 
         def compute(angle: np.ndarray) -> Values:
-            start = self._in_radians(solve(angle))
+            closed = self._in_radians(solve(angle))
             known = self._known(angle)
             known[self.angle] = known[self.angle] + 1j * step
             with np.errstate(all="ignore"):
-                start = [start[n] + 0j for n in self.study.unknowns]
-                found = self.closure.newton(known, start, 1)
+                start = [closed[n] + 0j for n in self.study.unknowns]
+                found = closure.newton(known, start, 1)
             named = zip(self.study.unknowns, found, strict=True)
             return {rate_of[n]: np.imag(x) * (speed / step) for n, x in named}
 

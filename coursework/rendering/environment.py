@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError, TemplateNotFound, Undefined
 from markupsafe import Markup
@@ -25,7 +26,7 @@ def environment(
     lang: str,
     text: Writer,
     filters: Mapping[str, Callable[..., str]],
-    marks: Mapping[str, str] | None = None,
+    marks: Mapping[str, Any] | None = None,
 ) -> Environment:
     """An environment for one back end and one language.
 
@@ -86,6 +87,7 @@ def render(env: Environment, template: str, names: Mapping[str, object]) -> str:
     try:
         return env.get_template(template).render(names)
     except TemplateNotFound as missing:
-        raise BadCourse(f"no template {missing.name!r} in {', '.join(env.loader.searchpath)}") from None
+        folders = env.loader.searchpath if isinstance(env.loader, FileSystemLoader) else ()
+        raise BadCourse(f"no template {missing.name!r} in {', '.join(folders)}") from None
     except TemplateError as wrong:
         raise BadStatement(f"template {template}: {wrong}") from wrong

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from html import escape
 from pathlib import Path
@@ -27,7 +27,7 @@ def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
 
 @lru_cache(maxsize=32)
 def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
-    filters = {
+    filters: dict[str, Callable[..., str]] = {
         "markup": lambda text: markup.to_html(text, lang),
         "inline": lambda text: markup.html_inline(text, lang),
         "math": lambda tex: to_mathml(tex, lang),

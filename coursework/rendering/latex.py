@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -47,7 +47,7 @@ def source(
 
 @lru_cache(maxsize=32)
 def _environment(folders: tuple[Path, ...], lang: str) -> Environment:
-    filters = {
+    filters: dict[str, Callable[..., str]] = {
         "markup": lambda text: to_latex_markup(text, lang),
         "inline": lambda text: re.sub(r"\n\n+", r" \\newline ", to_latex_markup(text, lang)),
         "math": lambda tex: f"${to_latex(tex, lang)}$",

@@ -10,10 +10,10 @@ import base64
 import hashlib
 import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment
 
@@ -107,8 +107,8 @@ def _markdown_pieces(text: str) -> Iterator[tuple[str, tuple[str, ...], str]]:
             yield "markdown", (), source
 
 
-def _cell(identity: str, kind: str, tags: tuple[str, ...], source: str) -> dict[str, object]:
-    cell: dict[str, object] = {
+def _cell(identity: str, kind: str, tags: tuple[str, ...], source: str) -> dict[str, Any]:
+    cell: dict[str, Any] = {
         "cell_type": kind,
         "id": hashlib.sha256(f"{identity} {source}".encode()).hexdigest()[:12],
         "metadata": {"tags": list(tags)} if tags else {},
@@ -119,7 +119,7 @@ def _cell(identity: str, kind: str, tags: tuple[str, ...], source: str) -> dict[
     return cell
 
 
-def _attach_figure(cell: dict[str, object], handout: Handout) -> None:
+def _attach_figure(cell: dict[str, Any], handout: Handout) -> None:
     shown = any(f"attachment:{FIGURE}" in line for line in cell["source"])
     figure = views.figure_of(handout)
     if cell["cell_type"] == "markdown" and figure is not None and shown:
@@ -129,7 +129,7 @@ def _attach_figure(cell: dict[str, object], handout: Handout) -> None:
 
 @lru_cache(maxsize=32)
 def _environment(folders: tuple[Path, ...], lang: str) -> Environment:
-    filters = {
+    filters: dict[str, Callable[..., str]] = {
         "markup": lambda text: markup.to_notebook_markdown(text, lang),
         "inline": lambda text: " ".join(markup.to_notebook_markdown(text, lang).split("\n")),
         "math": lambda tex: markup.to_notebook_markdown(f"${tex}$", lang),

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from jinja2 import Environment
 from markupsafe import Markup
@@ -25,7 +26,6 @@ from coursework.sheets.sheet import FeedbackSheet
 
 _LOCAL = threading.local()
 _FORGETTING = 40  #: documents, a third of a millisecond each
-_OUTPUT = {"format": "pdf", "pdf_standards": ["a-2a", "ua-1"], "timestamp": 0}
 
 
 def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = "a4") -> str:
@@ -85,7 +85,7 @@ def compile_pdf(typst_source: str) -> bytes:
     if compiler is None:
         compiler = _LOCAL.compiler = typst.Compiler(ignore_system_fonts=True)
     with _complaints():
-        return compiler.compile(input=files(typst_source), **_OUTPUT)
+        return _written(compiler, files(typst_source))
 
 
 def compile_booklet(typst_source: str) -> tuple[bytes, tuple[tuple[int, int], ...]]:
@@ -98,15 +98,21 @@ def compile_booklet(typst_source: str) -> tuple[bytes, tuple[tuple[int, int], ..
     written = files(typst_source)
     with _complaints():
         # Asked of the compiler that then writes the file, the pages are laid out once.
-        compiler = typst.Compiler(input=written, ignore_system_fonts=True)
+        opened: Any = typst.Compiler  # takes the files by name as well, which its types do not say
+        compiler = opened(input=written, ignore_system_fonts=True)
         ends = json.loads(compiler.query("<sheet-last>", field="value"))
-        made = compiler.compile(input=written, **_OUTPUT)
+        made = _written(compiler, written)
         # The typesetter remembers what the last documents were made of, and a booklet is large: small
         # documents make it forget.
         for _ in range(_FORGETTING):
             compiler.compile(input=b"", format="pdf", timestamp=0)
     starts = [1, *(end + 1 + end % 2 for end in ends[:-1])]
     return made, tuple(zip(starts, ends, strict=True))
+
+
+def _written(compiler: Any, sources: Mapping[str, bytes]) -> bytes:
+    """The tagged PDF that a compiler makes of files by name."""
+    return compiler.compile(input=sources, format="pdf", pdf_standards=["a-2a", "ua-1"], timestamp=0)
 
 
 @contextmanager
@@ -122,7 +128,7 @@ def _complaints() -> Iterator[None]:
 
 @lru_cache(maxsize=32)
 def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
-    filters = {
+    filters: dict[str, Callable[..., str]] = {
         "markup": lambda text: markup.to_typst_markup(text, lang),
         "value": lambda text: markup.typst_value(text, lang),
         "math": lambda tex: markup.typst_formula(tex, lang),

@@ -116,7 +116,10 @@ def _data_width(handout: Handout) -> str:
 def polygon_drawings(sheet: Sheet) -> tuple[Figure | Beginning, ...]:
     """The drawings of a solution's polygons in the order in which it shows them: steps, then the whole."""
     stated = sheet.polygons if isinstance(sheet, AnswerSheet) else ()
-    return tuple(figure for one in stated for figure in (*(step.figure for step in one.steps), one.figure))
+    found: list[Figure | Beginning] = []
+    for one in stated:
+        found += (*(step.figure for step in one.steps), one.figure)
+    return tuple(found)
 
 
 def title(sheet: Sheet) -> str:
