@@ -16,9 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from coursework.api import open_course
+from coursework.api import Variant, open_course
 from coursework.course.answer_key import Key
-from coursework.course.variant import Variant
 from coursework.language.numbers import significant
 from coursework.language.words import languages
 from coursework.making.issued import COLUMNS, Issued
@@ -156,7 +155,7 @@ def class_of_twelve(
     issued = Issued.read(out / "issued.json")
     notes = _hand_in(course, issued, out / "submissions")
     book = grade(course, [out / "submissions"], out / "issued.json", out / "marks", feedback=True)
-    rows = []
+    rows: list[Mapping[str, Any]] = []
     for name in names:
         total = book.exercises[name]
         rows.append(

@@ -14,6 +14,7 @@ from coursework.errors import BadInput, counted
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
+    from coursework.gradebook.book import Gradebook
 
 
 # ------------------------------------------------------------------------ grade
@@ -87,7 +88,7 @@ def grade_with_bar(
     *,
     feedback: bool | None = True,
     accepted: Path | None = None,
-):
+) -> Gradebook:
     """Mark files and write the tables, with a bar on a terminal."""
     from coursework.gradebook.grading import grade_files
 
@@ -124,13 +125,13 @@ def report(context: click.Context, folder: Path, lang: str, out: Path | None, as
     told = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
     if as_json:
         print_json(told.as_json())
+    place = out or folder / "report"
     if out is not None or not as_json:
-        out = out or folder / "report"
-        _write_report(course, told, lang, out)
+        _write_report(course, told, lang, place)
     if not as_json:
         click.echo(
             f"{counted(told.students, 'student')}, {counted(told.answers, 'answer')}, {told.needs_a_look} to be looked at; "
-            f"see {out / 'report'}.html, .pdf, parts.csv, mistakes.csv"
+            f"see {place / 'report'}.html, .pdf, parts.csv, mistakes.csv"
         )
 
 

@@ -59,7 +59,8 @@ class Accepted:
         """
         if not self._by_place:
             return graded
-        lines, unanswered = dict(graded.lines), []
+        lines = dict(graded.lines)
+        unanswered: list[str] = []
         for part, line in graded.lines.items():
             for seed in (graded.seed, ""):
                 key = self._key(graded.student, graded.exercise, seed, part)

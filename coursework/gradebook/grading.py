@@ -77,8 +77,7 @@ def grade_files(
             book.add(graded)
             for row in gradebook.marks_rows(graded):
                 marks.write(row)
-                change = before.changed(row) if changes is not None else None
-                if change is not None:
+                if changes is not None and (change := before.changed(row)) is not None:
                     changes.write(change)
             if feedback:
                 shown.append(graded)

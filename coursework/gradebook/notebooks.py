@@ -121,9 +121,10 @@ def _pairs(found: ast.Dict, code: str) -> list[tuple[Any, Any]]:
             taken[0] = taken[0][node.col_offset :]
             return b"\n".join(taken).decode("utf-8", "replace")
 
-    if None in found.keys:
+    keys = [key for key in found.keys if key is not None]
+    if len(keys) < len(found.keys):
         raise ValueError("** is code")
-    return [(value(key), value(item)) for key, item in zip(found.keys, found.values, strict=True)]
+    return [(value(key), value(item)) for key, item in zip(keys, found.values, strict=True)]
 
 
 _OPENS = re.compile(r"(?:\w+\s*=\s*)?\{\s*")
@@ -135,7 +136,7 @@ def _answers_by_line(code: str) -> dict[Any, Any] | str:
     """The answers of a cell that is no Python, each on its line as in the notebook, or which line is not."""
     pairs: list[tuple[Any, Any]] = []
     is_open = is_closed = False
-    line = number = 0
+    number, line = 0, ""
     for number, line in enumerate(map(str.strip, code.split("\n")), start=1):
         text = line
         if not is_open and (opening := _OPENS.match(text)):
@@ -149,7 +150,7 @@ def _answers_by_line(code: str) -> dict[Any, Any] | str:
         if found is None:
             return _not_as_written(number, line)
         pairs += found
-    return object_once(pairs) if pairs else _not_as_written(number, str(line))
+    return object_once(pairs) if pairs else _not_as_written(number, line)
 
 
 def _pairs_of_line(line: str) -> list[tuple[Any, Any]] | None:

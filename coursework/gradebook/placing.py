@@ -107,24 +107,25 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
             except _Refused as why:
                 places[named] = str(why)
         place = places[named]
-        reason = place if isinstance(place, str) else ""
-        if not reason:
-            key = place[1:]
-            if key not in asked:
-                asked[key] = frozenset(str(part["id"]) for part in issued.records[key]["parts"])
-            sheet = found.sheets.setdefault(place, {})
-            if row.part not in asked[key]:
-                near = nearest(row.part[:60], sorted(asked[key]))
-                reason = f"{row.exercise} has no part {row.part[:60]!r}{near}"
-            elif row.part in sheet:
-                before = sheet[row.part]
-                if _is_blank(row):
-                    found.blanks += 1
-                    continue
-                if _is_blank(before):
-                    found.blanks += 1
-                else:
-                    reason = f"repeats {before.source}, which is marked"
+        if isinstance(place, str):
+            found.rejected.append(Rejected(row.source, place, as_texts(row)))
+            continue
+        key, reason = place[1:], ""
+        if key not in asked:
+            asked[key] = frozenset(str(part["id"]) for part in issued.records[key]["parts"])
+        sheet = found.sheets.setdefault(place, {})
+        if row.part not in asked[key]:
+            near = nearest(row.part[:60], sorted(asked[key]))
+            reason = f"{row.exercise} has no part {row.part[:60]!r}{near}"
+        elif row.part in sheet:
+            before = sheet[row.part]
+            if _is_blank(row):
+                found.blanks += 1
+                continue
+            if _is_blank(before):
+                found.blanks += 1
+            else:
+                reason = f"repeats {before.source}, which is marked"
         if reason:
             found.rejected.append(Rejected(row.source, reason, as_texts(row)))
         else:

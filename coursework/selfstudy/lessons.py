@@ -78,7 +78,7 @@ def _told(value: Any, lang: str) -> str:
     if isinstance(value, (bool, np.bool_)):
         return said["yes"] if value else said["no"]
     if isinstance(value, (int, float, np.number)):
-        return localise(significant(value), lang)
+        return localise(significant(float(value)), lang)
     return str(value)
 
 

@@ -292,6 +292,8 @@ def curve(variant: Variant, quantity: str) -> tuple[np.ndarray, np.ndarray]:
     """The driver's angle over a turn, from 0 to 360 degrees, and the quantity at each; NaN where nothing closes."""
     angles = np.linspace(0.0, 360.0, INSTANTS)
     exercise = variant.exercise
-    given = {**variant.used, exercise.spec.driver.angle: angles}
+    driver = exercise.spec.driver
+    assert driver is not None  # only what moves has a curve
+    given = {**variant.used, driver.angle: angles}
     found = exercise.solve(**given, only=quantity, effects=variant.effects)[quantity]
     return angles, np.broadcast_to(np.asarray(found, dtype=float), angles.shape)

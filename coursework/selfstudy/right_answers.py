@@ -34,11 +34,12 @@ def right_ones(variant: Variant, answers: Mapping[str, Any], right: Collection[s
 
 
 def _own(variant: Variant, part: Part, answer: Any) -> Own:
-    reference = variant.walk.get(part.quantity)
+    walk = variant.walk
     reading = read(variant, part, answer)
     if not part.sort.is_scalar or reading.status != "read":
         return Own(None, True)
-    gaps = {float(v): _gap(part, float(v), float(reference)) for v in reading.values}
+    reference = float(walk[part.quantity])
+    gaps = {float(v): _gap(part, float(v), reference) for v in reading.values}
     value = min(gaps, key=gaps.__getitem__)
     limit = _NEAR_ANGLE if part.sort.turn else _NEAR * abs(reference) + 1e-9
     return Own(value, gaps[value] <= max(limit, variant.key.half_width(part)))

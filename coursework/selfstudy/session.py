@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -212,7 +212,7 @@ class StudySession:
         return self._shown(*lines, self._trouble)
 
     def _told(
-        self, method: str, kind: str, told: Any, named: Mapping[str, Any], known: Iterable[str]
+        self, method: str, kind: str, told: Any, named: Mapping[str, Any], known: Collection[str]
     ) -> dict[str, Any]:
         """What a method is told, by the names that it knows: a dictionary, or names of its own."""
         found: dict[str, Any] = {}
@@ -387,17 +387,17 @@ class StudySession:
             return self._shown(missing)
         if question == "":
             return self._shown(self._which("hint", self._said["hint"]["which"]))
-        question = self._named(question)
+        name = self._named(question)
         if step is not None:
             step = refusals.counted(self.variant.lang, "step", step)
         # Of what is right in another way the reference is not the student's: it stays a symbol.
         found = {q: own.value for q, own in self._own.items() if own.is_usual and own.value is not None}
-        texts = hints.steps(self.variant, question, found, lambda n: self._call("hint", n))
+        texts = hints.steps(self.variant, name, found, lambda n: self._call("hint", n))
         if not texts:
-            return self._shown(self._said["hint"]["none"].format(call=self._call("reveal", question)))
-        last = step if step is not None else self._hints.get(question, 0) + 1
+            return self._shown(self._said["hint"]["none"].format(call=self._call("reveal", name)))
+        last = step if step is not None else self._hints.get(name, 0) + 1
         last = min(max(last, 1), len(texts))
-        self._hints[question] = last
+        self._hints[name] = last
         said = self._said["hint"]
         pieces = [
             f"**{said['step'].format(number=k, of=len(texts))}** {text}"
@@ -405,9 +405,7 @@ class StudySession:
             else f"**{said['step'].format(number=k, of=len(texts))}**\n\n{text}"
             for k, text in enumerate(texts[:last], start=1)
         ]
-        closing = (
-            said["more"] if last < len(texts) else said["last"].format(call=self._call("reveal", question))
-        )
+        closing = said["more"] if last < len(texts) else said["last"].format(call=self._call("reveal", name))
         return self._shown(*pieces, f"*{closing}*")
 
     def reveal(self, question: str | int = "") -> Shown:
@@ -441,13 +439,15 @@ class StudySession:
         parts = {p.id: p for p in predictions.moving(self.variant)}
         if not parts:
             return self._shown(self._said["no_plot"])
-        names = tuple(self._named(name) for name in names)
-        for name in names:
+        called = [self._named(name) for name in names]
+        for name in called:
             refusals.expect(self.variant.lang, "curve", name, parts)
         first = [p.quantity for p in predictions.over_the_cycle(self.variant)]
         usual = sorted(parts, key=lambda i: parts[i].quantity not in first)[:PANELS]
-        chosen = [parts[n] for n in (names or sorted(usual, key=list(parts).index))]
-        driver, lang = self.variant.exercise.spec.driver.angle, self.variant.lang
+        chosen = [parts[n] for n in (called or sorted(usual, key=list(parts).index))]
+        spec, lang = self.variant.exercise.spec, self.variant.lang
+        assert spec.driver is not None  # without one no part moves
+        driver = spec.driver.angle
         at = float(self.variant.given[driver]) % 360.0
         curves, spots, own = [], [], self._own
         for part in chosen:

@@ -11,6 +11,7 @@ from coursework.course.exercise import ALL, CourseExercise
 from coursework.errors import CourseworkError
 from coursework.language.words import words
 from coursework.markup.markdown import plain_line
+from coursework.model import Part
 from coursework.sheets.handout import prompt
 from coursework.statistics.measures import MistakeStatistics, PartStatistics, Statistics
 
@@ -48,18 +49,22 @@ class Names:
         place = ids.index(part.part)
         return place + 1 if always.issuperset(ids[:place]) else None
 
+    def _known(self, part: PartStatistics) -> tuple[CourseExercise | None, Part | None]:
+        """The exercise and the part, where the course has them."""
+        exercise = self.exercise(part.exercise)
+        return exercise, None if exercise is None else exercise.spec.part(part.part)
+
     def symbol(self, part: PartStatistics) -> str:
         """LaTeX of what the part asks; nothing where a symbol says nothing, or the course knows no such part."""
-        exercise = self.exercise(part.exercise)
-        asked = exercise.spec.part(part.part) if exercise else None
-        measured = asked is not None and asked.sort.is_scalar
-        return exercise.symbol(asked.quantity) if measured else ""
+        exercise, asked = self._known(part)
+        if exercise is None or asked is None or not asked.sort.is_scalar:
+            return ""
+        return exercise.symbol(asked.quantity)
 
     def question(self, part: PartStatistics) -> str:
         """The words of the question, shortened, as plain text; the part's own name where there are none."""
-        exercise = self.exercise(part.exercise)
-        asked = exercise.spec.part(part.part) if exercise else None
-        if asked is None or self._lang not in exercise.languages:
+        exercise, asked = self._known(part)
+        if exercise is None or asked is None or self._lang not in exercise.languages:
             return part.part
         try:
             said = prompt(exercise.variant(0, self._lang, (ALL,)), asked)

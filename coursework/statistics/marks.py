@@ -84,31 +84,33 @@ def read(folder: Path) -> Marks:
     students, parts, verdicts, decimals = _Numbered(), _Numbered(), _Numbered(), _Decimals()
     codes = [array("i") for _ in range(3)]
     student, part, verdict = codes
-    points, out_of = array("d"), array("d")
+    got_points, most_points = array("d"), array("d")
     for who, exercise, asked, judged, got, of in _lines(path, _MARKS, decimals):
         student.append(students[who])
         part.append(parts[exercise, asked])
         verdict.append(verdicts[judged])
-        points.append(got)
-        out_of.append(of)
+        got_points.append(got)
+        most_points.append(of)
     _check_verdicts(path, verdicts)
-    columns = [np.array(c, dtype=np.int64) for c in codes]
-    points, out_of = np.array(points, dtype=float), np.array(out_of, dtype=float)
+    by_student, by_part, by_verdict = (np.array(c, dtype=np.int64) for c in codes)
+    points, out_of = np.array(got_points, dtype=float), np.array(most_points, dtype=float)
     if np.any(out_of <= 0):
         raise BadInput(f"{path}: a line is out of {out_of.min():g} points; every part is out of some")
 
     marked = len(students)
     told, asked_blank, unread = _summary(folder / "summary.csv", students, decimals)
-    issued = np.bincount(columns[0], out_of, minlength=len(students))
+    issued = np.bincount(by_student, out_of, minlength=len(students))
     issued = np.maximum(issued, [told.get(s, 0.0) for s in students])
     blank = np.array([family_of(v) == "missing" for v in verdicts], dtype=bool)
-    without_line = max(0, asked_blank - int(np.count_nonzero(blank[columns[2]])))
+    without_line = max(0, asked_blank - int(np.count_nonzero(blank[by_verdict])))
     rejected = folder / "rejected.csv"
     return Marks(
         tuple(students),
         tuple(parts),
         tuple(verdicts),
-        *columns,
+        by_student,
+        by_part,
+        by_verdict,
         points,
         out_of,
         issued,

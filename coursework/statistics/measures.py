@@ -271,7 +271,10 @@ def _mistakes(
         part, verdict = divmod(one, kinds)
         kind, _, name = marks.verdicts[verdict].partition(":")
         own = MistakeStatistics(
-            *(*marks.parts[part], kind, name),
+            marks.parts[part][0],
+            marks.parts[part][1],
+            kind,
+            name,
             count=count,
             share=count / int(answers[part]),
             lost=points,

@@ -218,7 +218,8 @@ class _Page:
 
     def _discrimination(self) -> str:
         reading = self.said["reading"]
-        measured = [p for p in self.statistics.parts if p.discrimination is not None]
+        known = ((p, p.discrimination) for p in self.statistics.parts)
+        measured = [(p, d) for p, d in known if d is not None]
         if not measured:
             return reading["unmeasured"].format(ENOUGH)
         active = self.statistics.students - self.statistics.silent - self.statistics.unread
@@ -227,10 +228,10 @@ class _Page:
             students=active, error=self._decimal(1 / math.sqrt(active - 1))
         )
         limit = self._decimal(WEAK)
-        weak = sorted((p for p in measured if p.discrimination < WEAK), key=lambda p: p.discrimination)
+        weak = sorted(((p, d) for p, d in measured if d < WEAK), key=lambda one: one[1])
         if not weak:
             return f"{reading['none_weak'].format(limit=limit)} {uncertain}"
-        shown = [self._with(p, self._decimal(p.discrimination)) for p in weak[:_NAMED]]
+        shown = [self._with(p, self._decimal(d)) for p, d in weak[:_NAMED]]
         parts = listed(shown, self.lang)
         if len(weak) > _NAMED:
             parts = ", ".join([*shown, reading["more"].format(len(weak) - _NAMED)])
