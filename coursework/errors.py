@@ -5,7 +5,6 @@ A message says what was asked, what was found and what would do.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 
 
@@ -92,6 +91,8 @@ def counted(number: int, noun: str) -> str:
 
 def closest(name: str, known: Iterable[str]) -> str | None:
     """The known name that may have been meant, if one is near."""
+    import difflib
+
     known = list(known)
     folded = {k.casefold(): k for k in known}
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)

@@ -7,14 +7,14 @@ from pathlib import Path
 
 import click
 
-from coursework.cli.options import DONE, FOUND, Whole, exercise_names, json_option, opened
+from coursework.cli.options import DONE, FOUND, Whole, exercise_names, exercises_argument, json_option, opened
 from coursework.cli.printing import print_json, print_note, print_table, progress_bar
 
 # ------------------------------------------------------------------------ check
 
 
 @click.command()
-@click.argument("exercises", nargs=-1)
+@exercises_argument
 @click.option("--variants", "count", type=Whole(1), default=200, show_default=True)
 @json_option
 @click.pass_context

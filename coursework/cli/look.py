@@ -12,6 +12,7 @@ from coursework.cli.options import (
     FOUND,
     Whole,
     complain,
+    exercise_argument,
     json_option,
     lang_option,
     opened,
@@ -61,7 +62,7 @@ def _listed(exercise: Any) -> dict[str, Any]:
 
 
 @click.command()
-@click.argument("exercise")
+@exercise_argument
 @seed_option
 @lang_option
 @parts_option
@@ -87,7 +88,7 @@ def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[A
 
 
 @click.command()
-@click.argument("exercise")
+@exercise_argument
 @seed_option
 @click.option("--count", type=Whole(1), default=1, show_default=True, help="How many, seed after seed.")
 @click.option("--solution", is_flag=True, help="With the reference answers.")
@@ -122,7 +123,7 @@ def variant(
 
 
 @click.command()
-@click.argument("exercise")
+@exercise_argument
 @click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A given value: r1=228.6mm.")
 @click.option("--only", default="", metavar="Q,Q", help="The quantities wanted; every part's unless told.")
 @click.option("--effects", default="", metavar="E,E", help="Optional effects to call for.")

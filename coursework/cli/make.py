@@ -12,6 +12,7 @@ from coursework.cli.options import (
     Lists,
     Whole,
     exercise_names,
+    exercises_argument,
     known_formats,
     known_languages,
     lang_option,
@@ -79,7 +80,7 @@ def _spare(paths: Sequence[Path], overwrite: bool) -> None:
 
 
 @click.command()
-@click.argument("exercises", nargs=-1)
+@exercises_argument
 @seed_option
 @click.option(
     "--lang", "langs", type=Lists(known_languages, unknown_language), default="fr", show_default=True
@@ -126,7 +127,7 @@ def notebook(
 
 
 @click.command()
-@click.argument("exercises", nargs=-1)
+@exercises_argument
 @click.option("--variants", "count", type=Whole(1), help="How many variants; with a roster, one a student.")
 @seed_option
 @click.option(

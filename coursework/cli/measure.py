@@ -7,14 +7,14 @@ from pathlib import Path
 
 import click
 
-from coursework.cli.options import json_option, lang_option, opened
+from coursework.cli.options import exercises_argument, json_option, lang_option, opened
 from coursework.cli.printing import print_json
 
 # --------------------------------------------------------------------- accuracy
 
 
 @click.command()
-@click.argument("exercises", nargs=-1)
+@exercises_argument
 @click.option("--quick", is_flag=True, help="Fewer places and shorter timings: under half a minute.")
 @lang_option
 @click.option(

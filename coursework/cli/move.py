@@ -10,6 +10,7 @@ import click
 
 from coursework.cli.options import (
     Whole,
+    exercise_argument,
     json_option,
     lang_option,
     opened,
@@ -24,7 +25,7 @@ from coursework.errors import WrongValue
 
 
 @click.command()
-@click.argument("exercise")
+@exercise_argument
 @click.option(
     "--effects", default="", metavar="E,E", help="What the scene calls for; positions alone unless told."
 )
@@ -114,7 +115,7 @@ def _drive(exercise: Any, text: str) -> float:
 
 
 @click.command()
-@click.argument("exercise")
+@exercise_argument
 @seed_option
 @click.option(
     "--effects",

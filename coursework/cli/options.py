@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from coursework.cli import completion
 from coursework.errors import BadInput, WrongValue
 
 if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
     from coursework.course.course import Course
 
 
@@ -71,6 +74,17 @@ class Lists(click.ParamType):
             self.fail(f"nothing named; there is {', '.join(known)}", param, ctx)
         return words
 
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        """The last of the words, after those that stand there."""
+        from click.shell_completion import CompletionItem
+
+        before, comma, begun = incomplete.rpartition(",")
+        there = before.split(",")
+        words = [word for word in self.known() if word.startswith(begun) and word not in there]
+        return [CompletionItem(before + comma + word) for word in words]
+
 
 def known_languages() -> tuple[str, ...]:
     from coursework.language.words import languages
@@ -85,13 +99,21 @@ def unknown_language(lang: str) -> str:
 
 
 def known_formats() -> tuple[str, ...]:
-    from coursework.making.build import FORMATS
+    from coursework.making.formats import FORMATS
 
     return FORMATS
 
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
-lang_option = click.option("--lang", default="fr", show_default=True, help="Language of the sheet.")
+lang_option = click.option(
+    "--lang",
+    default="fr",
+    show_default=True,
+    help="Language of the sheet.",
+    shell_complete=completion.languages,
+)
+exercise_argument = click.argument("exercise", shell_complete=completion.exercises)
+exercises_argument = click.argument("exercises", nargs=-1, shell_complete=completion.exercises)
 parts_option = click.option(
     "--parts",
     default="",

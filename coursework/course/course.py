@@ -9,9 +9,9 @@ from typing import Any, Generic, TypeVar
 
 from coursework.course.builtin import builtin_root
 from coursework.course.exercise import CourseExercise
-from coursework.course.folder import Folder
+from coursework.course.folder import Folder, course_folder
 from coursework.course.variant import Variant
-from coursework.errors import BadCourse, unknown
+from coursework.errors import unknown
 
 V = TypeVar("V", bound=Variant)
 
@@ -29,11 +29,7 @@ def opened(folder: str | Path | None, variant: Callable[..., V]) -> Course[V]:
 
 @cache
 def _opened(root: Path, variant: Callable[..., V]) -> Course[V]:
-    if not root.is_dir():
-        raise BadCourse(f"no course at {root}: there is no such folder; 'coursework new DIR' makes one")
-    if not (root / "exercises").is_dir():
-        raise BadCourse(f"{root} is no course: it has no folder 'exercises'; 'coursework new DIR' makes one")
-    return Course(Folder(root), variant)
+    return Course(course_folder(root), variant)
 
 
 class Course(Generic[V]):

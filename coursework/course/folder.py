@@ -10,19 +10,35 @@ from __future__ import annotations
 import importlib
 import itertools
 import sys
-import tomllib
-import traceback
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coursework.course.builtin import builtin_root
-from coursework.course.marking_rules import Rules
 from coursework.errors import BadCourse, CourseworkError
 
+if TYPE_CHECKING:
+    from coursework.course.marking_rules import Rules
+
 _packages = itertools.count()
+
+
+def course_folder(folder: str | Path | None) -> Folder:
+    """A course's folder, that of the built-in course where none is named; nothing of it is loaded yet.
+
+    Raises
+    ------
+    BadCourse
+        The folder does not exist or has no ``exercises/``.
+    """
+    root = (builtin_root() if folder is None else Path(folder)).resolve()
+    if not root.is_dir():
+        raise BadCourse(f"no course at {root}: there is no such folder; 'coursework new DIR' makes one")
+    if not (root / "exercises").is_dir():
+        raise BadCourse(f"{root} is no course: it has no folder 'exercises'; 'coursework new DIR' makes one")
+    return Folder(root)
 
 
 class Folder:
@@ -140,6 +156,8 @@ class Folder:
     @cached_property
     def settings(self) -> Mapping[str, Any]:
         """What ``exercises/course.toml`` says, or nothing."""
+        import tomllib
+
         path = self._settings_file
         if not path.exists():
             return {}
@@ -151,6 +169,8 @@ class Folder:
     @cached_property
     def rules(self) -> Rules:
         """How the course marks."""
+        from coursework.course.marking_rules import Rules
+
         return Rules.of(self.settings.get("marking", {}), str(self._settings_file))
 
     def title(self, lang: str) -> str:
@@ -195,5 +215,7 @@ def _where(fault: Exception, root: Path) -> str:
     said = f"{type(fault).__name__}: {fault}"
     if isinstance(fault, SyntaxError):
         return f"line {fault.lineno}: {fault.msg}"
+    import traceback
+
     frames = [f for f in traceback.extract_tb(fault.__traceback__) if f.filename.startswith(str(root))]
     return f"line {frames[-1].lineno}: {said}" if frames else said

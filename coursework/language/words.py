@@ -7,7 +7,6 @@ when its file does.
 from __future__ import annotations
 
 import re
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
@@ -59,6 +58,8 @@ def no_language(lang: str) -> UnknownName:
 
 
 def _read(lang: str) -> dict[str, Any]:
+    import tomllib
+
     try:
         return tomllib.loads(file_of(lang).read_text("utf-8-sig"))
     except tomllib.TOMLDecodeError as fault:

@@ -16,7 +16,6 @@ from coursework.sheets.sheet import AnswerSheet, Handout
 from coursework.system.tables import csv_file, json_text
 from coursework.system.writing import File
 
-FORMATS = ("pdf", "ipynb", "html", "tex")
 KEY_COLUMNS = ("student", "exercise", "seed", "part", "value", "unit", "tolerance")
 
 

@@ -1,0 +1,29 @@
+"""What a shell completes: names of exercises, languages, formats; of a course, its folder's files alone are looked at."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+
+import click
+
+from coursework.errors import CourseworkError
+
+
+def exercises(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
+    """The exercises whose names begin so; none where there is no course."""
+    from coursework.course.folder import course_folder
+
+    with suppress(CourseworkError):
+        return [
+            name
+            for name in course_folder(context.find_root().params.get("folder")).names
+            if name.startswith(begun)
+        ]
+    return []
+
+
+def languages(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
+    """The languages that the engine speaks."""
+    from coursework.language.words import languages as spoken
+
+    return [lang for lang in spoken() if lang.startswith(begun)]

@@ -1,0 +1,3 @@
+"""The formats that a build writes."""
+
+FORMATS = ("pdf", "ipynb", "html", "tex")
