@@ -8,6 +8,15 @@ import coursework
 from coursework.authoring.scaffold import new_course
 
 
+@pytest.fixture(scope="session", autouse=True)
+def kept(tmp_path_factory):
+    """The tests keep nothing in the user's own folder; where what they keep lies."""
+    folder = tmp_path_factory.mktemp("kept")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_CACHE_HOME", str(folder))
+        yield folder / "coursework"
+
+
 @pytest.fixture(scope="session")
 def course():
     return coursework.open_course()

@@ -22,7 +22,7 @@ from coursework.cli.options import (
     split_list,
 )
 from coursework.cli.printing import print_json, print_table
-from coursework.errors import BadInput, CourseworkError, MissingQuantity, WrongValue
+from coursework.errors import BadInput, MissingQuantity, WrongValue
 
 # ------------------------------------------------------------------------- look
 
@@ -32,18 +32,16 @@ from coursework.errors import BadInput, CourseworkError, MissingQuantity, WrongV
 @click.pass_context
 def list_exercises(context: click.Context, as_json: bool) -> int:
     """Say which exercises the course has; status 1 when one of them is broken."""
-    course = opened(context)
-    rows, faults = [], {}
-    for name in course.names:
-        try:
-            rows.append(_listed(course[name]))
-        except CourseworkError as fault:
-            faults[name] = str(fault)
+    from coursework.course.folder import course_folder
+    from coursework.course.listing import listing
+
+    folder = course_folder(context.obj)
+    rows, faults = listing(folder, lambda name: _listed(opened(context)[name]))
     if as_json:
         print_json(rows)
     else:
         print_table([{**r, "title": "\n".join(r["title"].values())} for r in rows])
-        if not course.names:
+        if not folder.names:
             click.echo("This course has no exercise yet.")
     for name, told in faults.items():
         complain(f"{name} cannot be listed: {told.removeprefix(f'{name}: ')}")

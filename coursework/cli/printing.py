@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import zip_longest
 from typing import Any
 
 import click
@@ -20,21 +22,79 @@ def print_json(content: Any) -> None:
 
 def print_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
     """A table, a column a key of the first row; nothing where there is no row."""
+    if not rows:
+        return
+    cells = [[str(column) for column in rows[0]], *([str(v) for v in row.values()] for row in rows)]
+    right = [all(isinstance(r[column], (int, float)) for r in rows) for column in rows[0]]
+    if not _fits_a_terminal() and (lines := _ruled(cells, right, title)):
+        click.echo("\n".join(lines))
+        return
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text  # as it is: brackets are not markup
 
-    if not rows:
-        return
     table = Table(title=title or None, title_justify="left")
-    for column in rows[0]:
-        right = all(isinstance(r[column], (int, float)) for r in rows)
-        table.add_column(Text(str(column)), justify="right" if right else "left", overflow="fold")
-    for row in rows:
-        table.add_row(*[Text(str(v)) for v in row.values()])
+    for column, is_right in zip(cells[0], right, strict=True):
+        table.add_column(Text(column), justify="right" if is_right else "left", overflow="fold")
+    for row in cells[1:]:
+        table.add_row(*map(Text, row))
     console = Console()
     # Piped into a file there is no width to fit: nothing is cut.
-    Console(width=None if console.is_terminal else 200).print(table)
+    Console(width=None if console.is_terminal else _PIPED).print(table)
+
+
+_PIPED = 200  #: width of a table that no terminal shows
+
+#: Variables by which somebody asks for colours, or for another width, where there is no terminal.
+_ASKING = ("FORCE_COLOR", "TTY_COMPATIBLE", "TTY_INTERACTIVE", "JUPYTER_COLUMNS", "PYCHARM_HOSTED")
+
+
+def _fits_a_terminal() -> bool:
+    """Whether a table is fitted and coloured for who looks at it, or drawn with less than Unicode's lines."""
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    asked = any(os.environ.get(name) for name in _ASKING)
+    return asked or sys.stdout.isatty() or not encoding.lower().startswith("utf")
+
+
+def _ruled(cells: Sequence[Sequence[str]], right: Sequence[bool], title: str) -> list[str]:
+    """The lines of a table of plain letters, drawn as on a terminal wide enough, which takes a tenth of a second less.
+
+    Nothing where a letter is none of Latin's, whose width is one, or where the table is too wide.
+    """
+    split = [[cell.split("\n") for cell in row] for row in cells]
+    texts = [title, *(line for row in split for cell in row for line in cell)]
+    widths = [max(len(line) for row in split for line in row[k]) for k in range(len(right))]
+    whole = sum(widths) + 3 * len(widths) + 1
+    if whole > _PIPED or len(title) > whole or not all(map(_is_plain, texts)):
+        return []
+
+    def rule(left: str, line: str, cross: str, end: str) -> str:
+        return left + cross.join(line * (width + 2) for width in widths) + end
+
+    def lines(row: Sequence[Sequence[str]], bar: str) -> list[str]:
+        padded = zip_longest(*row, fillvalue="")
+        return [
+            bar
+            + bar.join(
+                f" {t.rjust(w) if r else t.ljust(w)} " for t, w, r in zip(line, widths, right, strict=True)
+            )
+            + bar
+            for line in padded
+        ]
+
+    head, *body = split
+    return [
+        *([title.ljust(whole)] if title else []),
+        rule("┏", "━", "┳", "┓"),
+        *lines(head, "┃"),
+        rule("┡", "━", "╇", "┩"),
+        *(line for row in body for line in lines(row, "│")),
+        rule("└", "─", "┴", "┘"),
+    ]
+
+
+def _is_plain(text: str) -> bool:
+    return text == text.strip() and (not text or (text.isprintable() and max(text) < "\u0300"))
 
 
 def print_note(text: str) -> None:

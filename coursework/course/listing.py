@@ -1,0 +1,89 @@
+"""What is said of every exercise of a course, kept from one run to the next.
+
+To say it, an exercise is loaded, and with it much that takes a second for a whole course. So what was said is kept with
+the state of every file that it came from: those of ``exercises/``, of ``templates/``, of the engine, and of whatever else
+was loaded by then. Where one of them was changed, added or taken away, everything is said anew.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+import zlib
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from coursework.course.folder import Folder
+from coursework.errors import CourseworkError
+from coursework.system.cache import State, keep, kept, state, states
+
+_ENGINE = Path(__file__).parent.parent
+_SETTLED = 2_000_000_000  #: ns after which another change of a file shows in its dates, on any file system
+
+
+class Listing(NamedTuple):
+    """What is said of the exercises of a course, and by name what is wrong with those of which nothing can be said."""
+
+    rows: list[dict[str, Any]]
+    faults: dict[str, str]
+
+
+class _Kept(NamedTuple):
+    """What is kept: which Python said it, the states of the files it came from, and what was said, by name."""
+
+    python: list[str]
+    files: dict[str, State]  #: of the course and of the engine
+    loaded: dict[str, State]  #: of what else was loaded
+    said: dict[str, dict[str, Any]]
+
+
+def listing(folder: Folder, describe: Callable[[str], dict[str, Any]]) -> Listing:
+    """What ``describe`` says of each exercise by its name, in alphabetical order; it is asked where nothing was kept."""
+    begun = time.time_ns()
+    known = _known(folder)
+    said, faults = {}, {}
+    for name in folder.names:
+        try:
+            said[name] = known.said[name] if name in known.said else describe(name)
+        except CourseworkError as fault:
+            faults[name] = str(fault)
+    if said.keys() != known.said.keys():
+        _remember(folder, known._replace(loaded={**known.loaded, **_loaded(known.files)}, said=said), begun)
+    return Listing(list(said.values()), faults)
+
+
+def _known(folder: Folder) -> _Kept:
+    """What was kept where every file is still as it was; else the files as they are, and nothing said."""
+    # Which Python loads the exercises, and where it looks for what they import.
+    python = [sys.version, *sys.path]
+    files = states(folder.root / "exercises", folder.root / "templates", _ENGINE)
+    with suppress(TypeError):
+        found = _Kept(**kept(_name(folder)))
+        if (found.python, found.files) == (python, files) and all(
+            state(path) == was for path, was in found.loaded.items()
+        ):
+            return found
+    return _Kept(python, files, {}, {})
+
+
+def _loaded(files: Mapping[str, State]) -> dict[str, State]:
+    """The files of modules that were loaded, besides some files and those of Python itself."""
+    modules = [(name, getattr(module, "__file__", None)) for name, module in list(sys.modules.items())]
+    return {
+        path: state(path)
+        for name, path in modules
+        if path and path not in files and name.partition(".")[0] not in sys.stdlib_module_names
+    }
+
+
+def _remember(folder: Folder, content: _Kept, begun: int) -> None:
+    """Keep it, unless a file was changed just now: it may change again within the grain of its dates."""
+    last = max(date for _, *dates in (*content.files.values(), *content.loaded.values()) for date in dates)
+    if last < begun - _SETTLED:
+        keep(_name(folder), content._asdict())
+
+
+def _name(folder: Folder) -> str:
+    return f"exercises-{folder.root.name}-{zlib.crc32(str(folder.root).encode()):08x}.json"
