@@ -1,0 +1,67 @@
+"""A paper: several exercises handed out, solved or marked as one thing, under one heading."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout
+
+
+@dataclass(frozen=True)
+class Logo:
+    """A picture at the head of a paper."""
+
+    data: bytes
+    format: str  #: svg or png
+    alt: str
+
+
+@dataclass(frozen=True)
+class Heading:
+    """What stands at the head of a paper, in its language."""
+
+    lang: str
+    title: str
+    course: str
+    student: str  #: empty when the paper is nobody's
+    identity: tuple[tuple[str, str], ...] = ()  #: what is called so, and what is printed; empty: a box to fill in by hand
+    date: str = ""
+    duration: str = ""
+    instructions: str = ""  #: Markdown
+    version: str = ""  #: A to D, where versions are dealt out
+    logo: Logo | None = None
+    cover: bool = False  #: a page of its own
+    mark_of: str = ""  #: what the mark is out of, as printed; empty where only points count
+
+
+@dataclass(frozen=True)
+class Paper:
+    """All that a student's paper shows."""
+
+    heading: Heading
+    handouts: tuple[Handout, ...]
+
+    @property
+    def points(self) -> float:
+        return sum(handout.points for handout in self.handouts)
+
+
+@dataclass(frozen=True)
+class SolutionPaper:
+    """A paper with its answers and worked solutions."""
+
+    heading: Heading
+    sheets: tuple[AnswerSheet, ...]
+
+
+@dataclass(frozen=True)
+class FeedbackPaper:
+    """A student's marks on a paper."""
+
+    heading: Heading
+    sheets: tuple[FeedbackSheet, ...]
+    points: float
+    out_of: float
+    mark: str = ""  #: as printed, 14.5; empty where only points count
+    answers: bool = True  #: whether the right answers are shown
+    advice: tuple[str, ...] = ()  #: what to look at next, Markdown
