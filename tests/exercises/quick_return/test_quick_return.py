@@ -227,14 +227,6 @@ def test_an_instant_computes_nothing_of_the_turn():
     assert "theta2_turns" not in EXERCISE.plan(("v_C", "a_C", "mechanical_advantage"))
 
 
-def test_scalars_and_rows_agree():
-    drawn = [dict(EXERCISE.variant(seed).given) for seed in range(30)]
-    row = EXERCISE.solve(**{name: np.array([g[name] for g in drawn]) for name in drawn[0]})
-    for i, given in enumerate(drawn):
-        for name, value in EXERCISE.solve(**given).items():
-            assert row[name][i] == pytest.approx(value, rel=1e-12, abs=1e-12), name
-
-
 def test_an_angle_that_no_triangle_has_is_refused(course):
     exercise = course["quick_return"]
     given = dict(exercise.variant(1).given)
