@@ -4,10 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 from class_of_three import table
+from sweeps import sampled
+
+from coursework.cli import demo
 
 
-def test_the_demo_does_the_whole_job(cli, tmp_path):
+@pytest.mark.parametrize("exercises", sampled(["a pair", "the class's"], ["a pair"]))
+def test_the_demo_does_the_whole_job(cli, tmp_path, monkeypatch, exercises):
+    if exercises == "a pair":
+        (tmp_path / "exercises.txt").write_text("slotted_mechanism\nfour_bar_positions\n", "utf-8")
+        monkeypatch.setattr(demo, "CLASS", tmp_path)
     status, out, _ = cli("demo", "--out", tmp_path / "demo")
     assert status == 0
     marks = table(tmp_path / "demo" / "marks" / "marks.csv")
