@@ -274,6 +274,7 @@ class _Line:
             isinstance(item, Script)
             and isinstance(item.base, Name)
             and item.below is None
+            and item.above is not None
             and not item.primes
         ):
             return self.evaluation.power(self._function(item.base.text), item.above)
@@ -285,6 +286,8 @@ class _Line:
         item = self._next()
         self.at += 1
         if isinstance(item, Script) and item.base == Symbol(")", "closing") and item.below is None:
+            if item.primes or item.above is None:
+                raise NotEvaluable("a bracket with a prime has no value")
             return self.evaluation.power(value, item.above)
         if item != Symbol(")", "closing"):
             raise NotEvaluable("a bracket is not closed")

@@ -71,6 +71,8 @@ def test_a_vector_has_its_coordinates():
         (r"\foo{2}", "foo"),
         (r"\left(\num{2}", "right"),
         (r"(\num{2} + \num{3}", "not closed"),
+        (r"(\num{2} + \num{3})'", "prime"),
+        (r"(\num{2} + \num{3})'^2", "prime"),
         (r"\sin\left(\num{2};\ \num{3}\right)", "sin of 2"),
         (r"\num{2} \times \left(\num{2};\ \num{3}\right)", "vector"),
         (r"\cos\left(\num{2}\,i\right)", "complex"),
