@@ -131,7 +131,7 @@ class _Printer:
                 return ("i" if value == 1j else rf"\num{{{value.imag:g}}}\,i"), _ATOM
             case ast.Constant(value=_Degrees() as value):
                 return rf"\num{{{value:g}}}^{{\circ}}", _ATOM
-            case ast.Constant(value=value):
+            case ast.Constant(value=int() | float() as value):
                 return rf"\num{{{value:g}}}", _ATOM
             case ast.Name(id="pi") | ast.Attribute(attr="pi"):
                 return r"\pi", _ATOM

@@ -208,6 +208,23 @@ def test_a_formula_and_its_substitution(function, symbols, numbers):
     assert formula_latex(function, NUMBERS) == numbers
 
 
+def beside_nothing(a):
+    return np.minimum(a, None)
+
+
+def beside_dots(a):
+    return np.maximum(a, ...)
+
+
+def beside_bytes(a):
+    return a + b"1"
+
+
+@pytest.mark.parametrize("function", [beside_nothing, beside_dots, beside_bytes])
+def test_a_formula_with_what_is_no_number_is_left_to_words(function):
+    assert formula_latex(function, SYMBOLS) == ""
+
+
 def test_numbers_are_rounded_for_print_alone():
     assert number_latex(319.8137021, "mm") == r"\num{319.81}"
     assert number_latex(319.8037021, "mm") == r"\num{319.80}"  # a zero says that it is rounded there
