@@ -142,6 +142,10 @@ class _Rows:
         found = [r for r in self.rows if r.family == family and r.place == place]
         return sorted(found, key=lambda r: (r.setting is not None, r.setting))
 
+    def answered(self, family: str, place: str = GENERIC) -> list[Row]:
+        """Those that have an answer somewhere, and so an error."""
+        return [r for r in self.of(family, place) if r.max_error is not None]
+
     def one(self, family: str, place: str = GENERIC) -> Row | None:
         found = self.of(family, place)
         return found[0] if found else None
@@ -207,7 +211,7 @@ def _read_rates(rows: _Rows, said: Words) -> list[str]:
     reading = said["reading"]
     stable, complex_step = rows.one("stable"), rows.one("complex_step")
     found = []
-    best = min(rows.of("differences"), key=_measured, default=None)
+    best = min(rows.answered("differences"), key=_measured, default=None)
     if best is not None and stable is not None:
         key = "differences" if complex_step else "differences_plain"
         found.append(
@@ -218,7 +222,7 @@ def _read_rates(rows: _Rows, said: Words) -> list[str]:
                 complex=_error(complex_step, said) if complex_step else "",
             )
         )
-    hard, hard_stable = rows.of("differences", HARD), rows.one("stable", HARD)
+    hard, hard_stable = rows.answered("differences", HARD), rows.one("stable", HARD)
     if hard and hard_stable:
         least = min(hard, key=_measured)
         found.append(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import pytest
 from sweeps import sampled
@@ -104,6 +105,17 @@ def test_the_page_reads_the_rows_in_every_language(course, rows, lang, studied):
     if lang == "fr":
         assert "forme stable" in html
         assert "closed form" not in html
+
+
+@pytest.mark.parametrize("place", ["generic", HARD])
+def test_the_page_passes_over_differences_that_have_no_answer(course, rows, place):
+    def lost(row):
+        return (row.family, row.place) == ("differences", place) and row.setting < 1e-4
+
+    own = [replace(r, max_error=None, failed=r.n) if lost(r) else r for r in rows["slotted_mechanism"]]
+    assert any(map(lost, own))
+    html = renderer_of(course.folder).report_html(report(course, own, "en"))
+    assert "no answer" in html
 
 
 def test_the_command_writes_page_and_rows(tmp_path, capsys):
