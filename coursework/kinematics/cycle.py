@@ -146,6 +146,6 @@ def _in_rows(rows: np.ndarray, angles: np.ndarray, count: int) -> np.ndarray:
     order = np.lexsort((angles, rows))
     rows, angles = rows[order], angles[order]
     sizes = np.bincount(rows, minlength=count)
-    table = np.full((count, max(2, sizes.max(initial=0))), np.nan)
+    table = np.full((count, max(2, int(sizes.max(initial=0)))), np.nan)
     table[rows, np.arange(len(rows)) - (np.cumsum(sizes) - sizes)[rows]] = angles
     return table

@@ -172,8 +172,8 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
     family = families[marks.verdict]
     n = len(marks.parts)
     answers = np.bincount(marks.part, minlength=n)
-    counts = np.bincount(marks.part * len(VERDICTS) + family, minlength=n * len(VERDICTS))
-    counts = counts.reshape(n, len(VERDICTS))
+    codes = marks.part * len(VERDICTS) + family
+    counts = np.bincount(codes, minlength=n * len(VERDICTS)).reshape(n, len(VERDICTS))
     share = marks.points / marks.out_of
     mean = np.bincount(marks.part, share, minlength=n) / np.maximum(answers, 1)
     lost = np.bincount(marks.part, marks.out_of - marks.points, minlength=n)
