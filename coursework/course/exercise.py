@@ -6,7 +6,7 @@ import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any, Generic, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
@@ -18,7 +18,9 @@ from coursework.course.texts import ExerciseTexts, Text
 from coursework.errors import BadCourse, NoSolution, Undefined, WrongValue, unknown
 from coursework.model import Driver, Exercise, Part
 from coursework.quantities.graph import Graph, plain_scalar
-from coursework.solution import Film, Solution
+
+if TYPE_CHECKING:
+    from coursework.solution import Film, Solution
 
 USUAL, ALL = "usual", "all"  #: what stands for several parts where parts are named
 
@@ -81,6 +83,8 @@ class CourseExercise(Generic[V]):
         NoSolution
             The course folder has none: it looks like a students' copy.
         """
+        from coursework.solution import Solution
+
         if self.folder.home("solutions", self.name) is None:
             why = (
                 f"it lacks {self.name}.py" if self.folder.has_solutions else "it looks like a students' copy"

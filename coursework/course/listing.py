@@ -80,7 +80,7 @@ def _loaded(files: Mapping[str, State]) -> dict[str, State]:
 
 def _remember(folder: Folder, content: _Kept, begun: int) -> None:
     """Keep it, unless a file was changed just now: it may change again within the grain of its dates."""
-    last = max(date for _, *dates in (*content.files.values(), *content.loaded.values()) for date in dates)
+    last = max(date for state in (*content.files.values(), *content.loaded.values()) for date in state[1:])
     if last < begun - _SETTLED:
         keep(_name(folder), content._asdict())
 

@@ -35,7 +35,6 @@ from weakref import WeakSet
 from coursework.course.folder import Folder
 from coursework.errors import BadCourse, BadStatement
 from coursework.language.words import languages
-from coursework.markup.proofreading import pair_dollars, read_formulas
 
 if TYPE_CHECKING:
     import jinja2
@@ -137,6 +136,7 @@ def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object
 
 def _text(markdown: str, path: Path, source: str, *, formulas: bool) -> Text:
     """The sections of a rendered text, once it is proofread; its formulas only where told."""
+    from coursework.markup.proofreading import pair_dollars, read_formulas
 
     def place(piece: str) -> str:
         first = piece.split("\n")[0]

@@ -5,17 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from types import MappingProxyType
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
-from coursework.course.answer_key import Key, KeyNumbers
 from coursework.course.exercise import CourseExercise
 from coursework.course.texts import Text
-from coursework.figures import Figure
 from coursework.language.numbers import localise, plain, significant, with_unit
 from coursework.language.words import languages, no_language, words
-from coursework.markup.markdown import plain_line
 from coursework.model import Part
 from coursework.quantities.graph import call_on_quantities, plain_scalar
+
+if TYPE_CHECKING:
+    from coursework.course.answer_key import Key, KeyNumbers
+    from coursework.figures import Figure
 
 
 class Variant:
@@ -180,6 +181,8 @@ class Variant:
         for lang in self._langs:
             yield (label := self.label(part, case, lang))
             if "$" in label:
+                from coursework.markup.markdown import plain_line
+
                 yield plain_line(label, lang)  # what is offered is read
             for article in words(lang)["choices"]["articles"]:
                 start = article if article.endswith("'") else f"{article} "
@@ -213,6 +216,8 @@ class Variant:
     def key(self) -> Key:
         """What the variant's answers are marked by: made when it is first asked for, unless one was given."""
         if self._key is None:
+            from coursework.course.answer_key import Key
+
             self._key = Key(self)
         return self._key
 
@@ -244,6 +249,8 @@ def _made_anew(
         exercise, seed, given, lang, None if chosen is None else [parts[i] for i in chosen], issued
     )
     if numbers is not None:
+        from coursework.course.answer_key import Key
+
         variant.key = Key(variant, numbers=numbers)
     return variant
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coursework.kinds.kind import Asking, Stated
 from coursework.kinds.nearness import in_half_widths
 from coursework.kinds.number import Number
-from coursework.reading.numbers import read_number
-from coursework.reading.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.reading.reading import Reading
 
 
 class Angle(Number):
@@ -20,6 +21,8 @@ class Angle(Number):
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         # Modulo a turn any number may be near: a thousand of degrees is no honest reading of 1,234.
+        from coursework.reading.numbers import read_number
+
         return read_number(answer, part.unit, thousands=False)
 
     def distance(

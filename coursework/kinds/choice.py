@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated
 from coursework.quantities.graph import plain_scalar
-from coursework.reading.choices import read_choice
-from coursework.reading.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.reading.reading import Reading
 
 
 class Choice(Kind):
@@ -27,6 +28,8 @@ class Choice(Kind):
     }
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        from coursework.reading.choices import read_choice
+
         return read_choice(answer, asking.labels(part))
 
     def kept(self, read_as: str) -> Any:

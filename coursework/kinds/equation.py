@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
-from coursework.kinds.equation_latex import latex_of_equation
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated
-from coursework.reading.equations import Equation as Read
-from coursework.reading.equations import parse_equation, read_equation
-from coursework.reading.equivalence import same_equation
-from coursework.reading.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.reading.equations import Equation as Read
+    from coursework.reading.reading import Reading
 
 
 class Equation(Kind):
@@ -28,6 +27,8 @@ class Equation(Kind):
     faults: ClassVar[Mapping[str, str]] = {}
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        from coursework.reading.equations import read_equation
+
         return read_equation(answer, part.variables)
 
     def distance(
@@ -41,12 +42,17 @@ class Equation(Kind):
         return self.distance(part, _parsed(value, part.variables), reference)
 
     def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:
+        from coursework.reading.equations import parse_equation
+        from coursework.reading.equivalence import same_equation
+
         asked = parse_equation(reference, part.variables)
         put_in = {n: float(numbers[n]) for n in asked.variables - value.variables if n in numbers}
         if put_in and same_equation(value, asked.with_numbers(put_in), parameters=part.parameters):
             yield "numbers"
 
     def latex(self, value: str, symbols: Mapping[str, str]) -> str:
+        from coursework.kinds.equation_latex import latex_of_equation
+
         return latex_of_equation(value, symbols)
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
@@ -61,10 +67,14 @@ class Equation(Kind):
 @lru_cache(maxsize=4096)
 def _same(value: Read, reference: str, variables: tuple[str, ...], parameters: tuple[str, ...]) -> bool:
     """Equations are dear to compare, and many students write the same."""
+    from coursework.reading.equivalence import same_equation
+
     return same_equation(value, _parsed(reference, variables), parameters=parameters)
 
 
 @lru_cache(maxsize=1024)
 def _parsed(text: str, variables: tuple[str, ...]) -> Read:
     """A reference equation, or a mistaken one, read once."""
+    from coursework.reading.equations import parse_equation
+
     return parse_equation(text, variables)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated
 from coursework.language.numbers import significant
 from coursework.quantities.graph import plain_scalar
-from coursework.reading.numbers import read_integer
-from coursework.reading.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.reading.reading import Reading
 
 _DIGITS = 9  #: with which a count is written
 
@@ -23,6 +24,8 @@ class Integer(Kind):
     unitless = "wrong_unit_integer"
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        from coursework.reading.numbers import read_integer
+
         return read_integer(answer)
 
     def distance(

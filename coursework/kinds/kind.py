@@ -10,12 +10,14 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
-from typing import Any, ClassVar, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
 
 import numpy as np
 
 from coursework.errors import BadCourse, nearest
-from coursework.reading.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.reading.reading import Reading
 
 
 class Stated(Protocol):

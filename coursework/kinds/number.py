@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated
 from coursework.kinds.nearness import in_half_widths
 from coursework.language.numbers import plain, significant
-from coursework.reading.numbers import read_number
-from coursework.reading.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.reading.reading import Reading
 
 
 class Number(Kind):
@@ -18,6 +19,8 @@ class Number(Kind):
     prediction = "size"
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        from coursework.reading.numbers import read_number
+
         return read_number(answer, part.unit)
 
     def distance(

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated
 from coursework.language.numbers import significant
-from coursework.reading.points import read_point
-from coursework.reading.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.reading.reading import Reading
 
 
 class Coordinates(Kind):
@@ -17,6 +18,8 @@ class Coordinates(Kind):
     family = "point"
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        from coursework.reading.points import read_point
+
         return read_point(answer, part.unit, len(asking.reference(part.quantity)))
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:

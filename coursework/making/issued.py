@@ -5,14 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coursework.course.course import Course
 from coursework.errors import BadInput
-from coursework.making.issuing import Issuable, Issue
 from coursework.making.students import folded
+
+if TYPE_CHECKING:
+    from coursework.course.course import Course
+    from coursework.making.issuing import Issuable, Issue
 
 ISSUED_FORMAT = 1
 

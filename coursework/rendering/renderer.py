@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING
 from coursework.course.builtin import builtin_root
 from coursework.course.folder import Folder
 from coursework.errors import unknown
-from coursework.sheets.report import Report
-from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout
 
 if TYPE_CHECKING:
     from coursework.motion.animation import Animation
     from coursework.polygons.construction import Construction
-    from coursework.sheets.sheet import StudySheet
+    from coursework.sheets.report import Report
+    from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout, StudySheet
 
 
 PAPERS = ("a4", "letter")

@@ -17,7 +17,7 @@ def statement(handout: Handout) -> str:
     """The statement, the given data and the questions as lines of at most 88 characters."""
     lang = handout.lang
     said = words(lang)["sheet"]
-    code = views.context(handout)["variant"]
+    code = views.variant_code(handout)
     total = views.points_text(handout.points, lang)
     parts = [
         "\n".join((handout.title, "=" * len(handout.title), f"{handout.course} | {code} | {total}")),

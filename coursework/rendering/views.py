@@ -7,9 +7,8 @@ import re
 import sys
 from collections.abc import Sequence
 from functools import lru_cache
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
-from coursework.figures import Beginning, Figure
 from coursework.figures.text import GREEK, SIZE, Run
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
@@ -17,7 +16,6 @@ from coursework.markup.formula_tree import tokens
 from coursework.markup.formulas import quantity_formula
 from coursework.markup.line import to_line
 from coursework.markup.markdown import to_text
-from coursework.polygons.construction import Row
 from coursework.sheets.sheet import (
     Answer,
     AnswerSheet,
@@ -28,6 +26,10 @@ from coursework.sheets.sheet import (
     Question,
     Step,
 )
+
+if TYPE_CHECKING:
+    from coursework.figures import Beginning, Figure
+    from coursework.polygons.construction import Row
 
 Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 
@@ -68,9 +70,14 @@ def context(sheet: Sheet) -> dict[str, object]:
         "guide_together": _GUIDE_TOGETHER,
         "polygon_mm": POLYGON_MM,
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
-        "variant": f"{handout.exercise} · {handout.seed} · v{handout.version}",
+        "variant": variant_code(handout),
         "tolerances": tolerances(handout.questions, handout.lang),
     }
+
+
+def variant_code(handout: Handout) -> str:
+    """What a sheet is told by: exercise, seed and version."""
+    return f"{handout.exercise} · {handout.seed} · v{handout.version}"
 
 
 def figure_of(sheet: Sheet) -> Figure | None:

@@ -10,9 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from coursework.figures import Figure
-from coursework.polygons.construction import Construction
+if TYPE_CHECKING:
+    from coursework.figures import Figure
+    from coursework.polygons.construction import Construction
 
 
 @dataclass(frozen=True)
