@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 
@@ -14,6 +15,8 @@ from coursework.errors import CourseworkError
 
 def main() -> None:
     """Run the command line; a user's mistake is one line on standard error, never a traceback."""
+    # Matrices here are small: threads of the linear algebra would only wait, and use a processor for it.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     sys.exit(run(sys.argv[1:]))
 
 

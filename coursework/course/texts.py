@@ -27,9 +27,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from weakref import WeakSet
 
 from coursework.course.folder import Folder
@@ -37,7 +37,7 @@ from coursework.errors import BadCourse, BadStatement
 from coursework.language.words import languages
 
 if TYPE_CHECKING:
-    import jinja2
+    pass
 
 _HEADING = re.compile(r"^(#{1,2})\s+(.+?)\s*$", re.MULTILINE)
 _ENCODING = "utf-8-sig"  #: a mark of the byte order, which some editors write, is no part of the text
@@ -115,13 +115,24 @@ def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object
         Unknown variable, broken template, a dollar without its partner, a formula that cannot be read: says the
         file and, where it is known, the line.
     """
-    import jinja2
-
     template = _template(path, path.stat().st_mtime_ns, folders, source)
     if isinstance(template, Text):
         return template
-    try:
+    if isinstance(template, _Filled) and template.names <= variables.keys():
         markdown = template.render(variables)
+    else:
+        markdown = _rendered(path, folders, variables, source)
+    text = _text(markdown, path, source, formulas=template not in _proofread)
+    _proofread.add(template)
+    return text
+
+
+def _rendered(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object], source: str) -> str:
+    """A text through Jinja2, which is loaded for those that need it."""
+    import jinja2
+
+    try:
+        return str(_jinja(path, path.stat().st_mtime_ns, folders, source).render(variables))
     except jinja2.UndefinedError as fault:
         names = ", ".join(sorted(variables))
         raise BadStatement(f"{source}: {fault.message}; a text may use: {names}") from fault
@@ -129,9 +140,6 @@ def render(path: Path, folders: tuple[Path, ...], variables: Mapping[str, object
         raise BadStatement(f"{source}: {fault}") from fault
     except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as fault:
         raise BadStatement(f"{source}: an expression fails: {fault}") from fault
-    text = _text(markdown, path, source, formulas=template not in _proofread)
-    _proofread.add(template)
-    return text
 
 
 def _text(markdown: str, path: Path, source: str, *, formulas: bool) -> Text:
@@ -200,32 +208,66 @@ def _stands_alone(section: str) -> bool:
     return True
 
 
-_templates: dict[tuple, jinja2.Template | Text] = {}
+_HOLE = re.compile(r"\{\{ *([A-Za-z_]\w*) *\}\}")
+_CONSTANTS = {"true", "false", "none", "True", "False", "None"}  #: names that Jinja2 reads as values
 
 
-def _template(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> jinja2.Template | Text:
-    import jinja2
+class _Filled:
+    """A text in which variables alone stand, ``{{ r1 }}``: to fill them in is all that Jinja2 would do."""
 
+    def __init__(self, text: str):
+        self.pieces = _HOLE.split(text)
+        self.names = frozenset(self.pieces[1::2])
+
+    @staticmethod
+    def fits(text: str) -> bool:
+        """Whether a text is one."""
+        rest = _HOLE.split(text)
+        return "{{{" not in text and not _TAG.search("".join(rest[::2])) and not _CONSTANTS & {*rest[1::2]}
+
+    def render(self, variables: Mapping[str, object]) -> str:
+        filled = self.pieces.copy()
+        filled[1::2] = [str(variables[name]) for name in self.pieces[1::2]]
+        return "".join(filled)
+
+
+_templates: dict[tuple, Any] = {}
+
+
+def _template(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> Any:
+    """A text to render; one without a variable in it is the same for every variant."""
     key = (path, changed, folders)
     if key not in _templates:
-        environment = jinja2.Environment(
-            loader=jinja2.FileSystemLoader([path.parent, *folders], encoding=_ENCODING),
-            undefined=jinja2.StrictUndefined,
-            autoescape=False,
-            keep_trailing_newline=True,
-        )
         try:
             text = path.read_text(_ENCODING)
-            # A text without a variable in it is the same for every variant.
-            plain = "{{" not in text and "{%" not in text and "{#" not in text
-            _templates[key] = (
-                _text(text, path, source, formulas=True) if plain else environment.get_template(path.name)
-            )
-        except jinja2.TemplateSyntaxError as fault:
-            raise BadStatement(f"{source}, line {fault.lineno}: {fault.message}") from fault
         except UnicodeDecodeError as fault:
             raise BadStatement(f"{source} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
+        if not _TAG.search(text):
+            _templates[key] = _text(text, path, source, formulas=True)
+        elif _Filled.fits(text):
+            _templates[key] = _Filled(text)
+        else:
+            _templates[key] = _jinja(path, changed, folders, source)
     return _templates[key]
+
+
+@lru_cache(maxsize=1024)
+def _jinja(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> Any:
+    """A template of Jinja2; it may include others, from the folders too."""
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader([path.parent, *folders], encoding=_ENCODING),
+        undefined=jinja2.StrictUndefined,
+        autoescape=False,
+        keep_trailing_newline=True,
+    )
+    try:
+        return environment.get_template(path.name)
+    except jinja2.TemplateSyntaxError as fault:
+        raise BadStatement(f"{source}, line {fault.lineno}: {fault.message}") from fault
+    except UnicodeDecodeError as fault:
+        raise BadStatement(f"{source} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
 
 
 class ExerciseTexts:

@@ -24,7 +24,9 @@ class Heading:
     title: str
     course: str
     student: str  #: empty when the paper is nobody's
-    identity: tuple[tuple[str, str], ...] = ()  #: what is called so, and what is printed; empty: a box to fill in by hand
+    identity: tuple[
+        tuple[str, str], ...
+    ] = ()  #: what is called so, and what is printed; empty: a box to fill in by hand
     date: str = ""
     duration: str = ""
     instructions: str = ""  #: Markdown
