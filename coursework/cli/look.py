@@ -105,10 +105,8 @@ def variant(
     as_json: bool,
 ) -> None:
     """Print the records of variants, one JSON object a line with --json."""
-    from coursework.making.issued import record_with_answers
-
     for drawn in _drawn(opened(context)[exercise], range(seed, seed + count), lang, parts):
-        record = record_with_answers(drawn) if solution else drawn.record
+        record = _with_answers(drawn) if solution else drawn.record
         if as_json:
             print_json(record)
             continue
@@ -118,6 +116,12 @@ def variant(
             for part, a in record.get("answers", {}).items()
         ]
         print_table(rows, title=f"{exercise}, seed {drawn.seed}")
+
+
+def _with_answers(drawn: Any) -> dict[str, Any]:
+    from coursework.making.issued import record_with_answers
+
+    return record_with_answers(drawn)
 
 
 @click.command()

@@ -7,12 +7,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from coursework.errors import CourseworkError, WrongValue
 from coursework.figures.ink import EDGE, PINS, WHITE, Disc, turn
-from coursework.figures.paper import Paper
-from coursework.figures.text import read
+
+if TYPE_CHECKING:
+    from coursework.figures.paper import Paper
 
 PIN = 1.1  #: radius of a pin, mm on paper
 BLOCK = complex(3.2, 1.7)  #: half-length and half-height of a slider's block
@@ -73,7 +74,11 @@ def _label(value: object) -> str:
         return ""
     if not isinstance(value, str):
         raise TypeError
-    return value if not value or read(value) else ""
+    if not value:
+        return value
+    from coursework.figures.text import read
+
+    return value if read(value) else ""
 
 
 def _positive(value: float) -> float:

@@ -9,6 +9,7 @@ import cmath
 import math
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 from coursework.figures.base import AWAY, BLOCK, NEAR, SLOT, Bars, Element, Positive, circle_points, ring
 from coursework.figures.ink import (
@@ -22,6 +23,7 @@ from coursework.figures.ink import (
     GUIDES,
     MARKS,
     NONE,
+    SIDES,
     THIN,
     TINT,
     WHITE,
@@ -30,9 +32,9 @@ from coursework.figures.ink import (
     added,
     turn,
 )
-from coursework.figures.paper import Paper
-from coursework.figures.placing import SIDES, distance, within
-from coursework.figures.text import read
+
+if TYPE_CHECKING:
+    from coursework.figures.paper import Paper
 
 
 @dataclass(frozen=True)
@@ -117,6 +119,8 @@ class bar(Element):
             for before, corner, after in zip(points, points[1:], points[2:], strict=False):
                 _gusset(paper, before, corner, after)
         if plate:
+            from coursework.figures.text import read
+
             center = added(points) / len(points)
             paper.toward(self.label, center, 1j, -read(self.label).box[1] / 2 if self.label else 0.0, SIDES)
         else:
@@ -210,6 +214,8 @@ class section(Element):
 
     def draw(self, paper: Paper) -> None:
         points = tuple(map(paper.at, self.points))
+        from coursework.figures.text import read
+
         label = self.label or ""
         hole = _hole(points, read(label).box) if label else ()
         for a, b in _hatching((points, hole), turn(self.angle), self.spacing):
@@ -227,6 +233,8 @@ def _sides(points: tuple[complex, ...]) -> Bars:
 
 def _hole(points: tuple[complex, ...], box: tuple[float, float]) -> tuple[complex, ...]:
     """Corners of a gap in the hatching for a label, where the polygon is widest; none if it fits nowhere."""
+    from coursework.figures.placing import distance, within
+
     half = complex(box[0] / 2 + 1, box[1] / 2 + 1)
     corners = (half, -half.conjugate(), -half, half.conjugate())
     rim = (*corners, half.real, -half.real, 1j * half.imag, -1j * half.imag)

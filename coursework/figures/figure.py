@@ -5,23 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from coursework.errors import WrongValue
 from coursework.figures.base import Element
 from coursework.figures.ink import MARKS, THIN, Ink, Path
-from coursework.figures.paper import Paper
-from coursework.figures.placing import Label, place
-from coursework.figures.writing import (
-    Lettering,
-    Letters,
-    as_outlines,
-    as_text,
-    left_out,
-    letters,
-    pieces,
-    written,
-)
+
+if TYPE_CHECKING:
+    from coursework.figures.paper import Paper
+    from coursework.figures.placing import Label
+    from coursework.figures.writing import Lettering, Letters
 
 _PAPER_MM = (110.0, 75.0)  #: what a drawing takes at most unless told
 _MARGIN = 1.0  #: white round the drawing, mm
@@ -66,6 +59,8 @@ class _Layout:
 
     def svg(self, count: int | None, lettering: Lettering) -> str:
         """What the first elements drew, in the frame of them all."""
+        from coursework.figures.writing import pieces, written
+
         if lettering not in self._written:
             # Every piece is written once, however many times a part of the drawing is shown.
             lines, texts = pieces(self.ink, self.labels, self.corner, lettering)
@@ -86,6 +81,8 @@ class _Layout:
 
     @cached_property
     def _letters(self) -> list[tuple[int, Letters]]:
+        from coursework.figures.writing import letters
+
         return [(k, letters(label, self.corner)) for k, label in zip(self.named, self.labels, strict=True)]
 
 
@@ -190,6 +187,8 @@ class Figure:
 
     def _drawn(self, scale: float) -> tuple[Paper, list[int], list[int]]:
         """Ink and wishes for labels at a scale; and the element, by its place, that each comes from."""
+        from coursework.figures.paper import Paper
+
         low, high = self._extent
         bars = [bar for element in self.elements for bar in element.bars()]
         paper = Paper(scale, bars, (low + high) / 2)
@@ -202,6 +201,8 @@ class Figure:
         return paper, drew, wished
 
     def _laid_out(self, scale: float) -> _Layout:
+        from coursework.figures.placing import place
+
         paper, drew, wished = self._drawn(scale)
         labels, order = place(paper.wishes, paper.ink)
         named = [wished[k] for k in order]
@@ -271,14 +272,20 @@ class Figure:
 
     def svg(self) -> str:
         """The drawing as SVG, in mm, labels as text."""
+        from coursework.figures.writing import as_text
+
         return self._layout.svg(None, as_text)
 
     def outlined_svg(self) -> str:
         """The same with labels as outlines: looks the same on a machine without the font."""
+        from coursework.figures.writing import as_outlines
+
         return self._layout.svg(None, as_outlines)
 
     def bare_svg(self) -> str:
         """The same without the letters of its labels, for who sets them over it: see :meth:`letters`."""
+        from coursework.figures.writing import left_out
+
         return self._layout.svg(None, left_out)
 
     def letters(self) -> tuple[Letters, ...]:
@@ -316,14 +323,20 @@ class Beginning:
 
     def svg(self) -> str:
         """The drawing as SVG, in mm, labels as text."""
+        from coursework.figures.writing import as_text
+
         return self.whole._layout.svg(self.count, as_text)
 
     def outlined_svg(self) -> str:
         """The same with labels as outlines."""
+        from coursework.figures.writing import as_outlines
+
         return self.whole._layout.svg(self.count, as_outlines)
 
     def bare_svg(self) -> str:
         """The same without the letters of its labels."""
+        from coursework.figures.writing import left_out
+
         return self.whole._layout.svg(self.count, left_out)
 
     def letters(self) -> tuple[Letters, ...]:

@@ -12,8 +12,11 @@ from typing import TypeVar
 
 BAR, EDGE, THIN = 0.6, 0.35, 0.2  #: line widths, mm
 DASHED, CHAIN, DOTTED = "1.6 1", "4 1 0.6 1", "0.8 0.8"
+HEAD = 2.2  #: length of an arrow head, mm
 FONT = "Libertinus Serif"
 WHITE, TINT, BLACK, NONE = "#fff", "#e4e4e4", "#000", "none"
+
+INSIDE, NAMES, ANGLES, SIDES = range(4)  #: ranks of labels: those with least choice first
 
 # From the bottom to the top of the pile.
 FILLS, LINES, GUIDES, BLOCKS, BARS, PINS, MARKS = range(7)

@@ -3,12 +3,27 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from coursework.figures.base import AWAY, Element, Positive, arc_points, circle_points
-from coursework.figures.ink import BAR, CHAIN, DASHED, DOTTED, EDGE, MARKS, THIN, Arc, Disc, Path, turn
-from coursework.figures.paper import HEAD, Paper
-from coursework.figures.placing import SIDES
-from coursework.figures.text import read
+from coursework.figures.ink import (
+    BAR,
+    CHAIN,
+    DASHED,
+    DOTTED,
+    EDGE,
+    HEAD,
+    MARKS,
+    SIDES,
+    THIN,
+    Arc,
+    Disc,
+    Path,
+    turn,
+)
+
+if TYPE_CHECKING:
+    from coursework.figures.paper import Paper
 
 
 @dataclass(frozen=True)
@@ -19,6 +34,8 @@ class note(Element):
     label: str | None
 
     def draw(self, paper: Paper) -> None:
+        from coursework.figures.text import read
+
         text = read(self.label) if self.label else None
         if text is not None:
             # A negative start lets the first candidate sit on the point itself.

@@ -23,6 +23,7 @@ from coursework.figures.ink import (
     FILLS,
     LINES,
     MARKS,
+    NAMES,
     PINS,
     THIN,
     WHITE,
@@ -37,7 +38,7 @@ from coursework.figures.ink import (
 )
 from coursework.figures.marks import centre_line, line, rotation_arrow
 from coursework.figures.paper import Paper
-from coursework.figures.placing import NAMES, Wish
+from coursework.figures.placing import Wish
 from coursework.figures.riding import ride
 from coursework.figures.text import read
 from coursework.figures.writing import accents, as_outlines, baseline

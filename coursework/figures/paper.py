@@ -6,10 +6,23 @@ import cmath
 import math
 from collections.abc import Iterable, Sequence
 
-from coursework.figures.ink import BLACK, EDGE, LINES, MARKS, THIN, Arc, Ink, Path, turn
-from coursework.figures.placing import ANGLES, INSIDE, NAMES, SIDES, Wish, distance
-
-HEAD = 2.2  #: length of an arrow head, mm
+from coursework.figures.ink import (
+    ANGLES,
+    BLACK,
+    EDGE,
+    HEAD,
+    INSIDE,
+    LINES,
+    MARKS,
+    NAMES,
+    SIDES,
+    THIN,
+    Arc,
+    Ink,
+    Path,
+    turn,
+)
+from coursework.figures.placing import Wish, distance
 
 
 class Paper:

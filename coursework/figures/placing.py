@@ -13,7 +13,7 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from coursework.figures.ink import BAR, THIN, Ink, turn
+from coursework.figures.ink import ANGLES, BAR, THIN, Ink, turn
 from coursework.figures.text import Text, read
 
 _CLEAR = 0.45  #: least white between a label and a line, mm
@@ -25,7 +25,6 @@ _NEARER = 0.2  #: a label is nearer to its own line than to any other that has a
 _ALOOF = 2.0  #: least white between a label with a leader and another line that has a label, mm
 _FAR = 9.5  #: so far a label goes to be told apart better, mm
 _STEPS = (0.0, 0.5, 1.0, 1.7, 2.5, 3.5, 5.0, 7.0, 9.5, 12.5, 16.0, 20.0, 26.0, 34.0, 45.0, 60.0)
-INSIDE, NAMES, ANGLES, SIDES = range(4)  #: ranks of labels: those with least choice first
 _FRACTIONS = (0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75)
 _RAYS = 2 * len(_FRACTIONS) + 16  #: on which places lie, at most
 _MORE = 8.0  #: mm round a place in which lines are looked up with it

@@ -10,8 +10,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from coursework.figures.ink import turn
-from coursework.figures.placing import ANGLES, NAMES, Wish
+from coursework.figures.ink import ANGLES, NAMES, turn
+from coursework.figures.placing import Wish
 from coursework.figures.text import read
 
 _ON_LINE = 6.0  #: what it costs to lie on a line, in mm away from the best place

@@ -20,11 +20,8 @@ from mdit_py_plugins.dollarmath import dollarmath_plugin
 from coursework.errors import BadStatement
 from coursework.language.typography import typeset
 from coursework.language.words import words
-from coursework.markup.latex import to_notebook
 from coursework.markup.line import to_line
-from coursework.markup.mathml import to_mathml
 from coursework.markup.spoken import spoken
-from coursework.markup.typst import to_typst
 
 
 @cache
@@ -86,6 +83,8 @@ def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
 
     The semicolon ends the call: a parenthesis that follows it in the text is text.
     """
+    from coursework.markup.typst import to_typst
+
     call = "display-formula" if display else "formula"
     whole = ", whole: true" if not display and len(to_line(tex, lang)) <= _WHOLE else ""
     return f"#{call}({typst_string(spoken(tex, lang))}, ${to_typst(tex, lang)}${whole});"
@@ -208,6 +207,8 @@ def formula_words(markdown: str, lang: str) -> str:
 
 @cache
 def _html_reader(lang: str) -> MarkdownIt:
+    from coursework.markup.mathml import to_mathml
+
     def formula(display: bool) -> Callable[..., str]:
         return lambda renderer, tokens, at, *_: to_mathml(tokens[at].content.strip(), lang, display)
 
@@ -256,6 +257,7 @@ def notebook_text(text: str, lang: str) -> str:
 
 def to_notebook_markdown(markdown: str, lang: str) -> str:
     """Markdown as a notebook shows it: numbers written out in formulas, no HTML."""
+    from coursework.markup.latex import to_notebook
 
     def prose(text: str) -> str:
         lines = text.split("\n")

@@ -1,0 +1,40 @@
+"""What a command loads: nothing heavy that it does not need."""
+
+import subprocess
+import sys
+
+import pytest
+
+SOLVE = "solve slotted_mechanism --set r1=228.6mm --set r2=114.3mm --set theta2=135deg --only rA,theta4"
+CODE = "import sys; from coursework.cli import run; run(sys.argv[1:]); print('loaded', *sys.modules)"
+
+
+def loaded(command):
+    done = subprocess.run(
+        [sys.executable, "-c", CODE, *command.split()], capture_output=True, text=True, check=True
+    )
+    said, _, modules = done.stdout.partition("loaded ")
+    assert said.strip()
+    assert not done.stderr
+    return set(modules.split())
+
+
+@pytest.mark.parametrize(
+    "command", ["show slotted_mechanism", "variant slotted_mechanism --seed 1 --json", SOLVE]
+)
+def test_a_command_loads_no_library_that_it_does_not_need(command):
+    modules = loaded(command)
+    assert "numpy" in modules
+    assert not modules & {"scipy", "nbformat", "typst", "rich", "matplotlib", "concurrent.futures", "jinja2"}
+
+
+@pytest.mark.parametrize("command", ["variant slotted_mechanism --seed 1 --json", SOLVE])
+def test_numbers_need_no_formulas_and_no_sheets(command):
+    modules = loaded(command)
+    assert not modules & {"markdown_it", "coursework.markup.formula_tree", "coursework.sheets.sheet"}
+    assert not modules & {"coursework.figures.placing", "coursework.course.answer_key"}
+
+
+def test_a_variant_is_drawn_without_its_solution():
+    modules = loaded("variant slotted_mechanism --seed 1 --json")
+    assert not modules & {"coursework.solution", "coursework.reading.numbers", "coursework.polygons"}
