@@ -7,6 +7,7 @@ what Python compiled and what ``list`` keeps. ``list, nothing kept`` begins with
 """
 
 import os
+import resource
 import statistics
 import subprocess
 import sys
@@ -51,11 +52,10 @@ def process(name, kept):
 def seconds(name, kept):
     """Wall and processor seconds of one process (user and system)."""
     command, surroundings = process(name, kept)
-    begun, spent = time.perf_counter(), os.times()
+    begun, spent = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run(command, env=surroundings, stdout=subprocess.DEVNULL, check=True)
-    ended, wall = os.times(), time.perf_counter() - begun
-    used = ended.children_user + ended.children_system - spent.children_user - spent.children_system
-    return wall, used
+    wall, ended = time.perf_counter() - begun, resource.getrusage(resource.RUSAGE_CHILDREN)
+    return wall, ended.ru_utime + ended.ru_stime - spent.ru_utime - spent.ru_stime
 
 
 def table(measured, which):
