@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from coursework.cli.assignments import build_assignment, is_assignment
 from coursework.cli.options import (
     Lists,
     Whole,
@@ -159,13 +160,20 @@ def notebook(
     default=True,
     help="Velocity and acceleration polygons in the worked solutions; without them a build takes half to two thirds of the time.",
 )
-@click.option(
-    "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."
-)
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder to write.")
 @click.option(
     "--overwrite",
     is_flag=True,
     help="Replace what was issued there before. Files that were filled in or changed are set aside, not lost.",
+)
+@click.option(
+    "--again",
+    multiple=True,
+    metavar="STUDENT",
+    help="Of an assignment: write a lost paper once more, as it was.",
+)
+@click.option(
+    "--make-up", multiple=True, metavar="STUDENT", help="Of an assignment: another paper for who makes up."
 )
 @click.pass_context
 def build(
@@ -181,10 +189,22 @@ def build(
     paper: str,
     booklet: bool,
     polygons: bool,
-    out: Path,
+    out: Path | None,
     overwrite: bool,
+    again: Sequence[str],
+    make_up: Sequence[str],
 ) -> None:
-    """Make sheets, notebooks and pages for a class, with the staff's half beside them."""
+    """Make sheets, notebooks and pages for a class, with the staff's half beside them.
+
+    Of exercises, or of an assignment: a file such as midterm.toml, which makes one paper of several exercises.
+    """
+    if is_assignment(exercises):
+        build_assignment(context, Path(exercises[0]), again=again, make_up=make_up, overwrite=overwrite)
+        return
+    if again or make_up:
+        raise BadInput("--again and --make-up are of an assignment: coursework build FILE.toml …")
+    if out is None:
+        raise BadInput("no folder to write: --out DIR")
     from coursework.making.roster import read_roster
 
     if roster and count:
@@ -248,7 +268,7 @@ def build_files(
     from coursework.system.writing import write_tree
 
     issues = issue(course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts)
-    issued = json_text(issued_content(course, issues))
+    issued = json_text(issued_content(issues))
     before = out / "issued.json"
     if before.is_file() and before.read_bytes() != issued.encode("utf-8") and not overwrite:
         raise BadInput(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Generic, Protocol, TypeVar
@@ -282,6 +283,13 @@ class CourseExercise(Generic[V]):
             p
             for p in self.spec.parts
             if ALL in parts or p.id in parts or (USUAL in parts and not p.by_request)
+        )
+
+    def parts_worth(self, points: Mapping[str, float]) -> tuple[Part, ...]:
+        """Parts by id, each worth so many points."""
+        parts = {part.id: part for part in self.spec.parts}
+        return tuple(
+            replace(parts[i], points=n) if parts[i].points != n else parts[i] for i, n in points.items()
         )
 
     def from_record(self, record: Mapping[str, Any]) -> V:

@@ -59,7 +59,7 @@ class Records:
         return Recorded(seed, given, str(record.get("lang", "fr")), parts, issued)
 
     def _parts_of(self, asked: tuple[tuple[str, float], ...], older: bool) -> tuple[Part, ...]:
-        """The parts that a record asks, by id; those of an older version are worth what they were then."""
+        """The parts that a record asks, by id, worth what it says: an assignment may say so, or an older version."""
         if (asked, older) not in self._parts:
             points = dict(asked)
             gone = [i for i in points if self.spec.part(i) is None]
@@ -69,8 +69,7 @@ class Records:
                     f"course {'no longer has' if older else 'does not have'}; mark it with the course it was issued from"
                 )
             found = tuple(p for p in self.spec.parts if p.id in points)
-            if older:
-                found = tuple(replace(p, points=points[p.id]) for p in found)
+            found = tuple(p if p.points == points[p.id] else replace(p, points=points[p.id]) for p in found)
             self._parts[asked, older] = found
         return self._parts[asked, older]
 

@@ -47,7 +47,7 @@ class Variant:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """In another process it is made anew of the exercise there; what its key has computed goes along."""
-        chosen = None if self.chosen is None else tuple(part.id for part in self.chosen)
+        chosen = None if self.chosen is None else {part.id: part.points for part in self.chosen}
         numbers = None if self._key is None else self._key.numbers
         return _made_anew, (
             type(self), self.exercise, self.seed, dict(self.given), self.lang, chosen, self._issued, numbers,
@@ -87,6 +87,10 @@ class Variant:
         variant = type(self)(self.exercise, self.seed, self.given, lang, self.chosen, self._issued)
         variant._key = self._key  # it speaks no language
         return variant
+
+    def asking(self, parts: Sequence[Part]) -> Self:
+        """The same variant with other parts, or the same worth other points."""
+        return type(self)(self.exercise, self.seed, self.given, self.lang, tuple(parts), self._issued)
 
     def quantities(self, names: Iterable[str]) -> dict[str, Any]:
         """Quantities of this variant alone, as the solution gives them; each is computed once.
@@ -240,14 +244,12 @@ def _made_anew(
     seed: int,
     given: Mapping[str, Any],
     lang: str,
-    chosen: Sequence[str] | None,
+    chosen: Mapping[str, float] | None,
     issued: Mapping[str, Any] | None,
     numbers: KeyNumbers | None,
 ) -> Variant:
-    parts = {part.id: part for part in exercise.spec.parts}
-    variant = kind(
-        exercise, seed, given, lang, None if chosen is None else [parts[i] for i in chosen], issued
-    )
+    parts = None if chosen is None else exercise.parts_worth(chosen)
+    variant = kind(exercise, seed, given, lang, parts, issued)
     if numbers is not None:
         from coursework.course.answer_key import Key
 

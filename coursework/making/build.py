@@ -49,14 +49,19 @@ def files(
             yield from _sheets(course, renderer, issue, lang, formats, practice, polygons)
     if booklet:
         yield from booklets.files(course, renderer, issues, polygons=polygons)
-    content = issued_content(course, issues)
+    content = issued_content(issues)
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
     yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS))
     if course.folder.has_solutions:
-        key = key_content(issues)
-        folder = Path("instructor")
-        yield File(folder / "key.json", _text(lambda: json_text(key)))
-        yield File(folder / "key.csv", lambda: csv_file(key_rows(key), KEY_COLUMNS))
+        yield from key_files(issues)
+
+
+def key_files(issues: Sequence[Issue]) -> Iterator[File]:
+    """The key, for the staff: as JSON and as a table."""
+    key = key_content(issues)
+    folder = Path("instructor")
+    yield File(folder / "key.json", _text(lambda: json_text(key)))
+    yield File(folder / "key.csv", lambda: csv_file(key_rows(key), KEY_COLUMNS))
 
 
 def _sheets(

@@ -13,7 +13,7 @@ from coursework.errors import BadInput
 from coursework.making.students import folded
 
 if TYPE_CHECKING:
-    from coursework.course.course import Course
+    from coursework.making.assignment import Assignment
     from coursework.making.issuing import Issuable, Issue
 
 ISSUED_FORMAT = 1
@@ -80,13 +80,23 @@ class Issued:
         return {e: self.seeds[student, e] for e in self.exercises if (student, e) in self.seeds}
 
 
-def issued_content(course: Course, issues: Sequence[Issue]) -> dict[str, Any]:
+def issued_content(issues: Sequence[Issue], assignment: Assignment | None = None) -> dict[str, Any]:
     """What ``issued.json`` says: who got which record. No answers."""
+    columns = {i.student: dict(i.columns) for i in issues if i.student and i.columns}
     return {
         "format": ISSUED_FORMAT,
         "roster": any(i.student for i in issues),
-        "issued": [{"student": i.student, "record": i.variant.record} for i in issues],
+        **({} if assignment is None else {"assignment": assignment.stated()}),
+        **({"students": columns} if columns else {}),
+        "issued": [_item(i) for i in issues],
     }
+
+
+def _item(issue: Issue) -> dict[str, Any]:
+    """One record, and whose it is."""
+    sitting = {} if issue.sitting == 1 else {"sitting": issue.sitting}
+    version = {"version": issue.version} if issue.version else {}
+    return {"student": issue.student, **sitting, **version, "record": issue.variant.record}
 
 
 def plain_value(value: Any) -> Any:

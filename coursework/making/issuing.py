@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol, Self, TypeVar
 
 from coursework.course import draws
@@ -104,6 +104,9 @@ class Issue:
     variant: Issuable
     langs: tuple[str, ...]
     stem: str  #: what its files are called
+    sitting: int = 1  #: 2 for who makes up
+    version: str = ""  #: A to D, where versions are dealt out
+    columns: Mapping[str, str] = field(default_factory=dict)  #: of the student's line in the roster
 
 
 def issue(
@@ -145,7 +148,9 @@ def issue(
         for student, stem, variant in zip(students, stems, variants, strict=True):
             own = (student.lang,) if student.lang else tuple(langs)
             stem = stem or f"{variant.seed:05d}"
-            issues.append(Issue(student.name, variant.in_language(own[0]), own, stem))
+            issues.append(
+                Issue(student.name, variant.in_language(own[0]), own, stem, columns=student.columns)
+            )
     return issues
 
 

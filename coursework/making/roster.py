@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from coursework.errors import BadInput, counted
@@ -22,6 +22,11 @@ _FIRST_NAME = (
     "prénom", "prenom", "prénoms", "prenoms", "first name", "firstname", "given name", "forename",
 )  # fmt: skip
 _LANG = ("lang", "language", "langue")
+_NUMBER = (
+    "number", "student number", "student id", "id", "id number", "numéro", "numero", "numéro d'étudiant", "n°", "no",
+    "matricule", "ine",
+)  # fmt: skip
+_EMAIL = ("email", "e-mail", "mail", "email address", "courriel", "adresse de courriel", "adresse e-mail")
 
 
 @dataclass(frozen=True)
@@ -30,6 +35,14 @@ class Student:
 
     name: str
     lang: str = ""
+    columns: Mapping[str, str] = field(default_factory=dict)  #: every other column, by its title as written
+
+    @property
+    def who(self) -> str:
+        """What draws hang on: the number or e-mail where the roster has one, else the name."""
+        plain = {_plain(title): value for title, value in self.columns.items() if value}
+        own = next((plain[title] for title in (*_NUMBER, *_EMAIL) if title in plain), "")
+        return own.strip().casefold() or folded(self.name)
 
 
 def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> list[Student]:
@@ -43,12 +56,17 @@ def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> 
         The file cannot be read, has a row without a name or with too many cells, names no student, or one twice.
     """
     header, *rows = _rows(path, tell) or [(1, [])]
-    titles = [" ".join(re.split(r"[\s_]+", cell.strip())).casefold() for cell in header[1]]
+    titles = [_plain(cell) for cell in header[1]]
     named = _name_columns(titles)
     if not named:
         found = ", ".join(cell.strip() for cell in header[1] if cell.strip()) or "nothing"
         raise BadInput(f"the roster {path} needs a column named student; found {found}")
     lang_column = next((titles.index(c) for c in _LANG if c in titles), None)
+    others = [
+        column
+        for column, title in enumerate(header[1])
+        if column not in named and column != lang_column and title.strip()
+    ]
     students: list[Student] = []
     seen: dict[str, int] = {}
     for number, cells in rows:
@@ -71,19 +89,24 @@ def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> 
                 "tell them apart, by a number for instance"
             )
         seen[folded(name)] = number
-        students.append(Student(name, lang))
+        own = {header[1][c].strip(): cells[c].strip() for c in others}
+        students.append(Student(name, lang, own))
     if not students:
         raise BadInput(f"the roster {path} names no student")
-    used = [*named, *([] if lang_column is None else [lang_column])]
-    unused = [
-        header[1][column].strip() or "one without a title"
-        for column in range(len(titles))
-        if column not in used and any(cells[column].strip() for _, cells in [header, *rows])
+    untitled = [
+        column
+        for column, title in enumerate(titles)
+        if not title and any(column < len(cells) and cells[column].strip() for _, cells in rows)
     ]
-    if unused:
-        told = ", ".join(header[1][column].strip() for column in used)
-        tell(f"columns of the roster {path} that are not used: {', '.join(unused)}; used: {told}")
+    if untitled:
+        tell(
+            f"the roster {path} has a column without a title, which is not used; give it one to carry it through"
+        )
     return students
+
+
+def _plain(title: str) -> str:
+    return " ".join(re.split(r"[\s_]+", title.strip())).casefold()
 
 
 def _name_columns(titles: list[str]) -> list[int]:

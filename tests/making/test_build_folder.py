@@ -200,7 +200,7 @@ def test_the_demo_deletes_no_file_of_ones_own(tmp_path, monkeypatch):
     monkeypatch.setattr(demo, "HABITS", demo.HABITS[:1])
     course = coursework.open_course()
     issues = issuing.issue(course, ["slotted_mechanism"], first_seed=3, count=1, langs=["fr"], roster=CLASS)
-    issued = Issued(issued_content(course, issues), "issued.json")
+    issued = Issued(issued_content(issues), "issued.json")
     (note,) = demo._hand_in(course, issued, folder)
     assert "answers.before.csv" in note
     assert demo._hand_in(course, issued, folder) == []

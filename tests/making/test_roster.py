@@ -42,10 +42,11 @@ def test_surname_and_first_name_make_one_name_in_the_files_order(tmp_path, heade
     assert notes == []
 
 
-def test_columns_that_are_not_used_are_told_once(tmp_path):
+def test_other_columns_are_carried_through_and_one_without_a_title_is_told_once(tmp_path):
     students, (note,) = read(tmp_path, "Groupe,student,Nom,\nA,Ann,Smith,x\nB,Bo,Roux,\n")
     assert [s.name for s in students] == ["Ann", "Bo"]
-    assert "not used: Groupe, Nom, one without a title; used: student" in note
+    assert [s.columns for s in students] == [{"Groupe": "A", "Nom": "Smith"}, {"Groupe": "B", "Nom": "Roux"}]
+    assert "a column without a title, which is not used" in note
 
 
 def test_a_roster_that_excel_saved_is_read_and_said(tmp_path):

@@ -1,0 +1,156 @@
+"""What ``build`` does with an assignment's file."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from coursework.cli.options import opened, tell
+from coursework.cli.printing import progress_bar
+from coursework.errors import BadInput, counted, nearest
+
+if TYPE_CHECKING:
+    from coursework.making.assignment import Assignment
+
+
+def is_assignment(exercises: Sequence[str]) -> bool:
+    """Whether a file is named in place of exercises."""
+    return len(exercises) == 1 and exercises[0].endswith(".toml")
+
+
+@dataclass(frozen=True)
+class _Settings:
+    """The options of a build: those that were given win over those of the file."""
+
+    context: click.Context
+    assignment: Assignment
+    base: Path  #: the file's folder, from which its paths are told
+
+    def of(self, name: str, option: str = "") -> Any:
+        """An option's value; ``option`` is what the command calls it."""
+        option = option or name
+        given = self.context.params[option]
+        default = click.core.ParameterSource.DEFAULT
+        if self.context.get_parameter_source(option) is not default or name not in self.assignment.options:
+            return given
+        parameter = next(p for p in self.context.command.params if p.name == option)
+        value = self.assignment.options[name]
+        value = ",".join(map(str, value)) if isinstance(value, list) else value
+        try:
+            return parameter.type_cast_value(self.context, value)
+        except click.BadParameter as fault:
+            raise BadInput(f"{self.base / self.assignment.name}.toml: {name}: {fault.message}") from fault
+
+    def path(self, name: str) -> Path | None:
+        found = self.of(name)
+        if found is None:
+            return None
+        told = self.context.get_parameter_source(name) is not click.core.ParameterSource.DEFAULT
+        return Path(found) if told else self.base / found
+
+
+def build_assignment(
+    context: click.Context, path: Path, *, again: Sequence[str], make_up: Sequence[str], overwrite: bool
+) -> None:
+    """Issue an assignment and write its files."""
+    from coursework.making import papers
+    from coursework.making.assignment import read_assignment
+    from coursework.making.dealing import deal
+    from coursework.making.issued import issued_content
+    from coursework.making.roster import Student, read_roster
+    from coursework.system.tables import json_text
+    from coursework.system.writing import write_tree
+
+    course = opened(context)
+    assignment = read_assignment(path, course)
+    settings = _Settings(context, assignment, path.parent)
+    out = settings.path("out")
+    if out is None:
+        raise BadInput(f'{path} says no folder to write: --out DIR, or out = "…" in the file')
+    if settings.of("practice"):
+        raise BadInput(
+            "self-study notebooks are built by naming exercises: coursework build EXERCISE … --practice"
+        )
+    before = None if overwrite else _issued_before(out / "issued.json")
+    if before is None and (again or make_up):
+        which = "--again" if again else "--make-up"
+        raise BadInput(f"{which} is for what was issued: there is no {out / 'issued.json'}")
+    notes: list[str] = []
+    roster = settings.path("roster")
+    if roster is not None and not again:
+        students = read_roster(roster, notes.append)
+        _check_identity(assignment, students, notes)
+    elif before is not None and before.get("roster"):
+        students = []
+        if not again and not make_up:
+            raise BadInput(
+                f"papers were issued by a roster: name it, --roster FILE.csv ({out / 'issued.json'})"
+            )
+    else:
+        students = [Student("") for _ in range(settings.of("variants", "count") or 1)]
+    dealt = deal(course, assignment, students, settings.of("lang", "langs"), before, make_up)
+    names = {issue.student for issue in dealt.issues}
+    only = None if not again else {_known(name, names) for name in again}
+    wanted = list(
+        papers.files(
+            course,
+            assignment,
+            dealt.issues,
+            settings.of("formats"),
+            paper=settings.of("paper"),
+            booklet=settings.of("booklet"),
+            polygons=settings.of("polygons"),
+            only=only,
+        )
+    )
+    if not again and not make_up:
+        notes += dealt.notes
+    tell(notes)
+    same = json_text(issued_content(dealt.issues, assignment)).encode("utf-8")
+    kept = before is not None and (out / "issued.json").read_bytes() == same
+    with progress_bar("building", len(wanted)) as advance:
+        tell(write_tree(out, wanted, advance, anew=overwrite))
+    count = len({(i.stem, i.sitting) for i in dealt.issues if only is None or i.student in only})
+    what = "as it was issued" if kept or again else "to give away, issued.json and answers.csv to keep"
+    click.echo(f"{counted(count, 'paper')} in {out}: {counted(len(wanted), 'file')}, {what}")
+    if course.folder.has_solutions:
+        click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
+
+
+def _issued_before(path: Path) -> Mapping[str, Any] | None:
+    if not path.is_file():
+        return None
+    try:
+        content = json.loads(path.read_text("utf-8"))
+    except (ValueError, UnicodeDecodeError) as fault:
+        raise BadInput(f"{path} is not JSON: {str(fault)[:100]}") from fault
+    if not isinstance(content, dict) or not isinstance(content.get("issued"), list):
+        raise BadInput(f"{path} is no list of issued records; choose another --out, or --overwrite")
+    return content
+
+
+def _known(name: str, names: set[str]) -> str:
+    from coursework.making.students import folded
+
+    found = next((one for one in names if folded(one) == folded(name)), None)
+    if found is None:
+        raise BadInput(f"no student {name!r} was issued a paper{nearest(name, names)}")
+    return found
+
+
+def _check_identity(assignment: Assignment, students: Sequence[Any], notes: list[str]) -> None:
+    """Columns that are to be printed should be in the roster; else there are boxes."""
+    from coursework.making.students import folded
+
+    columns = list(dict.fromkeys(title for student in students for title in student.columns))
+    known = set(map(folded, columns))
+    for title in assignment.identity:
+        if folded(title) not in known:
+            notes.append(
+                f"the roster has no column {title!r}{nearest(title, columns) if columns else ''}: a box to fill in by hand is printed"
+            )

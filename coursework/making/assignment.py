@@ -1,0 +1,348 @@
+"""An assignment: what an instructor hands out and marks as one thing, stated in a TOML file.
+
+A key that there is not, a part that an exercise does not have, points that are no number, a date that is none: each is
+told with the file, its line and what would do.
+"""
+
+from __future__ import annotations
+
+import datetime
+import re
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+from coursework.course.exercise import ALL, USUAL, CourseExercise
+from coursework.course.marking_rules import Rules
+from coursework.errors import BadCourse, BadInput, nearest
+from coursework.language.words import languages
+from coursework.sheets.paper import Logo
+
+Texts = Mapping[str, str]  #: by language
+EACH = "each"  #: a variant a student
+MOST_VERSIONS = 26
+SITTINGS = ("best", "last")
+ANSWERS = ("shown", "never")
+#: Options of ``build`` that may stand in the file; the option wins.
+OPTIONS = ("roster", "formats", "lang", "paper", "practice", "booklet", "polygons", "out")
+
+
+class Exercises(Protocol):
+    """The course that an assignment is of."""
+
+    @property
+    def names(self) -> tuple[str, ...]: ...
+
+    def __getitem__(self, name: str) -> CourseExercise[Any]: ...
+
+
+@dataclass(frozen=True)
+class AskedExercise:
+    """One exercise of an assignment."""
+
+    name: str
+    parts: tuple[str, ...] | None = None  #: ids; the usual ones unless told
+    points: float | Mapping[str, float] | None = (
+        None  #: by part, or for all to share; the exercise's own unless told
+    )
+    seed: int | None = None  #: the same variant for everybody
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What a mark is out of, and its step."""
+
+    of: float
+    step: float
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """A paper: its heading, its exercises, who gets what, how it is marked."""
+
+    name: str  #: the file's stem; draws hang on it
+    exercises: tuple[AskedExercise, ...]
+    title: Texts = field(default_factory=dict)
+    course: Texts = field(default_factory=dict)
+    date: datetime.date | None = None
+    duration: Texts = field(default_factory=dict)
+    instructions: Texts = field(default_factory=dict)  #: Markdown
+    logo: Path | None = None
+    logo_alt: Texts = field(default_factory=dict)
+    cover: bool = False
+    mark: Scale | None = None
+    versions: int | None = None  #: so many are dealt out; None: one a student
+    identity: tuple[str, ...] = ()
+    sittings: str = "best"
+    answers: str = "shown"
+    marking: Mapping[str, Any] = field(default_factory=dict)
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(exercise.name for exercise in self.exercises)
+
+    def stated(self) -> dict[str, Any]:
+        """What ``issued.json`` keeps of it, to mark against."""
+        return {
+            "name": self.name,
+            "title": dict(self.title),
+            "course": dict(self.course),
+            "date": self.date.isoformat() if self.date else "",
+            "duration": dict(self.duration),
+            "mark": None if self.mark is None else {"of": self.mark.of, "step": self.mark.step},
+            "identity": list(self.identity),
+            "sittings": self.sittings,
+            "answers": self.answers,
+            "marking": dict(self.marking),
+            "exercises": list(self.names),
+        }
+
+    def picture(self, lang: str) -> Logo | None:
+        """The logo with its words.
+
+        Raises
+        ------
+        BadInput
+            It cannot be read.
+        """
+        if self.logo is None:
+            return None
+        try:
+            data = self.logo.read_bytes()
+        except OSError as fault:
+            raise BadInput(f"the logo {self.logo} cannot be read: {fault.strerror}") from fault
+        return Logo(data, self.logo.suffix[1:].lower(), text_in(self.logo_alt, lang))
+
+
+def text_in(texts: Texts, lang: str) -> str:
+    """A text in a language, else in the first that it has; nothing where there is none."""
+    return texts.get(lang) or next(iter(texts.values()), "")
+
+
+def read_assignment(path: Path, course: Exercises) -> Assignment:
+    """Read an assignment's file.
+
+    Raises
+    ------
+    BadInput
+        It cannot be read, or says what makes no sense: with the line, and the nearest right name.
+    """
+    try:
+        source = path.read_text("utf-8-sig")
+    except OSError as fault:
+        raise BadInput(f"the assignment {path} cannot be read: {fault.strerror or fault}") from fault
+    except UnicodeDecodeError as fault:
+        raise BadInput(f"{path} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
+    try:
+        table = tomllib.loads(source)
+    except tomllib.TOMLDecodeError as fault:
+        raise BadInput(f"{path}: {fault}") from fault
+    return _Reader(path, source, course).assignment(table)
+
+
+class _Reader:
+    """Reads the tables of one file; what it refuses it tells with the line."""
+
+    def __init__(self, path: Path, source: str, course: Exercises):
+        self.path, self.lines, self.course = path, source.splitlines(), course
+
+    def refused(self, key: str, why: str, exercise: int = -1) -> BadInput:
+        line = self._line(key, exercise)
+        return BadInput(f"{self.path}{f', line {line}' if line else ''}: {why}")
+
+    def _line(self, key: str, exercise: int) -> int:
+        """Where a key stands: at the top, or in a table of exercises; 0 where it is not found."""
+        table, count = "", -1
+        for number, line in enumerate(self.lines, start=1):
+            if heading := re.match(r"\s*\[\[?\s*([\w.]+)", line):
+                table = heading[1]
+                count += table == "exercises"
+                if key in (table, f"[{table}]") and exercise in (-1, count):
+                    return number
+            at_home = (table == "exercises" and count == exercise) if exercise >= 0 else table != "exercises"
+            if at_home and re.match(rf"\s*[\"']?{re.escape(key)}[\"']?\s*(=|\.)", line):
+                return number
+        return 0
+
+    def assignment(self, table: Mapping[str, Any]) -> Assignment:
+        known: dict[str, Callable[[Any], Any]] = {
+            "title": self._texts("title"),
+            "course": self._texts("course"),
+            "date": self._date,
+            "duration": self._texts("duration"),
+            "instructions": self._texts("instructions"),
+            "logo": self._logo,
+            "logo_alt": self._texts("logo_alt"),
+            "cover": self._truth("cover"),
+            "mark": self._mark,
+            "versions": self._versions,
+            "identity": self._identity,
+            "sittings": self._word("sittings", SITTINGS),
+            "answers": self._word("answers", ANSWERS),
+            "marking": self._marking,
+            "exercises": self._exercises,
+        }
+        found: dict[str, Any] = {}
+        options = {}
+        for key, value in table.items():
+            if key in OPTIONS:
+                options[key] = value
+            elif key in known:
+                found[key] = known[key](value)
+            else:
+                raise self.refused(key, f"no key {key!r}{nearest(key, [*known, *OPTIONS])}")
+        if "exercises" not in found:
+            names = ", ".join(self.course.names[:4])
+            raise BadInput(f"{self.path} names no exercise; write [[exercises]] and name = …: {names}, …")
+        if "logo" in found and not found.get("logo_alt"):
+            raise self.refused("logo", 'a logo needs words for who cannot see it: logo_alt = "…"')
+        return Assignment(self.path.stem, options=options, **found)
+
+    # ------------------------------------------------------------------ values
+
+    def _texts(self, key: str) -> Callable[[Any], Texts]:
+        def read(value: Any) -> Texts:
+            if isinstance(value, str):
+                return {"": value}
+            if not isinstance(value, Mapping) or not all(isinstance(v, str) for v in value.values()):
+                raise self.refused(
+                    key, f'{key} is a text, or one a language: {{ fr = "…", en = "…" }}; found {value!r}'
+                )
+            for lang in value:
+                if lang not in languages():
+                    raise self.refused(key, f"{key}: no language {lang!r}{nearest(lang, languages())}")
+            return dict(value)
+
+        return read
+
+    def _truth(self, key: str) -> Callable[[Any], bool]:
+        def read(value: Any) -> bool:
+            if not isinstance(value, bool):
+                raise self.refused(key, f"{key} is true or false; found {value!r}")
+            return value
+
+        return read
+
+    def _word(self, key: str, known: Sequence[str]) -> Callable[[Any], str]:
+        def read(value: Any) -> str:
+            if value not in known:
+                raise self.refused(
+                    key, f"{key} is {' or '.join(known)}; found {value!r}{nearest(str(value), known)}"
+                )
+            return str(value)
+
+        return read
+
+    def _date(self, value: Any) -> datetime.date:
+        if isinstance(value, datetime.datetime):
+            return value.date()
+        if isinstance(value, datetime.date):
+            return value
+        try:
+            return datetime.date.fromisoformat(str(value))
+        except ValueError:
+            raise self.refused("date", f"date is a day such as 2026-12-04; found {value!r}") from None
+
+    def _logo(self, value: Any) -> Path:
+        path = self.path.parent / str(value)
+        if path.suffix.lower() not in (".svg", ".png"):
+            raise self.refused("logo", f"logo is an SVG or a PNG file; found {value!r}")
+        if not path.is_file():
+            raise self.refused("logo", f"logo: there is no file {path}")
+        return path
+
+    def _mark(self, value: Any) -> Scale:
+        if not isinstance(value, Mapping):
+            raise self.refused("mark", f"mark is {{ of = 20, step = 0.5 }}; found {value!r}")
+        for key, number in value.items():
+            if key not in ("of", "step"):
+                raise self.refused("mark", f"mark has no {key!r}{nearest(key, ('of', 'step'))}")
+            if isinstance(number, bool) or not isinstance(number, (int, float)) or not number > 0:
+                raise self.refused("mark", f"mark: {key} is a number above 0; found {number!r}")
+        return Scale(float(value.get("of", 20)), float(value.get("step", 0.5)))
+
+    def _versions(self, value: Any) -> int | None:
+        if value == EACH:
+            return None
+        if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_VERSIONS:
+            raise self.refused(
+                "versions", f'versions is "{EACH}", or a number from 1 to {MOST_VERSIONS}; found {value!r}'
+            )
+        return value
+
+    def _identity(self, value: Any) -> tuple[str, ...]:
+        if not isinstance(value, list) or not all(isinstance(one, str) and one.strip() for one in value):
+            raise self.refused(
+                "identity", f'identity lists columns of the roster: ["number", "group"]; found {value!r}'
+            )
+        return tuple(value)
+
+    def _marking(self, value: Any) -> Mapping[str, Any]:
+        try:
+            Rules.of(value, f"{self.path}, line {self._line('marking', -1)}")
+        except BadCourse as fault:
+            raise BadInput(str(fault)) from fault
+        return dict(value)
+
+    # --------------------------------------------------------------- exercises
+
+    def _exercises(self, value: Any) -> tuple[AskedExercise, ...]:
+        if not isinstance(value, list) or not value or not all(isinstance(one, Mapping) for one in value):
+            raise self.refused("exercises", "exercises are tables: [[exercises]], then name = …")
+        found = tuple(self._exercise(number, one) for number, one in enumerate(value))
+        names = [one.name for one in found]
+        for number, name in enumerate(names):
+            if name in names[:number]:
+                raise self.refused(
+                    "name", f"{name} stands twice; an assignment asks an exercise once", number
+                )
+        return found
+
+    def _exercise(self, number: int, table: Mapping[str, Any]) -> AskedExercise:
+        known = ("name", "parts", "points", "seed")
+        for key in table:
+            if key not in known:
+                raise self.refused(key, f"no key {key!r} in [[exercises]]{nearest(key, known)}", number)
+        name = table.get("name")
+        if name not in self.course.names:
+            near = nearest(str(name), self.course.names)
+            raise self.refused(
+                "name" if "name" in table else "exercises", f"no exercise {name!r}{near}", number
+            )
+        parts = self._parts(number, str(name), table.get("parts"))
+        points = self._points(number, str(name), table.get("points"))
+        seed = table.get("seed")
+        if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
+            raise self.refused("seed", f"a seed is a whole number from 0 on; found {seed!r}", number)
+        return AskedExercise(str(name), parts, points, seed)
+
+    def _parts(self, number: int, name: str, value: Any) -> tuple[str, ...] | None:
+        if value is None:
+            return None
+        asked = [value] if isinstance(value, str) else value
+        if not isinstance(asked, list) or not asked or not all(isinstance(one, str) for one in asked):
+            raise self.refused("parts", f'parts is a list of ids: ["rA", "theta4"]; found {value!r}', number)
+        ids = [*(part.id for part in self.course[name].spec.parts), USUAL, ALL]
+        for one in asked:
+            if one not in ids:
+                raise self.refused("parts", f"{name} has no part {one!r}{nearest(one, ids)}", number)
+        return tuple(asked)
+
+    def _points(self, number: int, name: str, value: Any) -> float | Mapping[str, float] | None:
+        if value is None:
+            return None
+        if not isinstance(value, Mapping):
+            return self._number(number, value)
+        ids = [part.id for part in self.course[name].spec.parts]
+        for part in value:
+            if part not in ids:
+                raise self.refused("points", f"{name} has no part {part!r}{nearest(part, ids)}", number)
+        return {str(part): self._number(number, points) for part, points in value.items()}
+
+    def _number(self, number: int, value: Any) -> float:
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value < float("inf"):
+            raise self.refused("points", f"points are a number above 0; found {value!r}", number)
+        return float(value)

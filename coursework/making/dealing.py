@@ -1,0 +1,348 @@
+"""Who gets which variant of an assignment.
+
+A variant hangs on the assignment's name, the exercise and the student, never on a place in the roster. What was issued
+stays issued: a longer roster adds who is late, and changes nobody else's paper.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from itertools import pairwise
+from typing import Any, TypeVar
+
+from coursework.course.course import Course
+from coursework.course.exercise import CourseExercise
+from coursework.course.variant import Variant
+from coursework.errors import BadInput, Starved, counted, nearest
+from coursework.making.assignment import AskedExercise, Assignment
+from coursework.making.flaws import try_judges, worthy
+from coursework.making.issuing import Issue
+from coursework.making.roster import Student
+from coursework.making.students import file_stems, folded
+from coursework.model import Part
+
+V = TypeVar("V", bound=Variant)
+
+SEEDS = 1_000_000  #: seeds of an assignment have six digits at most
+_ROUNDS = 60  #: draws for one student before variants are said to be used up
+_STEP = Fraction(1, 4)  #: of points that are shared out
+
+
+@dataclass
+class Dealt:
+    """What was dealt, and what should be known of it."""
+
+    issues: list[Issue]
+    notes: list[str] = field(default_factory=list)
+
+
+def seed_for(assignment: str, exercise: str, who: str, round_: int) -> int:
+    """The seed that somebody draws in a round, the same for ever."""
+    key = f"coursework/assignment/{assignment}/{exercise}/{who}/{round_}".encode()
+    return int.from_bytes(hashlib.shake_128(key).digest(8), "little") % SEEDS
+
+
+def deal(
+    course: Course[Any],
+    assignment: Assignment,
+    students: Sequence[Student],
+    langs: Sequence[str],
+    before: Mapping[str, Any] | None = None,
+    make_up: Sequence[str] = (),
+) -> Dealt:
+    """A paper for each student, and a second one for who makes up; ``before`` is what ``issued.json`` says.
+
+    Raises
+    ------
+    BadInput
+        What was issued before was of other exercises, an exercise has no text in one of the languages, or who is to
+        make up is not there.
+    Starved
+        An exercise has no variant that is worth issuing.
+    """
+    hand = _Hand(course, assignment, langs, before)
+    everybody = hand.everybody(students)
+    sittings = [(student, 1) for student in everybody]
+    sittings += [(student, n) for student in everybody for n in range(2, hand.sittings(student.name) + 1)]
+    for name in make_up:
+        student = _named(name, everybody)
+        sittings.append((student, hand.sittings(student.name) + 1))
+    versions = hand.versions([student for student, n in sittings if n == 1], students)
+    papers: dict[tuple[str, int], list[Any]] = {(hand.of(s), n): [] for s, n in sittings}
+    for asked in assignment.exercises:
+        for place, variant in zip(papers, hand.variants(asked, sittings, versions), strict=True):
+            papers[place].append(variant)
+    stems = dict(zip(map(hand.of, everybody), hand.stems(everybody), strict=True))
+    issues = []
+    for (student, sitting), (place, variants) in zip(sittings, papers.items(), strict=True):
+        own = (student.lang,) if student.lang else tuple(langs)
+        stem = stems[place[0]] if sitting == 1 else f"{stems[place[0]]}-{sitting}"
+        version = versions.get(place[0], "") if sitting == 1 else ""
+        issues += [
+            Issue(student.name, v.in_language(own[0]), own, stem, sitting, version, student.columns)
+            for v in variants
+        ]
+    return Dealt(issues, hand.notes)
+
+
+def _named(name: str, students: Sequence[Student]) -> Student:
+    found = next((s for s in students if folded(s.name) == folded(name)), None)
+    if found is None:
+        raise BadInput(f"no student {name!r} was issued a paper{nearest(name, [s.name for s in students])}")
+    return found
+
+
+class _Hand:
+    """Deals one assignment."""
+
+    def __init__(
+        self,
+        course: Course[Any],
+        assignment: Assignment,
+        langs: Sequence[str],
+        before: Mapping[str, Any] | None,
+    ):
+        self.course, self.assignment, self.langs = course, assignment, langs
+        self.notes: list[str] = []
+        self._items = list((before or {}).get("issued", ()))
+        self._columns = dict((before or {}).get("students", {}))
+        self._unnamed: dict[int, str] = {}
+        stated = (before or {}).get("assignment")
+        if before is not None and (
+            stated is None or list(stated.get("exercises", ())) != list(assignment.names)
+        ):
+            raise BadInput(
+                f"{assignment.name} was not issued there as it is now: what is issued stays issued; choose another --out, or "
+                "--overwrite to deal anew"
+            )
+        self._records: dict[tuple[str, str, int], Mapping[str, Any]] = {}
+        self._dealt: dict[str, str] = {}
+        for number, item in enumerate(self._items):
+            name = str(item.get("student", "")) or f"#{number // max(1, len(assignment.names))}"
+            place = name, str(item["record"]["exercise"]), int(item.get("sitting", 1))
+            self._records[place] = item["record"]
+            if item.get("version"):
+                self._dealt[name] = str(item["version"])
+
+    def of(self, student: Student) -> str:
+        """By what a student is told apart: the name, or the place of a paper that is nobody's."""
+        return student.name or self._unnamed[id(student)]
+
+    def everybody(self, students: Sequence[Student]) -> list[Student]:
+        """The students that were issued a paper, then those who are late; who left the roster is kept, and told."""
+        for number, student in enumerate(students):
+            if not student.name:
+                self._unnamed[id(student)] = f"#{number}"
+        issued = list(dict.fromkeys(name for name, _, _ in self._records if not name.startswith("#")))
+        there = {folded(s.name): s for s in students}
+        gone = [name for name in issued if folded(name) not in there]
+        late = [s for s in students if s.name and folded(s.name) not in set(map(folded, issued))]
+        if issued and gone:
+            self.notes.append(
+                f"kept, though no longer on the roster: {', '.join(gone[:5])}{', …' if len(gone) > 5 else ''}"
+            )
+        if issued and late:
+            names = ", ".join(s.name for s in late[:5])
+            more = ", …" if len(late) > 5 else ""
+            self.notes.append(
+                f"{counted(len(issued), 'paper')} issued before stay as they are; added: {names}{more}"
+            )
+        found = [
+            replace(there[folded(name)], name=name)
+            if folded(name) in there
+            else Student(name, columns=self._columns.get(name, {}))
+            for name in issued
+        ]
+        found += late
+        return found + [s for s in students if not s.name]
+
+    def sittings(self, name: str) -> int:
+        return max((n for student, _, n in self._records if student == name), default=1)
+
+    def stems(self, everybody: Sequence[Student]) -> list[str]:
+        """What files are called: by name, as they were called before; papers of nobody are numbered."""
+        digits = max(2, len(str(len(everybody))))
+        named = file_stems(s.name for s in everybody)
+        return [stem or f"paper-{number:0{digits}}" for number, stem in enumerate(named, start=1)]
+
+    # --------------------------------------------------------------- versions
+
+    def versions(self, everybody: Sequence[Student], roster: Sequence[Student]) -> dict[str, str]:
+        """A letter a student, where versions are dealt out: neighbours in the roster and in the room have others."""
+        count = self.assignment.versions
+        if count is None or count == 1:
+            return {}
+        letters = [chr(ord("A") + n) for n in range(count)]
+        dealt = dict(self._dealt)
+        used = Counter(dealt.values())
+        order = [self.of(s) for s in everybody]
+        beside = _neighbours([s for s in roster if s.name] or everybody, self.of)
+        for student in sorted(order, key=lambda name: _place(name, roster, self.of)):
+            if student in dealt:
+                continue
+            near = {dealt.get(other) for other in beside.get(student, ())}
+            free = [letter for letter in letters if letter not in near] or letters
+            dealt[student] = min(free, key=lambda letter: (used[letter], letter))
+            used[dealt[student]] += 1
+        return dealt
+
+    # --------------------------------------------------------------- variants
+
+    def variants(
+        self, asked: AskedExercise, sittings: Sequence[tuple[Student, int]], versions: Mapping[str, str]
+    ) -> list[Any]:
+        """The variant of each sitting: as issued before, else drawn."""
+        exercise = self.course[asked.name]
+        self._check_languages(exercise, [s for s, _ in sittings])
+        found: dict[int, Any] = {}
+        for k, (student, sitting) in enumerate(sittings):
+            record = self._records.get((self.of(student), asked.name, sitting))
+            if record is not None:
+                found[k] = exercise.from_record(record)
+        missing = {k: self._who(*sittings[k], versions) for k in range(len(sittings)) if k not in found}
+        taken = {tuple(v.given.values()) for v in found.values()}
+        drawn = {}
+        if asked.seed is not None:
+            one = _worth(exercise.variant(asked.seed, self.langs[0], asked.parts), asked)
+            drawn = {who: one for k, who in missing.items() if sittings[k][1] == 1}
+        drawn |= self._drawn(
+            exercise, asked, [w for w in dict.fromkeys(missing.values()) if w not in drawn], taken
+        )
+        found |= {k: drawn[who] for k, who in missing.items()}
+        if self.course.folder.has_solutions and found:
+            try_judges(found[0].key)
+        return [found[k] for k in range(len(sittings))]
+
+    def _who(self, student: Student, sitting: int, versions: Mapping[str, str]) -> str:
+        """What a draw hangs on."""
+        if sitting > 1:
+            return f"{student.who or self.of(student)} sitting {sitting}"
+        if self.assignment.versions == 1:
+            return "everybody"
+        letter = versions.get(self.of(student))
+        return f"version {letter}" if letter else student.who if student.name else self.of(student)
+
+    def _check_languages(self, exercise: CourseExercise[Any], students: Iterable[Student]) -> None:
+        for lang in {*self.langs, *(s.lang for s in students if s.lang)}:
+            if lang not in exercise.languages:
+                have = ", ".join(exercise.languages) or "none"
+                raise BadInput(f"{exercise.name} has no text in {lang!r}; it has {have}")
+
+    def _drawn(
+        self,
+        exercise: CourseExercise[Any],
+        asked: AskedExercise,
+        people: Sequence[str],
+        taken: set[tuple[Any, ...]],
+    ) -> dict[str, Any]:
+        """A variant for each: all different while variants last."""
+        lang, parts = self.langs[0], asked.parts
+        found: dict[str, Any] = {}
+        spare: dict[str, Any] = {}  # worth issuing, though somebody has the same
+        refused: Counter[str] = Counter()
+        waiting = list(people)
+        for round_ in range(_ROUNDS):
+            if not waiting:
+                break
+            seeds = {who: seed_for(self.assignment.name, exercise.name, who, round_) for who in waiting}
+            drawn = [
+                v for v in exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts) if v.parts
+            ]
+            good = worthy(exercise, drawn, refused) if exercise.folder.has_solutions else drawn
+            by_seed = {v.seed: v for v in good}
+            # Who is first where two draw the same hangs on the draw, not on the roster.
+            for who in sorted(waiting, key=lambda who: (seeds[who], who)):
+                variant = by_seed.get(seeds[who])
+                if variant is None:
+                    continue
+                if tuple(variant.given.values()) in taken:
+                    spare.setdefault(who, variant)
+                    continue
+                taken.add(tuple(variant.given.values()))
+                found[who] = variant
+            waiting = [who for who in waiting if who not in found]
+        shared = [who for who in waiting if who in spare]
+        found |= {who: spare[who] for who in shared}
+        if len(found) < len(people):
+            flaws = ", ".join(f"{flaw} ({counted(n, 'time')})" for flaw, n in refused.most_common(3))
+            raise Starved(
+                f"{exercise.name}: no variant that is worth issuing was found for {counted(len(people) - len(found), 'student')}"
+                f"{f'; passed over as {flaws}' if flaws else ''}; widen a range or make a step finer"
+            )
+        if shared:
+            self.notes.append(
+                f"{exercise.name}: {len(shared)} of {counted(len(people), 'paper')} share a variant with another; so many "
+                "different ones do not exist"
+            )
+        return {who: _worth(variant, asked) for who, variant in found.items()}
+
+
+def _worth(variant: V, asked: AskedExercise) -> V:
+    """The variant with the points that the assignment gives."""
+    if asked.points is None:
+        return variant
+    if isinstance(asked.points, Mapping):
+        points = {p.id: asked.points.get(p.id, p.points) for p in variant.parts}
+    else:
+        points = shared_out(asked.points, variant.parts)
+    parts = [p if p.points == points[p.id] else replace(p, points=points[p.id]) for p in variant.parts]
+    return variant.asking(parts)
+
+
+def shared_out(total: float, parts: Sequence[Part]) -> dict[str, float]:
+    """Points for all parts, in proportion to their own, by quarters where the total has so many; their sum is the total."""
+    whole = sum(Fraction(p.points) for p in parts)
+    exact = {p.id: Fraction(total) * Fraction(p.points) / whole for p in parts}
+    quarters = Fraction(total) / _STEP
+    if quarters.denominator != 1 or quarters < len(parts):
+        return {i: float(x) for i, x in exact.items()}
+    found = {i: max(1, int(x / _STEP)) for i, x in exact.items()}
+    while sum(found.values()) > quarters:
+        most = max(found, key=lambda i: found[i] * _STEP - exact[i])
+        found[most] -= 1
+    while sum(found.values()) < quarters:
+        least = max(found, key=lambda i: exact[i] - found[i] * _STEP)
+        found[least] += 1
+    return {i: float(n * _STEP) for i, n in found.items()}
+
+
+# ------------------------------------------------------------------------- room
+
+
+def _place(name: str, roster: Sequence[Student], of: Any) -> int:
+    return next((k for k, s in enumerate(roster) if folded(of(s)) == folded(name)), len(roster))
+
+
+def _neighbours(roster: Sequence[Student], of: Any) -> dict[str, set[str]]:
+    """Who sits or stands beside whom: by place in the roster, and by seat where the roster says seats, ``B12``."""
+    found: dict[str, set[str]] = {of(s): set() for s in roster}
+
+    def beside(one: Student, other: Student) -> None:
+        found[of(one)].add(of(other))
+        found[of(other)].add(of(one))
+
+    for one, other in pairwise(roster):
+        beside(one, other)
+    seats = {seat: s for s in roster if (seat := _seat(s)) is not None}
+    for (row, number), student in seats.items():
+        for there in ((row, number + 1), (row + 1, number)):
+            if there in seats:
+                beside(student, seats[there])
+    return found
+
+
+def _seat(student: Student) -> tuple[int, int] | None:
+    """Row and number of ``B12`` or ``2-12``."""
+    text = next(
+        (v for k, v in student.columns.items() if k.strip().casefold() in ("seat", "place", "siège")), ""
+    )
+    match = re.fullmatch(r"\s*([A-Za-z]|\d+)\s*[-. ]?\s*(\d+)\s*", text)
+    if match is None:
+        return None
+    row = int(match[1]) if match[1].isdigit() else ord(match[1].upper()) - ord("A")
+    return row, int(match[2])
