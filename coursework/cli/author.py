@@ -9,6 +9,7 @@ import click
 
 from coursework.cli.options import DONE, FOUND, Whole, exercise_names, exercises_argument, json_option, opened
 from coursework.cli.printing import print_json, print_note, print_table, progress_bar
+from coursework.errors import BadInput
 
 # ------------------------------------------------------------------------ check
 
@@ -47,11 +48,30 @@ def check(context: click.Context, exercises: Sequence[str], count: int, as_json:
 @click.command()
 @click.argument("folder", type=click.Path(path_type=Path, file_okay=False))
 @click.argument("exercise", required=False)
-def new(folder: Path, exercise: str | None) -> None:
-    """Write a working course folder, or a working exercise in one."""
+@click.argument("asked", nargs=-1)
+@click.pass_context
+def new(context: click.Context, folder: Path, exercise: str | None, asked: Sequence[str]) -> None:
+    """Write a working course folder, or a working exercise in one; or an assignment of exercises:
+    new assignment FILE.toml EXERCISE…"""
     from coursework.authoring.scaffold import new_course, new_exercise
 
+    if str(folder) == "assignment" and exercise is not None and exercise.endswith(".toml"):
+        _new_assignment(context, Path(exercise), asked)
+        return
+    if asked:
+        raise BadInput(f"one exercise at a time: coursework new {folder} {exercise}")
     made = new_exercise(folder, exercise) if exercise else new_course(folder)
     for path in made:
         click.echo(f"wrote {path}")
     click.echo(f"try: coursework --course {folder} check")
+
+
+def _new_assignment(context: click.Context, path: Path, asked: Sequence[str]) -> None:
+    from coursework.authoring.new_assignment import new_assignment
+
+    course = opened(context)
+    langs = course[asked[0]].languages if asked else ()
+    made = new_assignment(path, course, asked, langs)
+    own = f"--course {context.obj} " if context.obj else ""
+    click.echo(f"wrote {made}")
+    click.echo(f"try: coursework {own}build {made}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -212,7 +213,7 @@ def test_points_that_are_shared_out_sum_to_the_total(total, name):
     assert sum(found.values()) == pytest.approx(total, abs=1e-12)
     assert min(found.values()) > 0
     ordered = sorted(parts, key=lambda p: p.points)
-    assert all(found[a.id] <= found[b.id] + 0.25 for a, b in zip(ordered, ordered[1:], strict=False))
+    assert all(found[a.id] <= found[b.id] + 0.25 for a, b in pairwise(ordered))
 
 
 # ------------------------------------------------------------------------- roster
