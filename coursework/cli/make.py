@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -270,7 +271,7 @@ def build_files(
     issues = issue(course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts)
     issued = json_text(issued_content(issues))
     before = out / "issued.json"
-    if before.is_file() and before.read_bytes() != issued.encode("utf-8") and not overwrite:
+    if not overwrite and before.is_file() and not _goes_on(before, issued):
         raise BadInput(
             f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them "
             "(files that were filled in or changed are set aside, not lost)"
@@ -284,6 +285,18 @@ def build_files(
         notes = write_tree(out, wanted, advance, anew=overwrite)
     tell(notes)
     return len(wanted)
+
+
+def _goes_on(before: Path, issued: str) -> bool:
+    """Whether all that was issued before is issued as it was: to a longer roster, say."""
+    try:
+        items = json.loads(before.read_bytes())["issued"]
+        known = {(i["student"], i["record"]["exercise"], i["record"]["seed"]): i["record"] for i in items}
+        now = json.loads(issued)["issued"]
+    except (ValueError, KeyError, TypeError):
+        return False
+    found = {(i["student"], i["record"]["exercise"], i["record"]["seed"]): i["record"] for i in now}
+    return all(found.get(place) == record for place, record in known.items())
 
 
 # ------------------------------------------------------------------------- demo

@@ -6,7 +6,6 @@ stays issued: a longer roster adds who is late, and changes nobody else's paper.
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
@@ -18,18 +17,16 @@ from typing import Any, TypeVar
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
 from coursework.course.variant import Variant
-from coursework.errors import BadInput, Starved, counted, nearest
+from coursework.errors import BadInput, counted, nearest
 from coursework.making.assignment import AskedExercise, Assignment
-from coursework.making.flaws import try_judges, worthy
-from coursework.making.issuing import Issue
+from coursework.making.flaws import try_judges
+from coursework.making.issuing import Issue, drawn_by
 from coursework.making.roster import Student
 from coursework.making.students import file_stems, folded
 from coursework.model import Part
 
 V = TypeVar("V", bound=Variant)
 
-SEEDS = 1_000_000  #: seeds of an assignment have six digits at most
-_ROUNDS = 60  #: draws for one student before variants are said to be used up
 _STEP = Fraction(1, 4)  #: of points that are shared out
 
 
@@ -39,12 +36,6 @@ class Dealt:
 
     issues: list[Issue]
     notes: list[str] = field(default_factory=list)
-
-
-def seed_for(assignment: str, exercise: str, who: str, round_: int) -> int:
-    """The seed that somebody draws in a round, the same for ever."""
-    key = f"coursework/assignment/{assignment}/{exercise}/{who}/{round_}".encode()
-    return int.from_bytes(hashlib.shake_128(key).digest(8), "little") % SEEDS
 
 
 def deal(
@@ -241,39 +232,7 @@ class _Hand:
         taken: set[tuple[Any, ...]],
     ) -> dict[str, Any]:
         """A variant for each: all different while variants last."""
-        lang, parts = self.langs[0], asked.parts
-        found: dict[str, Any] = {}
-        spare: dict[str, Any] = {}  # worth issuing, though somebody has the same
-        refused: Counter[str] = Counter()
-        waiting = list(people)
-        for round_ in range(_ROUNDS):
-            if not waiting:
-                break
-            seeds = {who: seed_for(self.assignment.name, exercise.name, who, round_) for who in waiting}
-            drawn = [
-                v for v in exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts) if v.parts
-            ]
-            good = worthy(exercise, drawn, refused) if exercise.folder.has_solutions else drawn
-            by_seed = {v.seed: v for v in good}
-            # Who is first where two draw the same hangs on the draw, not on the roster.
-            for who in sorted(waiting, key=lambda who: (seeds[who], who)):
-                variant = by_seed.get(seeds[who])
-                if variant is None:
-                    continue
-                if tuple(variant.given.values()) in taken:
-                    spare.setdefault(who, variant)
-                    continue
-                taken.add(tuple(variant.given.values()))
-                found[who] = variant
-            waiting = [who for who in waiting if who not in found]
-        shared = [who for who in waiting if who in spare]
-        found |= {who: spare[who] for who in shared}
-        if len(found) < len(people):
-            flaws = ", ".join(f"{flaw} ({counted(n, 'time')})" for flaw, n in refused.most_common(3))
-            raise Starved(
-                f"{exercise.name}: no variant that is worth issuing was found for {counted(len(people) - len(found), 'student')}"
-                f"{f'; passed over as {flaws}' if flaws else ''}; widen a range or make a step finer"
-            )
+        found, shared = drawn_by(self.assignment.name, exercise, people, self.langs[0], asked.parts, taken)
         if shared:
             self.notes.append(
                 f"{exercise.name}: {len(shared)} of {counted(len(people), 'paper')} share a variant with another; so many "

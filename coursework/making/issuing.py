@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -75,6 +76,66 @@ def distinct_variants(
     return list(found.values())
 
 
+SEEDS = 1_000_000  #: seeds that are drawn by student have six digits at most
+_ROUNDS = 60  #: draws for one student before variants are said to be used up
+
+
+def seed_for(stream: str, exercise: str, who: str, round_: int) -> int:
+    """The seed that somebody draws in a round, the same for ever."""
+    key = f"coursework/assignment/{stream}/{exercise}/{who}/{round_}".encode()
+    return int.from_bytes(hashlib.shake_128(key).digest(8), "little") % SEEDS
+
+
+def drawn_by(
+    stream: str,
+    exercise: CourseExercise[V],
+    people: Sequence[str],
+    lang: str,
+    parts: Sequence[str] | None = None,
+    taken: set[tuple[Any, ...]] | None = None,
+) -> tuple[dict[str, V], list[str]]:
+    """A variant for each of some people that hangs on them and not on their order, and who shares theirs with another.
+
+    All are different, and none has the given values that are ``taken``, while variants last.
+
+    Raises
+    ------
+    Starved
+        No variant that is worth issuing was found for somebody.
+    """
+    taken = set() if taken is None else taken
+    found: dict[str, V] = {}
+    spare: dict[str, V] = {}  # worth issuing, though somebody has the same
+    refused: Counter[str] = Counter()
+    waiting = list(people)
+    for round_ in range(_ROUNDS):
+        if not waiting:
+            break
+        seeds = {who: seed_for(stream, exercise.name, who, round_) for who in waiting}
+        drawn = [v for v in exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts) if v.parts]
+        good = worthy(exercise, drawn, refused) if exercise.folder.has_solutions else drawn
+        by_seed = {v.seed: v for v in good}
+        # Who is first where two draw the same hangs on the draw, not on the roster.
+        for who in sorted(waiting, key=lambda who: (seeds[who], who)):
+            variant = by_seed.get(seeds[who])
+            if variant is not None and (given := tuple(variant.given.values())) not in taken:
+                taken.add(given)
+                found[who] = variant
+            elif variant is not None:
+                spare.setdefault(who, variant)
+        waiting = [who for who in waiting if who not in found]
+    shared = [who for who in waiting if who in spare]
+    found |= {who: spare[who] for who in shared}
+    if len(found) < len(people):
+        flaws = ", ".join(f"{flaw} ({counted(n, 'time')})" for flaw, n in refused.most_common(3))
+        raise Starved(
+            f"{exercise.name}: no variant that is worth issuing was found for "
+            f"{counted(len(people) - len(found), 'student')}{f'; passed over as {flaws}' if flaws else ''}; "
+            "widen a range or make a step finer"
+        )
+    return found, shared
+
+
 class Issuable(Asked, Protocol):
     """A variant that can say what its sheets show."""
 
@@ -119,7 +180,8 @@ def issue(
     roster: Sequence[Student] = (),
     parts: Sequence[str] | None = None,
 ) -> list[Issue]:
-    """One variant of each exercise for each student; or ``count`` variants when there is no roster.
+    """One variant of each exercise for each student, which hangs on the student and not on a place in the roster; or
+    ``count`` variants from the first seed on when there is no roster.
 
     ``parts`` are ids of parts to ask instead of the usual ones: of each exercise those that it has.
 
@@ -142,7 +204,13 @@ def issue(
             if lang not in exercise.languages:
                 have = ", ".join(exercise.languages) or "none"
                 raise BadInput(f"{name} has no text in {lang!r}; it has {have}")
-        variants = distinct_variants(exercise, first_seed, len(students), langs[0], parts=asked[name])
+        variants: list[Any]
+        if roster:
+            people = [student.who for student in roster]
+            drawn, _ = drawn_by(str(first_seed), exercise, people, langs[0], asked[name])
+            variants = [drawn[who] for who in people]
+        else:
+            variants = distinct_variants(exercise, first_seed, len(students), langs[0], parts=asked[name])
         if course.folder.has_solutions and variants:
             try_judges(variants[0].key)
         for student, stem, variant in zip(students, stems, variants, strict=True):
