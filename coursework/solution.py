@@ -71,7 +71,7 @@ def mistake(
         raise BadCourse(f"a mistake leaves a share of the points between 0 and 1; found {share}")
 
     def mark(function: Callable[..., Any]) -> Callable[..., Any]:
-        function.__mistake__ = Mistake(  # type: ignore[attr-defined]
+        function.__mistake__ = Mistake(  # type: ignore[attr-defined]  # marks a function
             function.__name__, Replacement(targets, function), share, approximation
         )
         return function
@@ -87,7 +87,7 @@ def formula(latex: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """
 
     def mark(function: Callable[..., Any]) -> Callable[..., Any]:
-        function.__formula__ = latex  # type: ignore[attr-defined]
+        function.__formula__ = latex  # type: ignore[attr-defined]  # marks a function
         return function
 
     return mark
@@ -107,7 +107,7 @@ def stable(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Calla
     """
 
     def mark(formula: Callable[..., Any]) -> Callable[..., Any]:
-        formula.__stable__ = function  # type: ignore[attr-defined]
+        formula.__stable__ = function  # type: ignore[attr-defined]  # marks a function
         return formula
 
     return mark
@@ -172,7 +172,7 @@ def judge(function: Callable[..., Any]) -> Callable[..., Any]:
                 return {}
             return {"r2": Judged(abs(2 * answers["r2"] - stroke) <= 0.01 * stroke, found={"stroke": ...})}
     """
-    function.__judge__ = True  # type: ignore[attr-defined]
+    function.__judge__ = True  # type: ignore[attr-defined]  # marks a function
     return function
 
 

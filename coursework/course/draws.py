@@ -161,7 +161,7 @@ def draw(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[dict[str, 
             still.append(chunk[~hit])
         pending = np.concatenate(still) if still else pending[:0]
         if not len(pending):
-            return found  # type: ignore[return-value]
+            return found  # type: ignore[return-value]  # none is left out
     raise _starved(name, exercise, seeds[pending[0]])
 
 

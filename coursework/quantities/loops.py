@@ -305,5 +305,5 @@ def _constant(name: str, text: str) -> Callable[[], str]:
         return text
 
     equation.__name__ = name
-    equation.__formula__ = ""  # type: ignore[attr-defined]
+    equation.__formula__ = ""  # type: ignore[attr-defined]  # marks a function
     return equation
