@@ -44,7 +44,9 @@ points = 6
 follow_through = 0.5
 """
 NAMES = ("Zoé Martin", "Abel Roy", "Li Wei", "Ömer Öz", "Ana Ruiz", "Jo Ito", "Max Roth", "Eve Lund")
-CLASS = [Student(name, columns={"number": str(100 + k), "group": "AB"[k % 2]}) for k, name in enumerate(NAMES)]
+CLASS = [
+    Student(name, columns={"number": str(100 + k), "group": "AB"[k % 2]}) for k, name in enumerate(NAMES)
+]
 
 
 def stated(tmp_path, text=TEXT):
@@ -83,7 +85,7 @@ def by_student(found):
         ("follow_through = 0.5", "follow = 0.5", r"no rule of marking 'follow'"),
         ("seed = 12", "seed = -1", r"line 16: a seed is a whole number"),
         ('duration = "1 h 30"', 'logo = "logo.svg"', r"line 4: logo: there is no file"),
-        ('title = { fr', 'title = { xx = "?", fr', r"line 1: title: no language 'xx'"),
+        ("title = { fr", 'title = { xx = "?", fr', r"line 1: title: no language 'xx'"),
         ('name = "grashof"', 'name = "vocabulary"', r"line 19: vocabulary stands twice"),
         ('[[exercises]]\nname = "grashof"', '[[exercises]]\nnmae = "grashof"', r"line 19: no key 'nmae'"),
         ("date = 2026-12-04", "date = ", r"week3.toml: "),
@@ -150,7 +152,11 @@ def test_what_was_issued_stays_even_where_the_file_says_other_points(midterm, tm
     content = json.loads(json.dumps(issued_content(dealt(midterm, CLASS).issues, midterm)))
     other = read_assignment(stated(tmp_path, TEXT.replace("rA = 2", "rA = 9")), COURSE)
     again = dealt(other, [*CLASS, Student("Late One")], content)
-    points = {i.student: i.variant.parts[0].points for i in again.issues if i.variant.exercise.name == "slotted_mechanism"}
+    points = {
+        i.student: i.variant.parts[0].points
+        for i in again.issues
+        if i.variant.exercise.name == "slotted_mechanism"
+    }
     assert points["Zoé Martin"] == 2
     assert points["Late One"] == 9
     fewer = read_assignment(stated(tmp_path, TEXT[: TEXT.index('[[exercises]]\nname = "grashof"')]), COURSE)
@@ -185,7 +191,10 @@ def test_versions_are_dealt_so_that_neighbours_differ(tmp_path):
 
 def test_without_a_roster_papers_are_numbered(midterm):
     found = dealt(midterm, [Student("") for _ in range(12)])
-    assert [one.first.stem for one in papers(midterm, found.issues, polygons=True)][:2] == ["paper-01", "paper-02"]
+    assert [one.first.stem for one in papers(midterm, found.issues, polygons=True)][:2] == [
+        "paper-01",
+        "paper-02",
+    ]
     assert len({i.variant.seed for i in found.issues if i.variant.exercise.name == "grashof"}) == 12
 
 
