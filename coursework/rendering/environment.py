@@ -59,6 +59,8 @@ def environment(
         verdict=lambda verdict: views.verdict_word(verdict, lang),
         given_formula=views.given_formula,
         given_words=lambda given: views.given_words(given, lang),
+        right=views.right_answer,
+        worked=views.worked,
         note=lambda line: views.feedback_note(line, lang),
         value_formula=views.value_formula,
         one_line=views.chain_on_one_line,

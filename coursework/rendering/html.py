@@ -40,7 +40,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
 
 def construction(folders: Sequence[Path], drawn: Construction) -> str:
     """A polygon as a piece of a page."""
-    names = {"polygons": (drawn,), "words": words(drawn.lang)}
+    names = {"polygons": (drawn,), "words": words(drawn.lang), "level": 2}
     return render(environment_of(tuple(folders), drawn.lang), "_polygons.html.j2", names)
 
 

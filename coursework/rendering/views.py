@@ -5,7 +5,7 @@ from __future__ import annotations
 import keyword
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -52,9 +52,10 @@ def handout_of(sheet: Sheet) -> Handout:
     return sheet if isinstance(sheet, Handout) else sheet.handout
 
 
-def context(sheet: Sheet) -> dict[str, object]:
-    """The names that a page's template sees."""
+def context(sheet: Sheet, place: int = 0) -> dict[str, object]:
+    """The names that a page's template sees; ``place`` is that of the exercise in a paper, 0 where it stands alone."""
     handout = handout_of(sheet)
+    prefix = f"{place}." if place else ""
     return {
         "sheet": handout,
         TEMPLATES[type(sheet)]: sheet,
@@ -71,7 +72,11 @@ def context(sheet: Sheet) -> dict[str, object]:
         "polygon_mm": POLYGON_MM,
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
         "variant": variant_code(handout),
-        "tolerances": tolerances(handout.questions, handout.lang),
+        "tolerances": tolerances(handout.questions, handout.lang, prefix),
+        "place": place,
+        "prefix": prefix,
+        "own": f"e{place}-" if place else "",
+        "level": 3 if place else 2,
     }
 
 
@@ -163,6 +168,11 @@ def feedback_note(line: FeedbackLine, lang: str) -> str:
     return more.strip() if mark else said
 
 
+def right_answer(line: FeedbackLine) -> str:
+    """The right answer as Markdown, beside one that has not all its points."""
+    return line.right if line.points < line.out_of else ""
+
+
 def given_formula(given: Given) -> str:
     return quantity_formula(given.symbol, given.value, given.unit, is_number=given.is_number)
 
@@ -178,8 +188,11 @@ def value_formula(given: Given) -> str:
     return quantity_formula("", given.value, given.unit, is_number=given.is_number)
 
 
-def tolerances(questions: Sequence[Question], lang: str) -> tuple[tuple[str, str], ...]:
-    """The margins in words, each with the questions it holds for; none named when all share one."""
+def tolerances(questions: Sequence[Question], lang: str, prefix: str = "") -> tuple[tuple[str, str], ...]:
+    """The margins in words, each with the questions it holds for; none named when all share one.
+
+    ``prefix`` stands before the number of a question: ``2.`` in the second exercise of a paper.
+    """
     groups: dict[str, list[int]] = {}
     for question in questions:
         if question.tolerance:
@@ -188,22 +201,46 @@ def tolerances(questions: Sequence[Question], lang: str) -> tuple[tuple[str, str
         return tuple(("", said) for said in groups)
     noun = words(lang)["sheet"]["question"]
     return tuple(
-        (f"{noun['one' if len(numbers) == 1 else 'many']} {_ranges(numbers)}", said)
+        (f"{noun['one' if len(numbers) == 1 else 'many']} {_ranges(numbers, prefix)}", said)
         for said, numbers in groups.items()
     )
 
 
-def _ranges(numbers: Sequence[int]) -> str:
+def _ranges(numbers: Sequence[int], prefix: str) -> str:
     runs: list[list[int]] = []
     for number in sorted(numbers):
         if runs and number == runs[-1][-1] + 1:
             runs[-1].append(number)
         else:
             runs.append([number])
-    return ", ".join(
-        str(run[0]) if len(run) == 1 else f"{run[0]}, {run[1]}" if len(run) == 2 else f"{run[0]}–{run[-1]}"
-        for run in runs
-    )
+    return ", ".join(_range([f"{prefix}{number}" for number in run]) for run in runs)
+
+
+def _range(run: Sequence[str]) -> str:
+    return ", ".join(run) if len(run) <= 2 else f"{run[0]}–{run[-1]}"
+
+
+def worked(solution: AnswerSheet) -> tuple[tuple[Answer, tuple[Step, ...]], ...]:
+    """Each answer with the steps that lead to it, those shown with an earlier one left out.
+
+    Steps stand in the order in which they follow from one another; what no question asks goes with the last.
+    """
+    named = {part["id"]: part["quantity"] for part in _parts(solution.handout)}
+    place = {step.name: number for number, step in enumerate(solution.steps, 1)}
+    shown, found = 0, []
+    for answer in solution.answers:
+        end = place.get(named.get(answer.question.id, answer.question.id), 0)
+        if answer is solution.answers[-1]:
+            end = len(solution.steps)
+        found.append((answer, solution.steps[shown:end]))
+        shown = max(shown, end)
+    return tuple(found)
+
+
+def _parts(handout: Handout) -> Sequence[Mapping[str, str]]:
+    parts = handout.record.get("parts", ())
+    assert isinstance(parts, Sequence)
+    return parts
 
 
 @lru_cache(maxsize=256)

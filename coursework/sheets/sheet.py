@@ -127,6 +127,7 @@ class FeedbackLine:
     points: float
     out_of: float
     says: str  #: Markdown, a sentence that helps and gives no reference value
+    right: str = ""  #: the right answer, Markdown, where it may be shown
 
 
 @dataclass(frozen=True)
