@@ -34,6 +34,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "display": lambda tex: to_mathml(tex, lang, True),
         "formula_words": lambda text: escape(markup.formula_words(text, lang)),
         "drawing": _drawing,
+        "css": _css_string,
     }
     return environment(folders, lang, markup.html_text, filters)
 
@@ -48,3 +49,8 @@ def _drawing(figure: Figure | Beginning, alt: str) -> str:
     """The figure as an image inside the page, its letters as outlines: it looks the same everywhere."""
     data = base64.b64encode(figure.outlined_svg().encode()).decode()
     return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(alt)}">'
+
+
+def _css_string(text: str) -> str:
+    """A text in a style sheet, each of its characters by number: none ends the string, or the style sheet."""
+    return '"' + "".join(f"\\{ord(char):06x}" for char in text) + '"'

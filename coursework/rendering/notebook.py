@@ -11,7 +11,7 @@ import hashlib
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -19,8 +19,9 @@ from jinja2 import Environment
 
 from coursework.markup import markdown as markup
 from coursework.markup.formulas import number_text
-from coursework.rendering import views
+from coursework.rendering import papers, views
 from coursework.rendering.environment import environment, render
+from coursework.sheets.paper import Paper
 from coursework.sheets.sheet import Handout
 
 if TYPE_CHECKING:
@@ -51,7 +52,7 @@ def _of_handout(folders: Sequence[Path], handout: Handout, template: str, more: 
     env = _environment(tuple(folders), handout.lang)
     text = render(env, template, {**views.context(handout), **more})
     identity = f"{handout.exercise} {handout.version} {handout.seed} {handout.student}"
-    cells = [_cell(f"{identity} {number}", *piece) for number, piece in enumerate(_pieces(text))]
+    cells = list(_cells(text, identity))
     for cell in cells:
         _attach_figure(cell, handout)
     return _json(
@@ -67,10 +68,36 @@ def _of_handout(folders: Sequence[Path], handout: Handout, template: str, more: 
     )
 
 
+def paper(folders: Sequence[Path], handed: Paper) -> str:
+    """The notebook of a paper, as JSON text, valid nbformat 4.5: an answers cell an exercise, which says whose it is."""
+    env = _environment(tuple(folders), handed.heading.lang)
+    names = papers.context(handed, "md.j2", partial(render, env))
+    cells = list(_cells(render(env, "paper.md.j2", names), f"{names['variants']} head"))
+    for sheet, exercise in zip(handed.handouts, names["exercises"], strict=True):
+        cells += _exercise(sheet, exercise["body"], exercise["place"])
+    cells += _cells(render(env, "_hand_in.md.j2", names), "hand in")
+    about = [{"exercise": sheet.exercise, "seed": sheet.seed} for sheet in handed.handouts]
+    return _json(cells, {"student": handed.heading.student, "sheets": about, "lang": handed.heading.lang})
+
+
+def _exercise(sheet: Handout, body: str, place: int) -> list[dict[str, Any]]:
+    """The cells of an exercise of a paper."""
+    cells = list(_cells(body, f"{place} {sheet.exercise} {sheet.version} {sheet.seed} {sheet.student}"))
+    for cell in cells:
+        _attach_figure(cell, sheet)
+        if "answers" in cell["metadata"].get("tags", ()):
+            cell["metadata"]["coursework"] = {"exercise": sheet.exercise, "seed": sheet.seed}
+    return cells
+
+
+def _cells(text: str, identity: str) -> Iterator[dict[str, Any]]:
+    for number, piece in enumerate(_pieces(text)):
+        yield _cell(f"{identity} {number}", *piece)
+
+
 def lesson(name: str, text: str, lang: str) -> str:
     """The notebook of a lesson: its Markdown as it is, its fences as code cells."""
-    cells = [_cell(f"{name} {lang} {number}", *piece) for number, piece in enumerate(_pieces(text))]
-    return _json(cells, {"lesson": name, "lang": lang})
+    return _json(list(_cells(text, f"{name} {lang}")), {"lesson": name, "lang": lang})
 
 
 def _json(cells: list[dict[str, object]], about: dict[str, object]) -> str:

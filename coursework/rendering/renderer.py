@@ -14,6 +14,8 @@ from coursework.errors import unknown
 if TYPE_CHECKING:
     from coursework.motion.animation import Animation
     from coursework.polygons.construction import Construction
+    from coursework.rendering.papers import AnyPaper
+    from coursework.sheets.paper import Paper
     from coursework.sheets.report import Report
     from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout, StudySheet
 
@@ -95,6 +97,31 @@ class Renderer:
         from coursework.figures.typesetting import pages
 
         return pages([(figure.svg(), figure.size_mm[0]) for figure in drawings])
+
+    def paper_pdf(self, paper: AnyPaper) -> bytes:
+        """A paper, its solutions or its feedback as a tagged PDF."""
+        from coursework.rendering import papers, pdf
+
+        return pdf.compile_pdf(papers.typst_source(self.template_folders, [paper], self.paper))
+
+    def papers_pdf(self, handed: Sequence[AnyPaper]) -> tuple[bytes, tuple[tuple[int, int], ...]]:
+        """Several papers in one PDF, each with its own page numbers and from an odd page on, and the first and last page
+        of each in it, from 1 on."""
+        from coursework.rendering import papers, pdf
+
+        return pdf.compile_booklet(papers.typst_source(self.template_folders, handed, self.paper))
+
+    def paper_html(self, paper: AnyPaper) -> str:
+        """A paper, its solutions or its feedback as one web page that fetches nothing and runs no script."""
+        from coursework.rendering import papers
+
+        return papers.page(self.template_folders, paper, self.paper)
+
+    def paper_notebook(self, paper: Paper) -> str:
+        """A paper as a notebook to hand in (JSON, nbformat 4.5): an answers cell an exercise, and nothing that checks."""
+        from coursework.rendering import notebook
+
+        return notebook.paper(self.template_folders, paper)
 
     def construction_html(self, construction: Construction) -> str:
         """A polygon, its equations, table and steps, as a piece of a web page."""

@@ -6,6 +6,7 @@ import keyword
 import re
 import sys
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, TypeAlias
 
@@ -40,7 +41,7 @@ _SLENDER = 1.2  #: width over height of a mechanism that leaves about a third of
 ROOM_DATA = 46.0  #: width of the data beside it, whose longer lines are broken
 ROOM_STEP = (53.0, 200.0)  #: of a step of a construction, three of which stand side by side
 _TALL_BY_PAPER = 48.0  #: height that a figure has where there is paper to draw on as well
-_GUIDE_TOGETHER = 16  #: rows at most of a marking guide that no page's end may cut
+GUIDE_TOGETHER = 16  #: rows at most of a marking guide that no page's end may cut
 _FEW_QUESTIONS = 8  #: so many at most leave a page some height
 _BESIDE = 9  #: data at most that stand beside the figure
 
@@ -68,7 +69,7 @@ def context(sheet: Sheet, place: int = 0) -> dict[str, object]:
         "data_width": _data_width(handout),
         "step_room": ROOM_STEP,
         "summary_mm": SUMMARY_MM,
-        "guide_together": _GUIDE_TOGETHER,
+        "guide_together": GUIDE_TOGETHER,
         "polygon_mm": POLYGON_MM,
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
         "variant": variant_code(handout),
@@ -157,15 +158,28 @@ def verdict_word(verdict: str, lang: str) -> str:
     return words(lang)["verdicts"][verdict.partition(":")[0]]
 
 
-def feedback_note(line: FeedbackLine, lang: str) -> str:
-    """What a line of feedback says beyond its verdict; a right or a missing answer needs no sentence."""
+def feedback_note(line: FeedbackLine, lang: str, prefix: str = "") -> str:
+    """What a line of feedback says beyond its verdict; a right or a missing answer needs no sentence.
+
+    A question that it names is called as the paper does, ``prefix`` before its number.
+    """
     if line.verdict == "missing":
         return ""
     if line.verdict != "correct":
-        return line.says
+        return _renumbered(line.says, lang, prefix)
     usual = words(lang)["marking"]["correct"].rpartition("}")[2]
     said, mark, more = line.says.partition(usual)
-    return more.strip() if mark else said
+    return _renumbered(more.strip() if mark else said, lang, prefix)
+
+
+def _renumbered(said: str, lang: str, prefix: str) -> str:
+    """The questions that a sentence names by their numbers, with what stands before these in a paper."""
+    if not prefix:
+        return said
+    noun, marking = words(lang)["sheet"]["question"], words(lang)["marking"]
+    joins = "|".join(re.escape(word) for word in (", ", f" {marking['and']} ", f" {marking['or']} "))
+    named = rf"\b(?:{noun['one']}|{noun['many']}) \d+(?:(?:{joins})\d+)*"
+    return re.sub(named, lambda found: re.sub(r"\d+", rf"{prefix}\g<0>", found[0]), said, flags=re.IGNORECASE)
 
 
 def right_answer(line: FeedbackLine) -> str:
@@ -220,7 +234,7 @@ def _range(run: Sequence[str]) -> str:
     return ", ".join(run) if len(run) <= 2 else f"{run[0]}–{run[-1]}"
 
 
-def worked(solution: AnswerSheet) -> tuple[tuple[Answer, tuple[Step, ...]], ...]:
+def worked(solution: AnswerSheet, lang: str, prefix: str = "") -> tuple[tuple[Answer, tuple[Step, ...]], ...]:
     """Each answer with the steps that lead to it, those shown with an earlier one left out.
 
     Steps stand in the order in which they follow from one another; what no question asks goes with the last.
@@ -232,9 +246,17 @@ def worked(solution: AnswerSheet) -> tuple[tuple[Answer, tuple[Step, ...]], ...]
         end = place.get(named.get(answer.question.id, answer.question.id), 0)
         if answer is solution.answers[-1]:
             end = len(solution.steps)
-        found.append((answer, solution.steps[shown:end]))
+        steps = (_below(answer.question, step, lang, prefix) for step in solution.steps[shown:end])
+        found.append((answer, tuple(steps)))
         shown = max(shown, end)
     return tuple(found)
+
+
+def _below(question: Question, step: Step, lang: str, prefix: str) -> Step:
+    """A step as it stands below its question, whose number it need not say."""
+    own = rf"\*{words(lang)['sheet']['question']['one']} {question.number}\.\*\s*"
+    told = re.sub(rf"^{own}", "", step.words, flags=re.IGNORECASE)
+    return replace(step, words=_renumbered(told, lang, prefix))
 
 
 def _parts(handout: Handout) -> Sequence[Mapping[str, str]]:

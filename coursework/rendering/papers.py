@@ -1,0 +1,180 @@
+"""Papers: several exercises under one heading, through the bodies of their sheets."""
+
+from __future__ import annotations
+
+import base64
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
+from html import escape
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from markupsafe import Markup
+
+from coursework.errors import BadInput
+from coursework.language.numbers import localise
+from coursework.language.words import words
+from coursework.rendering import html, pdf, views
+from coursework.rendering.environment import render
+from coursework.sheets.paper import FeedbackPaper, Logo, Paper, SolutionPaper
+from coursework.sheets.sheet import AnswerSheet, FeedbackSheet
+
+AnyPaper: TypeAlias = Paper | SolutionPaper | FeedbackPaper
+
+#: The template of each type of paper, and that of an exercise in it.
+TEMPLATES = {Paper: "paper", SolutionPaper: "paper_solution", FeedbackPaper: "paper_feedback"}
+BODIES = {Paper: "_sheet_body", SolutionPaper: "_solution_body", FeedbackPaper: "_feedback_table"}
+_KINDS = {Paper: "sheet", SolutionPaper: "solution", FeedbackPaper: "feedback"}
+_LINE = 75  #: characters of a footer that leave room for a student's name
+
+#: Height of an exercise's heading with its first question, of a line of text, and letters in one, roughly.
+_HEAD_MM, _LINE_MM, _LETTERS = 40, 5.5, 95
+
+Body: TypeAlias = Callable[[str, Mapping[str, object]], str]  #: renders a template with these names
+
+
+def sheets_of(paper: AnyPaper) -> tuple[views.Sheet, ...]:
+    """The sheets of its exercises, in order; right answers that are kept back are not in them."""
+    if isinstance(paper, Paper):
+        return paper.handouts
+    if isinstance(paper, FeedbackPaper) and not paper.answers:
+        return tuple(
+            replace(sheet, lines=tuple(replace(line, right="") for line in sheet.lines))
+            for sheet in paper.sheets
+        )
+    return paper.sheets
+
+
+def points_of(paper: AnyPaper) -> float:
+    """What a paper is out of."""
+    if isinstance(paper, FeedbackPaper):
+        return paper.out_of
+    return sum(views.handout_of(sheet).points for sheet in sheets_of(paper))
+
+
+def context(paper: AnyPaper, end: str, write: Body) -> dict[str, Any]:
+    """The names that a paper's template sees; ``end`` is that of the templates' names, ``typ.j2``."""
+    heading, kind = paper.heading, _KINDS[type(paper)]
+    exercises = exercises_of(paper, end, write)
+    return {
+        "heading": heading,
+        "kind": kind,
+        "lang": heading.lang,
+        "words": words(heading.lang),
+        "title": title(paper),
+        "when": " · ".join(filter(None, (heading.date, heading.duration))),
+        "logo": heading.logo and logo_svg(heading.logo),
+        "variants": variants(paper),
+        "foot": " · ".join(filter(None, (heading.student, variants(paper)))),
+        "exercises": exercises,
+        "points": points_of(paper),
+        "mark_of": _number(heading.mark_of, heading.lang),
+        "mark": _number(getattr(paper, "mark", ""), heading.lang),
+        "feedback": paper,
+        "summary_mm": views.SUMMARY_MM,
+        "guide_together": views.GUIDE_TOGETHER,
+    }
+
+
+def exercises_of(paper: AnyPaper, end: str, write: Body) -> list[dict[str, Any]]:
+    """What each exercise's sheet would show, its body, and of a solution its rows of the marking guide."""
+    found = []
+    for place, sheet in enumerate(sheets_of(paper), 1):
+        names: dict[str, Any] = views.context(sheet, place)
+        names["start_mm"] = _start_mm(sheet)
+        names["body"] = Markup(write(f"{BODIES[type(paper)]}.{end}", names))
+        if isinstance(paper, SolutionPaper):
+            names["guide"] = Markup(write(f"_guide_rows.{end}", names))
+        found.append(names)
+    return found
+
+
+def _start_mm(sheet: views.Sheet) -> int:
+    """The room that an exercise takes up to its first question: it begins where a page has so much left."""
+    if isinstance(sheet, FeedbackSheet):
+        return 45
+    handout, figure = views.handout_of(sheet), views.figure_of(sheet)
+    text = sheet.introduction if isinstance(sheet, AnswerSheet) else handout.statement
+    drawn = figure.size_mm[1] if figure else 0.0
+    return round(_HEAD_MM + _LINE_MM * len(text) / _LETTERS + drawn)
+
+
+def title(paper: AnyPaper) -> str:
+    """The document's title: the paper's, and what it is when it is not the student's to fill in."""
+    heading, kind = paper.heading, _KINDS[type(paper)]
+    return heading.title if kind == "sheet" else f"{heading.title} – {words(heading.lang)[kind]['title']}"
+
+
+def variants(paper: AnyPaper) -> str:
+    """Which variants a paper holds, in a line: names and seeds, or seeds alone in the order of its exercises."""
+    handouts = [views.handout_of(sheet) for sheet in sheets_of(paper)]
+    named = " · ".join(f"{one.exercise} {one.seed}" for one in handouts)
+    return named if len(named) <= _LINE else " · ".join(str(one.seed) for one in handouts)
+
+
+def _number(said: str, lang: str) -> str:
+    """A plain number as the language prints it; anything else as it is."""
+    return localise(said, lang) if re.fullmatch(r"-?\d+(\.\d+)?", said) else said
+
+
+_PNG = b"\x89PNG\r\n\x1a\n"
+
+
+def logo_svg(logo: Logo) -> str:
+    """A logo as SVG: its own, or one that holds the pixels.
+
+    Raises
+    ------
+    BadInput
+        It is not of the format that it is said to be.
+    """
+    if logo.format == "svg":
+        return _text(logo.data)
+    if logo.data[:8] != _PNG or len(logo.data) < 24:
+        raise BadInput("the logo is no PNG picture; give a file that is one, or an SVG")
+    wide, high = (int.from_bytes(logo.data[start : start + 4], "big") for start in (16, 20))
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" width="{wide}" height="{high}">'
+        f'<image width="{wide}" height="{high}" href="data:image/png;base64,{base64.b64encode(logo.data).decode()}"/></svg>'
+    )
+
+
+def _text(data: bytes) -> str:
+    try:
+        found = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        found = ""
+    if "<svg" not in found:
+        raise BadInput("the logo is no SVG picture; give a file that is one, or a PNG")
+    return found
+
+
+def page(folders: Sequence[Path], paper: AnyPaper, size: str = "a4") -> str:
+    """A paper as one web page that fetches nothing and runs no script."""
+    env = html.environment_of(tuple(folders), paper.heading.lang)
+    names = context(paper, "html.j2", partial(render, env))
+    return render(env, f"{TEMPLATES[type(paper)]}.html.j2", names | {"paper": size, "image": _image})
+
+
+def _image(logo: Logo) -> Markup:
+    data = base64.b64encode(logo_svg(logo).encode()).decode()
+    return Markup(f'<img class="logo" src="data:image/svg+xml;base64,{data}" alt="{escape(logo.alt)}">')
+
+
+def typst_source(folders: Sequence[Path], papers: Sequence[AnyPaper], size: str = "a4") -> str:
+    """The Typst source of one document that holds these papers, each from an odd page on."""
+    contexts = []
+    for paper in papers:
+        env = pdf.environment_of(tuple(folders), paper.heading.lang)
+        names = context(paper, "typ.j2", partial(render, env))
+        body = Markup(render(env, f"{TEMPLATES[type(paper)]}.typ.j2", names))
+        contexts.append(names | {"document": body})
+    first = contexts[0]
+    page = first | {
+        "bodies": [names["document"] for names in contexts],
+        "paper": size,
+        "printed": not isinstance(papers[0], FeedbackPaper),
+    }
+    return render(pdf.environment_of(tuple(folders), papers[0].heading.lang), "_page.typ.j2", page)
