@@ -72,6 +72,8 @@ def grade(
         click.echo(f"{what} before; see {out / 'changes.csv'}")
     for warning in book.warnings:
         click.echo(f"coursework: note: {warning}", err=True)
+    for fault in book.faults:
+        click.echo(f"coursework: {fault}", err=True)
     for rejected in book.rejected[:10]:
         click.echo(f"coursework: {rejected.source}: {rejected.reason}", err=True)
     if len(book.rejected) > 10:

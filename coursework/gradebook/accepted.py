@@ -2,24 +2,35 @@
 
 from __future__ import annotations
 
+import difflib
 import math
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import combinations
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from coursework.errors import BadInput
-from coursework.gradebook.changes import rows_of
+from coursework.errors import BadInput, counted, nearest
+from coursework.gradebook.changes import lines_of
 from coursework.gradebook.graded import Graded
+from coursework.gradebook.placing import Refused, near, place_of
+from coursework.gradebook.rows import Row
 from coursework.language.words import words
+from coursework.making.issued import Issued
 from coursework.making.students import folded
 from coursework.marking.feedback import Told
 from coursework.marking.mark import Mark
 
 ACCEPTED = "accepted"
 
+_NEEDED = ("student", "exercise", "part")
+_OPTIONAL = ("seed", "points", "reason")
+_ALIKE = 0.75  #: of two column names, beyond which one is the other with a typing error
+
 
 class Accepted:
     """Answers accepted by hand: a CSV with ``student,exercise,seed,part`` and, if wanted, ``points`` and
-    ``reason``. An answer so named has full points, or those that are said.
+    ``reason``. An answer so named has full points, or those that are said; of two lines on one answer the later counts.
 
     Raises
     ------
@@ -28,26 +39,16 @@ class Accepted:
     """
 
     def __init__(self, path: Path | None) -> None:
-        self._by_place: dict[tuple[str, str, str, str], _Acceptance] = {}
-        self.path = path
-        self.used: set[tuple[str, str, str, str]] = set()
-        if path is None:
-            return
-        rows = rows_of(path)
-        for number, row in enumerate(rows, start=2):
-            missing = [c for c in ("student", "exercise", "part") if not row.get(c)]
-            if missing:
-                raise BadInput(
-                    f"{path}, line {number}: {', '.join(missing)} missing; name the answer to accept"
-                )
-            place = f"{path}, line {number}"
-            named = (row["student"], row["exercise"], row.get("seed", ""), row["part"])
-            points = _points(row.get("points", ""), place)
-            self._by_place[self._key(*named)] = _Acceptance(place, named, points, row.get("reason", ""))
-
-    @staticmethod
-    def _key(student: str, exercise: str, seed: Any, part: str) -> tuple[str, str, str, str]:
-        return folded(student), exercise, str(seed), part
+        self._lines: list[_Acceptance] = []
+        self._by_place: dict[tuple[str, str, str, str], list[_Acceptance]] = {}
+        self._headings: list[str] = []  #: what is wrong with them
+        self._used: set[_Acceptance] = set()
+        for number, row, more in () if path is None else lines_of(path):
+            if not self._lines:
+                self._headings = [f"{path}, line 1: {wrong}" for wrong in _misspelt(row)]
+            one = _acceptance(f"{path}, line {number}", number, row, more)
+            self._lines.append(one)
+            self._by_place.setdefault(_key(*one.named), []).append(one)
 
     def apply(self, graded: Graded, lang: str) -> Graded:
         """The sheet with its accepted answers marked so, those too that no row gave.
@@ -62,41 +63,104 @@ class Accepted:
         lines = dict(graded.lines)
         unanswered: list[str] = []
         for part, line in graded.lines.items():
-            for seed in (graded.seed, ""):
-                key = self._key(graded.student, graded.exercise, seed, part)
-                found = self._by_place.get(key)
-                if found is not None:
-                    self.used.add(key)
-                    lines[part] = _accepted(line, found, lang)
-                    if part not in (*graded.answered, *unanswered):
-                        unanswered.append(part)
+            for found in self._named(graded, part):
+                self._used.add(found)
+                lines[part] = _accepted(line, found, lang)
+                if part not in (*graded.answered, *unanswered):
+                    unanswered.append(part)
         return graded._replace(lines=lines, unanswered=tuple(unanswered))
 
-    @property
-    def unused(self) -> list[str]:
-        """The answers named that nobody gave."""
-        return [
-            ", ".join(filter(None, one.named)) for key, one in self._by_place.items() if key not in self.used
-        ]
+    def _named(self, graded: Graded, part: str) -> list[_Acceptance]:
+        """The lines on an answer, in the order of the file."""
+        keys = (_key(graded.student, graded.exercise, seed, part) for seed in (graded.seed, ""))
+        return sorted((one for key in keys for one in self._by_place.get(key, ())), key=lambda one: one.line)
+
+    def unfollowed(self, issued: Issued, students: Iterable[str]) -> tuple[list[str], list[str]]:
+        """What somebody must mend in the file (headings and names that are not there, lines that contradict one another),
+        and the answers named that were issued and that nobody gave. ``students`` are those who answered.
+        """
+        faults, notes = list(self._headings), []
+        asked = _Asked(issued, tuple(students)) if self._lines else None
+        for one in self._lines:
+            if asked is not None and one not in self._used:
+                told = f"accepted by hand, but never answered: {one.says}"
+                why = asked.why_not(one)
+                faults += [f"{one.place}: {told}; {why}"] if why else []
+                notes += [] if why else [told]
+        faults += [] if asked is None else self._contradictions(asked)
+        return faults, notes
+
+    def _contradictions(self, asked: _Asked) -> Iterator[str]:
+        """The lines on one answer that give other points than one before."""
+        groups: dict[tuple[str, ...], list[_Acceptance]] = {}
+        for one in self._lines:
+            groups.setdefault((folded(one.student), one.exercise, one.part), []).append(one)
+        for group in groups.values():
+            for before, one in combinations(group, 2):
+                same = not (before.seed and one.seed) or before.seed == one.seed
+                if same and asked.points(before) != asked.points(one):
+                    yield (
+                        f"{one.place}: {one.gives} for {one.says}, and line {before.line} says {before.gives}; "
+                        f"line {one.line} counts: take one of them away"
+                    )
 
 
 class _Acceptance(NamedTuple):
     """A line of the file."""
 
     place: str
-    named: tuple[str, str, str, str]  #: as it is written
+    line: int
+    student: str  #: as it is written, and so are the others
+    exercise: str
+    seed: str
+    part: str
     points: float | None  #: None for all of them
     reason: str
 
+    @property
+    def named(self) -> tuple[str, str, str, str]:
+        return self.student, self.exercise, self.seed, self.part
 
-def _accepted(line: Mark, found: _Acceptance, lang: str) -> Mark:
-    points = line.out_of if found.points is None else found.points
-    if points > line.out_of:
+    @property
+    def says(self) -> str:
+        return ", ".join(filter(None, self.named))
+
+    @property
+    def gives(self) -> str:
+        return "full points" if self.points is None else f"points {self.points:g}"
+
+
+def _key(student: str, exercise: str, seed: Any, part: str) -> tuple[str, str, str, str]:
+    return folded(student), exercise, str(seed), part
+
+
+# ---------------------------------------------------------------------- reading
+
+
+def _acceptance(place: str, number: int, row: dict[str, str], more: Sequence[str]) -> _Acceptance:
+    missing = [c for c in _NEEDED if not row.get(c)]
+    if missing:
+        raise BadInput(f"{place}: {', '.join(missing)} missing; name the answer to accept")
+    if any(cell.strip() for cell in more):
         raise BadInput(
-            f"{found.place}: {points:g} points for {line.part}, which has {line.out_of:g}; give that or fewer"
+            f"{place}: {counted(len(more), 'cell')} more than there are headings, {', '.join(more)[:40]!r}; put a text with a comma, or a "
+            "number with one, between quotation marks"
         )
-    says = f"{words(lang)['marking']['accepted']} {found.reason}".strip()
-    return line._replace(verdict=ACCEPTED, points=points, told=(Told(says, says),))
+    seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))  # as spreadsheets write whole numbers
+    points = _points(row.get("points", ""), place)
+    named = (row["student"], row["exercise"], seed, row["part"])
+    return _Acceptance(place, number, *named, points, row.get("reason", ""))
+
+
+def _misspelt(columns: Iterable[str]) -> Iterator[str]:
+    """Headings that would be one of those that may be left out."""
+    columns = list(columns)
+    absent = [c for c in _OPTIONAL if c not in columns]
+    for column in columns:
+        if column not in (*_NEEDED, *_OPTIONAL) and (
+            meant := difflib.get_close_matches(column, absent, n=1, cutoff=_ALIKE)
+        ):
+            yield f"no column {column!r} is read; did you mean {meant[0]!r}?"
 
 
 def _points(text: str, place: str) -> float | None:
@@ -109,3 +173,51 @@ def _points(text: str, place: str) -> float | None:
     if not 0 <= points < math.inf:
         raise BadInput(f"{place}: points are a number, 0 or more; found {text[:40]!r}")
     return points
+
+
+# -------------------------------------------------------------------- following
+
+
+def _accepted(line: Mark, found: _Acceptance, lang: str) -> Mark:
+    points = line.out_of if found.points is None else found.points
+    if points > line.out_of:
+        raise BadInput(
+            f"{found.place}: {points:g} points for {line.part}, which has {line.out_of:g}; give that or fewer"
+        )
+    says = f"{words(lang)['marking']['accepted']} {found.reason}".strip()
+    return line._replace(verdict=ACCEPTED, points=points, told=(Told(says, says),))
+
+
+class _Asked:
+    """The parts that were asked, as lines of the file name them."""
+
+    def __init__(self, issued: Issued, students: Sequence[str]) -> None:
+        self._issued, self._students = issued, students
+        self._answered = frozenset(map(folded, students))
+        self._parts: dict[
+            tuple[str, str], dict[str, float]
+        ] = {}  #: points, by exercise and seed; of any seed by ""
+        for (exercise, seed), record in issued.records.items():
+            own = {str(part["id"]): float(part["points"]) for part in record["parts"]}
+            self._parts[exercise, str(seed)] = own
+            self._parts.setdefault((exercise, ""), {}).update(own)
+
+    def why_not(self, one: _Acceptance) -> str:
+        """Why a line names no answer that was issued; nothing where it does."""
+        issued, parts = self._issued, self._parts.get((one.exercise, one.seed))
+        if not issued.has_roster and folded(one.student) not in self._answered:
+            return f"no student {one.student!r} among those who answered{near(one.student, self._students)}"
+        if issued.has_roster or parts is None:
+            try:
+                _, exercise, seed = place_of(issued, Row(*one.named, None, one.place))
+            except Refused as why:
+                return str(why)
+            parts = self._parts[exercise, str(seed)]
+        return (
+            "" if one.part in parts else f"{one.exercise} has no part {one.part!r}{nearest(one.part, parts)}"
+        )
+
+    def points(self, one: _Acceptance) -> float | None:
+        """The points that a line gives; None for all of a part that is not there."""
+        parts = self._parts.get((one.exercise, one.seed), {})
+        return parts.get(one.part) if one.points is None else one.points

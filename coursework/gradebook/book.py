@@ -81,6 +81,7 @@ class Gradebook:
     blanks: int = 0  #: rows without an answer where another row counts
     rejected: list[Rejected] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)  #: of what was accepted by hand, for somebody to mend
     students: dict[str, Total] = field(default_factory=dict)
     exercises: dict[str, Total] = field(default_factory=dict)  #: of the answers that came
     handed_in: dict[str, set[str]] = field(default_factory=dict)  #: exercises by student
@@ -141,8 +142,8 @@ class Gradebook:
 
     @property
     def needs_a_look(self) -> int:
-        """How many rows somebody must look at: rejected or unreadable."""
-        return len(self.rejected) + self.unreadable
+        """How many rows somebody must look at: rejected or unreadable, or accepted by hand and at fault."""
+        return len(self.rejected) + self.unreadable + len(self.faults)
 
 
 def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:

@@ -100,16 +100,33 @@ def _change(row: Mapping[str, Any], before: tuple[str, str], now: tuple[str, str
 
 
 def rows_of(path: Path) -> Iterator[dict[str, str]]:
+    """The rows of a table, by the names of its columns."""
+    return (row for _, row, _ in lines_of(path))
+
+
+def lines_of(path: Path) -> Iterator[tuple[int, dict[str, str], list[str]]]:
+    """The rows of a table, each with the number of its line and the cells that have no heading.
+
+    Raises
+    ------
+    BadInput
+        The file cannot be read.
+    """
     try:
         with open_csv(path) as file:
             delimiter = delimiter_of(file.readline())
             file.seek(0)
-            for row in csv.DictReader(file, delimiter=delimiter):
-                yield {
+            reader = csv.DictReader(file, delimiter=delimiter)
+            cells: dict[Any, Any]
+            for cells in reader:
+                more = cells.pop(None, [])
+                row = {
                     (k or "").strip().casefold(): as_written(v.strip())
-                    for k, v in row.items()
+                    for k, v in cells.items()
                     if isinstance(v, str)
                 }
+                further = sum(len(cell.splitlines()) - 1 for cell in row.values() if cell)
+                yield reader.line_num - further, row, more
     except OSError as fault:
         raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
     except csv.Error as fault:

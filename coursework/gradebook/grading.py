@@ -86,7 +86,8 @@ def grade_files(
             for change in before.gone():
                 changes.write(change)
             book.changes = changes.rows
-        book.warnings += [f"accepted by hand, but never answered: {place}" for place in by_hand.unused]
+        book.faults, notes = by_hand.unfollowed(issued, book.students)
+        book.warnings += notes
         for row in gradebook.summary_rows(book):
             summary.write(row)
         for row in gradebook.rejected_rows(book.rejected):

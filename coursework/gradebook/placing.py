@@ -33,43 +33,52 @@ class Sheets:
 # ------------------------------------------------------------------------ placing
 
 
-class _Refused(Exception):
+class Refused(Exception):
     """Why a row cannot be marked."""
 
 
-def _place(issued: Issued, row: Row) -> tuple[str, str, int]:
-    """Student, exercise and seed of a row, or why it has none."""
+def place_of(issued: Issued, row: Row) -> tuple[str, str, int]:
+    """Student, exercise and seed of a row.
+
+    Raises
+    ------
+    Refused
+        It has none.
+    """
     student = issued.student(row.student)
     if not row.student:
-        raise _Refused("no student's name")
+        raise Refused("no student's name")
     if student is None:
-        raise _Refused(f"no student {row.student!r} on the roster{_near(row.student, issued.students)}")
+        raise Refused(f"no student {row.student!r} on the roster{near(row.student, issued.students)}")
     if row.exercise not in issued.exercises:
-        raise _Refused(
+        raise Refused(
             f"no exercise {row.exercise!r} was issued{_near_or_all(row.exercise, issued.exercises)}"
         )
     mine = issued.seeds.get((student, row.exercise))
     if not row.seed and mine is not None:
         return student, row.exercise, mine
+    if not row.seed and issued.has_roster:
+        raise Refused(f"{student} was issued no {row.exercise}")
     if not re.fullmatch(r"[0-9]{1,30}(\.0)?", row.seed):
-        raise _Refused(f"a seed is a whole number; found {row.seed[:40]!r}")
+        raise Refused(f"a seed is a whole number; found {row.seed[:40]!r}")
     seed = int(row.seed.removesuffix(".0"))
     theirs = f"; {student} has seed {mine}" if mine is not None else f"; {student} was issued none"
     theirs = theirs if issued.has_roster else ""
     if (row.exercise, seed) not in issued.records:
-        raise _Refused(f"seed {seed} of {row.exercise} was not issued{theirs}")
+        raise Refused(f"seed {seed} of {row.exercise} was not issued{theirs}")
     if issued.has_roster and mine != seed:
-        raise _Refused(f"seed {seed} of {row.exercise} is another student's{theirs}")
+        raise Refused(f"seed {seed} of {row.exercise} is another student's{theirs}")
     return student, row.exercise, seed
 
 
-def _near(name: str, known: Iterable[str]) -> str:
+def near(name: str, known: Iterable[str]) -> str:
+    """``"; did you mean 'x'?"``, or nothing: a class is not listed."""
     hint = nearest(name[:60], known)
     return hint if "did you mean" in hint else ""
 
 
 def _near_or_all(name: str, known: Sequence[str]) -> str:
-    if hint := _near(name, known):
+    if hint := near(name, known):
         return hint
     return f"; issued: {', '.join(known[:_LISTED])}{', …' if len(known) > _LISTED else ''}"
 
@@ -103,8 +112,8 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
         named = row.student, row.exercise, row.seed
         if named not in places:
             try:
-                places[named] = _place(issued, row)
-            except _Refused as why:
+                places[named] = place_of(issued, row)
+            except Refused as why:
                 places[named] = str(why)
         place = places[named]
         if isinstance(place, str):

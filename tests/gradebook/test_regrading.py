@@ -515,3 +515,104 @@ def test_many_answers_are_marked_by_processes_as_by_one(small_course, issued, tm
     grade(small_course, issued, "--out", tmp_path / "many")
     for name in ("marks.csv", "summary.csv", "rejected.csv"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "many" / name).read_bytes()
+
+
+# ------------------------------------------------------------ typing errors in what is accepted
+
+
+def seed_of(issued, student):
+    items = json.loads((issued / "issued.json").read_text("utf-8"))["issued"]
+    return next(i["record"]["seed"] for i in items if i["student"] == student)
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("Adda,crank_pin,,y", "no student 'Adda' on the roster; did you mean 'Ada'?"),
+        ("Ada,crank_pim,,y", "no exercise 'crank_pim' was issued; did you mean 'crank_pin'?"),
+        ("Ada,crank_pin,,yy", "crank_pin has no part 'yy'; did you mean 'y'?"),
+        ("Ada,crank_pin,9999,y", "seed 9999 of crank_pin was not issued; Ada has seed {Ada}"),
+        ("Ada,crank_pin,{Bo},y", "seed {Bo} of crank_pin is another student's; Ada has seed {Ada}"),
+        ("Ada,crank_pin,x,y", "a seed is a whole number; found 'x'"),
+    ],
+)
+def test_an_acceptance_that_names_nobody_is_told_with_the_nearest_name_and_its_line(
+    small_course, issued, tmp_path, capsys, line, told
+):
+    """A blank line and a good one stand before it: the good one counts, and nothing is lost."""
+    seeds = {student: seed_of(issued, student) for student in ("Ada", "Bo")}
+    path, good = tmp_path / "by_hand.csv", "Ada,crank_pin,,y"
+    path.write_text(f"student,exercise,seed,part\n\n{good}\n{line.format(**seeds)}\n", "utf-8")
+    assert grade(small_course, issued, "--accepted", path) == 1
+    said = capsys.readouterr().err
+    assert f"by_hand.csv, line 4: accepted by hand, but never answered: {line.split(',')[0]}" in said
+    assert told.format(**seeds) in said
+    assert "note:" not in said
+    assert [m["verdict"] for m in table(issued / "marks" / "marks.csv")].count("accepted") == 1
+    path.write_text(f"student,exercise,seed,part\n{good}\n", "utf-8")
+    assert grade(small_course, issued, "--accepted", path) == 0
+
+
+def test_an_acceptance_of_a_sheet_that_was_issued_and_not_handed_in_is_a_note(
+    small_course, issued, tmp_path, capsys
+):
+    answers = issued.parent / "answers.csv"
+    lines = answers.read_text("utf-8").splitlines(keepends=True)
+    answers.write_text("".join(li for li in lines if not li.startswith(("Cy", "Ada"))), "utf-8")
+    path = tmp_path / "by_hand.csv"
+    path.write_text("student,exercise,part\nCy,crank_pin,y\n", "utf-8")
+    assert grade(small_course, issued, "--accepted", path) == 0
+    assert "note: accepted by hand, but never answered: Cy, crank_pin, y" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("lines", "points", "told"),
+    [
+        (["Ada,crank_pin,,y,1", "Ada,crank_pin,,y,0.5"], "0.5", "line 3: points 0.5 for Ada, crank_pin, y"),
+        (["ADA,crank_pin,{Ada},y,0.25", "Ada,crank_pin,,y,"], "1", "line 3: full points for Ada"),
+        (["Ada,crank_pin,,y,", "Ada,crank_pin,{Ada},y,0.25"], "0.25", "and line 2 says full points"),
+        (["Ada,crank_pin,,y,1", "Ada,crank_pin,{Ada}.0,y,"], "1", ""),
+        (["Ada,crank_pin,,y,1", "Bo,crank_pin,,y,0"], "1", ""),
+    ],
+)
+def test_lines_that_contradict_one_another_are_told_and_the_later_one_counts(
+    small_course, issued, tmp_path, capsys, lines, points, told
+):
+    path = tmp_path / "by_hand.csv"
+    rows = [line.format(Ada=seed_of(issued, "Ada")) for line in lines]
+    path.write_text("\n".join(["student,exercise,seed,part,points", *rows]), "utf-8")
+    assert grade(small_course, issued, "--accepted", path) == (1 if told else 0)
+    said = capsys.readouterr().err
+    assert told in said if told else said == ""
+    marks = table(issued / "marks" / "marks.csv")
+    assert [m["points"] for m in marks if (m["student"], m["part"]) == ("Ada", "y")] == [points]
+
+
+def test_a_misspelt_heading_of_what_is_accepted_is_told(small_course, issued, tmp_path, capsys):
+    path = tmp_path / "by_hand.csv"
+    path.write_text("student,exercise,part,point,note\nAda,crank_pin,y,0.5,oral\n", "utf-8")
+    assert grade(small_course, issued, "--accepted", path) == 1
+    assert "line 1: no column 'point' is read; did you mean 'points'?" in capsys.readouterr().err
+
+
+def test_points_cut_at_their_comma_are_refused(small_course, issued, tmp_path, capsys):
+    path = tmp_path / "by_hand.csv"
+    path.write_text("student,exercise,part,points\nAda,crank_pin,y,0,5\n", "utf-8")
+    assert grade(small_course, issued, "--accepted", path) == 2
+    assert "line 2: 1 cell more than there are headings, '5'" in capsys.readouterr().err
+
+
+def test_without_a_roster_an_acceptance_is_held_against_those_who_answered(small_course, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert course_run(small_course, "build", "--formats", "html", "--out", out) == 0
+    (record,) = (i["record"] for i in json.loads((out / "issued.json").read_text("utf-8"))["issued"])
+    row = f"Zoé Lang,crank_pin,{record['seed']},x,1"
+    (tmp_path / "answers.csv").write_text(f"student,exercise,seed,part,answer\n{row}\n", "utf-8")
+    path = tmp_path / "by_hand.csv"
+    path.write_text("student,exercise,part\nZoë Lang,crank_pin,x\nzoé lang,crank_pin,w\n", "utf-8")
+    assert grade(small_course, out, "--accepted", path) == 1
+    said = capsys.readouterr().err
+    assert "no student 'Zoë Lang' among those who answered; did you mean 'Zoé Lang'?" in said
+    assert (
+        "line 3: accepted by hand, but never answered: zoé lang, crank_pin, w; crank_pin has no part" in said
+    )
