@@ -10,7 +10,7 @@ from typing import Any
 from coursework.accuracy.measuring import GENERIC, HARD, Row, study_of
 from coursework.accuracy.ways import MOTION, POSITION, RATE
 from coursework.course.course import Course
-from coursework.figures.charts import scatter
+from coursework.figures.charts import lacking, scatter
 from coursework.language.numbers import significant, unit_text
 from coursework.language.words import words
 from coursework.sheets.report import Chart, Report, Section, Table
@@ -37,7 +37,7 @@ def report(course: Course, rows: Sequence[Row], lang: str) -> Report:
         course.folder.title(lang),
         said["title"],
         "coursework accuracy",
-        said["opening"].format(50),
+        said["opening"].format(50) + (f" {said['no_charts']}" if lacking() else ""),
         tuple(sections),
     )
 
@@ -46,19 +46,19 @@ def report(course: Course, rows: Sequence[Row], lang: str) -> Report:
 
 
 def _positions(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: str) -> Section:
-    charts = []
+    charts: list[Chart] = []
     for place in (GENERIC, HARD):
         shown = [r for r in rows if r.place == place and r.max_error is not None and r.family != "mpmath"]
         if shown:
             points = _series(shown, said, lambda row: row.ns_per_configuration)
             heading = said["chart_positions"].format(said["places"][place])
-            charts.append(_chart(points, heading, said["time"], said))
+            charts += _charts(points, heading, said["time"], said)
     text = [_data(exercise, said, lang), *_read_positions(_Rows(rows), said)]
     return Section(f"{title} – {said['positions']}", _paragraphs(text), tuple(charts), (_table(rows, said),))
 
 
 def _rates(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: str) -> Section:
-    charts = []
+    charts: list[Chart] = []
     for place in (GENERIC, HARD):
         shown = [r for r in rows if r.place == place and r.max_error is not None]
         steps = [_set(r) for r in shown if r.family == "differences"]
@@ -71,7 +71,7 @@ def _rates(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: st
             }
             vee = _series([r for r in shown if r.family == "differences"], said, _set)
             heading = said["chart_rates"].format(said["places"][place])
-            charts.append(_chart({**vee, **levels}, heading, said["step"], said))
+            charts += _charts({**vee, **levels}, heading, said["step"], said)
     return Section(
         f"{title} – {said['rates']}",
         _paragraphs(_read_rates(_Rows(rows), said)),
@@ -82,7 +82,7 @@ def _rates(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: st
 
 def _motion(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: str) -> Section:
     points = _series(rows, said, lambda row: row.ns_per_configuration * 1e-9)
-    chart = _chart(points, said["chart_motion"], said["duration"], said)
+    charts = _charts(points, said["chart_motion"], said["duration"], said)
     first, last = rows[0], rows[-1]
     text = said["reading"]["motion"].format(
         loose=_number(_set(first)),
@@ -98,7 +98,7 @@ def _motion(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: s
         ),
         (True, True, True),
     )
-    return Section(f"{title} – {said['motion']}", text, (chart,), (table,))
+    return Section(f"{title} – {said['motion']}", text, charts, (table,))
 
 
 def _data(exercise: Any, said: Words, lang: str) -> str:
@@ -245,9 +245,12 @@ def _series(rows: Sequence[Row], said: Words, across: Any) -> dict[str, tuple[li
     return found
 
 
-def _chart(points: Mapping[str, Any], heading: str, horizontal: str, said: Words) -> Chart:
+def _charts(points: Mapping[str, Any], heading: str, horizontal: str, said: Words) -> tuple[Chart, ...]:
+    """The chart, where charts can be drawn."""
+    if lacking():
+        return ()
     svg = scatter(points, heading, horizontal, said["error"]).decode("utf-8")
-    return Chart(svg, said["alt"].format(heading))
+    return (Chart(svg, said["alt"].format(heading)),)
 
 
 def _table(rows: Sequence[Row], said: Words) -> Table:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.options import DONE, FOUND, json_option, lang_option, opened
+from coursework.cli.options import DONE, FOUND, json_option, lang_option, opened, tell_lack_of_charts
 from coursework.cli.printing import print_json, progress_bar
 from coursework.errors import BadInput, counted
 
@@ -130,6 +130,7 @@ def report(context: click.Context, folder: Path, lang: str, out: Path | None, as
     place = out or folder / "report"
     if out is not None or not as_json:
         _write_report(course, told, lang, place)
+        tell_lack_of_charts()
     if not as_json:
         click.echo(
             f"{counted(told.students, 'student')}, {counted(told.answers, 'answer')}, {told.needs_a_look} to be looked at; "

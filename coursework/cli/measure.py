@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from coursework.cli.options import exercises_argument, json_option, lang_option, opened
+from coursework.cli.options import exercises_argument, json_option, lang_option, opened, tell_lack_of_charts
 from coursework.cli.printing import print_json
 
 # --------------------------------------------------------------------- accuracy
@@ -65,5 +65,6 @@ def accuracy(
         write_whole(out / "accuracy.json", (json.dumps(as_rows, indent=1) + "\n").encode())
         write_whole(out / "accuracy.html", renderer_of(course.folder).report_html(page).encode("utf-8"))
         write_whole(out / "accuracy.pdf", renderer_of(course.folder).report_pdf(page))
+        tell_lack_of_charts()
         if not as_json:
             click.echo(f"page and rows: {out / 'accuracy'}.html, .pdf, .json")

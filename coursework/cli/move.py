@@ -17,6 +17,7 @@ from coursework.cli.options import (
     seed_option,
     settings_given,
     split_list,
+    tell_lack_of_charts,
 )
 from coursework.cli.printing import print_json, print_table
 from coursework.errors import WrongValue
@@ -73,23 +74,31 @@ def simulate(
             click.echo(f"note: {note}")
     if out is not None:
         stem = out / f"{exercise}-{'cycle' if drive is None else 'motion'}"
-        _write_scene(table, exercise, stem)
+        _write_scene(table, stem)
+        if not (bare := tell_lack_of_charts()):
+            _write_plot(table, exercise, stem)
         if not as_json:
-            click.echo(f"table and plot: {stem}.csv, .svg")
+            click.echo(f"table: {stem}.csv" if bare else f"table and plot: {stem}.csv, .svg")
     elif not as_json:
         shown_rows = rows[:: max(1, len(rows) // 12)]
         print_table([{h: _short_number(v) for h, v in row.items()} for row in shown_rows])
 
 
-def _write_scene(table: Any, title: str, stem: Path) -> None:
-    """The table of a scene as ``STEM.csv`` and its curves as ``STEM.svg``."""
-    from coursework.figures.charts import curves
+def _write_scene(table: Any, stem: Path) -> None:
+    """The table of a scene as ``STEM.csv``."""
     from coursework.system.tables import csv_text
     from coursework.system.writing import write_whole
 
-    first, *others = table.columns
     rows = table.rows()
     write_whole(stem.parent / f"{stem.name}.csv", csv_text(rows, list(rows[0])).encode("utf-8"))
+
+
+def _write_plot(table: Any, title: str, stem: Path) -> None:
+    """The curves of a scene as ``STEM.svg``."""
+    from coursework.figures.charts import curves
+    from coursework.system.writing import write_whole
+
+    first, *others = table.columns
     shown = {n: table.columns[n] for n in others if n != "dead_centre"}
     plot = curves((f"{first} [{table.units[first]}]", table.columns[first]), shown, table.units, title)
     write_whole(stem.parent / f"{stem.name}.svg", plot)

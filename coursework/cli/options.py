@@ -27,6 +27,15 @@ def tell(notes: Sequence[str]) -> None:
         click.echo(f"coursework: note: and {len(notes) - 10} more such", err=True)
 
 
+def tell_lack_of_charts() -> bool:
+    """Say why what was written has no charts; whether it has none."""
+    from coursework.figures.charts import lacking
+
+    why = lacking()
+    tell([f"all is written but the charts: {why}"] if why else [])
+    return bool(why)
+
+
 def complain(message: str) -> int:
     click.echo(f"coursework: {' '.join(message.split())}", err=True)
     return BAD

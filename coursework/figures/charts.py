@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
-from coursework.errors import BadInput
+from coursework.system.extras import NotAtHand, library
 
 STYLE = {
     "axes.grid": True,
@@ -20,20 +20,25 @@ STYLE = {
     "svg.hashsalt": "coursework",
 }
 INK = "#1b3a57"  #: dark enough to stand alone in black and white
+_FILLED = 0.97  #: of a chart's width, by a line of its title
+_SHORT = 0.3  #: of a chart's width: such a title fits wherever its panel stands
+_LINE = 1.3  #: of the size of letters, from a line to the next
 LINES = ("-", "--", "-.", ":")  #: told apart in black and white
 
 
 def _pyplot() -> Any:
-    try:
-        import matplotlib
-    except ImportError as fault:
-        raise BadInput(
-            "charts need matplotlib, which is not installed: pip install 'coursework[charts]'"
-        ) from fault
+    matplotlib: Any = library("matplotlib", "charts need", "charts")
     matplotlib.use("agg")
-    from matplotlib import pyplot
+    return library("matplotlib.pyplot", "charts need", "charts")
 
-    return pyplot
+
+def lacking() -> str:
+    """Why no chart can be drawn here; nothing where they can."""
+    try:
+        _pyplot()
+    except NotAtHand as why:
+        return str(why)
+    return ""
 
 
 def curves(
@@ -76,9 +81,48 @@ def _without_jumps(degrees: np.ndarray) -> np.ndarray:
 
 def _svg(pyplot: Any, figure: Any) -> bytes:
     out = io.BytesIO()
+    _fit_title(figure, figure.axes[0])
     figure.savefig(out, format="svg", metadata={"Date": None, "Creator": None})
     pyplot.close(figure)
     return out.getvalue()
+
+
+def _fit_title(figure: Any, panel: Any) -> None:
+    """A title that is wider than its chart stands over the whole of it, on as many lines as it takes."""
+    title, room = panel.title, figure.bbox.width
+    if title.get_window_extent(figure.canvas.get_renderer()).width <= _SHORT * room:
+        return
+    figure.draw_without_rendering()
+    if title.get_window_extent().x0 >= 0 and title.get_window_extent().x1 <= room:
+        return
+    over = figure.suptitle("", fontsize=title.get_fontsize())
+
+    def fits(text: str) -> bool:
+        over.set_text(text)
+        return over.get_window_extent().width <= _FILLED * room
+
+    lines = _lines(title.get_text(), fits)
+    over.set_text("\n".join(lines))
+    title.set_text("")
+    width, height = figure.get_size_inches()
+    figure.set_size_inches(width, height + (len(lines) - 1) * _LINE * title.get_fontsize() / 72)
+
+
+def _lines(text: str, fits: Callable[[str], bool]) -> list[str]:
+    """A text on lines that fit; a word longer than a line is cut."""
+    lines = [""]
+    for word in text.split(" "):
+        longer, rest = f"{lines[-1]} {word}".strip(), word
+        if fits(longer):
+            lines[-1] = longer
+            continue
+        lines += [""] if lines[-1] else []
+        while not fits(rest):
+            size = max((n for n in range(1, len(rest)) if fits(rest[:n])), default=len(rest))
+            lines[-1], rest = rest[:size], rest[size:]
+            lines.append("")
+        lines[-1] = rest
+    return lines
 
 
 def scatter(

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 from coursework.errors import BadInput, closest
 from coursework.gradebook.notebooks import read_notebook
@@ -22,6 +23,7 @@ from coursework.gradebook.rows import (
     short_fault,
 )
 from coursework.making.issued import COLUMNS
+from coursework.system.extras import NotAtHand, library
 from coursework.system.tables import as_written, delimiter_of, record
 
 ENDINGS = (".csv", ".json", ".ipynb", ".parquet")
@@ -142,12 +144,10 @@ def _row_of(cells: Sequence[str], columns: Sequence[int], place: str, warning: s
 def _read_parquet(path: Path) -> Iterator[Row | Rejected]:
     """The rows of a Parquet file with the columns of the CSV; the seed and the answer may be numbers."""
     try:
-        import pyarrow
-        from pyarrow import parquet
-    except ImportError:
-        yield Rejected(
-            str(path), "Parquet needs pyarrow, which is not installed: pip install 'coursework[parquet]'"
-        )
+        pyarrow: Any = library("pyarrow", "Parquet needs", "parquet")
+        parquet: Any = library("pyarrow.parquet", "Parquet needs", "parquet")
+    except NotAtHand as why:
+        yield Rejected(str(path), str(why))
         return
     try:
         file = parquet.ParquetFile(path)

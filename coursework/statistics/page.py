@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from coursework.course.course import Course
-from coursework.figures.charts import bars, formula_label, histogram, plain_label
+from coursework.figures.charts import bars, formula_label, histogram, lacking, plain_label
 from coursework.gradebook.book import VERDICTS
 from coursework.language.numbers import localise, plain
 from coursework.language.typography import typeset
@@ -33,6 +34,7 @@ _QUOTED = 160  #: characters of a mistake's words in a sentence
 _NAMED = 5  #: questions that a sentence names
 _CHARTED = 12  #: mistakes in the chart
 _LISTED = 12  #: mistakes in the table of an exercise
+_HEADED = 160  #: characters of a chart's title, two lines of it or three
 _CHART_ROWS = 16  #: bars that one chart holds
 
 Words = Mapping[str, Any]
@@ -44,7 +46,7 @@ def sheet_order(course: Course, exercises: Iterable[str]) -> dict[str, tuple[str
 
 
 def report(course: Course, statistics: Statistics, lang: str) -> Report:
-    """The reading, the points, a section an exercise, the mistakes."""
+    """The reading, the points, a section an exercise, the mistakes; says so where no chart can be drawn."""
     page = _Page(course, statistics, lang)
     sections = [page.short()]
     if statistics.percents.size:
@@ -57,7 +59,7 @@ def report(course: Course, statistics: Statistics, lang: str) -> Report:
         course.folder.title(lang),
         page.said["title"],
         page.said["source"],
-        page.said["opening"],
+        page.said["opening"] if page.drawn else f"{page.said['opening']} {page.said['no_charts']}",
         tuple(sections),
     )
 
@@ -79,6 +81,7 @@ class _Page:
         self.said: Words = words(lang)["statistics"]
         self.verdicts: Words = words(lang)["verdicts"]
         self.names = Names(course, statistics, lang)
+        self.drawn = not lacking()
 
     # ---------------------------------------------------------------- sections
 
@@ -106,14 +109,12 @@ class _Page:
         counts = self.statistics.histogram().tolist()
         edges = [round(100 * k / BINS) for k in range(BINS + 1)]
         heads = tuple(f"{a}–{b}" for a, b in pairwise(edges))
-        svg = histogram(
-            counts, edges, self.said["chart_points"], self.said["axis_points"], self.said["axis_students"]
-        )
+        named = (self.said["chart_points"], self.said["axis_points"], self.said["axis_students"])
         table = Table(heads, (tuple(self._number(c) for c in counts),), (True,) * BINS)
         return Section(
             self.said["points"],
             self.said["points_text"],
-            (self._chart(svg, self.said["chart_points"]),),
+            self._charts(lambda: histogram(counts, edges, *named), self.said["chart_points"]),
             (table,),
         )
 
@@ -121,19 +122,14 @@ class _Page:
         parts = [p for p in self.statistics.parts if p.exercise == name]
         title = self._heading(name)
         heading = self.said["chart_right"].format(title)
-        charts = [
-            self._chart(
-                bars(
-                    [(self._label(p), 100 * p.right, self._chart_text(self._percent(p.right))) for p in rows],
-                    self._chart_text(heading),
-                    self.said["axis_right"],
-                    full=100,
-                ),
-                heading,
-            )
-            for rows in _shared_out(parts, _CHART_ROWS)
-        ]
+        charts: list[Chart] = []
+        for rows in _shared_out(parts, _CHART_ROWS):
+            charts += self._charts(partial(self._right_chart, rows, heading), heading)
         return Section(title, "", tuple(charts), (self._part_table(parts), self._verdict_table(parts)))
+
+    def _right_chart(self, parts: Sequence[PartStatistics], heading: str) -> bytes:
+        rows = [(self._label(p), 100 * p.right, self._chart_text(self._percent(p.right))) for p in parts]
+        return bars(rows, self._chart_text(heading), self.said["axis_right"], full=100)
 
     def mistakes(self) -> Section:
         told = self.statistics
@@ -141,7 +137,9 @@ class _Page:
             (self._mistake_label(m), m.count, str(m.count)) for m in told.mistakes_of_exercises()[:_CHARTED]
         ]
         heading = self.said["chart_mistakes"]
-        chart = self._chart(bars(rows, self._chart_text(heading), self.said["axis_answers"]), heading)
+        charts = self._charts(
+            lambda: bars(rows, self._chart_text(heading), self.said["axis_answers"]), heading
+        )
         tables, left_out = [], 0
         for name in told.exercises:
             own = [m for m in told.mistakes if m.exercise == name]
@@ -151,7 +149,7 @@ class _Page:
         text = [self.said["mistakes_text"]]
         if left_out:
             text.append(self.said["mistakes_more"].format(left_out))
-        return Section(self.said["mistakes"], " ".join(text), (chart,), tuple(tables))
+        return Section(self.said["mistakes"], " ".join(text), charts, tuple(tables))
 
     # ------------------------------------------------------------------ tables
 
@@ -316,10 +314,11 @@ class _Page:
         return self.said["percent"].format(self._hundredths(share))
 
     def _chart_text(self, text: str) -> str:
-        return plain_label(typeset(_short(text, 80), self.lang))
+        return plain_label(typeset(_short(text, _HEADED), self.lang))
 
-    def _chart(self, svg: bytes, heading: str) -> Chart:
-        return Chart(svg.decode("utf-8"), self.said["alt"].format(heading))
+    def _charts(self, draw: Callable[[], bytes], heading: str) -> tuple[Chart, ...]:
+        """The chart, where charts can be drawn."""
+        return (Chart(draw().decode("utf-8"), self.said["alt"].format(heading)),) if self.drawn else ()
 
 
 def _shared_out(rows: Sequence[PartStatistics], most: int) -> list[Sequence[PartStatistics]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import shutil
+import sys
 
 import pytest
 
@@ -515,6 +516,35 @@ def test_many_answers_are_marked_by_processes_as_by_one(small_course, issued, tm
     grade(small_course, issued, "--out", tmp_path / "many")
     for name in ("marks.csv", "summary.csv", "rejected.csv"):
         assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "many" / name).read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("fault", "told"),
+    [
+        ("AttributeError('_ARRAY_API not found')", "cannot be loaded (AttributeError: _ARRAY_API not found)"),
+        (
+            "ImportError('numpy.core.multiarray failed to import')",
+            "cannot be loaded (ImportError: numpy.core",
+        ),
+    ],
+)
+def test_a_pyarrow_that_cannot_be_loaded_is_told_as_such(
+    small_course, issued, tmp_path, monkeypatch, capsys, fault, told
+):
+    (tmp_path / "libraries" / "pyarrow").mkdir(parents=True)
+    (tmp_path / "libraries" / "pyarrow" / "__init__.py").write_text(f"raise {fault}\n", "utf-8")
+    monkeypatch.syspath_prepend(tmp_path / "libraries")
+    for name in [n for n in sys.modules if n.partition(".")[0] == "pyarrow"]:
+        monkeypatch.delitem(sys.modules, name)
+    (tmp_path / "odd.parquet").write_bytes(b"PAR?")
+    where = ["--issued", str(issued / "issued.json"), "--no-feedback"]
+    assert course_run(small_course, "grade", tmp_path / "odd.parquet", *where) == 2
+    said = capsys.readouterr().err
+    assert told in said
+    assert "not installed" not in said
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    assert course_run(small_course, "grade", tmp_path / "odd.parquet", *where) == 2
+    assert "Parquet needs pyarrow, which is not installed" in capsys.readouterr().err
 
 
 # ------------------------------------------------------------ typing errors in what is accepted

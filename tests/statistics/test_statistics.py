@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import json
+import re
+import sys
 
 import numpy as np
 import pytest
@@ -500,6 +502,28 @@ def test_the_command_tells_a_graded_class(tmp_path, capsys, course):
     assert all(sum(float(p[f]) for f in VERDICTS) == pytest.approx(1, abs=1e-3) for p in parts)
     assert run(["report", str(marks), "--lang", "en", "--out", str(tmp_path / "again")]) == 0
     assert {p.name: p.read_bytes() for p in (tmp_path / "again").iterdir()} == files
+
+
+@pytest.mark.parametrize(
+    ("lang", "said"), [("fr", "Les graphiques manquent"), ("en", "The charts are left out")]
+)
+def test_without_matplotlib_all_is_written_but_the_charts(folder, monkeypatch, capsys, lang, said):
+    place = folder([line("a", "e", "p", "correct", 1), line("b", "e", "p", "mistake:m", 0)])
+    arguments = ["report", str(place), "--lang", lang, "--out"]
+    assert run([*arguments, str(place / "with")]) == 0
+    capsys.readouterr()
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert run([*arguments, str(place / "without")]) == 0
+    assert "all is written but the charts: charts need matplotlib" in capsys.readouterr().err
+    whole, bare = ({p.name: p.read_bytes() for p in (place / w).iterdir()} for w in ("with", "without"))
+    assert set(bare) == set(whole)
+    assert all(bare[name] == whole[name] for name in ("parts.csv", "mistakes.csv"))
+    assert bare["report.pdf"].startswith(b"%PDF")
+    pages = [re.sub("<figure>.*?</figure>", "", one["report.html"].decode()) for one in (whole, bare)]
+    assert (whole["report.html"].count(b"<figure>"), bare["report.html"].count(b"<figure>")) == (3, 0)
+    assert (said in pages[0], said in pages[1]) == (False, True)
+    cells = [re.findall("<td.*?</td>", page) for page in pages]
+    assert cells[0] == cells[1] != []
 
 
 def test_a_mistake_in_the_command_is_one_line(tmp_path, capsys):

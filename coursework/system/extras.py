@@ -1,0 +1,35 @@
+"""Libraries that only some jobs need: asked for when the job is, and what is wrong with one is said."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from types import ModuleType
+
+from coursework.errors import BadInput
+
+
+class NotAtHand(BadInput):
+    """A library that a job needs is not installed, or cannot be loaded; says which, and what would do."""
+
+
+def library(module: str, job: str, extra: str) -> ModuleType:
+    """A module of a library that ``job`` needs (``Parquet needs``) and that the package's ``extra`` brings.
+
+    Raises
+    ------
+    NotAtHand
+        It is not installed, or fails when it is loaded, as one does that was built for another version of NumPy.
+    """
+    name = module.partition(".")[0]
+    try:
+        return import_module(module)
+    except Exception as fault:  # whatever a library does that does not fit the others
+        if isinstance(fault, ModuleNotFoundError) and fault.name == name:
+            raise NotAtHand(
+                f"{job} {name}, which is not installed: pip install 'coursework[{extra}]'"
+            ) from fault
+        said = " ".join(str(fault).split())[:120]
+        raise NotAtHand(
+            f"{job} {name}, which is installed and cannot be loaded ({type(fault).__name__}: {said}): "
+            f"pip install --upgrade --force-reinstall {name}, or a version that fits the NumPy that is there"
+        ) from fault
