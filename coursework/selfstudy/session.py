@@ -20,7 +20,7 @@ from coursework.marking.feedback import part_name
 from coursework.marking.mark import Mark, Marking
 from coursework.marking.marking import mark as grade
 from coursework.markup.shown import Picture, Shown
-from coursework.motion.animation import EFFECTS
+from coursework.motion.gauges import EFFECTS
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.rendering.views import points_number
 from coursework.selfstudy import hints, predictions, refusals

@@ -17,7 +17,7 @@ from coursework.figures import link, pin, rail, rotation_arrow
 from coursework.figures.moving import drawing
 from coursework.figures.riding import ride
 from coursework.figures.text import read
-from coursework.motion.animation import EFFECTS
+from coursework.motion.gauges import EFFECTS
 
 #: A crank, a coupler, and the film of a ball always; all that move, slow.
 few_moving = pytest.mark.parametrize(

@@ -1,0 +1,229 @@
+"""A driver's cycle, instant by instant: its angles, and the figure at each of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coursework.course.variant import Variant
+from coursework.degrees import wrap
+from coursework.errors import BadCourse, CannotAssemble, Undefined, WrongValue
+from coursework.figures.figure import Figure
+from coursework.model import Driver
+from coursework.quantities.graph import Graph
+from coursework.solution import Film
+
+if TYPE_CHECKING:
+    from coursework.figures.base import Element
+
+SECONDS = 6.0  #: how long a turn of the driver, or a swing, lasts on the screen
+MOST_TURNS = 20  #: of its driver, in a film
+
+
+class Reel:
+    """The instants of a variant's mechanism: over the cycle of its driver, or over the turns that its film shows.
+
+    ``count`` is the number of angles in a turn of the driver.
+
+    Raises
+    ------
+    BadCourse
+        The exercise names no driver or no figure, and no solution at hand states a film.
+    """
+
+    def __init__(self, variant: Variant, count: int):
+        exercise = variant.exercise
+        if exercise.film is None and exercise.spec.driver is None:
+            raise BadCourse(
+                f"{exercise.name} names no driver=Driver(…) and no solution at hand states a FILM, so it cannot be moved"
+            )
+        if not exercise.is_animated:
+            raise BadCourse(f"{exercise.name} has no figure to move")
+        if count < 3:
+            raise WrongValue(f"a cycle has at least three angles; found {count}")
+        self.variant = variant
+        self.count = count
+
+    @property
+    def film(self) -> Film | None:
+        """The film that the solution states, if it is one."""
+        return self.variant.exercise.film
+
+    @property
+    def driver(self) -> str:
+        """The name of the driving angle."""
+        return self._drive.angle
+
+    @property
+    def _sign(self) -> int:
+        """Which way the driver turns."""
+        return -1 if float(self.variant.given.get(self._drive.speed, 1.0)) < 0 else 1
+
+    @property
+    def _drive(self) -> Film | Driver:
+        drive = self.film or self.variant.exercise.spec.driver
+        assert drive is not None  # what has neither is refused at the start
+        return drive
+
+    def _with_driver_at(self, angle: Any) -> dict[str, Any]:
+        """The given quantities, the driver at an angle, degrees, or at each of an array of angles."""
+        given = self.variant.given
+        if self.film is not None:
+            return {**given, self.film.angle: angle}
+        return {**given, **self.variant.exercise.posed(given, angle)}
+
+    def _stated(self, name: str, function: Callable[..., Any], given: Mapping[str, Any]) -> Any:
+        """What a function of the solution's quantities gives, called by a name that is none of theirs."""
+        exercise = self.variant.exercise
+        graph = exercise.solution.graph.with_functions({name: function})
+        known = {n: v for n, v in given.items() if n in exercise.quantity_names | graph.leaves}
+        return graph.evaluate((name,), known, self.variant.effects)[name]
+
+    # ------------------------------------------------------------------- instants
+
+    def _elements(self, angle: float) -> tuple[Element, ...] | None:
+        """The figure's elements at an angle of the driver; None where the mechanism does not close."""
+        try:
+            return self._elements_or_fault(angle)
+        except (CannotAssemble, Undefined, WrongValue):
+            return None
+
+    def _elements_or_fault(self, angle: float) -> tuple[Element, ...]:
+        if self.film is not None:
+            return self._stated("figure", self.film.figure, self._with_driver_at(float(angle))).elements
+        given = self._with_driver_at(wrap(float(angle)))
+        values = {n: v for n, v in given.items() if n in self._graph.leaves}
+        return self._graph.evaluate(("figure",), values)["figure"].elements
+
+    @cached_property
+    def _graph(self) -> Graph:
+        spec = self.variant.exercise.spec
+        assert spec.figure is not None  # what has none is refused at the start
+        return Graph({**{f.__name__: f for f in spec.helpers}, "figure": spec.figure})
+
+    @cached_property
+    def _cycle(self) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
+        """Angles of the driver, increasing; elements at each; the first shown; whether it turns fully."""
+        if self.film is not None:
+            return self._reel(self.film)
+        start, step = self.variant.exercise.driver_angle(self.variant.given), 360.0 / self.count
+        figure = self.variant.figure
+        assert figure is not None  # what has none is refused at the start
+        found = {0: figure.elements}
+        for k in range(1, self.count):
+            if (elements := self._elements(start + k * step)) is None:
+                break
+            found[k] = elements
+        if len(found) == self.count:
+            turned = math.floor((start % 360.0) / step + 1e-9)
+            shown = [(k - turned) % self.count for k in range(self.count)]
+            angles = (start % 360.0) + (np.arange(self.count) - turned) * step
+            return angles, [found[k] for k in shown], turned, True
+        closing = {start + k * step: elements for k, elements in found.items()}
+        for k in range(-1, -self.count, -1):
+            if (elements := self._elements(start + k * step)) is None:
+                break
+            closing[start + k * step] = elements
+        for way, last in ((1, max(closing)), (-1, min(closing))):
+            closing |= self._toward_limit(last, way * step, min(len(closing) - 1, 2))
+        ordered = sorted(closing)
+        return np.array(ordered), [closing[a] for a in ordered], ordered.index(start), False
+
+    def _reel(self, film: Film) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
+        """The same for a film: from 0, by equal steps and a last one that may be shorter."""
+        place = f"{self.variant.exercise.solution.source}: FILM"
+        if film.speed not in self.variant.given:
+            given = ", ".join(self.variant.given)
+            raise BadCourse(f"{place}: speed={film.speed!r} is no given quantity; there are {given}")
+        turns = self._stated("figure", film.turns, self.variant.given)
+        if not isinstance(turns, (int, float)) or not 0 < turns <= MOST_TURNS:
+            raise BadCourse(f"{place}: turns gives a number above 0, at most {MOST_TURNS}; found {turns!r}")
+        if not isinstance(figure := self._stated("figure", film.figure, self._with_driver_at(0.0)), Figure):
+            raise BadCourse(f"{place}: figure gives a Figure(…); found {figure!r}")
+        steps = math.ceil(self.count * turns - 1e-9)
+        angles = self._sign * np.array([*(360.0 / self.count * np.arange(steps)), 360.0 * turns])
+        angles = angles[:: self._sign] + 0.0  # no negative zero
+        first = 0 if self._sign > 0 else steps
+        return angles, [self._elements_or_fault(angle) for angle in angles], first, True
+
+    def _toward_limit(self, last: float, step: float, back: int) -> dict[float, tuple[Element, ...]]:
+        """The limit beyond the last angle, and more angles before it, where the links turn as its square root."""
+        limit, elements = self._limit(last, step)
+        if abs(limit - last) < 1e-3 * abs(step):
+            return {}
+        run = limit - (last - back * step)
+        more = {limit - run * (j / 10) ** 2: None for j in range(1, 10)}
+        found = {angle: self._elements(angle) for angle in more}
+        return {limit: elements} | {angle: one for angle, one in found.items() if one is not None}
+
+    def _limit(self, angle: float, step: float) -> tuple[float, tuple[Element, ...]]:
+        """The last angle that closes between one that does and the next, which does not."""
+        inside, outside = 0.0, 1.0
+        elements = self._elements_or_fault(angle)
+        for _ in range(30):
+            middle = (inside + outside) / 2
+            tried = self._elements(angle + middle * step)
+            if tried is None:
+                outside = middle
+            else:
+                inside, elements = middle, tried
+        return angle + inside * step, elements
+
+    @property
+    def angles(self) -> np.ndarray:
+        """The driver's angle at every instant, degrees, increasing."""
+        return self._cycle[0]
+
+    @property
+    def frames(self) -> list[tuple[Element, ...]]:
+        """The figure's elements at every instant, mm of mechanism."""
+        return self._cycle[1]
+
+    @property
+    def first(self) -> int:
+        """The instant that the sheet shows; of a film the first one."""
+        return self._cycle[2]
+
+    @property
+    def turns(self) -> bool:
+        """Whether the driver turns fully; otherwise the mechanism swings between its limits."""
+        return self._cycle[3]
+
+    @property
+    def closed(self) -> bool:
+        """Whether the last instant is followed by the first as any by the next; neither in a swing nor in a film."""
+        return self.turns and self.film is None
+
+    @property
+    def seconds(self) -> float:
+        """How long a loop lasts on the screen."""
+        return SECONDS * (1.0 if self.film is None else round(float(np.ptp(self.angles)) / 360.0, 3))
+
+    @cached_property
+    def order(self) -> tuple[int, ...]:
+        """The instants of a loop, in time, from the sheet's own back to it; a film's from its first to its last."""
+        count, first, sign = len(self.angles), self.first, self._sign
+        if self.film is not None:
+            return tuple(range(count))[::sign]
+        if self.turns:
+            return tuple((first + sign * k) % count for k in range(count + 1))
+        there, back = [*range(first, count), *range(count - 2, -1, -1)], range(1, first + 1)
+        loop = (*there, *back) if first else tuple(there)
+        return loop if sign > 0 else loop[::-1]
+
+    @cached_property
+    def times(self) -> np.ndarray:
+        """When each instant of a loop is reached, from 0 to 1: a turn goes steadily, a swing like a pendulum's."""
+        if self.film is not None:
+            gone = np.abs(self.angles - self.angles[self.first])[list(self.order)]
+            return gone / gone[-1]
+        if self.turns:
+            return np.linspace(0.0, 1.0, len(self.order))
+        low, high = self.angles[[0, -1]]
+        phase = np.arccos(np.clip((2 * self.angles - low - high) / (low - high), -1.0, 1.0))
+        steps = np.abs(np.diff(phase[list(self.order)]))
+        return np.concatenate([[0.0], np.cumsum(steps) / steps.sum()])
