@@ -108,7 +108,10 @@ class Part:
     ``point`` (by its distance to the reference), ``point_on_line`` (a point of the line through the reference
     along the quantity ``along``),
     ``direction`` (any non-zero multiple of the reference vector) or ``equation`` (in the exercise's
-    symbols ``variables``, up to a factor, which may hold those of them that are ``parameters``: lengths). An
+    symbols ``variables``, up to a factor, which may hold those of them that are ``parameters``: lengths), ``complex``
+    (by its distance to the reference), ``vector`` and ``matrix`` (entry by entry), ``choices`` (several right ones of
+    ``choices``), ``text`` or ``drawing``, which a person marks: their ``room`` is a number of lines, or the width and
+    height in mm of a box, of ``millimetre`` paper where it is told. An
     equation that closes a ``loop`` of the solution is right in any form: :func:`loop_equations`.
     A numeric answer is right within max(``atol``, ``rtol`` · |reference|), by default 1 %, or 1° for what
     is measured in degrees. ``when``, a function of given quantities, says whether a variant asks the part.
@@ -134,6 +137,8 @@ class Part:
     judge: str = ""
     loop: str = ""
     by_request: bool = False
+    room: Any = None
+    millimetre: bool = False
     sort: Kind = field(init=False, repr=False, compare=False)  #: what its kind says of it
 
     def __post_init__(self) -> None:
@@ -146,6 +151,7 @@ class Part:
             if bool(getattr(self, name)) != (name in sort.goes_with):
                 have = f"{self.kind!r} comes with it" if name in sort.goes_with else f"{self.kind!r} has none"
                 raise BadCourse(f"part {self.quantity!r}: {name!r} goes with some kinds, and must: {have}")
+        self._check_room(sort)
         if self.loop and (not self.variables or _loop_form(self) is None):
             raise BadCourse(
                 f"part {self.quantity!r}: an equation of the loop {self.loop!r} is called {self.loop}_x, {self.loop}_y or "
@@ -164,6 +170,26 @@ class Part:
             object.__setattr__(self, "rtol", 0.0 if in_degrees or self.judge else 0.01)
         if not self.id:
             object.__setattr__(self, "id", self.quantity)
+
+    def _check_room(self, sort: Kind) -> None:
+        """Take the room of the kind where none is stated; refuse room where it has no place."""
+        if sort.room is None and self.room is not None:
+            raise BadCourse(
+                f"part {self.quantity!r}: 'room' goes with kinds that leave some; {self.kind!r} has none"
+            )
+        if self.millimetre and sort.box != "blank":
+            raise BadCourse(
+                f"part {self.quantity!r}: millimetre paper goes with a drawing, not {self.kind!r}"
+            )
+        try:
+            room = (
+                None
+                if sort.room is None
+                else sort.checked_room(sort.room if self.room is None else self.room)
+            )
+        except WrongValue as fault:
+            raise BadCourse(f"part {self.quantity!r}: {fault}") from None
+        object.__setattr__(self, "room", room)
 
     @property
     def is_exact(self) -> bool:

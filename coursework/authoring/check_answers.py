@@ -44,6 +44,8 @@ def spellings(variant: Variant, key: Key) -> Iterator[dict[str, Any]]:
     """The right answers of a variant in the ways people write them."""
     sheets: dict[str, dict[str, Any]] = {way: {} for way in ("exact", "printed", "comma", "edge")}
     for part in variant.parts:
+        if part.sort.is_open:
+            continue
         for way, answer in part.sort.spellings(
             part, key.reference[part.quantity], partial(variant.label, part.id)
         ):
@@ -64,17 +66,19 @@ def check_rounding_students(
     }
     effects, graph = exercise.spec.effects, exercise.solution.graph
     wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts if not p.is_exact))
+    ranks = {p.quantity: p.sort.rank for p in exercise.spec.parts}
     for kept in digits if wanted else ():
         found = student_who_rounds(graph, wanted, given, effects, kept)
         widths = envelopes(exercise, wanted, given, effects, min(kept, exercise.folder.rules.digits))
         for index, variant in enumerate(drawn):
             if kept >= exercise.folder.rules.digits:
-                own_answers = {q: _at(v, index, len(drawn)) for q, v in found.items()}
+                own_answers = {q: _at(v, index, len(drawn), ranks[q]) for q, v in found.items()}
                 _check_rounded_together(variant, own_answers, report)
             for part in variant.parts:
                 if not part.has_margin:
                     continue
-                own, width = (_at(c[part.quantity], index, len(drawn)) for c in (found, widths))
+                own = _at(found[part.quantity], index, len(drawn), part.sort.rank)
+                width = _at(widths[part.quantity], index, len(drawn))
                 along = variant.key.reference.get(part.along)
                 gap = part.sort.distance(part, own, variant.key.reference[part.quantity], along, float(width))
                 report.counts[f"rounding to {kept}"] += 1
@@ -99,8 +103,8 @@ def _check_rounded_together(variant: Variant, own: Mapping[str, Any], report: Re
                 report.fail(f"seed {variant.seed}: {name} refuses {i} of who rounds each step")
 
 
-def _at(column: Any, index: int, count: int) -> Any:
-    varies = isinstance(column, np.ndarray) and column.ndim and column.shape[0] == count
+def _at(column: Any, index: int, count: int, rank: int = 0) -> Any:
+    varies = isinstance(column, np.ndarray) and column.ndim > rank and column.shape[0] == count
     return column[index] if varies else column
 
 
@@ -135,7 +139,7 @@ def check_slips(variant: Variant, key: Key, report: Report) -> None:
     The first slip of every part on one sheet, then the second of every part, and so on.
     """
     shown: list[dict[str, tuple[str, Any]]] = []
-    for part in variant.parts:
+    for part in (part for part in variant.parts if not part.sort.is_open):
         reference, width = key.reference[part.quantity], key.envelope.get(part.quantity, 0.0)
         slips = [s for s in key.slips(part) if part.sort.distance(part, s[1], reference, None, width) > SHOWN]
         for place, slip in enumerate(slips):
@@ -200,7 +204,9 @@ def _check_follows_together(variant: Variant, key: Key, first: Part, wrong: Any,
 
 
 def _written(value: Any) -> Any:
-    """A value as a student may write it: a vector by its coordinates."""
+    """A value as a student may write it: a vector by its coordinates, a matrix as lists, several cases by their names."""
+    if isinstance(value, np.ndarray) and value.ndim == 2:
+        return str(value.tolist())
     return "; ".join(map(repr, value.tolist())) if isinstance(value, np.ndarray) else value
 
 
@@ -236,7 +242,8 @@ def _check_extreme(variant: Variant, number: str, report: Report) -> None:
 
     Where each answer stands for itself, nought may be right.
     """
-    reference = {part.id: variant.key.reference[part.quantity] for part in variant.parts}
+    judged_parts = (part for part in variant.parts if not part.sort.is_open)
+    reference = {part.id: variant.key.reference[part.quantity] for part in judged_parts}
     answers = {i: "; ".join([number] * np.size(value)) for i, value in reference.items()}
     marking = grade(variant, answers)
     report.counts["nonsense"] += len(answers)

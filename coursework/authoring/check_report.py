@@ -29,6 +29,8 @@ class Report:
         default_factory=dict
     )  #: why a step's formula proves nothing, by quantity
 
+    by_person: set[str] = field(default_factory=set)  #: parts that a person marks, and no check can try
+
     @property
     def passed(self) -> bool:
         return not self.failures
@@ -54,6 +56,7 @@ class Report:
             },
             "cases": {n: dict(c) for n, c in self.cases.items()},
             "unproved": self.unproved,
+            **({"by_person": sorted(self.by_person)} if self.by_person else {}),
             "failures": self.failures,
         }
 
@@ -112,6 +115,8 @@ def notes(reports: Sequence[Report]) -> list[str]:
             told.append(f"{name}: {met}")
         if r.unproved:
             told.append(f"formulas not proved: {_by_reason(r.unproved)}")
+        if r.by_person:
+            told.append(f"marked by a person: {', '.join(sorted(r.by_person))}")
         if r.refused:
             flaws = ", ".join(f"{flaw} ({n})" for flaw, n in r.refused.most_common(3))
             told.append(f"passed over most for {flaws}")

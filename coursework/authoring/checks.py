@@ -217,7 +217,7 @@ def _every_name(exercise: CourseExercise, variant: Variant) -> dict[str, object]
 def check_needs(exercise: CourseExercise, report: Report) -> bool:
     """What is asked follows from what is given; False where a function needs what nothing gives."""
     try:
-        exercise.plan([part.quantity for part in exercise.spec.parts], effects=exercise.spec.effects)
+        exercise.plan([part.quantity for part in exercise.judged_parts], effects=exercise.spec.effects)
     except MissingQuantity as fault:
         near = nearest(fault.names[0], ({*exercise.spec.given} | exercise.quantity_names) - {*fault.names})
         report.fail(f"{exercise.solution.source}: {fault.needed}{near}")
@@ -269,10 +269,17 @@ def agrees(found: Any, expected: Any, *, is_angle: bool = False) -> bool:
         allowed = 0.5 * 10.0**-digits * (1 + 1e-9)
     else:
         allowed = 1e-9 * max(1.0, float(np.max(np.abs(expected))))
-    gap = np.asarray(found, dtype=float) - np.asarray(expected, dtype=float)
+    gap = _numbers(found) - _numbers(expected)
+    if np.shape(gap) != np.shape(found):
+        return False
     if is_angle:
         gap = gap - 360.0 * np.rint(gap / 360.0)
     return bool(np.all(np.abs(gap) <= allowed))
+
+
+def _numbers(value: Any) -> np.ndarray:
+    array = np.asarray(value)
+    return array if array.dtype.kind == "c" else np.asarray(value, dtype=float)
 
 
 # --------------------------------------------------------------------- solution
@@ -284,6 +291,9 @@ def check_solves(variant: Variant, key: Key, report: Report) -> None:
         if not exists(value):
             report.fail(f"seed {variant.seed}: {name} is {value}")
     for part in variant.parts:
+        if part.sort.is_open:
+            report.by_person.add(part.id)
+            continue
         value = key.reference[part.quantity]
         if part.sort.is_number and part.has_margin and part.atol == 0 and value == 0:
             report.fail(f"seed {variant.seed}: {part.id} is 0 and has no absolute tolerance")
@@ -300,15 +310,16 @@ def check_solves(variant: Variant, key: Key, report: Report) -> None:
 def check_arrays(exercise: CourseExercise, drawn: Sequence[Variant], report: Report) -> None:
     """One request on arrays gives what each variant gives alone."""
     given = {n: np.array([v.given[n] for v in drawn]) for n in exercise.spec.given}
-    wanted = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
+    wanted = tuple(dict.fromkeys(p.quantity for p in exercise.judged_parts))
     together = exercise.solve(**given, only=wanted, effects=exercise.spec.effects)
     for index, variant in enumerate(drawn):
         alone = {
             name: plain_scalar(value) for name, value in variant.quantities(variant.asked_quantities).items()
         }
-        for part in variant.parts:
+        for part in (part for part in variant.parts if not part.sort.is_open):
             value = together[part.quantity]
-            one = value[index] if isinstance(value, np.ndarray) and len(value) == len(drawn) else value
+            varies = isinstance(value, np.ndarray) and value.ndim > part.sort.rank
+            one = value[index] if varies and len(value) == len(drawn) else value
             if not _same(one, alone[part.quantity], part):
                 report.fail(
                     f"seed {variant.seed}: {part.id} is {alone[part.quantity]} alone, {one} in an array"
@@ -323,7 +334,9 @@ def _same(one: Any, other: Any, part: Part) -> bool:
         gap = one - other
         gap = math.remainder(gap, part.sort.turn) if part.sort.turn else gap
         return abs(gap) <= 1e-9 * max(1.0, abs(other))
-    gap = np.asarray(one, dtype=float) - np.asarray(other, dtype=float)
+    if np.shape(one) != np.shape(other):
+        return False
+    gap = _numbers(one) - _numbers(other)
     return bool(np.all(np.abs(gap) <= 1e-9 * np.maximum(1.0, np.abs(other))))
 
 

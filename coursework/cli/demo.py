@@ -40,6 +40,8 @@ def _right(variant: Variant, key: Key, part: Part, digits: int = 5) -> str:
     def label(case: str) -> str:
         return " ".join(to_text(variant.text.label(part.id, case), variant.lang).split())
 
+    if part.sort.is_open:
+        return f"{variant.exercise.name}, {part.id}"
     return part.sort.written(key.reference[part.quantity], digits, label)
 
 
@@ -91,7 +93,9 @@ def known_mistakes(variant: Variant, key: Key, part: Part, place: int) -> Any:
     for values in key.wrong.values():
         wrong = values.get(part.quantity)
         if wrong is not None and place % 2 == 0:
-            return "; ".join(repr(v) for v in wrong.tolist()) if isinstance(wrong, np.ndarray) else wrong
+            if isinstance(wrong, np.ndarray):
+                return str(wrong.tolist()) if wrong.ndim > 1 else "; ".join(map(repr, wrong.tolist()))
+            return str(wrong).strip("()") if isinstance(wrong, complex) else wrong
     return careful(variant, key, part, place)
 
 
@@ -135,7 +139,7 @@ HABITS: tuple[Habit, ...] = (
 
 
 SHOWN_VERDICTS = (
-    "correct", "follow_through", "mistake", "slip", "wrong", "wrong_unit", "unreadable", "missing",
+    "correct", "follow_through", "mistake", "slip", "partial", "wrong", "wrong_unit", "unreadable", "to_mark", "missing",
 )  # fmt: skip
 
 

@@ -170,5 +170,4 @@ def solve(
 def _json_value(value: Any) -> Any:
     from coursework.making.issued import plain_value
 
-    value = plain_value(value)
-    return {"re": value.real, "im": value.imag} if isinstance(value, complex) else value
+    return {"re": value.real, "im": value.imag} if isinstance(value, complex) else plain_value(value)

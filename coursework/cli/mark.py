@@ -63,6 +63,9 @@ def grade(
     if book.unreadable:
         what = "1 unreadable answer" if book.unreadable == 1 else f"{book.unreadable} unreadable answers"
         click.echo(f"{what} to look at: verdict unreadable in {out / 'marks.csv'}")
+    if book.waiting:
+        what = "1 answer waits" if book.waiting == 1 else f"{book.waiting} answers wait"
+        click.echo(f"{what} to be marked by a person: give points in {out / 'to_mark.csv'}, and grade again")
     if book.changes:
         what = (
             "1 mark is not what it was"

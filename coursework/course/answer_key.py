@@ -82,7 +82,7 @@ class Key:
 
     @property
     def _quantities(self) -> tuple[str, ...]:
-        return tuple(dict.fromkeys(p.quantity for p in self.variant.parts))
+        return tuple(dict.fromkeys(p.quantity for p in self.variant.parts if not p.sort.is_open))
 
     def _bounded(self, name: str, width: float) -> float:
         return width if math.isfinite(width) else ill_limit(self._part_of(name), self.reference[name])
@@ -140,7 +140,7 @@ class Key:
             given = {**self.variant.used, **before}
             found = self.solution.graph.evaluate((quantity,), given, self.variant.effects)
             value = plain_scalar(found[quantity])
-            if isinstance(value, str) or (math.isfinite(value) and not part.sort.is_trivial(value)):
+            if isinstance(value, str) or (exists(value) and not part.sort.is_trivial(value)):
                 return value
         return None
 

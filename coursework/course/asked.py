@@ -31,7 +31,7 @@ class Asked(Protocol):
 
     @property
     def asked_quantities(self) -> tuple[str, ...]:
-        """The quantities of the parts, and those that parts are judged with."""
+        """The quantities of the parts, and those that parts are judged with; none of what a person marks."""
 
     def solution(self) -> dict[str, Any]:
         """The asked quantities in canonical units and full precision."""

@@ -113,7 +113,7 @@ class CourseExercise(Generic[V]):
 
     def _wanted(self, only: Sequence[str] | str | None) -> tuple[str, ...]:
         if only is None:
-            return tuple(dict.fromkeys(p.quantity for p in self.spec.parts if not p.by_request))
+            return tuple(dict.fromkeys(p.quantity for p in self.judged_parts if not p.by_request))
         return (only,) if isinstance(only, str) else tuple(only)
 
     @cached_property
@@ -164,7 +164,7 @@ class CourseExercise(Generic[V]):
         values = self.intake.values(given)
         arrays = any(isinstance(v, np.ndarray) for v in values.values())
         if only is None and not arrays:
-            only = tuple(p.quantity for p in self.usual_parts(values))
+            only = tuple(p.quantity for p in self.usual_parts(values) if not p.sort.is_open)
         wanted = self._wanted(only)
         if arrays:
             _check_shapes(values)
@@ -310,6 +310,11 @@ class CourseExercise(Generic[V]):
     @cached_property
     def _records(self) -> Records:
         return Records(self.name, self.spec)
+
+    @property
+    def judged_parts(self) -> tuple[Part, ...]:
+        """The parts that have a right answer: not those that a person marks."""
+        return tuple(p for p in self.spec.parts if not p.sort.is_open)
 
     def usual_parts(self, given: Mapping[str, Any]) -> tuple[Part, ...]:
         """The parts that these given values ask unless others are named."""

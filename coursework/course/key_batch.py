@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any, Protocol
 
 import numpy as np
@@ -14,6 +15,8 @@ from coursework.course.asked import Asked
 from coursework.course.exercise import CourseExercise
 from coursework.errors import CourseworkError
 from coursework.quantities.graph import plain_scalar
+
+NO_RANKS: Mapping[str, int] = MappingProxyType({})
 
 
 class Keyed(Asked, Protocol):
@@ -45,13 +48,14 @@ class Batch:
         self.count = len(variants)
         names = (n for n in exercise.spec.given if n in exercise.quantity_names)
         self.given = {n: np.array([v.given[n] for v in variants]) for n in names}
-        self.quantities = tuple(dict.fromkeys(p.quantity for p in exercise.spec.parts))
+        self.quantities = tuple(dict.fromkeys(p.quantity for p in exercise.judged_parts))
+        self.ranks = {p.quantity: p.sort.rank for p in exercise.judged_parts}
         self.along = tuple(dict.fromkeys(p.along for p in exercise.spec.parts if p.along))
 
     @cached_property
     def reference(self) -> dict[str, list]:
         wanted = (*self.quantities, *self.along)
-        return _rows({name: self._found[name] for name in wanted if name in self._found}, self.count)
+        return self._rows({name: self._found[name] for name in wanted if name in self._found})
 
     @cached_property
     def _found(self) -> dict[str, Any]:
@@ -72,11 +76,13 @@ class Batch:
         for given in with_other_cases(self.exercise, self.given):
             with suppress(CourseworkError):
                 graph, effects = self.exercise.solution.graph, self.exercise.spec.effects
-                for quantity, column in _rows(
-                    graph.evaluate(self.quantities, given, effects), self.count
-                ).items():
+                values = graph.evaluate(self.quantities, given, effects)
+                for quantity, column in self._rows(values).items():
                     found.setdefault(quantity, []).append(column)
         return found
+
+    def _rows(self, columns: Mapping[str, Any]) -> dict[str, list]:
+        return _rows(columns, self.count, self.ranks)
 
     def is_whole(self, index: int, quantities: Sequence[str]) -> bool:
         """Whether a variant has all these quantities."""
@@ -101,7 +107,7 @@ class Batch:
             # Where all together lead nowhere, each is tried alone.
             with suppress(CourseworkError):
                 values = graph.evaluate(some, self.given, self.exercise.spec.effects, self._found)
-                found |= _rows(values, self.count)
+                found |= self._rows(values)
                 if len(some) == len(reached):
                     break
         return found
@@ -141,12 +147,12 @@ class _KeyOfBatch(Key):
                 yield name, columns[quantity][self._index]
 
 
-def _rows(columns: Mapping[str, Any], count: int) -> dict[str, list]:
-    """A list a quantity, a value a variant; vectors as arrays."""
+def _rows(columns: Mapping[str, Any], count: int, ranks: Mapping[str, int] = NO_RANKS) -> dict[str, list]:
+    """A list a quantity, a value a variant; vectors and matrices, whose axes are ``ranks``, as arrays."""
     found = {}
     for name, values in columns.items():
         array = np.asarray(values)
-        if array.ndim == 0 or array.shape[0] != count:
+        if array.ndim <= ranks.get(name, 0) or array.shape[0] != count:
             found[name] = [plain_scalar(values)] * count
         else:
             found[name] = list(array) if array.ndim > 1 else array.tolist()

@@ -132,9 +132,10 @@ class Variant:
 
     @property
     def asked_quantities(self) -> tuple[str, ...]:
-        """The quantities of the parts, and those that parts are judged with."""
-        along = (p.along for p in self.parts if p.along)
-        return tuple(dict.fromkeys([*(p.quantity for p in self.parts), *along]))
+        """The quantities of the parts, and those that parts are judged with; none of what a person marks."""
+        judged = [p for p in self.parts if not p.sort.is_open]
+        along = (p.along for p in judged if p.along)
+        return tuple(dict.fromkeys([*(p.quantity for p in judged), *along]))
 
     @cached_property
     def text(self) -> Text:

@@ -61,7 +61,7 @@ class Accepted:
         if not self._by_place:
             return graded
         lines = dict(graded.lines)
-        unanswered: list[str] = []
+        unanswered = [*graded.unanswered]
         for part, line in graded.lines.items():
             for found in self._named(graded, part):
                 self._used.add(found)
@@ -147,7 +147,7 @@ def _acceptance(place: str, number: int, row: dict[str, str], more: Sequence[str
             "number with one, between quotation marks"
         )
     seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))  # as spreadsheets write whole numbers
-    points = _points(row.get("points", ""), place)
+    points = points_of(row.get("points", ""), place)
     named = (row["student"], row["exercise"], seed, row["part"])
     return _Acceptance(place, number, *named, points, row.get("reason", ""))
 
@@ -163,7 +163,8 @@ def _misspelt(columns: Iterable[str]) -> Iterator[str]:
             yield f"no column {column!r} is read; did you mean {meant[0]!r}?"
 
 
-def _points(text: str, place: str) -> float | None:
+def points_of(text: str, place: str) -> float | None:
+    """The points that a cell holds; None where it holds nothing."""
     if not text:
         return None
     try:

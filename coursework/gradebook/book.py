@@ -26,8 +26,8 @@ MARKS_COLUMNS = (
 )  # fmt: skip
 #: Kinds of verdict, in the order of the summary's columns.
 VERDICTS = (
-    "correct", "follow_through", "mistake", "slip", "accepted", "wrong", "wrong_unit", "missing_unit",
-    "unreadable", "missing",
+    "correct", "follow_through", "mistake", "slip", "accepted", "partial", "wrong", "wrong_unit", "missing_unit",
+    "unreadable", "to_mark", "missing",
 )  # fmt: skip
 SUMMARY_COLUMNS = ("student", "points", "out_of", "percent", *VERDICTS)
 REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "reason")
@@ -86,6 +86,7 @@ class Gradebook:
     exercises: dict[str, Total] = field(default_factory=dict)  #: of the answers that came
     handed_in: dict[str, set[str]] = field(default_factory=dict)  #: exercises by student
     blank: dict[tuple[str, str], set[str]] = field(default_factory=dict)  #: parts by sheet; see ``unread``
+    waiting: int = 0  #: answers that wait to be marked by a person
     changes: int = 0  #: marks that differ from those that were there before
 
     @property
@@ -142,8 +143,8 @@ class Gradebook:
 
     @property
     def needs_a_look(self) -> int:
-        """How many rows somebody must look at: rejected or unreadable, or accepted by hand and at fault."""
-        return len(self.rejected) + self.unreadable + len(self.faults)
+        """How many rows somebody must look at: rejected or unreadable, accepted by hand and at fault, or for a person to mark."""
+        return len(self.rejected) + self.unreadable + len(self.faults) + self.waiting
 
 
 def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:

@@ -31,7 +31,7 @@ def _number(text: str) -> float:
 
 _ROUNDING = 1e-4  #: of points, as both tables print them
 #: Verdicts that have a line in the marks for each in the summary.
-_IN_BOTH = tuple(v for v in VERDICTS if v not in ("unreadable", "missing"))
+_IN_BOTH = tuple(v for v in VERDICTS if v not in ("unreadable", "to_mark", "missing"))
 
 
 class Before:

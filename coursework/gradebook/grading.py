@@ -21,6 +21,7 @@ from coursework.gradebook.graded import Graded
 from coursework.gradebook.placing import placed
 from coursework.gradebook.rows import Rejected, Row
 from coursework.gradebook.submissions import find, read_file
+from coursework.gradebook.to_mark import TO_MARK_COLUMNS, ToMark, sorted_rows
 from coursework.making.issued import Issued
 from coursework.making.students import file_stems
 from coursework.system.build_folder import free_name
@@ -40,7 +41,8 @@ def grade_files(
     accepted: Path | None = None,
     progress: Progress = lambda done, of: None,
 ) -> Gradebook:
-    """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets.
+    """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets; ``to_mark.csv`` where
+    answers are marked by a person, whose points in an earlier one count.
 
     Where marks were there before, ``changes.csv`` says what differs now. ``accepted`` names answers that
     a person accepts; unless told, those of ``accepted.csv`` in ``out``. ``feedback`` None prints sheets for a
@@ -56,6 +58,7 @@ def grade_files(
         feedback = max(len(issued.students), len(issued.records)) <= FEEDBACK_STUDENTS
     kept = out / "accepted.csv"
     by_hand = Accepted(accepted if accepted is not None else kept if kept.exists() else None)
+    by_person = ToMark(out / "to_mark.csv")
     before = Before(out / "marks.csv")
 
     def rows() -> Iterator[Row | Rejected]:
@@ -73,7 +76,8 @@ def grade_files(
         rejected = tables.open("rejected.csv", gradebook.REJECTED_COLUMNS)
         changes = tables.open("changes.csv", CHANGES_COLUMNS) if before.exists else None
         for done, graded in enumerate(marked(course, issued, sheets, printed=feedback), start=1):
-            graded = by_hand.apply(graded, str(graded.record.get("lang", "fr")))
+            lang = str(graded.record.get("lang", "fr"))
+            graded = by_hand.apply(by_person.apply(graded, lang), lang)
             book.add(graded)
             for row in gradebook.marks_rows(graded):
                 marks.write(row)
@@ -88,6 +92,8 @@ def grade_files(
             book.changes = changes.rows
         book.faults, notes = by_hand.unfollowed(issued, book.students)
         book.warnings += notes
+        book.waiting = by_person.waiting
+        _list_to_mark(by_person, tables, book)
         for row in gradebook.summary_rows(book):
             summary.write(row)
         for row in gradebook.rejected_rows(book.rejected):
@@ -99,6 +105,21 @@ def grade_files(
         made = file_stems(dict.fromkeys((*issued.students, *before.students)))
         write_feedback(course, book, shown, out / "feedback", made, progress)
     return book
+
+
+def _list_to_mark(by_person: ToMark, tables: Tables, book: Gradebook) -> None:
+    """Write what a person marks; points for what nobody answered, or answered anew, stay in a copy, and are told."""
+    path = by_person.path
+    if by_person.loses:
+        kept = free_name(path)
+        write_whole(kept, path.read_bytes())
+        changed = [f"marked by a person, but answered anew since: {place}" for place in by_person.changed]
+        unused = [f"marked by a person, but never answered: {place}" for place in by_person.unused]
+        book.warnings += [*changed, *unused, f"{path.name} as it was is kept as {kept}"]
+    if by_person.rows or path.exists():
+        table = tables.open(path.name, TO_MARK_COLUMNS)
+        for row in sorted_rows(by_person.rows):
+            table.write(row)
 
 
 def _kept(marks: Path) -> str:

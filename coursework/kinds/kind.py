@@ -37,6 +37,8 @@ class Stated(Protocol):
     def parameters(self) -> tuple[str, ...]: ...
     @property
     def has_margin(self) -> bool: ...
+    @property
+    def room(self) -> Any: ...
     def half_width(self, reference: float) -> float: ...
 
 
@@ -78,12 +80,19 @@ class Kind(ABC):
     has_few_values: ClassVar[bool] = False  #: so few that many mistakes lead to the same one
     disproves: ClassVar[bool] = True  #: a right answer shows that a mistake was not made that would change it
     rounds: ClassVar[bool] = True  #: rounding on the way widens its margin, which has the part's unit
+    rank: ClassVar[int] = 0  #: axes of one value: 1 for a vector, 2 for a matrix
+    of_largest: ClassVar[bool] = False  #: a relative tolerance is of the largest entry, and holds for each
+    is_open: ClassVar[bool] = False  #: a person marks it, and the solution need not give it
+    room: ClassVar[Any] = (
+        None  #: on the sheet, of a part that states none; a part of another kind has no such room
+    )
+    has_rule: ClassVar[bool] = False  #: the sheet says how its points are counted
 
     has_symbol: ClassVar[bool] = True  #: the quantity's symbol stands before the box
     is_called_by_symbol: ClassVar[bool] = (
         True  #: feedback calls it so too; else by the number of the question
     )
-    box: ClassVar[str] = "usual"  #: room for the answer: usual, wide, line
+    box: ClassVar[str] = "usual"  #: room for the answer: usual, wide, line, lines, blank, millimetre
     prediction: ClassVar[str] = (
         ""  #: how it is predicted before it is computed: quadrant, guess, size; nothing for not at all
     )
@@ -140,6 +149,14 @@ class Kind(ABC):
     def is_trivial(self, value: Any) -> bool:
         """Whether nothing follows from such a value."""
         return not self.is_exact and not value
+
+    def share(self, part: Stated, value: Any, reference: Any) -> float:
+        """The share of the points that an answer earns which is not wholly right, and which no mistake explains."""
+        return 0.0
+
+    def checked_room(self, room: Any) -> Any:
+        """The room that a part states, or why it is none, as a :class:`WrongValue`."""
+        return room
 
     def scaled(self, width: float, value: Any, reference: Any) -> float:
         """The width of what rounding may have moved, about a slip of the reference."""

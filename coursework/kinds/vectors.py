@@ -16,6 +16,7 @@ class Coordinates(Kind):
     """Coordinates, as many as those of the reference."""
 
     family = "point"
+    rank = 1
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         from coursework.reading.points import read_point

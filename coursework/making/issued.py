@@ -100,7 +100,9 @@ def _item(issue: Issue) -> dict[str, Any]:
 
 
 def plain_value(value: Any) -> Any:
-    """A quantity as JSON holds it."""
+    """A quantity as JSON holds it: an array as lists, a complex number as the text ``3+4j``, which is an answer too."""
+    if isinstance(value, (complex, np.complexfloating)):
+        return str(complex(value)).strip("()")
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
@@ -115,7 +117,7 @@ def record_with_answers(variant: Issuable) -> dict[str, Any]:
     key = variant.key
     answers = {}
     for part in variant.parts:
-        value = key.reference[part.quantity]
+        value = None if part.sort.is_open else key.reference[part.quantity]
         tolerance = key.half_width(part) if part.has_margin else None
         answers[part.id] = {"value": plain_value(value), "unit": part.unit, "tolerance": tolerance}
     return {**variant.record, "answers": answers}
@@ -137,7 +139,7 @@ def key_rows(key: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
                 "exercise": record["exercise"],
                 "seed": record["seed"],
                 "part": part,
-                "value": shown,
+                "value": "" if shown is None else shown,
                 "unit": answer["unit"],
                 "tolerance": "" if answer["tolerance"] is None else answer["tolerance"],
             }

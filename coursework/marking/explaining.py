@@ -14,7 +14,7 @@ from coursework.reading.reading import Reading
 
 def nearest_reading(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[int, float]:
     """Which honest reading is nearest to the reference, and its distance in half-widths."""
-    if reading.status != "read":
+    if reading.status != "read" or part.sort.is_open:
         return 0, math.inf
     reference = key.reference[judged_by.quantity]
     along = key.reference.get(judged_by.along)

@@ -20,7 +20,7 @@ class Mark(NamedTuple):
     part: str
     answer: str  #: the text as it came
     read_as: str  #: what was read in it; empty when nothing was
-    verdict: str  #: correct, follow_through, mistake:NAME, slip:KIND, wrong, wrong_unit, missing_unit, unreadable or missing
+    verdict: str  #: correct, follow_through, mistake:NAME, slip:KIND, partial, wrong, wrong_unit, missing_unit, unreadable, to_mark or missing
     points: float
     out_of: float
     lang: str

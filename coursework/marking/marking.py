@@ -136,6 +136,8 @@ def _mark_part(
     made = partial(made_mark, variant, part, reading)
     if reading.status != "read":
         return made(reading.status, 0.0, "", say_not_read(variant, part, reading))
+    if part.sort.is_open:
+        return made("to_mark", 0.0, reading.read_as[0], say(variant, part, "to_mark"))
     index, gap = nearest
     explained = {} if gap <= 1 else dict(explanations(key, part, reading, judged_by, before))
     matches = tuple(explained)
@@ -168,4 +170,7 @@ def _mark_part(
         return made(verdict, key.rules.slip, read_as, told(f"slip_{name}"), matches)
     if kind == "follow_through":
         return made(verdict, key.rules.follow_through, read_as, told("follow_through"), matches)
+    share = part.sort.share(part, reading.values[index], key.reference[judged_by.quantity])
+    if share > 0:
+        return made("partial", share, read_as, told("partial"), matches)
     return made("wrong", 0.0, read_as, told(part.sort.wrong), matches)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -34,3 +34,32 @@ def each_stacked(read: Callable[[Any], Any], whole: Any) -> Any:
         raise WrongValue(f"joints is a list of joints, each a mapping; found {str(whole)[:60]!r}")
     found = np.array([read(one) for one in whole.ravel()])
     return found.reshape(whole.shape + found.shape[1:])
+
+
+def vector(*entries: Any) -> np.ndarray:
+    """A vector of entries that broadcast, shape ``(..., n)``: the entries along a last axis."""
+    return np.stack(np.broadcast_arrays(*(np.asarray(e, dtype=float) for e in entries)), axis=-1)
+
+
+def matrix(*rows: Sequence[Any]) -> np.ndarray:
+    """A matrix of rows of entries that broadcast, shape ``(..., m, n)``.
+
+    Raises
+    ------
+    WrongValue
+        Rows of different lengths.
+    """
+    lengths = {len(row) for row in rows}
+    if len(lengths) != 1:
+        raise WrongValue(f"the rows of a matrix have one length; found {sorted(lengths)}")
+    entries = np.broadcast_arrays(*(np.asarray(e, dtype=float) for row in rows for e in row))
+    return np.stack(entries, axis=-1).reshape(*entries[0].shape, len(rows), lengths.pop())
+
+
+def cases(**holds: Any) -> Any:
+    """The names of what holds, as the answer of several choices has them: ``"stable fast"``, or an array of such."""
+
+    def named(*which: Any) -> str:
+        return " ".join(name for name, is_so in zip(holds, which, strict=True) if is_so)
+
+    return each(named, *holds.values(), dtype=str)

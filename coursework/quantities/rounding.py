@@ -83,7 +83,7 @@ def envelope(
     wanted = tuple(wanted)
     textbook = graph.textbook
     count = max((np.size(v) for v in given.values() if np.ndim(v)), default=1)
-    columns = _columns(textbook, wanted, given, effects)
+    columns, still = _columns(textbook, wanted, given, effects)
     spread = {n: _down(v, count) for n, v in given.items()}
 
     def moved(name: str, value: Any) -> Any:
@@ -93,7 +93,10 @@ def envelope(
 
     len_all = 1 + sum(len(places) for places in columns.values())
     found = textbook.observed(moved).evaluate(wanted, spread, effects)
-    return {name: _total(value, count, name in directions) for name, value in found.items()}
+    return {
+        name: np.zeros(count) if name in still else _total(value, count, name in directions)
+        for name, value in found.items()
+    }
 
 
 def _down(value: Any, count: int) -> Any:
@@ -105,22 +108,31 @@ def _down(value: Any, count: int) -> Any:
 
 def _columns(
     graph: Graph, wanted: Sequence[str], given: Mapping[str, Any], effects: Iterable[str]
-) -> dict[str, list[tuple[int, Any]]]:
-    """For each step, the columns in which it is moved, and which of its components there.
+) -> tuple[dict[str, list[tuple[int, Any]]], frozenset[str]]:
+    """For each step, the columns in which it is moved, and which of its components there; and the matrices that are
+    the same whatever is given, which are not moved.
 
-    One column for a number, two for a complex one, one a coordinate of a vector.
+    One column for a number, two for a complex one, one a coordinate of a vector, one an entry of a matrix.
     """
     first = {n: (v if isinstance(v, str) or not np.ndim(v) else v[:1]) for n, v in given.items()}
     names = [n for n in graph.plan(tuple(wanted), frozenset(given), effects) if not n.startswith("_")]
     values = graph.evaluate(names, first, effects)
     columns: dict[str, list[tuple[int, Any]]] = {}
+    still: set[str] = set()
+    has_axis = any(np.ndim(v) for v in given.values())
     column = 1
     for name in names:
         value = values[name]
         if isinstance(value, (str, bool, int, tuple)) or not _is_number(value):
             continue
-        if np.iscomplexobj(value):
-            parts: list[Any] = ["real", "imag"]
+        matrix = _matrix_shape(value, has_axis)
+        if matrix == () and np.ndim(value) > 1:
+            still.add(name)
+            continue
+        if matrix:
+            parts: list[Any] = list(np.ndindex(*matrix)) if np.asarray(value).dtype.kind == "f" else []
+        elif np.iscomplexobj(value):
+            parts = ["real", "imag"]
         elif np.asarray(value).dtype.kind != "f":
             continue
         else:
@@ -129,13 +141,31 @@ def _columns(
             parts = list(range(np.shape(value)[-1])) if is_vector else [None]
         columns[name] = [(column + i, part) for i, part in enumerate(parts)]
         column += len(parts)
-    return columns
+    return columns, frozenset(still)
+
+
+def _matrix_shape(value: Any, has_axis: bool) -> tuple[int, ...] | None:
+    """The shape of a matrix of the first variant; ``()`` for one that does not vary with it, None for no matrix.
+
+    Where something ``has_axis``, what varies has an axis of variants before its own, of length 1 here.
+    """
+    shape = np.shape(value)
+    if not has_axis:
+        return shape if len(shape) == 2 else None
+    if len(shape) == 3:
+        return shape[1:]
+    return () if len(shape) == 2 and shape[0] != 1 else None
 
 
 def _moved(value: Any, part: Any, column: int, width: int, digits: int) -> Any:
     """The value with one column of it moved by half of its last digit."""
     vector = isinstance(part, int)
     value = np.asarray(value)
+    if isinstance(part, tuple):
+        base = value if value.ndim == 4 else value.reshape(-1, 1, *value.shape[-2:])
+        full = np.array(np.broadcast_to(base, (len(base), width, *base.shape[-2:])))
+        full[:, column, *part] += half_step(full[:, column, *part], digits)
+        return full
     if vector:
         base = value if value.ndim == 3 else value.reshape(1, 1, -1)
         full = np.array(np.broadcast_to(base, (len(base), width, base.shape[-1])))
@@ -155,7 +185,8 @@ def _total(value: Any, count: int, is_direction: bool) -> np.ndarray:
     value = np.asarray(value)
     if value.dtype.kind not in "fc" or value.ndim < 2:
         return np.zeros(count)
-    if value.ndim == 3:
+    if value.ndim >= 3:
+        value = value.reshape(*value.shape[:2], -1)
         moves = np.linalg.norm(value - value[:, :1], axis=-1)
     else:
         moves = np.abs(value - value[:, :1])

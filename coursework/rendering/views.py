@@ -356,6 +356,8 @@ def margin_words(answer: Answer, lang: str) -> str:
     """How far from the reference an answer may be, in the summary's few words."""
     said = words(lang)["solution"]
     margin = f"±\N{NO-BREAK SPACE}{answer.margin}" if answer.margin else answer.question.tolerance
+    if answer.question.room:
+        return said["none"]
     if not margin:
         return said["together" if answer.question.judge else "exact"]
     return said["margins"].get(answer.question.kind, "{0}").format(margin)
@@ -422,7 +424,7 @@ def python_name(name: str) -> str:
 def answer_comment(question: Question, lang: str) -> str:
     """What a notebook says beside an answer: its unit, the keys of a choice, or the form it takes."""
     said = words(lang)
-    if question.choices:
+    if question.choices and question.box != "several":
         note = said["notebook"]["one_of"].format(", ".join(key for key, _ in question.choices))
     else:
         unit = said["sheet"]["with_unit"] if question.asks_unit else question.unit

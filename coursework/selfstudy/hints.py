@@ -62,6 +62,9 @@ def steps(
     for the hints of another.
     """
     quantity = quantity_of(variant, name)
+    asked = _asked(variant, quantity)
+    if asked is not None and asked.sort.is_open:
+        return (_look_again(variant, asked),)
     all_steps = (
         _depends(variant, quantity, call),
         _words(variant, quantity),
@@ -248,7 +251,11 @@ def revealed(variant: Variant, name: str) -> Step:
 
 
 def revealed_text(variant: Variant, name: str) -> str:
-    """The same as Markdown."""
+    """The same as Markdown; of a question that a person marks its model answer, or that it has none."""
+    asked = next((p for p in variant.parts if p.id == name and p.sort.is_open), None)
+    if asked is not None:
+        models = (s.words for s in answer_sheet(variant).steps if s.name == asked.id)
+        return next(models, words(variant.lang)["solution"]["by_hand"])
     step = revealed(variant, name)
     formula = f"$${chain_on_lines(step)}$$" if step.value else ""
     return "\n\n".join(filter(None, (step.words, formula)))

@@ -294,7 +294,7 @@ class StudySession:
         self._kept.add(self.variant.seed, "answers", {n: a for n, a in given.items() if n not in theirs})
         lines, unanswered = [], []
         for number, mark in enumerate(marking.values(), start=1):
-            if mark.verdict == "missing":
+            if mark.verdict == "missing" or (mark.verdict == "to_mark" and is_blank(mark.answer)):
                 unanswered.append(mark.part)
             else:
                 lines.append(f"- {_sign(mark)} **{number}.** `{mark.part}` — {self._says(mark)}")
@@ -303,12 +303,14 @@ class StudySession:
         right = {m.part for m in marking.values() if m.verdict == "correct"}
         total = self._said["total"].format(
             points=points_number(marking.points, self.variant.lang),
-            out_of=points_number(marking.out_of, self.variant.lang),
+            out_of=points_number(_judged_out_of(self.variant, marking), self.variant.lang),
         )
         before = [n for n in now if (named or answers is not None) and is_blank(given.get(n))]
         after = [self._left(unanswered)] if unanswered else []
         after += [self._said["from_before"].format(names=_names(before))] if before else []
-        first = next((n for n, m in marking.items() if m.verdict not in ("correct", "missing")), "")
+        first = next(
+            (n for n, m in marking.items() if m.verdict not in ("correct", "missing", "to_mark")), ""
+        )
         after += [self._said["try_hint"].format(call=self._call("hint", first))] if first else []
         asked_before = [p.id for p in predictions.before_answers(self.variant) if p.id in right]
         return self._shown(
@@ -321,6 +323,10 @@ class StudySession:
 
     def _says(self, mark: Mark) -> str:
         """What is said to a student alone of an answer: where nobody will look at it, what to write instead."""
+        if mark.verdict == "to_mark":
+            part = next(p for p in self.variant.parts if p.id == mark.part)
+            name, sentence = part_name(self.variant, part), words(self.variant.lang)["marking"]["open"]
+            return sentence.format(name=name[:1].upper() + name[1:], call=self._call("reveal", mark.part))
         if mark.verdict != "unreadable":
             return mark.says
         table = words(self.variant.lang)["marking"]["unreadable"]
@@ -536,7 +542,8 @@ class StudySession:
             variant = self.variant.exercise.variant(seed, self.variant.lang)
             marking = grade(variant, self._asked_of(variant))
             right = sum(m.verdict == "correct" for m in marking.values())
-            lines.append("- " + self._said["progress"].format(seed=seed, right=right, of=len(marking)))
+            judged = sum(not _is_open(variant, m) for m in marking.values())
+            lines.append("- " + self._said["progress"].format(seed=seed, right=right, of=judged))
         return self._shown("\n".join(lines), self._trouble)
 
     # ------------------------------------------------------------------- common
@@ -575,6 +582,15 @@ class StudySession:
         return Shown(self.variant.lang, *pieces)
 
 
+def _is_open(variant: Variant, mark: Mark) -> bool:
+    return next(p for p in variant.parts if p.id == mark.part).sort.is_open
+
+
+def _judged_out_of(variant: Variant, marking: Marking) -> float:
+    """The points of what is marked here."""
+    return sum(m.out_of for m in marking.values() if not _is_open(variant, m))
+
+
 def _names(names: Iterable[str]) -> str:
     return ", ".join(f"`{n}`" for n in names)
 
@@ -595,6 +611,8 @@ def _sign(mark: Mark) -> str:
     """The mark at the head of a line, told apart without colour."""
     if mark.verdict == "correct":
         return "✓"
+    if mark.verdict == "to_mark":
+        return "…"
     if mark.verdict in ("unreadable", "missing_unit", "wrong_unit"):
         return "?"
     return "≈" if mark.points else "✗"

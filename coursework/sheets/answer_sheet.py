@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -27,6 +27,7 @@ from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Answer, AnswerSheet, Remark, Step
 
 if TYPE_CHECKING:
+    from coursework.course.texts import Text
     from coursework.course.variant import Variant
 
 
@@ -44,7 +45,7 @@ def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) 
     """
     sheet = handout(variant, student)
     values, text = variant.walk, variant.solution_text
-    steps = _steps(variant, values, text)
+    steps = (*_steps(variant, values, text), *_models(variant, text))
     answers = tuple(
         Answer(question, answer_text(variant, part, values), _margin(variant, part))
         for question, part in zip(sheet.questions, variant.parts, strict=True)
@@ -54,6 +55,21 @@ def answer_sheet(variant: Variant, student: str = "", *, polygons: bool = True) 
     alt = " ".join(says.text.split()) if says else ""
     drawn = stated_polygons(variant) if polygons else ()
     return AnswerSheet(sheet, answers, steps, text.opening, figure, alt, drawn)
+
+
+def _models(variant: Variant, text: Text) -> Iterator[Step]:
+    """The model answers of the questions that a person marks: sections of the solution's text."""
+    for part in variant.parts:
+        if part.sort.is_open and (section := text.sections.get(part.id)) is not None:
+            said = f"{_question(variant, part)} {section.text}"
+            yield Step(part.id, "", "", "", "", said, (), asked=True)
+
+
+def _question(variant: Variant, part: Part) -> str:
+    """Which question it is, at the head of a step: ``*Question 3.*``"""
+    number = 1 + variant.parts.index(part)
+    asks = f"{engine_words(variant.lang)['sheet']['question']['one']} {number}."
+    return f"*{asks[:1].upper()}{asks[1:]}*"
 
 
 def _symbol(variant: Variant, name: str) -> str:
@@ -160,8 +176,7 @@ def _words_of(variant: Variant, name: str, found: Any, reason: str) -> str:
     if not number:
         return reason
     said, part = engine_words(variant.lang), variant.parts[number - 1]
-    asks = f"{said['sheet']['question']['one']} {number}."
-    words = [f"*{asks[:1].upper()}{asks[1:]}*", reason]
+    words = [_question(variant, part), reason]
     case = part.sort.words(found, partial(variant.text.label, part.id))
     if case:
         # At the end of the reason's last sentence, or after it.
@@ -179,10 +194,17 @@ def _value_latex(variant: Variant, name: str, value: Any) -> str:
         return "" if part is None else part.sort.latex(value, _symbols(variant))
     if isinstance(value, tuple):
         return ""
+    if isinstance(value, np.ndarray) and value.ndim == 2:
+        return _matrix_latex(value) + _unit_latex(unit)
     if isinstance(value, np.ndarray):
         inner = r";\ ".join(number_latex(v, "1", PRINTED_DIGITS) for v in value.tolist())
         return rf"\left({inner}\right)" + _unit_latex(unit)
     return number_latex(value, "1", PRINTED_DIGITS) + _unit_latex(unit)
+
+
+def _matrix_latex(value: np.ndarray) -> str:
+    rows = (" & ".join(number_latex(v, "1", PRINTED_DIGITS) for v in row) for row in value.tolist())
+    return r"\begin{pmatrix} " + r" \\ ".join(rows) + r" \end{pmatrix}"
 
 
 def _unit_latex(unit: str) -> str:
@@ -198,7 +220,9 @@ def _symbols(variant: Variant) -> dict[str, str]:
 
 
 def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
-    """The reference answer of a part, rounded for print, as Markdown."""
+    """The reference answer of a part, rounded for print, as Markdown; of one that a person marks, that it is so."""
+    if part.sort.is_open:
+        return engine_words(variant.lang)["solution"]["by_hand"]
     value = values[part.quantity]
     if said := part.sort.words(value, partial(variant.text.label, part.id)):
         return said

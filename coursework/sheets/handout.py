@@ -100,7 +100,9 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
         unit="" if part.asks_unit else unit_text(part.unit, variant.lang),
         kind=part.kind,
         is_exact=part.is_exact,
-        box=part.sort.box,
+        box="millimetre" if part.millimetre else part.sort.box,
+        rule=engine_words(variant.lang)["rules"][part.kind] if part.sort.has_rule else "",
+        room=part.room,
         hint=part.sort.hint.get(variant.lang, ""),
         choices=choices,
         points=part.points,
@@ -116,6 +118,7 @@ def tolerance_words(part: Part, lang: str) -> str:
         return ""
     table = engine_words(lang)["accepted"]
     percent = localise(plain(round(100 * part.rtol, 6)), lang)
+    share = table["share_of_largest" if part.sort.of_largest else "share"].format(percent)
     absolute = localise(plain(part.atol), lang)
     if part.atol and part.unit == "deg":
         fixed = table["degrees"].format(absolute)
@@ -124,7 +127,7 @@ def tolerance_words(part: Part, lang: str) -> str:
     if not part.rtol:
         return fixed
     if not part.atol:
-        return table["percent"].format(percent)
-    return table["either"].format(
-        table["share"].format(percent), f"{absolute} {unit_text(part.unit, lang)}".strip()
-    )
+        return (table["absolute"] if part.sort.of_largest else table["percent"]).format(
+            share if part.sort.of_largest else percent
+        )
+    return table["either"].format(share, f"{absolute} {unit_text(part.unit, lang)}".strip())

@@ -42,9 +42,13 @@ class Question:
     points: float
     tolerance: str  #: in words a student understands; empty for exact kinds
     is_exact: bool = False  #: judged without a margin
-    box: str = "usual"  #: room for the answer: usual, wide, line
+    box: str = "usual"  #: room for the answer: usual, wide, line, several, lines, blank, millimetre
     hint: str = ""  #: the form of an answer, where the engine's words have none for the kind
     asks_unit: bool = False  #: the answer is to come with its unit, which the sheet does not print
+    rule: str = ""  #: how its points are counted, in words, where that is not plain
+    room: int | tuple[int, int] | None = (
+        None  #: lines to write on, or width and height in mm of a box to draw in
+    )
     judge: str = ""  #: of the parts that are judged together with this one
 
 

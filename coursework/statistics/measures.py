@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
 
@@ -19,6 +19,7 @@ from coursework.statistics.marks import Marks, family_of
 
 RIGHT = ("correct", "follow_through", "accepted")
 RECOGNISED = ("mistake", "slip")
+WAITING = "to_mark"  #: for a person: neither right nor wrong yet
 
 ENOUGH = 10  #: students below which a discrimination is chance
 WEAK = 0.15  #: a discrimination below which a part is worth a look
@@ -49,8 +50,13 @@ class PartStatistics:
 
     @property
     def right(self) -> float:
-        """Share of the answers that are right: by themselves, from an earlier wrong one, or accepted by hand."""
-        return self.share(*RIGHT)
+        """Share of the marked answers that are right: by themselves, from an earlier wrong one, or accepted by hand."""
+        return sum(self.counts[f] for f in RIGHT) / self.marked if self.marked else 0.0
+
+    @property
+    def marked(self) -> int:
+        """The answers that do not wait for a person."""
+        return self.answers - self.counts[WAITING]
 
     def row(self) -> dict[str, Any]:
         """A line of ``parts.csv``: shares with four decimals."""
@@ -110,8 +116,8 @@ class Statistics:
 
     @property
     def needs_a_look(self) -> int:
-        """Answers that somebody must look at: unreadable or rejected."""
-        return self.counts["unreadable"] + self.rejected
+        """Answers that somebody must look at: unreadable, rejected, or to be marked by a person."""
+        return self.counts["unreadable"] + self.rejected + self.counts[WAITING]
 
     @property
     def exercises(self) -> tuple[str, ...]:
@@ -170,14 +176,15 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
     """
     families = np.array([VERDICTS.index(family_of(v)) for v in marks.verdicts], dtype=int)
     family = families[marks.verdict]
+    every, marks = marks, marked_lines(marks, family != VERDICTS.index(WAITING))
     n = len(marks.parts)
-    answers = np.bincount(marks.part, minlength=n)
-    codes = marks.part * len(VERDICTS) + family
+    answers, marked = np.bincount(every.part, minlength=n), np.bincount(marks.part, minlength=n)
+    codes = every.part * len(VERDICTS) + family
     counts = np.bincount(codes, minlength=n * len(VERDICTS)).reshape(n, len(VERDICTS))
     share = marks.points / marks.out_of
-    mean = np.bincount(marks.part, share, minlength=n) / np.maximum(answers, 1)
+    mean = np.bincount(marks.part, share, minlength=n) / np.maximum(marked, 1)
     lost = np.bincount(marks.part, marks.out_of - marks.points, minlength=n)
-    askers = _askers(marks)
+    askers = _askers(every)
     told = _discriminations(marks, share, askers)
 
     def place(index: int) -> tuple[int, int]:
@@ -199,14 +206,14 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
         for i in order
     )
     students = len(marks.students)
-    with_line = np.bincount(marks.student, minlength=students) > 0
+    with_line = np.bincount(every.student, minlength=students) > 0
     total = np.bincount(marks.student, marks.points, minlength=students)
     has = marks.issued > 0
     return Statistics(
         students=students,
         silent=students - int(np.count_nonzero(with_line)) - marks.unread,
         unread=marks.unread,
-        answers=len(marks.student),
+        answers=len(every.student),
         counts=dict(zip(VERDICTS, counts.sum(axis=0).tolist(), strict=True)),
         without_line=marks.without_line,
         rejected=marks.rejected,
@@ -214,6 +221,17 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
         parts=parts,
         mistakes=_mistakes(marks, answers, order, float(lost.sum())),
     )
+
+
+def marked_lines(marks: Marks, marked: np.ndarray) -> Marks:
+    """The marks without the lines that wait for a person, shape (lines,) of booleans, and without their points."""
+    if np.all(marked):
+        return marks
+    waiting = np.bincount(marks.student[~marked], marks.out_of[~marked], minlength=len(marks.students))
+    lines = {
+        name: getattr(marks, name)[marked] for name in ("student", "part", "verdict", "points", "out_of")
+    }
+    return replace(marks, **lines, issued=marks.issued - waiting)
 
 
 def _askers(marks: Marks) -> list[int]:

@@ -24,6 +24,7 @@ from coursework.statistics.measures import (
     BINS,
     ENOUGH,
     MISTAKE_COLUMNS,
+    WAITING,
     WEAK,
     MistakeStatistics,
     PartStatistics,
@@ -98,6 +99,8 @@ class _Page:
             (self.verdicts["unreadable"], self._number(told.counts["unreadable"])),
             (self.said["rejected"], self._number(told.rejected)),
         ]
+        if told.counts[WAITING]:
+            rows.append((self.said["to_mark"], self._number(told.counts[WAITING])))
         if percents.size:
             rows.append((self.said["mean_percent"], self._percent(percents.mean() / 100)))
             rows.append((self.said["median_percent"], self._percent(np.median(percents) / 100)))
@@ -207,7 +210,7 @@ class _Page:
         return [*found, self._to_look_at()]
 
     def _hardest(self) -> str:
-        lost = [p for p in self.statistics.parts if p.mean < 1]
+        lost = [p for p in self.statistics.parts if p.marked and p.mean < 1]
         if not lost:
             return self.said["reading"]["all_full"]
         hardest = sorted(lost, key=lambda p: p.mean)[:3]
@@ -249,12 +252,14 @@ class _Page:
         )
 
     def _to_look_at(self) -> str:
-        told = self.statistics
-        if not told.needs_a_look:
-            return self.said["reading"]["no_look"]
-        return self.said["reading"]["look"].format(
-            total=told.needs_a_look, unreadable=told.counts["unreadable"], rejected=told.rejected
+        told, reading = self.statistics, self.said["reading"]
+        waiting, rest = told.counts[WAITING], told.needs_a_look - told.counts[WAITING]
+        look = reading["look"].format(
+            total=rest, unreadable=told.counts["unreadable"], rejected=told.rejected
         )
+        found = [look] if rest else []
+        found += [reading["to_mark"].format(self._number(waiting))] if waiting else []
+        return " ".join(found) or reading["no_look"]
 
     # ------------------------------------------------------------------- names
 

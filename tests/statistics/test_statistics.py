@@ -92,7 +92,9 @@ def test_a_small_class_counted_by_hand(folder):
     assert part.lost == 1 + 1 + 2 + 2 + 2
     assert part.share("missing") == part.share("slip") == 1 / 7
     assert sum(part.counts.values()) == part.answers
-    assert {f for f, n in part.counts.items() if not n} == {"accepted", "wrong_unit", "missing_unit"}
+    assert {f for f, n in part.counts.items() if not n} == {
+        *("accepted", "partial", "wrong_unit", "missing_unit", "to_mark")
+    }
     sign = next(m for m in told.mistakes if m.name == "sign")
     assert (sign.count, sign.share, sign.lost, sign.share_of_lost) == (1, 1 / 7, 1, 1 / 8)
     assert [m.kind for m in told.mistakes] == ["mistake", "slip"]

@@ -1,0 +1,64 @@
+"""Several cases among a few: right where exactly the right ones are named."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.reading.reading import Reading
+from coursework.reading.several import read_choices
+
+
+def cases_of(value: Any) -> frozenset[str]:
+    """The names of cases that a reference holds: ``"stable fast"``, ``"stable, fast"``, or a set; ``""`` is none."""
+    if isinstance(value, (set, frozenset, tuple, list)):
+        return frozenset(map(str, value))
+    return frozenset(str(value).replace(",", " ").replace(";", " ").split())
+
+
+class Choices(Kind):
+    name = "choices"
+    goes_with = ("choices",)
+    is_exact = is_text = has_rule = True
+    has_symbol = is_called_by_symbol = False
+    box = "several"
+    family = "choices"
+    wrong = "wrong_case"
+    faults = {"unknown_symbol": "not_a_number", "not_a_choice": "not_choices"}  # noqa: RUF012
+
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        return read_choices(answer, asking.labels(part))
+
+    def kept(self, read_as: str) -> Any:
+        return cases_of(read_as)
+
+    def distance(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        return 0.0 if cases_of(value) == cases_of(reference) else math.inf
+
+    def share(self, part: Stated, value: Any, reference: Any) -> float:
+        """Each right case gives its share, each wrong one takes as much away; 0 at least."""
+        right, named = cases_of(reference), cases_of(value)
+        if not right:
+            return 0.0
+        return max(0.0, (len(named & right) - len(named - right)) / len(right))
+
+    def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
+        return (" ".join(sorted(cases_of(value) ^ {part.choices[0]})) or "none",)
+
+    def words(self, value: Any, label: Callable[[str], str]) -> str:
+        return "; ".join(label(case) for case in sorted(cases_of(value))) or "∅"
+
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        return ", ".join(sorted(cases_of(value))) or "none"
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        cases = [case for case in part.choices if case in cases_of(value)]
+        yield Spelling("exact", ", ".join(cases) or "none")
+        yield Spelling("printed", " ; ".join(label(case) for case in reversed(cases)) or "none")
+        yield Spelling(
+            "ticked", "\n".join(f"[{'x' if case in cases else ' '}] {case}" for case in part.choices)
+        )

@@ -1,0 +1,35 @@
+"""A matrix of the shape of its reference: right where each entry is within the margin of the largest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from coursework.kinds.entries import Entries
+from coursework.kinds.kind import Asking, Spelling, Stated
+from coursework.language.numbers import significant
+from coursework.reading.matrices import read_matrix
+from coursework.reading.reading import Reading
+
+
+class Matrix(Entries):
+    name = "matrix"
+    family = "matrix"
+    box = "line"
+    rank = 2
+
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        rows, columns = np.shape(asking.reference(part.quantity))
+        return read_matrix(answer, part.unit, (rows, columns))
+
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        rows = (" ".join(significant(v, digits) for v in row) for row in np.asarray(value).tolist())
+        return "[" + "; ".join(rows) + "]"
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        yield from super().spellings(part, value, label)
+        yield Spelling("lists", np.asarray(value).tolist())
+        inner = r" \\ ".join(" & ".join(map(repr, row)) for row in np.asarray(value).tolist())
+        yield Spelling("latex", rf"\begin{{pmatrix}} {inner} \end{{pmatrix}}")

@@ -1,0 +1,37 @@
+"""What questions have in common that a person marks: they are printed with room, collected, and never judged here."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.reading.reading import Reading
+
+
+class Open(Kind):
+    """An answer that is kept as it came. No reference is needed, and none is looked at."""
+
+    is_exact = is_text = is_open = True
+    has_symbol = is_called_by_symbol = False
+    disproves = False
+    family = "text"
+
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        text = "" if answer is None else str(answer)
+        return Reading(text, "read" if text.strip() else "missing", (text,), (" ".join(text.split()),))
+
+    def kept(self, read_as: str) -> Any:
+        return read_as
+
+    def distance(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        return math.inf
+
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        return str(value)
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        yield from ()

@@ -1,0 +1,29 @@
+"""A vector of any length: right where each entry is within the margin of the largest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from coursework.kinds.entries import Entries
+from coursework.kinds.kind import Asking, Spelling, Stated
+from coursework.language.numbers import significant
+from coursework.reading.matrices import read_vector
+from coursework.reading.reading import Reading
+
+
+class Vector(Entries):
+    name = "vector"
+    family = "vector"
+    rank = 1
+
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        return read_vector(answer, part.unit, len(asking.reference(part.quantity)))
+
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        return "(" + " ; ".join(significant(v, digits) for v in value.tolist()) + ")"
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        yield Spelling("exact", value)
+        yield from (spelled for spelled in super().spellings(part, value, label) if spelled.way != "exact")
+        yield Spelling("column", [[v] for v in value.tolist()])

@@ -1,0 +1,112 @@
+"""Several cases among a few, as people tick them: keys, labels, a ticked list, none of them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from typing import Any
+
+from coursework.language.words import languages, words
+from coursework.reading.choices import read_choice
+from coursework.reading.reading import Reading
+from coursework.reading.spelling import shorten, unwrapped
+
+_MOST_PIECES = 40
+_MOST = 4000  #: characters of an answer
+_TICKED = re.compile(r"^\s*(?:[-*]\s*)?(?:\[\s*([xX✓✗✔*]?)\s*\]|([☑☒✓✔✅])|([☐□⬜]))\s*(.+?)\s*$")
+_SEPARATOR = re.compile(r"\s*[,;+&\n|]\s*(?:(?:and|et)\s+)?|\s+(?:and|et|y|und|e)\s+", re.I)
+
+
+def read_choices(answer: Any, choices: Mapping[str, Sequence[str]]) -> Reading:
+    """The cases named by an answer; the value is a ``frozenset`` of keys.
+
+    ``a, c``, ``a and c``, labels of any language, lines that begin with ``[x]`` or ``[ ]``, a list, ``none``.
+    ``choices`` maps each key to its labels.
+    """
+    if isinstance(answer, (list, tuple, set, frozenset)):
+        items = sorted(map(str, answer)) if isinstance(answer, (set, frozenset)) else list(map(str, answer))
+        answer = "\n".join(items) if items else _none_words()[0]
+    if answer is None or not str(answer).strip():
+        return Reading("" if answer is None else str(answer), "missing")
+    text = str(answer)
+    if len(text) > _MOST:
+        return Reading(text, "unreadable", code="too_long", found=shorten(text))
+    found = _keys(unwrapped(text), choices)
+    if isinstance(found, str):
+        return Reading(text, "unreadable", code="not_a_choice", found=shorten(found))
+    order = [key for key in choices if key in found]
+    return Reading(text, "read", (frozenset(found),), (", ".join(order) or _none_words()[0],))
+
+
+def _keys(text: str, choices: Mapping[str, Sequence[str]]) -> frozenset[str] | str:
+    """The keys that a text names, or the piece that names none."""
+    text = text.strip().strip("[]{}") if "[" not in text.strip()[1:] else text
+    if (ticked := _ticked(text)) is not None:
+        pieces = ticked
+    elif text.strip(" .").casefold() in _none_words():
+        return frozenset()
+    else:
+        return _split(text, choices)
+    found: set[str] = set()
+    for piece in pieces:
+        one = _split(piece, choices)
+        if isinstance(one, str):
+            return one
+        found |= one
+    return frozenset(found)
+
+
+def _ticked(text: str) -> list[str] | None:
+    """The ticked lines of a list with boxes; nothing where it is none."""
+    lines = [_TICKED.match(line) for line in text.splitlines() if line.strip()]
+    if not lines or None in lines:
+        return None
+    return [line[4] for line in lines if line and (line[1] or line[2])]
+
+
+@lru_cache(maxsize=1)
+def _none_words() -> tuple[str, ...]:
+    """What is said where nothing is ticked, in any language; English first."""
+    langs = ("en", *(lang for lang in languages() if lang != "en"))
+    return tuple(word.casefold() for lang in langs for word in words(lang)["choices"]["none"])
+
+
+def _split(text: str, choices: Mapping[str, Sequence[str]]) -> frozenset[str] | str:
+    """The cases of a text, whose labels may themselves hold commas: the longest piece that is one is taken."""
+    whole = read_choice(text.strip(" \"'."), choices)
+    if whole.status == "read":
+        return frozenset(whole.values)
+    ends = [(m.start(), m.end()) for m in _SEPARATOR.finditer(text)][:_MOST_PIECES]
+    if not ends and set(tokens := text.split()) <= set(choices):
+        return frozenset(tokens)
+    found: set[str] = set()
+    start = 0
+    for piece, start in _pieces(text, ends, choices):
+        if piece is None:
+            return text[start:].strip() or text
+        found |= {piece} if piece else set()
+    return frozenset(found)
+
+
+def _pieces(
+    text: str, ends: Sequence[tuple[int, int]], choices: Mapping[str, Sequence[str]]
+) -> Iterator[tuple[str | None, int]]:
+    """The keys of a text from left to right, each with where it starts; None where a piece is no case."""
+    start = 0
+    while start < len(text):
+        cuts = [(len(text), len(text)), *((a, b) for a, b in reversed(ends) if a >= start)]
+        for end, after in cuts:
+            piece = text[start:end].strip(" \"'.")
+            reading = read_choice(piece, choices) if piece else None
+            if reading is None:
+                yield "", start
+                start = max(after, start + 1)
+                break
+            if reading.status == "read":
+                yield reading.values[0], start
+                start = max(after, start + 1)
+                break
+        else:
+            yield None, start
+            return
