@@ -8,7 +8,7 @@ import sys
 from dataclasses import replace
 
 import pytest
-from sweeps import sampled
+from sweeps import slow
 
 from coursework.accuracy.closure import Closure
 from coursework.accuracy.measuring import HARD, measure, study_of
@@ -92,8 +92,15 @@ def test_rows_are_whole(rows):
         assert len({(r.what, r.method, r.place) for r in own}) == len(own)
 
 
-@pytest.mark.parametrize("studied", sampled([STUDIED[:1], STUDIED], [STUDIED[:1]]), ids=len)
-@pytest.mark.parametrize("lang", sampled(languages(), ["fr"]))
+#: One study on a French page always; all of them in every language, slow.
+PAGES = [("fr", STUDIED[:1]), *((lang, STUDIED) for lang in languages())]
+
+
+@pytest.mark.parametrize(
+    ("lang", "studied"),
+    [PAGES[0], *(pytest.param(*page, marks=slow) for page in PAGES[1:])],
+    ids=["one-fr", *(f"all-{lang}" for lang in languages())],
+)
 def test_the_page_reads_the_rows_in_every_language(course, rows, lang, studied):
     every = [row for name in (*studied, "slider_crank_torque") for row in rows[name]]
     page = report(course, every, lang)
