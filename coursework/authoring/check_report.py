@@ -28,6 +28,7 @@ class Report:
     unproved: dict[str, str] = field(
         default_factory=dict
     )  #: why a step's formula proves nothing, by quantity
+    unproved_units: dict[str, str] = field(default_factory=dict)  #: why a unit is not proved, by quantity
 
     by_person: set[str] = field(default_factory=set)  #: parts that a person marks, and no check can try
 
@@ -57,6 +58,7 @@ class Report:
             "cases": {n: dict(c) for n, c in self.cases.items()},
             "unproved": self.unproved,
             **({"by_person": sorted(self.by_person)} if self.by_person else {}),
+            "unproved_units": self.unproved_units,
             "failures": self.failures,
         }
 
@@ -117,6 +119,10 @@ def notes(reports: Sequence[Report]) -> list[str]:
             told.append(f"formulas not proved: {_by_reason(r.unproved)}")
         if r.by_person:
             told.append(f"marked by a person: {', '.join(sorted(r.by_person))}")
+        if r.counts["units proved"]:
+            told.append(f"units proved: {r.counts['units proved']}")
+        if r.unproved_units:
+            told.append(f"units not proved: {_by_reason(r.unproved_units)}")
         if r.refused:
             flaws = ", ".join(f"{flaw} ({n})" for flaw, n in r.refused.most_common(3))
             told.append(f"passed over most for {flaws}")

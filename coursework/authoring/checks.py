@@ -23,6 +23,7 @@ from coursework.authoring.check_answers import (
 from coursework.authoring.check_formulas import check_formulas
 from coursework.authoring.check_loops import check_loops
 from coursework.authoring.check_report import RESIDUAL, Report
+from coursework.authoring.check_units import check_units
 from coursework.course import draws
 from coursework.course.answer_key import Key, exists
 from coursework.course.course import Course, opened
@@ -147,6 +148,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
         check_nonsense(variant, report)
     check_loops(drawn[0], report)
     check_formulas(drawn, report)
+    check_units(drawn, report)
     for name in exercise.solution.mistakes:
         tally = report.mistakes.setdefault(name, Counter())
         if count >= 50 and not tally["shown"]:

@@ -183,6 +183,11 @@ class Graph:
         """The names that functions need and no function gives."""
         return self._leaves
 
+    @property
+    def names(self) -> frozenset[str]:
+        """The names that have a function, hidden ones too."""
+        return frozenset(self._nodes)
+
     def node(self, name: str) -> Node:
         if name not in self._nodes:
             raise unknown("quantity", name, self._nodes)

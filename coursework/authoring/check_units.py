@@ -1,0 +1,39 @@
+"""The promise that formulas give the units that the exercise and its solution declare."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coursework.authoring.check_report import Report
+from coursework.course.exercise import CourseExercise
+from coursework.course.variant import Variant
+from coursework.quantities.unit_proof import Findings, prove
+
+TRIED = 5  #: variants whose quantities are followed: enough to meet the branches
+
+
+def check_units(drawn: Sequence[Variant], report: Report) -> None:
+    """Each quantity's formula gives its declared unit; what cannot be told is listed with its reason."""
+    found = Findings()
+    for variant in drawn[:TRIED]:
+        found.merge(proof_of(variant))
+    for fault in found.wrong.values():
+        report.fail(fault)
+    report.counts["units proved"] += len(found.proved)
+    report.counts["units not proved"] += len(found.unproved)
+    report.unproved_units |= found.unproved
+
+
+def proof_of(variant: Variant) -> Findings:
+    exercise = variant.exercise
+    return prove(exercise.solution.graph, variant.used, _declared(exercise), variant.effects)
+
+
+def _declared(exercise: CourseExercise) -> dict[str, str]:
+    """Units by quantity; not of directions, whose length says nothing, nor of what is no number."""
+    free = {p.quantity for p in exercise.spec.parts if p.kind in _NO_UNIT}
+    chosen = {n for n, s in exercise.spec.given.items() if s.is_choice}
+    return {n: u for n, u in exercise.units.items() if n not in free and n not in chosen}
+
+
+_NO_UNIT = ("direction", "choice", "equation", "integer", "text")

@@ -1,0 +1,201 @@
+"""What one of a unit is, as a scale and powers of base units, and what a number written in a formula may stand for.
+
+A value is known by the *sizes* that it may have: several, where a number of the formula may be a conversion or a
+plain factor. What it is added to, and what the quantity declares, tell which one was meant.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from coursework.reading.units import DIMENSIONS, find_unit
+
+#: Dimensions that may go unsaid: an angle is a ratio, a turn is a count, and ``180`` may be a number like any other.
+_SOFT = ("angle", "cycle")
+_HARD = tuple(place for place, name in enumerate(DIMENSIONS) if name not in _SOFT)
+_ANGLE, _CYCLE, _BARE = DIMENSIONS.index("angle"), DIMENSIONS.index("cycle"), len(DIMENSIONS)
+BASES = len(_HARD)  #: base units that a value is measured in
+_MOST = 128  #: sizes that are followed of one value
+_SAME = 1e-9  #: relative
+
+
+class UnitFault(Exception):
+    """A formula that units forbid: what it does, in words."""
+
+
+class Unprovable(Exception):
+    """Where units cannot be followed: why, in words."""
+
+
+class Size(NamedTuple):
+    """One of a unit in base units (m, kg, s, A, …), and its powers by :data:`DIMENSIONS`, then of plain degrees."""
+
+    scale: float = 1.0
+    powers: tuple[float, ...] = (0.0,) * (_BARE + 1)
+
+    @property
+    def hard(self) -> tuple[float, ...]:
+        """The powers that must agree wherever values meet."""
+        return tuple(self.powers[place] for place in _HARD)
+
+    @property
+    def angle(self) -> float:
+        return self.powers[_ANGLE]
+
+    def times(self, other: Size, power: float = 1) -> Size:
+        powers = tuple(a + power * b for a, b in zip(self.powers, other.powers, strict=True))
+        return Size(self.scale * other.scale**power, powers)
+
+    def is_like(self, other: Size) -> bool:
+        """Whether values of the two may be added."""
+        return _near(self.scale, other.scale) and all(map(_near_power, self.hard, other.hard))
+
+
+Sizes = tuple[Size, ...]
+
+
+def size(scale: float = 1.0, **powers: float) -> Size:
+    """A size by the names of its dimensions; ``bare`` counts the degrees that were taken as plain numbers."""
+    return Size(scale, tuple(float(powers.get(name, 0)) for name in (*DIMENSIONS, "bare")))
+
+
+def of_hard(scale: float, powers: Sequence[float]) -> Size:
+    """A size by its scale and its powers of base units alone."""
+    return size(scale, **{DIMENSIONS[place]: power for place, power in zip(_HARD, powers, strict=True)})
+
+
+ONE = size()
+RADIAN = size(angle=1)
+DEGREE = size(math.pi / 180, angle=1)
+
+
+def sizes_of(unit: str) -> Sizes:
+    """What one of a unit may be: a turn a minute is an angle, or a count."""
+    known = find_unit(unit)
+    if known is None:
+        raise Unprovable(f"no unit {unit!r}")
+    first = Size(known.factor, (*map(float, known.dimension), 0.0))
+    return (first, *_counted(first), *_turning(first))
+
+
+def _counted(one: Size) -> Sizes:
+    """The turns of a unit as a count: of ``tr/min`` and ``tr``, not of degrees."""
+    if not one.angle:
+        return ()
+    scale = one.scale / (2 * math.pi) ** one.angle
+    if not any(_near(scale, 60.0**k) for k in (-2, -1, 0, 1, 2)):
+        return ()
+    return (Size(scale, _with(one.powers, **{"angle": 0, "cycle": one.powers[_CYCLE] + one.angle})),)
+
+
+def _turning(one: Size) -> Sizes:
+    """The cycles of a unit as turns: of ``Hz``."""
+    cycles = one.powers[_CYCLE]
+    if not cycles:
+        return ()
+    return (Size(one.scale * (2 * math.pi) ** cycles, _with(one.powers, angle=cycles, cycle=0)),)
+
+
+def _with(powers: Sequence[float], **changed: float) -> tuple[float, ...]:
+    names = (*DIMENSIONS, "bare")
+    return tuple(float(changed.get(name, power)) for name, power in zip(names, powers, strict=True))
+
+
+def fits(found: Size, declared: Size) -> bool:
+    """Whether a value of one size may be declared in the other: radians, turns and plain numbers may go unsaid,
+    a plain 180 or a count of turns is no angle, and radians a second are no hertz."""
+    if not found.is_like(declared):
+        return False
+    if declared.angle:
+        is_angle = not any(declared.hard)
+        return not found.powers[_CYCLE] and not (is_angle and found.powers[_BARE])
+    return not (declared.powers[_CYCLE] and found.angle)
+
+
+def _near(a: float, b: float) -> bool:
+    return abs(a - b) <= _SAME * max(abs(a), abs(b))
+
+
+def _near_power(a: float, b: float) -> bool:
+    return abs(a - b) <= 1e-6
+
+
+def distinct(sizes: Iterable[Size]) -> Sizes:
+    """The same without repetition, the plainest first."""
+    kept: list[Size] = []
+    for one in sizes:
+        if not any(one.powers == other.powers and _near(one.scale, other.scale) for other in kept):
+            kept.append(one)
+        if len(kept) > _MOST:
+            raise Unprovable("more numbers that may be conversions than can be followed")
+    return tuple(kept)
+
+
+# ------------------------------------------------------------- numbers of formulas
+
+_DEGREES = (30, 45, 60, 90, 120, 135, 180, 270, 360, 720)
+_WEIGHT = (9.8, 9.80665, 9.806, 9.807, 9.81)  #: m/s^2
+_ANGULAR = (1.0, math.pi, 2 * math.pi, 180 / math.pi, 180.0)
+
+
+def meanings(number: float) -> tuple[Sizes, bool]:
+    """What a factor of a formula may be besides itself, as the sizes that multiply that of what it multiplies.
+
+    1000 may turn metres into millimetres, 60 minutes into seconds, 180 may be degrees, 9.81 metres a second squared.
+    ``180/pi`` is always a conversion.
+    """
+    value = abs(number)
+    if not math.isfinite(value) or value in (0.0, 1.0):
+        return (ONE,), False
+    if _near(value, 180 / math.pi) or _near(value, math.pi / 180):
+        return (size(1 / value),), True
+    found = [size(bare=1) if value in _DEGREES else ONE]
+    if _is_conversion(value):
+        found.append(size(1 / value))
+    if value in _DEGREES:
+        found.append(DEGREE)
+    for scale in (1.0, 1e-3):
+        if any(_near(value * scale, weight) for weight in _WEIGHT):
+            found.append(size(scale, length=1, time=-2))
+    return tuple(found), len(found) > 1
+
+
+def _is_conversion(value: float) -> bool:
+    """A power of ten; or of sixties, of pi and of degrees, with thousands."""
+    if _is_whole(math.log10(value)):
+        return True
+    for sixties, angular, sense in itertools.product((-2, -1, 0, 1, 2), _ANGULAR, (1, -1)):
+        rest = math.log10(value / (60.0**sixties * angular**sense))
+        if _is_whole(rest) and round(rest) in (-3, 0, 3) and (sixties or angular != 1):
+            return True
+    return False
+
+
+def _is_whole(power: float) -> bool:
+    return abs(power - round(power)) < 1e-9 and abs(power) <= 15
+
+
+# ---------------------------------------------------------------------------- words
+
+_NAMES = (
+    "1 rad deg tr % mm cm m km µm mm^2 cm^2 m^2 mm^3 m^3 s ms min h 1/s rad/s deg/s tr/min mm/s cm/s m/s km/s km/h "
+    "rad/s^2 deg/s^2 mm/s^2 m/s^2 N kN N*m N*mm kN*m kN*mm kg g t kg*m^2 kg*mm^2 kg*mm kg*m J W kW Pa kPa MPa N/mm N/m Hz"
+).split()
+
+
+def told(one: Size) -> str:
+    """A size by a unit's name, else by powers of base units."""
+    for name in _NAMES:
+        known = sizes_of(name)[0]
+        if one.is_like(known) and known.angle == one.angle and known.powers[_CYCLE] == one.powers[_CYCLE]:
+            return "a plain number" if name == "1" else name
+    for name in _NAMES:
+        if one.is_like(sizes_of(name)[0]):
+            return "a plain number" if name in ("1", "rad") else name
+    bases = {"length": "m", "mass": "kg", "time": "s", "current": "A"}
+    powers = zip(DIMENSIONS, one.powers, strict=False)
+    factors = [f"{bases.get(n, n)}^{p:g}".removesuffix("^1") for n, p in powers if p and n not in _SOFT]
+    return " ".join([f"{one.scale:.6g}", *(["*".join(factors)] if factors else [])])
