@@ -83,6 +83,8 @@ def _ruled(cells: Sequence[Sequence[str]], right: Sequence[bool], title: str) ->
         ]
 
     head, *body = split
+    tall = max(map(len, head))
+    head = [[""] * (tall - len(cell)) + cell for cell in head]  # a short heading stands at the foot
     return [
         *([title.ljust(whole)] if title else []),
         rule("┏", "━", "┳", "┓"),
