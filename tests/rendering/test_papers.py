@@ -1,0 +1,289 @@
+"""Papers: several exercises under one heading, whose every page says whose it is, which numbers, and where it stands."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import struct
+import zlib
+from collections import Counter
+from dataclasses import replace
+from itertools import pairwise, permutations
+
+import nbformat
+import pytest
+from paper_samples import ALT, COURSE, NAMES, bare, feedback, heading, paper, solution
+from pdf_text import page_texts
+
+from coursework.errors import BadInput
+from coursework.language.words import words
+from coursework.rendering.papers import variants
+from coursework.rendering.renderer import PAPERS, renderer_of
+from coursework.rendering.views import worked
+from coursework.sheets.paper import Logo
+from coursework.sheets.sheet import FeedbackLine
+
+RENDERER = renderer_of(COURSE.folder)
+every_language = pytest.mark.parametrize("lang", ["fr", "en"])
+every_size = pytest.mark.parametrize("size", PAPERS)
+KINDS = {
+    "full": lambda lang: paper(heading(lang)),
+    "cover": lambda lang: paper(heading(lang, cover=True)),
+    "bare": lambda lang: paper(bare(lang, "Zoé #1 Martin")),
+    "solution": lambda lang: solution(heading(lang)),
+    "feedback": lambda lang: feedback(heading(lang)),
+}
+every_kind = pytest.mark.parametrize("make", KINDS.values(), ids=KINDS)
+
+
+def texts(made, size="a4"):
+    return [plainly(text) for text in page_texts(RENDERER.on(size).paper_pdf(made))]
+
+
+def plainly(text: str) -> str:
+    """Spaces alike, and apostrophes as they are set."""
+    return re.sub(r"\s+", " ", text).replace("'", "’")
+
+
+def full_points(names=NAMES) -> float:
+    """What the exercises' records are out of, added up."""
+    return sum(p["points"] for n in names for p in COURSE[n].variant(seed=7).record["parts"])
+
+
+@every_language
+@every_size
+@every_kind
+def test_every_page_says_whose_it_is_which_seeds_and_which_page_of_how_many(make, size, lang):
+    pages = texts(make(lang), size)
+    for number, page in enumerate(pages, 1):
+        foot = f"Zoé #1 Martin · slotted_mechanism 7 · grashof 8 · four_bar_positions 9page {number} / {len(pages)}"
+        assert page.endswith(foot)
+
+
+@every_language
+def test_nobodys_paper_has_room_for_the_name_on_every_page(lang):
+    pages = texts(paper(heading(lang, "")))
+    for number, page in enumerate(pages, 1):
+        assert re.search(
+            rf"{words(lang)['sheet']['name']} ?: · slotted_mechanism 7 .*page {number} / {len(pages)}$", page
+        )
+
+
+def test_the_seeds_alone_stand_at_the_foot_where_the_names_have_no_room():
+    long = paper(bare("en"), NAMES * 3)
+    assert variants(long) == " · ".join(str(7 + place) for place in range(9))
+    assert page_texts(RENDERER.paper_pdf(long))[0].count(variants(long)) == 1
+
+
+@every_language
+@every_kind
+def test_every_paper_is_an_accessible_pdf_and_the_same_bytes_twice(make, lang):
+    made = RENDERER.paper_pdf(make(lang))
+    assert b"pdfuaid:part" in made
+    assert b"<pdfaid:conformance>A<" in made
+    assert RENDERER.paper_pdf(make(lang)) == made
+
+
+@every_language
+@pytest.mark.parametrize("cover", [False, True])
+def test_the_head_says_what_the_paper_is_and_its_total(lang, cover):
+    top = heading(lang, cover=cover)
+    first, *others = texts(paper(top))
+    for said in (
+        top.title,
+        top.course,
+        top.date,
+        top.version,
+        "20261234",
+        words(lang)["paper"]["instructions"],
+    ):
+        assert plainly(said) in first
+    assert f"{full_points():g}" in first
+    starts = words(lang)["paper"]["numbered"].format(1, "")
+    assert (starts in first) is not cover
+    if cover:
+        assert starts in others[0]
+        row = "".join(f"{n}{h.title}{h.points:g}" for n, h in enumerate(paper(top).handouts, 1))
+        assert plainly(row) in first
+
+
+def test_every_exercise_says_its_points_and_numbers_its_questions_under_its_own():
+    said = " ".join(texts(paper(heading("en"))))
+    for place, sheet in enumerate(paper(heading("en")).handouts, 1):
+        assert plainly(f"Exercise {place}. {sheet.title} ({sheet.points:g} points)") in said
+        for question in sheet.questions:
+            assert f"{place}.{question.number}." in said
+    assert "questions 3.2–3.4: to within 1%" in said
+
+
+@every_size
+@pytest.mark.parametrize("names", list(permutations(NAMES)), ids="-".join)
+def test_no_page_ends_with_a_heading_or_with_one_question_alone(names, size):
+    made = paper(heading("en"), names)
+    pages = texts(made, size)
+    for place, sheet in enumerate(made.handouts, 1):
+        (page,) = [page for page in pages if f"Exercise {place}." in page]
+        assert plainly(sheet.statement.split(".")[0].split("$")[0]) in page
+        first = next(page for page in pages if f"{place}.1." in page)
+        assert f"{place}.2." in first
+        assert "Questions" in first
+
+
+@every_language
+def test_a_booklet_gives_each_paper_its_own_numbers_from_an_odd_page_on(lang):
+    handed = [paper(heading(lang, f"N{k}"), NAMES[: k + 1]) for k in range(3)]
+    made, pages = RENDERER.papers_pdf(handed)
+    alone = [len(page_texts(RENDERER.paper_pdf(one))) for one in handed]
+    assert [last - first + 1 for first, last in pages] == alone
+    assert all(first % 2 for first, _ in pages)
+    assert all(then - last in (1, 2) for (_, last), (then, _) in pairwise(pages))
+    said = page_texts(made)
+    for k, (first, last) in enumerate(pages):
+        for number, page in enumerate(said[first - 1 : last], 1):
+            assert f"N{k} · " in page
+            assert page.endswith(f"page {number} / {alone[k]}")
+
+
+def test_a_solution_repeats_each_question_before_its_answer_and_ends_with_one_guide():
+    made = solution(heading("en"))
+    said = " ".join(texts(made))
+    guide = said.rindex("Marking guide")
+    assert f"Marking guide ({full_points():g} points)" in said
+    place = 0
+    for number, sheet in enumerate(made.sheets, 1):
+        for answer in sheet.answers:
+            asked = said.index(f"{number}.{answer.question.number}", place)
+            place = said.index("Answer", asked)
+            # As far as the first formula, or a word that may be divided.
+            words_asked = plainly(re.split(r"[$-]", answer.question.prompt)[0])
+            assert said.index(words_asked, asked) < place < guide
+            assert f"{number}.{answer.question.number}" in said[guide:]
+    assert "Question 1." not in said, "a step below its question need not name it"
+
+
+@pytest.mark.parametrize("name", COURSE.names)
+def test_each_step_of_a_solution_stands_once_and_in_order(name):
+    sheet = COURSE[name].variant(seed=3, lang="en").answer_sheet(polygons=False)
+    groups = worked(sheet, "en", "2.")
+    assert [answer for answer, _ in groups] == list(sheet.answers)
+    assert [step.name for _, steps in groups for step in steps] == [step.name for step in sheet.steps]
+    shown = set()
+    named = {part["id"]: part["quantity"] for part in sheet.handout.record["parts"]}
+    for answer, steps in groups:
+        shown |= {step.name for step in steps}
+        assert named[answer.question.id] in shown | {g.name for g in sheet.handout.given}
+
+
+@every_language
+def test_feedback_gives_one_total_the_mark_and_a_row_an_exercise(lang):
+    made = feedback(heading(lang))
+    first, *_ = pages = texts(made)
+    comma = "," if lang == "fr" else "."
+    assert f"14{comma}5 / 20" in first
+    assert f"{made.points:g} / {full_points():g} points" in first
+    for number, sheet in enumerate(made.sheets, 1):
+        assert plainly(f"{number}{sheet.handout.title}{sheet.points:g} / {sheet.out_of:g}") in first
+    assert words(lang)["paper"]["advice"] in pages[-1]
+    assert "chapter 3" in pages[-1]
+
+
+@every_language
+def test_the_right_answer_stands_beside_a_wrong_one_unless_it_is_kept_back(lang):
+    right = words(lang)["feedback"]["right"]
+    shown, kept = (feedback(heading(lang), answers=answers) for answers in (True, False))
+    wrong = sum(line.points < line.out_of for sheet in shown.sheets for line in sheet.lines)
+    assert wrong > 10
+    assert " ".join(texts(shown)).count(right) == RENDERER.paper_html(shown).count(right) == wrong
+    for text in (" ".join(texts(kept)), RENDERER.paper_html(kept)):
+        assert right not in text
+    whole = replace(
+        shown, sheets=tuple(replace(s, lines=tuple(map(rewarded, s.lines))) for s in shown.sheets)
+    )
+    assert right not in " ".join(texts(whole))
+
+
+def rewarded(line: FeedbackLine) -> FeedbackLine:
+    return replace(line, points=line.out_of)
+
+
+@every_language
+def test_feedback_calls_a_question_as_the_paper_does(lang):
+    made = feedback(heading(lang))
+    noun = words(lang)["sheet"]["question"]["one"].capitalize()
+    (line,) = [line for line in made.sheets[1].lines if line.question.choices]
+    assert line.says.startswith(f"{noun} 3")
+    for text in (" ".join(texts(made)), RENDERER.paper_html(made)):
+        assert f"{noun} 2.3" in text
+        assert not re.search(rf"{noun} \d(?!\.)", text)
+
+
+@every_language
+@every_kind
+def test_a_page_of_a_paper_fetches_nothing_and_no_two_parts_share_an_id(make, lang):
+    page = RENDERER.paper_html(make(lang))
+    assert "<script" not in page
+    assert "http" not in page
+    assert page.count("<h1>") == 1
+    ids = re.findall(r'\bid="([^"]+)"', page)
+    assert max(Counter(ids).values(), default=1) == 1
+    assert set(re.findall(r'\bfor="([^"]+)"', page)) <= set(ids)
+    # The name stands in the style sheet, for the foot of the printed pages, and cannot end it.
+    assert page.count("</style>") == 1
+
+
+def test_questions_of_one_name_in_two_exercises_are_answered_apart():
+    page = RENDERER.paper_html(paper(heading("en"), ("grashof", "four_bar_positions", "grashof")))
+    groups = set(re.findall(r'type="radio" name="([^"]+)"', page))
+    assert groups == {f"e{place}-linkage_type" for place in (1, 2, 3)}
+
+
+@every_language
+@pytest.mark.parametrize("student", ["", "Zoé"])
+def test_a_notebook_has_a_cell_of_answers_an_exercise_that_says_whose_it_is(lang, student):
+    handed = paper(heading(lang, student), (*NAMES, "grashof"))
+    text = RENDERER.paper_notebook(handed)
+    assert text == RENDERER.paper_notebook(handed)
+    nbformat.validate(nbformat.reads(text, as_version=4))
+    book = json.loads(text)
+    sheets = [{"exercise": h.exercise, "seed": h.seed} for h in handed.handouts]
+    assert book["metadata"]["coursework"] == {"student": student, "sheets": sheets, "lang": lang}
+    ids = [cell["id"] for cell in book["cells"]]
+    assert len(set(ids)) == len(ids)
+    tagged = [cell for cell in book["cells"] if "answers" in cell["metadata"].get("tags", ())]
+    for place, (cell, handout) in enumerate(zip(tagged, handed.handouts, strict=True)):
+        source = "".join(cell["source"])
+        assert source.startswith(f"answers = {{  # {handout.exercise} {handout.seed}\n")
+        assert cell["metadata"]["coursework"] == sheets[place]
+        (statement,) = ast.parse(source).body
+        asked = {question.id: "" for question in handout.questions}
+        assert ast.literal_eval(statement.value) == ({} if student or place else {"student": ""}) | asked
+    figures = [cell for cell in book["cells"] if cell.get("attachments")]
+    assert len({json.dumps(cell["attachments"]) for cell in figures}) == len(handed.handouts)
+
+
+def png(wide: int, high: int) -> bytes:
+    def chunk(name: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    rows = (b"\0" + b"\x1b\x3a\x57" * wide) * high
+    head = chunk(b"IHDR", struct.pack(">IIBBBBB", wide, high, 8, 2, 0, 0, 0))
+    return b"\x89PNG\r\n\x1a\n" + head + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+@pytest.mark.parametrize(("data", "form"), [(png(40, 10), "png"), (heading("en").logo.data, "svg")])
+def test_a_logo_is_a_picture_told_in_words(data, form):
+    handed = paper(replace(heading("en"), logo=Logo(data, form, "A <blue> & white sign")), NAMES[:1])
+    assert b"pdfuaid:part" in RENDERER.paper_pdf(handed)
+    assert 'alt="A &lt;blue&gt; &amp; white sign"' in RENDERER.paper_html(handed)
+    assert RENDERER.paper_pdf(handed) != RENDERER.paper_pdf(
+        paper(replace(heading("en"), logo=None), NAMES[:1])
+    )
+
+
+@pytest.mark.parametrize(
+    ("data", "form"), [(b"GIF89a", "png"), (png(1, 1), "svg"), (b"", "svg"), (b"", "png")]
+)
+def test_a_logo_of_another_format_is_refused(data, form):
+    with pytest.raises(BadInput, match=r"logo is no (PNG|SVG)"):
+        RENDERER.paper_pdf(paper(replace(heading("en"), logo=Logo(data, form, ALT["en"])), NAMES[:1]))
