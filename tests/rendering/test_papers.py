@@ -18,6 +18,7 @@ from pdf_text import page_texts
 
 from coursework.errors import BadInput
 from coursework.language.words import words
+from coursework.rendering import papers
 from coursework.rendering.papers import variants
 from coursework.rendering.renderer import PAPERS, renderer_of
 from coursework.rendering.views import worked
@@ -128,6 +129,18 @@ def test_no_page_ends_with_a_heading_or_with_one_question_alone(names, size):
         first = next(page for page in pages if f"{place}.1." in page)
         assert f"{place}.2." in first
         assert "Questions" in first
+
+
+@every_size
+def test_wherever_an_exercise_comes_its_first_question_has_the_second_on_its_page(size, monkeypatch):
+    # However little room it is thought to take.
+    monkeypatch.setattr(papers, "_start_mm", lambda sheet: 10)
+    for lines in range(30):
+        top = replace(heading("en"), instructions="\n\n".join(["One rule."] * lines))
+        pages = texts(paper(top, ("grashof", "slotted_mechanism")), size)
+        for place in (1, 2):
+            (page,) = [page for page in pages if f"{place}.1." in page]
+            assert f"{place}.2." in page, f"{lines} rules before exercise {place}"
 
 
 @every_language
