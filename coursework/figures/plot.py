@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -44,7 +45,7 @@ class Axis:
 
     @property
     def title(self) -> Text:
-        raised = self.unit.replace("²", r"}^{2}\mathrm{").replace("³", r"}^{3}\mathrm{")
+        raised = _RAISED.sub(_exponent, self.unit)
         unit = rf"\ \ [\mathrm{{{raised}}}]" if self.unit else ""
         try:
             # Words stay upright; a symbol that the label's reader does not know is written as it comes.
@@ -52,6 +53,14 @@ class Axis:
             return read(symbol + unit)
         except (UnknownName, WrongValue):
             return read(rf"\mathrm{{{''.join(c for c in self.label if c.isalnum())}}}" + unit)
+
+
+_RAISED = re.compile("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+")
+_FIGURES = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-")
+
+
+def _exponent(raised: re.Match[str]) -> str:
+    return rf"}}^{{{raised[0].translate(_FIGURES)}}}\mathrm{{"
 
 
 def _is_words(label: str) -> bool:

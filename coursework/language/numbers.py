@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from coursework.language.words import words
 
 NARROW_SPACE = "\N{NARROW NO-BREAK SPACE}"
@@ -57,11 +59,44 @@ def significant(value: float, digits: int = 4) -> str:
 
 
 def unit_text(unit: str, lang: str) -> str:
-    """A canonical unit as printed: ``rad/s^2`` -> ``rad/s²``, ``deg`` -> ``°``, ``1`` -> nothing."""
+    """A canonical unit as printed: ``cm^4`` -> ``cm⁴``, ``ohm`` -> ``Ω``, ``deg`` -> ``°``, ``1`` -> nothing."""
     table = words(lang)["units"]
     if unit in table:
         return table[unit]
-    return unit.replace("^2", "²").replace("^3", "³").replace("*", "·")
+    raised = _POWER.sub(lambda power: power[1].translate(_RAISED), _signs(unit))
+    return raised.replace("*", "·")
+
+
+_POWER = re.compile(r"\^\(?([+-]?\d+)\)?")
+_RAISED = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "+")
+_NAMES = (
+    (re.compile(r"(?<![^\W\d_])delta_"), ""),
+    (re.compile(r"(?<![^\W\d_])deg([CF])(?![^\W\d_])"), r"°\1"),
+    (re.compile(r"(?<![^\W\d_])([kMGmµu]?)ohm(?![^\W\d_])"), r"\1Ω"),
+)
+
+
+def _signs(unit: str) -> str:
+    """A unit with the signs of its names: ``kohm`` -> ``kΩ``, ``delta_degC`` -> ``°C``."""
+    for name, sign in _NAMES:
+        unit = name.sub(sign, unit)
+    return unit
+
+
+def unit_latex(unit: str) -> str:
+    r"""A unit as LaTeX after a number: ``\ \mathrm{cm^{4}}``, ``^{\circ}``; nothing for a ratio."""
+    if unit in ("1", "deg"):
+        return r"^{\circ}" if unit == "deg" else ""
+    text = _POWER.sub(lambda power: f"^{{{power[1].lstrip('+')}}}", _signs(unit))
+    for sign, latex in (
+        ("*", r"{\cdot}"),
+        ("Ω", r"\Omega "),
+        ("°", r"{}^{\circ}"),
+        ("%", r"\%"),
+        ("µ", r"\mu "),
+    ):
+        text = text.replace(sign, latex)
+    return rf"\ \mathrm{{{text.strip()}}}"
 
 
 def with_unit(number: str, unit: str, lang: str) -> str:

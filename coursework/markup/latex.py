@@ -189,15 +189,21 @@ def to_notebook(tex: str, lang: str) -> str:
     """The formula as MathJax and KaTeX read it: the same LaTeX, with each number written out."""
     check_formula(tex)
     written = re.sub(r"\\num\s*\{([^{}]*)\}", lambda m: _latex_number(m.group(1).strip(), lang), tex)
-    written = re.sub(r"\\text\{[^{}]*[²³][^{}]*\}", _figures_raised, written)
+    written = re.sub(r"\\text\{[^{}]*[⁰¹²³⁴⁵⁶⁷⁸⁹⁻][^{}]*\}", _figures_raised, written)
+    written = re.sub(r"(?<!\\)%", r"\\%", written)  # else it would begin a comment
     # A bare < would open a tag in the page that shows the notebook.
     return "".join(r"\lt " if token == "<" else token for token in tokens(written))
 
 
 def _figures_raised(found: re.Match[str]) -> str:
     r"""``\text{rad/s²}`` with its figure as an exponent: KaTeX's own letters have no raised one."""
-    text = found.group().replace("²", r"}^2\text{").replace("³", r"}^3\text{")
+    text = re.sub("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+", _exponent, found.group())
     return text.replace(r"\text{}", "")
+
+
+def _exponent(raised: re.Match[str]) -> str:
+    figures = raised[0].translate(str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻", "0123456789-"))
+    return rf"}}^{figures if len(figures) == 1 else f'{{{figures}}}'}\text{{"
 
 
 def _latex_number(text: str, lang: str) -> str:

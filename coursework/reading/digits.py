@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from coursework.reading.reading import Stop
-from coursework.reading.units import Unit, convert, parse_unit, plain_unit, same_dimension
+from coursework.reading.units import Unit, convert, meant_otherwise, parse_unit, plain_unit, same_dimension
 
 
 @dataclass(frozen=True)
@@ -92,6 +92,8 @@ def _rest_unit(rest: str) -> Unit | None:
 def in_unit(value: Fraction | float, unit: Unit, target: Unit) -> float:
     """The value converted and rounded once, or the reason why it is not."""
     if not same_dimension(unit, target):
+        if meant_otherwise(unit, target):
+            raise Stop("unknown_unit", unit.text)  # somebody looks: it is no unit of another kind
         raise Stop("other_dimension", unit.text, "wrong_unit")
     try:
         number = float(convert(value, unit, target))

@@ -2,7 +2,13 @@
 
 A unit is an exact rational factor, a power of pi, and a dimension. Angle is a dimension of
 its own, so that a length is never taken for an angle; where one of two units leaves the
-angle out (``1/s`` for ``rad/s``), it is in radians.
+angle out (``1/s`` for ``rad/s``), it is in radians. A level in decibels is one too: it is no ratio.
+
+``K`` and ``°C`` alone are temperatures, each counted from its own zero: 20 °C is 293.15 K. In a product or a
+quotient (``W/(m^2*K)``), and as ``delta_K``, they are differences: 20 °C is 20 K.
+
+The factors are exact: those of the SI brochure (BIPM, 9th edition, 2019), and the international yard and pound
+(1959) with standard gravity for ``in ft lb lbf psi``.
 """
 
 from __future__ import annotations
@@ -21,7 +27,9 @@ from coursework.reading.spelling import plain_spelling, shorten
 
 #: What the entries of a dimension count. A cycle is a count (1 Hz is one a second) that is a turn
 #: where an angle is expected.
-DIMENSIONS = ("length", "mass", "time", "angle", "current", "cycle")
+DIMENSIONS = (
+    "length", "mass", "time", "angle", "current", "cycle", "temperature", "amount", "light", "level"
+)  # fmt: skip
 _ANGLE, _CYCLE = DIMENSIONS.index("angle"), DIMENSIONS.index("cycle")
 
 _MAX_LENGTH = 80
@@ -39,12 +47,16 @@ class UnknownUnit(WrongUnit):
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit: ``ratio`` times pi to the power ``pi`` base units (m, kg, s, rad, A), and its dimension."""
+    """A unit: ``ratio`` times pi to the power ``pi`` base units (m, kg, s, rad, A, K, mol, cd), and its dimension.
+
+    ``zero`` is where a scale of temperatures begins, in K; None for a unit that measures differences.
+    """
 
     text: str
     ratio: Fraction
     pi: int
     dimension: tuple[int, ...]
+    zero: Fraction | None = None
 
     @property
     def factor(self) -> float:
@@ -80,6 +92,14 @@ def _known(ratio: str | int | Fraction, pi: int = 0, **powers: int) -> Unit:
     return Unit("", Fraction(ratio), pi, _dimension(**powers))
 
 
+def _scale_of(zero: str, ratio: str = "1") -> Unit:
+    """A scale of temperatures that begins at so many K."""
+    return Unit("", Fraction(ratio), 0, _dimension(temperature=1), Fraction(zero))
+
+
+_INCH, _POUND, _GRAVITY = Fraction("0.0254"), Fraction("0.45359237"), Fraction("9.80665")
+
+
 #: Symbols that take a prefix.
 _PREFIXED = {
     "m": _known(1, length=1),
@@ -96,6 +116,22 @@ _PREFIXED = {
     "V": _known(1, length=2, mass=1, time=-3, current=-1),
     "Ω": _known(1, length=2, mass=1, time=-3, current=-2),
     "ohm": _known(1, length=2, mass=1, time=-3, current=-2),
+    "F": _known(1, length=-2, mass=-1, time=4, current=2),
+    "H": _known(1, length=2, mass=1, time=-2, current=-2),
+    "S": _known(1, length=-2, mass=-1, time=3, current=2),
+    "T": _known(1, mass=1, time=-2, current=-1),
+    "Wb": _known(1, length=2, mass=1, time=-2, current=-1),
+    "VA": _known(1, length=2, mass=1, time=-3),
+    "var": _known(1, length=2, mass=1, time=-3),
+    "Wh": _known(3600, length=2, mass=1, time=-2),
+    "Ah": _known(3600, current=1, time=1),
+    "eV": _known("1.602176634e-19", length=2, mass=1, time=-2),
+    "bar": _known(100_000, length=-1, mass=1, time=-2),
+    "L": _known("1/1000", length=3),
+    "l": _known("1/1000", length=3),
+    "K": _scale_of("0"),
+    "mol": _known(1, amount=1),
+    "cd": _known(1, light=1),
 }
 _DEGREE, _GON, _TURN = _known("1/180", 1, angle=1), _known("1/200", 1, angle=1), _known(2, 1, angle=1)
 _TURN_A_MINUTE = _known("2/60", 1, angle=1, time=-1)
@@ -111,7 +147,18 @@ _PLAIN = {
     "tr": _TURN, "rev": _TURN, "r": _TURN,
     "rpm": _TURN_A_MINUTE,
     "sec": _known(1, time=1), "rd": _known(1, angle=1),
+    "°C": _scale_of("273.15"), "degC": _scale_of("273.15"),
+    "°F": _scale_of("45967/180", "5/9"), "degF": _scale_of("45967/180", "5/9"),
+    "dB": _known(1, level=1),
+    "in": _known(_INCH, length=1), "ft": _known(12 * _INCH, length=1),
+    "lb": _known(_POUND, mass=1), "lbf": _known(_POUND * _GRAVITY, length=1, mass=1, time=-2),
+    "psi": _known(_POUND * _GRAVITY / _INCH**2, length=-1, mass=1, time=-2),
 }  # fmt: skip
+#: What a difference of temperatures is stated in.
+_DIFFERENCES = {
+    f"delta_{name}": _known(_PLAIN[name].ratio if name in _PLAIN else 1, temperature=1)
+    for name in ("K", "degC", "°C", "degF", "°F")
+}
 #: Words, without accents, any capitals, with or without a plural s; the first group takes prefix words.
 _WORDS = {
     "metre": "m", "meter": "m", "gramme": "g", "gram": "g", "seconde": "s", "second": "s",
@@ -119,12 +166,15 @@ _WORDS = {
     "ampere": "A", "coulomb": "C", "ohm": "Ω",
     "degre": "deg", "degree": "deg", "grade": "gon", "tour": "tr", "turn": "tr", "revolution": "tr",
     "minute": "min", "heure": "h", "hour": "h", "tonne": "t",
+    "farad": "F", "henry": "H", "siemen": "S", "tesla": "T", "weber": "Wb", "kelvin": "K", "litre": "L", "liter": "L",
+    "mole": "mol", "candela": "cd", "decibel": "dB", "electronvolt": "eV", "wattheure": "Wh", "watthour": "Wh",
+    "inch": "in", "inche": "in", "pouce": "in", "foot": "ft", "feet": "ft", "celsiu": "°C",
 }  # fmt: skip
 _ACCENTS = str.maketrans("éèêàç", "eeeac")
 
 
 def _scaled(unit: Unit, decades: int) -> Unit:
-    return Unit("", unit.ratio * Fraction(10) ** decades, unit.pi, unit.dimension)
+    return Unit("", unit.ratio * Fraction(10) ** decades, unit.pi, unit.dimension, unit.zero)
 
 
 def _symbol(name: str) -> Unit | None:
@@ -191,12 +241,13 @@ def _spellings() -> Iterator[str]:
 # --- reading ----------------------------------------------------------------------------
 
 _TOKEN = re.compile(
-    r"\s*(?:(?P<name>[^\W\d_]+|[°%](?![^\W\d_]))|(?P<one>1)(?![0-9])|(?P<sign>[*./()\[\]]))"
+    r"\s*(?:(?P<name>° ?[CF](?![^\W\d_])|[^\W\d_]+|[°%](?![^\W\d_]))|(?P<one>1)(?![0-9])|(?P<sign>[*./()\[\]]))"
     r"(?P<power>\s*(?:\^|\*\*)\s*(?:[({]\s*(?P<in>[+-]?[0-9])\s*[)}]|(?P<bare>[+-]?[0-9]))|(?P<glued>-?[0-9]))?(?![0-9])"
 )
 
 
 _PER = re.compile(r"(?<![^\W\d_])(?:par|per)(?![^\W\d_])", re.I)
+_CELSIUS = re.compile(r"(?:°|deg(?:r[eé]e?)?s?)\s*celsius|deg\.?\s*C(?![^\W\d_])", re.I)
 _HYPHEN = re.compile(r"(?<=[^\W\d_])-(?=[^\W\d_])")
 
 
@@ -215,7 +266,11 @@ def _may_have_power(token: re.Match[str]) -> bool:
     """Whether the power of a token, if any, is in its place: ``90°-5`` is a difference, not a power."""
     if not token["power"]:
         return True
-    return not token["glued"] if token["name"] in ("°", "%") else token["sign"] in (None, ")", "]")
+    return (
+        not token["glued"]
+        if token["name"] and token["name"][0] in "°%"
+        else token["sign"] in (None, ")", "]")
+    )
 
 
 def _tokens(text: str) -> list[tuple[str, int]]:
@@ -226,7 +281,8 @@ def _tokens(text: str) -> list[tuple[str, int]]:
         if token is None or not _may_have_power(token):
             raise _UnknownPiece(text[at:].strip())
         power = token["in"] or token["bare"] or token["glued"] or "1"
-        found.append((token["name"] or token["one"] or token["sign"], int(power)))
+        name = token["name"] and token["name"].replace("° ", "°")
+        found.append((name or token["one"] or token["sign"], int(power)))
         at = token.end()
     return found
 
@@ -250,6 +306,8 @@ def _chain(tokens: list[tuple[str, int]], text: str, depth: int = 0) -> Unit:
             power = tokens.pop(0)[1]
         elif piece == "1" and not waiting and (power != 1 or not tokens or tokens[0][0] != "/"):
             raise _UnknownPiece(text)  # rad 1/s is a unit, ° 1-1 is none
+        elif piece == "in" and tokens and tokens[0][0] not in ("*", ".", "/", ")", "]"):
+            raise _UnknownPiece("in")  # 12 in mm says a unit, and no inch
         else:
             factor = _named(piece)
         unit, sign, waiting = _product(unit, factor, sign * power), 1, False
@@ -270,16 +328,21 @@ def _analyse(text: str) -> tuple[Unit | None, str]:
 def _analyse_plain(plain: str, text: str) -> tuple[Unit | None, str]:
     if len(text) > _MAX_LENGTH:
         return None, text
+    if plain in _DIFFERENCES:
+        unit = _DIFFERENCES[plain]
+        return Unit(text, unit.ratio, unit.pi, unit.dimension), ""
     try:
-        plain = _PER.sub("/", plain)
+        plain = _PER.sub("/", _CELSIUS.sub("°C", plain))
         tokens = _tokens(_HYPHEN.sub("*", plain))
+        # A temperature stands alone; with anything beside it, it is a difference.
+        zero = _named(tokens[0][0]).zero if len(tokens) == 1 and tokens[0][1] == 1 else None
         unit = _chain(tokens, text)
     except _UnknownPiece as piece:
         return None, str(piece)
     size = abs(math.log10(unit.ratio.numerator) - math.log10(unit.ratio.denominator))
     if tokens or size > _MAX_DECADES:
         return None, text
-    return Unit(text, unit.ratio, unit.pi, unit.dimension), ""
+    return Unit(text, unit.ratio, unit.pi, unit.dimension, zero), ""
 
 
 def find_unit(text: str) -> Unit | None:
@@ -347,6 +410,15 @@ def same_dimension(a: str | Unit, b: str | Unit) -> bool:
     return _compatible(_as_unit(a), _as_unit(b))
 
 
+def meant_otherwise(unit: Unit, target: Unit) -> bool:
+    """Whether a unit of another kind is the right one but for its capitals or its degree sign: ``3 S`` for seconds,
+    ``20 C`` for a temperature."""
+    if unit.text in ("C", "F") and target.dimension == _PLAIN["°C"].dimension:
+        return True
+    small = find_unit(unit.text.lower()) if unit.text != unit.text.lower() else None
+    return small is not None and _compatible(small, target)
+
+
 @lru_cache(maxsize=4096)
 def _scale(source: Unit, target: Unit) -> tuple[Fraction, int]:
     """What multiplies a number of ``source``: a rational and a power of pi."""
@@ -360,7 +432,7 @@ def _scale(source: Unit, target: Unit) -> tuple[Fraction, int]:
 def convert(value: Any, from_unit: str | Unit, to_unit: str | Unit) -> Any:
     """A value, or an array of values, in another unit of the same dimension.
 
-    A power of ten costs one rounding at most. A unit without angle, where the other has one, is in radians.
+    A temperature is one in another scale, from its own zero. A power of ten costs one rounding at most. A unit without angle, where the other has one, is in radians.
 
     Raises
     ------
@@ -373,6 +445,8 @@ def convert(value: Any, from_unit: str | Unit, to_unit: str | Unit) -> Any:
             f"{shorten(source.text)!r} measures {describe(source)}, but {describe(target)} is expected, "
             f"as in {target.text!r}"
         )
+    if source.zero is not None and target.zero is not None and source.zero != target.zero:
+        return _on_scale(value, source, target)
     ratio, pi = _scale(source, target)
     if pi == 0 and ratio == 1:
         return value
@@ -380,6 +454,16 @@ def convert(value: Any, from_unit: str | Unit, to_unit: str | Unit) -> Any:
         scaled = value * ratio.numerator if ratio.numerator != 1 else value
         return scaled / ratio.denominator if ratio.denominator != 1 else scaled
     return value * (float(ratio) * math.pi**pi)
+
+
+def _on_scale(value: Any, source: Unit, target: Unit) -> Any:
+    """A temperature on another scale; exact where the value is."""
+    assert source.zero is not None
+    assert target.zero is not None
+    ratio, shift = source.ratio / target.ratio, (source.zero - target.zero) / target.ratio
+    if isinstance(value, (int, Fraction)):
+        return value * ratio + shift
+    return value * ratio.numerator / ratio.denominator + float(shift)
 
 
 def describe(unit: Unit) -> str:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coursework.errors import BadCourse, BadStatement, CourseworkError
-from coursework.language.numbers import localise, significant, unit_text
+from coursework.language.numbers import localise, significant, unit_latex, unit_text
 from coursework.language.words import is_whole, quoted
 from coursework.language.words import words as engine_words
 from coursework.model import Part
@@ -195,23 +195,16 @@ def _value_latex(variant: Variant, name: str, value: Any) -> str:
     if isinstance(value, tuple):
         return ""
     if isinstance(value, np.ndarray) and value.ndim == 2:
-        return _matrix_latex(value) + _unit_latex(unit)
+        return _matrix_latex(value) + unit_latex(unit)
     if isinstance(value, np.ndarray):
         inner = r";\ ".join(number_latex(v, "1", PRINTED_DIGITS) for v in value.tolist())
-        return rf"\left({inner}\right)" + _unit_latex(unit)
-    return number_latex(value, "1", PRINTED_DIGITS) + _unit_latex(unit)
+        return rf"\left({inner}\right)" + unit_latex(unit)
+    return number_latex(value, "1", PRINTED_DIGITS) + unit_latex(unit)
 
 
 def _matrix_latex(value: np.ndarray) -> str:
     rows = (" & ".join(number_latex(v, "1", PRINTED_DIGITS) for v in row) for row in value.tolist())
     return r"\begin{pmatrix} " + r" \\ ".join(rows) + r" \end{pmatrix}"
-
-
-def _unit_latex(unit: str) -> str:
-    if unit in ("1", "deg"):
-        return r"^{\circ}" if unit == "deg" else ""
-    text = unit.replace("*", r"{\cdot}").replace("^2", "^{2}")
-    return rf"\ \mathrm{{{text}}}"
 
 
 def _symbols(variant: Variant) -> dict[str, str]:
