@@ -97,6 +97,8 @@ def chosen(*choices: str, shown: bool = True) -> GivenSpec:
     return GivenSpec("1", choices=tuple(choices), shown=shown)
 
 
+LETTERS = "abcdefghijklmnopqrstuvwxyz"  #: of the cases of a choice, in the order printed
+
 _OF_ITS_KIND: Any = None  #: stands for a margin until the part has taken that of its kind
 
 
@@ -118,7 +120,8 @@ class Part:
     With ``asks_unit`` the sheet prints no unit beside the box, and an answer without one lacks something.
     Parts that name the same ``judge``, a function of the solution, are judged together by it: where many
     answers are right, and the quantity is only one of them. Their ``atol`` and ``rtol`` are the judge's.
-    A part ``by_request`` is asked only where a build names it.
+    A part ``by_request`` is asked only where a build names it. Choices are printed in an order that is the variant's;
+    with ``ordered`` in that which is stated. Numbers, Roman classes, yes and no keep their order without it.
     """
 
     quantity: str
@@ -139,6 +142,7 @@ class Part:
     by_request: bool = False
     room: Any = None
     millimetre: bool = False
+    ordered: bool = False
     sort: Kind = field(init=False, repr=False, compare=False)  #: what its kind says of it
 
     def __post_init__(self) -> None:
@@ -157,6 +161,12 @@ class Part:
                 f"part {self.quantity!r}: an equation of the loop {self.loop!r} is called {self.loop}_x, {self.loop}_y or "
                 f"{self.loop}_complex, and its derivatives {self.loop}_x_dot, {self.loop}_x_ddot"
             )
+        if len(self.choices) > len(LETTERS):
+            raise BadCourse(
+                f"part {self.quantity!r}: {len(self.choices)} choices; there are letters for {len(LETTERS)}"
+            )
+        if self.ordered and not self.choices:
+            raise BadCourse(f"part {self.quantity!r}: 'ordered' is said of choices, and it has none")
         if self.asks_unit and (self.is_exact or self.unit == "1"):
             raise BadCourse(f"part {self.quantity!r}: it can ask for a unit only where its answer has one")
         if not self.points > 0:

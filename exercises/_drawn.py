@@ -14,7 +14,7 @@ KNOWN = ("both", "direction", "length", "neither")
 
 def known(quantity):
     """What is known of a vector before it is drawn: a row of the table."""
-    return Part(quantity, kind="choice", choices=KNOWN)
+    return Part(quantity, kind="choice", choices=KNOWN, ordered=True)
 
 
 def of_drawing(quantity, unit="mm", kind="number", points=1):

@@ -46,7 +46,8 @@ class CourseExercise(Generic[V]):
     """An exercise of an open course: draws, solves, reads its texts.
 
     Its variants are of the class that it is handed, made of the exercise, a seed, the given values, a language, the
-    parts that are asked where they are not the usual ones, and the record that issued it, of an older version.
+    parts that are asked where they are not the usual ones, the record that issued it, of an older version, and the
+    orders of its choices, where they were recorded.
     """
 
     def __init__(self, name: str, folder: Folder, course: _Exercises, variant: Callable[..., V]):
@@ -304,8 +305,7 @@ class CourseExercise(Generic[V]):
             The record is of another exercise or a later version, lacks a given quantity, or asks a
             part that is no more.
         """
-        seed, given, lang, parts, issued = self._records.read(record)
-        return self._variant(self, seed, given, lang, parts, issued)
+        return self._variant(self, *self._records.read(record))
 
     @cached_property
     def _records(self) -> Records:

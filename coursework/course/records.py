@@ -18,6 +18,7 @@ class Recorded(NamedTuple):
     lang: str
     parts: tuple[Part, ...]
     record: dict[str, Any] | None  #: as it was issued, where the exercise has a later version now
+    orders: dict[str, tuple[str, ...]]  #: of choices, by part; a sheet printed letters where there is one
 
 
 class Records:
@@ -50,13 +51,18 @@ class Records:
             given = {n: record["given"][n]["value"] for n in self.spec.given}
             seed = int(record["seed"])
             asked = {str(part["id"]): float(part["points"]) for part in record["parts"]}
+            orders = {
+                str(part["id"]): tuple(part["choices"]) for part in record["parts"] if "choices" in part
+            }
         except (KeyError, TypeError, ValueError) as fault:
             raise BadInput(f"{name}: a record lacks {fault}") from fault
         for quantity, value in given.items():
             self._check_recorded(quantity, value)
         parts = self._parts_of(tuple(asked.items()), version < current)
+        for part in parts:
+            self._check_order(part, orders.get(part.id, ()))
         issued = dict(record) if version < current else None
-        return Recorded(seed, given, str(record.get("lang", "fr")), parts, issued)
+        return Recorded(seed, given, str(record.get("lang", "fr")), parts, issued, orders)
 
     def _parts_of(self, asked: tuple[tuple[str, float], ...], older: bool) -> tuple[Part, ...]:
         """The parts that a record asks, by id, worth what it says: an assignment may say so, or an older version."""
@@ -72,6 +78,14 @@ class Records:
             found = tuple(p if p.points == points[p.id] else replace(p, points=points[p.id]) for p in found)
             self._parts[asked, older] = found
         return self._parts[asked, older]
+
+    def _check_order(self, part: Part, order: tuple[str, ...]) -> None:
+        strangers = [case for case in order if case not in part.choices]
+        if strangers or len(set(order)) < len(order):
+            raise BadInput(
+                f"{self.name}: a record offers {strangers[0] if strangers else 'a case twice'!r} for {part.id!r}, whose "
+                f"choices are {', '.join(part.choices)}; mark it with the course it was issued from"
+            )
 
     def _check_recorded(self, name: str, value: Any) -> None:
         spec = self.spec.given[name]

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
 from coursework.course.exercise import CourseExercise
+from coursework.course.lettering import letters_of, printed_order
 from coursework.course.texts import Text
 from coursework.language.numbers import localise, plain, significant, with_unit
 from coursework.language.words import languages, no_language, words
@@ -30,6 +31,7 @@ class Variant:
         lang: str,
         parts: Sequence[Part] | None = None,
         issued: Mapping[str, Any] | None = None,
+        orders: Mapping[str, Sequence[str]] | None = None,
     ):
         if lang not in languages():
             raise no_language(lang)
@@ -39,6 +41,9 @@ class Variant:
         self.chosen = parts  #: the parts to ask, where they are not the usual ones
         self.given: Mapping[str, Any] = MappingProxyType(dict(given))  #: canonical units, as printed
         self._issued = issued  #: the record of an older version
+        self._orders = (
+            orders  #: of choices by part, as they were recorded; None where nothing was: they are the seed's
+        )
         self._found: dict[str, Any] = {}
         self._key: Key | None = None
 
@@ -51,6 +56,7 @@ class Variant:
         numbers = None if self._key is None else self._key.numbers
         return _made_anew, (
             type(self), self.exercise, self.seed, dict(self.given), self.lang, chosen, self._issued, numbers,
+            self._orders,
         )  # fmt: skip
 
     @cached_property
@@ -76,21 +82,27 @@ class Variant:
             "seed": self.seed,
             "lang": self.lang,
             "given": {n: {"value": v, "unit": spec.given[n].unit} for n, v in self.given.items()},
-            "parts": [
-                {"id": p.id, "quantity": p.quantity, "unit": p.unit, "kind": p.kind, "points": p.points}
-                for p in self.parts
-            ],
+            "parts": [self._recorded(p) for p in self.parts],
         }
+
+    def _recorded(self, part: Part) -> dict[str, Any]:
+        known = {name: getattr(part, name) for name in ("id", "quantity", "unit", "kind", "points")}
+        letters = self.letters(part)
+        return {**known, "choices": list(letters)} if letters else known
 
     def in_language(self, lang: str) -> Self:
         """The same variant on a sheet in another language."""
-        variant = type(self)(self.exercise, self.seed, self.given, lang, self.chosen, self._issued)
+        variant = type(self)(
+            self.exercise, self.seed, self.given, lang, self.chosen, self._issued, self._orders
+        )
         variant._key = self._key  # it speaks no language
         return variant
 
     def asking(self, parts: Sequence[Part]) -> Self:
         """The same variant with other parts, or the same worth other points."""
-        return type(self)(self.exercise, self.seed, self.given, self.lang, tuple(parts), self._issued)
+        return type(self)(
+            self.exercise, self.seed, self.given, self.lang, tuple(parts), self._issued, self._orders
+        )
 
     def quantities(self, names: Iterable[str]) -> dict[str, Any]:
         """Quantities of this variant alone, as the solution gives them; each is computed once.
@@ -175,13 +187,30 @@ class Variant:
         rounded = {n: _rounded(v, self.lang) for n, v in self.walk.items()}
         return self.exercise.texts.text("solutions", self.lang, {**rounded, **self.printed})
 
+    def letters(self, part: Part) -> Mapping[str, str]:
+        """The letters of a choice by case, in the order printed; none of a sheet that was issued without."""
+        if not part.choices:
+            return {}
+        if self._orders is not None:
+            return letters_of(self._orders.get(part.id, ()))
+        return letters_of(printed_order(self.exercise.name, self.seed, part))
+
+    def cases(self, part: Part) -> tuple[str, ...]:
+        """The cases of a choice in the order printed."""
+        return tuple(self.letters(part)) or part.choices
+
+    def called(self, part: Part, case: str) -> str:
+        """A case as its sheet offers it, with its letter where there is one: ``b) oscille``."""
+        label, letter = self.label(part.id, case), self.letters(part).get(case)
+        return label if letter is None else words(self.lang)["choices"]["lettered"].format(letter, label)
+
     def labels(self, part: Part) -> dict[str, list[str]]:
         """What each case of a choice is called, in every language; nothing for another kind."""
         return self.exercise.texts.labels(
-            part.id, part.choices, self.lang, lambda case: self._called(part.id, case)
+            part.id, part.choices, self.lang, lambda case: self._names(part.id, case)
         )
 
-    def _called(self, part: str, case: str) -> Iterator[str]:
+    def _names(self, part: str, case: str) -> Iterator[str]:
         """The labels of a case, and each without its article."""
         for lang in self._langs:
             yield (label := self.label(part, case, lang))
@@ -248,9 +277,10 @@ def _made_anew(
     chosen: Mapping[str, float] | None,
     issued: Mapping[str, Any] | None,
     numbers: KeyNumbers | None,
+    orders: Mapping[str, Sequence[str]] | None,
 ) -> Variant:
     parts = None if chosen is None else exercise.parts_worth(chosen)
-    variant = kind(exercise, seed, given, lang, parts, issued)
+    variant = kind(exercise, seed, given, lang, parts, issued, orders)
     if numbers is not None:
         from coursework.course.answer_key import Key
 

@@ -30,7 +30,7 @@ class Choice(Kind):
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         from coursework.reading.choices import read_choice
 
-        return read_choice(answer, asking.labels(part))
+        return read_choice(answer, asking.labels(part), asking.letters(part))
 
     def kept(self, read_as: str) -> Any:
         return read_as

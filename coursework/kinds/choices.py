@@ -29,7 +29,12 @@ class Choices(Kind):
     faults = {"unknown_symbol": "not_a_number", "not_a_choice": "not_choices"}  # noqa: RUF012
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
-        return read_choices(answer, asking.labels(part))
+        letters = asking.letters(part)
+        own = {
+            case: (*called, *filter(None, [letters.get(case)]))
+            for case, called in asking.labels(part).items()
+        }
+        return read_choices(answer, own)
 
     def kept(self, read_as: str) -> Any:
         return cases_of(read_as)

@@ -48,6 +48,9 @@ class Asking(Protocol):
     def labels(self, part: Any) -> Mapping[str, Any]:
         """What each case of a choice is called."""
 
+    def letters(self, part: Any) -> Mapping[str, str]:
+        """The letters of a choice by case, in the order printed; none where the sheet has none."""
+
     def reference(self, quantity: str) -> Any:
         """A reference value: a vector has as many coordinates as its reference."""
 

@@ -14,7 +14,8 @@ from coursework.language.numbers import localise, significant, unit_text, with_u
 from coursework.language.words import listed, quoted, words
 from coursework.markup.markdown import plain_line
 from coursework.model import Part
-from coursework.reading.choices import head, read_choice
+from coursework.reading.choices import read_choice
+from coursework.reading.labels import head
 from coursework.reading.reading import Reading
 
 if TYPE_CHECKING:
@@ -139,18 +140,24 @@ _SAYING = 4  #: words of a beginning that says something
 
 
 def _offered(variant: Variant, part: Part) -> str:
-    """What may be written for a choice, quoted: every label, or its head, or the shortest beginning that will do."""
-    shown = [variant.label(part.id, case) for case in part.choices]
+    """What may be written for a choice: its letter, where there is one, and quoted the label, or its head, or the
+    shortest beginning that will do."""
+    cases, letters = variant.cases(part), variant.letters(part)
+    shown = [variant.label(part.id, case) for case in cases]
     known = variant.labels(part)
     if sum(map(len, shown)) > _OFFERED:
         heads = [head(label) for label in shown]
         shown = [
-            s if _means(s, case, known) else whole
-            for s, whole, case in zip(heads, shown, part.choices, strict=True)
+            s if _means(s, case, known) else whole for s, whole, case in zip(heads, shown, cases, strict=True)
         ]
     if sum(map(len, shown)) > _OFFERED:
-        shown = [_shortest(s, case, known, variant.lang) for s, case in zip(shown, part.choices, strict=True)]
-    return listed((quoted(label, variant.lang) for label in shown), variant.lang, "or")
+        shown = [_shortest(s, case, known, variant.lang) for s, case in zip(shown, cases, strict=True)]
+    quotations = [quoted(label, variant.lang) for label in shown]
+    offered = [
+        f"{letters[case]} ({said})" if case in letters else said
+        for case, said in zip(cases, quotations, strict=True)
+    ]
+    return listed(offered, variant.lang, "or")
 
 
 def _means(text: str, case: str, known: Mapping[str, Sequence[str]]) -> bool:

@@ -150,12 +150,11 @@ def _mark_part(
     read_as = reading.read_as[index]
     case = part.sort.words(reading.values[index], partial(variant.label, part.id))
     if case:
-        read_as = plain_line(case, variant.lang)
+        lettered = part.sort.words(reading.values[index], partial(variant.called, part))
+        read_as, case = (plain_line(said, variant.lang) for said in (lettered, case))
 
     def told(sentence: str, **pieces: str) -> Said:
-        read = echo(read_as, variant.lang)
-        if case:
-            read = quoted(read, variant.lang)
+        read = quoted(echo(case, variant.lang), variant.lang) if case else echo(read_as, variant.lang)
         return say(variant, part, sentence, read=read, **pieces)
 
     if gap <= 1:

@@ -1,243 +1,171 @@
-"""Cases of a choice as people name them: labels, numbers, letters, formulas, a remark behind them."""
+"""Cases of a choice as people name them: by the letter that the sheet prints, by place, in words, ticked among others."""
 
 from __future__ import annotations
 
 import re
-import unicodedata
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from numbers import Real
+from types import MappingProxyType
 from typing import Any
 
 from coursework.language.words import languages, words
+from coursework.reading.labels import by_label, counts, in_words, is_verbatim, names_any, numbers_of
 from coursework.reading.reading import Reading, Stop, bare_value, reading_of
-from coursework.reading.spelling import primes_as_dots, shorten, spelled_out, unwrapped
+from coursework.reading.spelling import shorten, unwrapped
 
-# --- choices ----------------------------------------------------------------------------
+Choices = Mapping[str, Sequence[str]]  #: labels by key
+Letters = Mapping[str, str]  #: letters by key, in the order printed
 
-_SIGN = re.compile(r"(^|[=<>(+])\s*[-‐‑‒–—−]\s*(?=[0-9])")
-_PLUS = re.compile(r"(^|[=<>(])\s*\+\s*(?=[0-9])")
-_ANY_MINUS = re.compile("[-‐‑‒–—−]")
-
-
-_LOOSE_COMMA = re.compile(r",(?![0-9])|(?<![0-9]),")
-
-
-@lru_cache(maxsize=4096)
-def _folded(text: str) -> str:
-    """A label without case, accents, markup and punctuation; a formula without spaces, its signs kept."""
-    text = _PLUS.sub(r"\1", _SIGN.sub(r"\1−", text.strip("$ ")))
-    if "=" in text:
-        text = re.sub(r"[\s_*·{}\\]", "", _ANY_MINUS.sub("−", text))
-    text = re.sub(r"\\(?:mathrm|text|mathit|vec|overrightarrow)(?![A-Za-z])|\\[,;! ]", " ", text)
-    text = unicodedata.normalize("NFKD", text).casefold()
-    text = "".join(" " if c in "-_‐‑–—'’/" else c for c in text if not unicodedata.combining(c))
-    text = _LOOSE_COMMA.sub(" ", re.sub(r"[^\w\s+−<>=%°.,]", " ", text))
-    return " ".join(text.split()).strip(" .,")
-
-
-_AFTER_HEAD = re.compile(r"\s*(?:[(,;]|:\s).*", re.DOTALL)
-
-
-def head(label: str) -> str:
-    """A label as people shorten it: ``isostatic`` of "isostatic, all actions can be computed"."""
-    return _AFTER_HEAD.sub("", label.replace("\u202f", " "))
-
-
-def _by_label(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices that are called so: by their key, else by a whole label, else by the head of one."""
-    folded = _folded(text)
-    if not folded:
-        return []
-    keys = [key for key in choices if _folded(key) == folded]
-    keys = keys or [key for key, labels in choices.items() if any(_is_called(text, s) for s in labels)]
-    return keys or [k for k, labels in choices.items() if any(_is_called(text, head(s)) for s in labels)]
-
-
-def _is_called(text: str, label: str) -> bool:
-    """Whether a text is a label; one that is a formula is told from others by its operators too, not by its spaces."""
-    if _IN_WORDS.search(_COMMANDS.sub("", label)):
-        return _folded(text) == _folded(label)
-    if _squeezed(text) != _squeezed(label):
-        return False
-    written, offered = _operators(text), _operators(label)
-    return written in ("", offered) or "/" not in written + offered
-
-
-_COMMANDS = re.compile(r"\\[A-Za-z]+")
-_IN_WORDS = re.compile(r"[^\W\d_]{3,}")
-
-
-@lru_cache(maxsize=4096)
-def _squeezed(formula: str) -> str:
-    """A formula without its spaces and bars, Greek letters and dots spelled."""
-    return _folded(primes_as_dots(spelled_out(formula.strip("$ "))).replace("*", " ")).replace(" ", "")
-
-
-@lru_cache(maxsize=4096)
-def _operators(formula: str) -> str:
-    """The signs of product and quotient of a formula, in order."""
-    formula = re.sub(r"\\(?:cdot|times)(?![A-Za-z])|[×·⋅]", "*", formula)
-    return re.sub(r"[^*/]", "", formula)
-
-
-def _by_value(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices of whose formula this is the right-hand side: ``-1`` where ``w = -1`` is offered."""
-    value = _folded(f"= {text.strip('()[] ')}").removeprefix("=").strip()
-    found = [key for key, labels in choices.items() for s in labels if "=" in s and _value_of(s) == value]
-    return list(dict.fromkeys(found)) if value else []
-
-
-@lru_cache(maxsize=4096)
-def _value_of(label: str) -> str:
-    return _folded(label).rpartition("=")[2].strip()
-
-
-_BEFORE = re.compile(
-    r"^\s*(?:(?:c['’]est|il|elle|it is|it|un|une|des|le|la|les|an|a|the)\s+|l['’]\s*)(?=\S)", re.I
-)  #: what people put before a label, and no label needs
-
-
-@lru_cache(maxsize=1)
-def _numerals() -> Mapping[str, int]:
-    """Numbers as labels have them: digits, Roman numerals, words of any language; folded."""
-    roman = ("i", "ii", "iii", "iv", "v", "vi", "vii", "viii", "ix", "x")
-    found = {str(n): n for n in range(100)} | {name: n for n, name in enumerate(roman, start=1)}
-    for lang in languages():
-        for n, names in enumerate(words(lang)["study"]["reads"]["numbers"]):
-            found |= {_folded(name): n for name in names.split("|")}
-    return found
-
-
-@lru_cache(maxsize=1)
-def _nouns() -> tuple[str, ...]:
-    """What labels are called together, ``class``; folded, the longest first."""
-    found = {_folded(noun) for lang in languages() for noun in words(lang)["choices"]["nouns"]}
-    return tuple(sorted(found, key=len, reverse=True))
-
-
-@lru_cache(maxsize=4096)
-def _without_noun(text: str) -> str:
-    """A folded label without what all of its kind are called: ``classe III`` is ``iii``, ``rigid joint`` ``rigid``."""
-    folded = _folded(text)
-    for noun in _nouns():
-        if folded.startswith(f"{noun} "):
-            return folded[len(noun) + 1 :]
-        if folded.endswith(f" {noun}") and len(folded) - len(noun) > _SMALL_WORD:
-            return folded[: -len(noun) - 1]
-    return folded
-
-
-_SMALL_WORD = 4  #: letters of a word and its space that say too little alone: ``no joint`` is not ``no``
-
-
-def _by_core(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices that are called so but for a noun that all of their kind share: ``pivot``."""
-    core = _without_noun(text)
-    plain = {key: [head(s) for s in labels if not s.startswith("$")] for key, labels in choices.items()}
-    return [key for key, heads in plain.items() if core and any(_without_noun(s) == core for s in heads)]
-
-
-@lru_cache(maxsize=4096)
-def _beginnings(label: str) -> frozenset[str]:
-    """What a label begins with, two words or more, folded; ``and`` and ``or`` are not left to follow."""
-    pieces = [] if "=" in label or label.startswith("$") else label.split()
-    ends = (n for n in range(2, len(pieces)) if _folded(pieces[n]) not in _conjunctions())
-    return frozenset(_folded(" ".join(pieces[:n])) for n in ends)
-
-
-@lru_cache(maxsize=1)
-def _conjunctions() -> frozenset[str]:
-    return frozenset(
-        _folded(words(lang)["marking"][joint]) for lang in languages() for joint in ("and", "or")
-    )
-
-
-def _by_beginning(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices whose label begins so: ``double balancier``, ``cas limite``; a word with a hyphen is one."""
-    folded = _folded(text)
-    if " " not in folded:
-        return []
-    return [key for key, labels in choices.items() if any(folded in _beginnings(s) for s in labels)]
-
-
-_REMARK = re.compile(r"(?P<said>[^()]+?)\s*\((?P<remark>[^()]+)\)\s*")
-
-
-def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices that stand before a remark in brackets which names no other: ``oscille (r2 < r1)``."""
-    found = _REMARK.fullmatch(text)
-    if found is None:
-        return []
-    keys = _called(found["said"], choices)
-    if len(keys) != 1 or any(key not in keys for key in _called(found["remark"], choices)):
-        return []
-    remark = f" {_folded(found['remark'])} "
-    others = (
-        s for key, labels in choices.items() if key not in keys for s in (key, *labels, *map(head, labels))
-    )
-    return [] if any(f" {_folded(s)} " in remark for s in others if _folded(s)) else keys
-
-
-@lru_cache(maxsize=4096)
-def _numbered(text: str) -> tuple[int | None, str]:
-    """The number that a label begins with, and what follows: ``deux paires`` is 2, ``paires``."""
-    first, _, rest = _without_noun(text).partition(" ")
-    return _numerals().get(first), rest
-
-
-def _by_number(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choice whose label begins with this number, however it is written, where the numbers tell choices apart."""
-    number, rest = _numbered(text.strip("()[] "))
-    if number is None:
-        return []
-    found = {}
-    for key, labels in choices.items():
-        heads = [_numbered(head(label)) for label in labels]
-        if numbers := {n for n, _ in heads if n is not None}:
-            found[key] = numbers, {follows for n, follows in heads if n == number}
-    every = [n for numbers, _ in found.values() for n in numbers]
-    if len(found) < 2 or len(set(every)) < len(every):
-        return []
-    return [key for key, (ns, follows) in found.items() if number in ns and (not rest or rest in follows)]
-
-
-_MARKED = re.compile(r"[(\[]?\s*(?P<mark>[a-z]|[0-9]{1,2})\s*(?:[)\]:]|\.(?![0-9]))\s*(?P<label>\S.*)", re.I)
 _WHOLE = re.compile(r"^\s*([0-9]+)[.,]0+\s*$")  #: what a table makes of a whole number
 
 
-def _choice(text: str, choices: Mapping[str, Sequence[str]]) -> Reading:
-    text = _WHOLE.sub(r"\1", unwrapped(text))
-    keys = _by_label(text, choices)
-    if not keys and (marked := _MARKED.fullmatch(text.strip())):  # b) crossed
-        keys = list(dict.fromkeys((*_called(marked["label"], choices), *_by_number(marked["mark"], choices))))
-    keys = keys or _called(text, choices)
-    if len(keys) != 1:
-        raise Stop("two_values" if keys else "not_a_choice", text)
-    return Reading(text, "read", (keys[0],), (keys[0],))
-
-
-def _called(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices that a text may mean, its article left out if need be; the surest way to call one first."""
-    said = _BEFORE.sub("", text)
-    for words_said in dict.fromkeys((text, said)):
-        keys = _by_label(words_said, choices) or _by_core(words_said, choices)
-        keys = keys or list(
-            dict.fromkeys((*_by_number(words_said, choices), *_by_value(words_said, choices)))
-        )
-        if keys:
-            return keys
-    return _by_beginning(said, choices) or _by_remark(text, choices)
-
-
-def read_choice(text: Any, choices: Mapping[str, Sequence[str]]) -> Reading:
+def read_choice(text: Any, choices: Choices, letters: Letters = MappingProxyType({})) -> Reading:
     """The key of a choice, given by its key, a label of any language, its head or beginning, or the number there.
 
-    ``choices`` maps each key to its labels. A letter or a number never counts places: no sheet prints any.
+    ``choices`` maps each key to its labels, ``letters`` to the letter that the sheet printed, in the order printed: then
+    the letter, the place and a ticked one among others are read too, and what says two things is not read.
+    Without letters none is read, and no number counts places: the sheet printed none.
     """
     text = bare_value(text)
     if isinstance(text, Real) and not isinstance(text, (bool, float)):
         text = str(text)
     if not (text is None or isinstance(text, str)):
         return Reading(str(text), "unreadable", code="not_a_choice", found=shorten(str(text)))
-    return reading_of(text, lambda _: _choice(str(text), choices))
+    return reading_of(text, lambda _: _choice(str(text), choices, letters))
+
+
+def _choice(text: str, choices: Choices, letters: Letters) -> Reading:
+    text = _WHOLE.sub(r"\1", unwrapped(text))
+    keys = _on_lettered(text, choices, letters) if letters else in_words(text, choices)
+    if len(keys) != 1:
+        raise Stop("two_values" if keys else "not_a_choice", text)
+    return Reading(text, "read", (keys[0],), (keys[0],))
+
+
+# --- letters ----------------------------------------------------------------------------
+
+_ALONE = re.compile(r"[(\[]?\s*(?P<letter>[a-z])\s*[)\].:;,]*", re.I)
+#: A letter, and words behind it: ``b) oscillates``, ``b: oscillates``, ``b (oscillates)``, ``b oscillates``.
+_BEFORE = re.compile(
+    r"(?P<bracket>[(\[])?\s*(?P<letter>[a-z])\s*"
+    r"(?:(?P<mark>[)\].:,;=\u2013\u2014-])\s*[:\u2013\u2014-]?|(?<=\s)|(?=\())\s*(?P<said>\S.*)",
+    re.I | re.S,
+)
+#: Words, and a letter behind them: ``oscillates (b)``, ``oscillates, b``.
+_BEHIND = re.compile(
+    r"(?P<said>.*?\S)\s*(?:[(\[]\s*(?P<inner>[a-z])\s*[)\]]|[,:;\u2013\u2014-]\s*(?P<bare>[a-z])\s*\)?)\s*\.?",
+    re.I | re.S,
+)
+_IN_BRACKETS = re.compile(r"\(([^()]+)\)\s*\.?")
+
+
+def _on_lettered(text: str, choices: Choices, letters: Letters) -> list[str]:
+    """The choices that a text may mean on a sheet that prints letters, all that it says taken together."""
+    text = _without_answer(_ticked(text))
+    if alone := _ALONE.fullmatch(text):
+        return _together(_of_letter(alone["letter"], letters), by_label(text, choices))
+    if is_verbatim(text, choices):  # "A and B are at rest" begins with no letter of a choice
+        return in_words(text, choices)
+    if (found := _BEFORE.fullmatch(text)) and (keys := _of_letter(found["letter"], letters)):
+        if said := _said(found["said"], choices, letters):
+            return _together(keys, said)
+        if (remark := _IN_BRACKETS.fullmatch(found["said"])) and not names_any(remark[1], choices):
+            return keys  # b (r2 < r1)
+        if found["bracket"] or found["mark"]:
+            return []
+    if found := _BEHIND.fullmatch(text):
+        keys = _of_letter(found["inner"] or found["bare"], letters)
+        said = _said(found["said"], choices, letters) if keys else []
+        if said:
+            return _together(keys, said)
+    return in_words(text, choices) or _by_place(text, choices, letters)
+
+
+def _together(*found: Sequence[str]) -> list[str]:
+    return list(dict.fromkeys(key for keys in found for key in keys))
+
+
+def _of_letter(letter: str, letters: Letters) -> list[str]:
+    return [key for key, printed in letters.items() if printed == letter.lower()]
+
+
+def _said(text: str, choices: Choices, letters: Letters) -> list[str]:
+    """What stands beside a letter, in brackets or not: the words of a choice, or one more letter."""
+    inner = _IN_BRACKETS.fullmatch(text)
+    text = inner[1] if inner else text
+    alone = _ALONE.fullmatch(text)
+    return (_of_letter(alone["letter"], letters) if alone else []) or in_words(text, choices)
+
+
+@lru_cache(maxsize=1)
+def _answer_words() -> re.Pattern[str]:
+    nouns = "|".join(re.escape(noun) for lang in languages() for noun in words(lang)["choices"]["answers"])
+    before = r"(?:(?:c['’]est|it is|it['’]s|la|le|the)\s+|l['’]\s*)*"
+    return re.compile(rf"\s*{before}(?:(?:{nouns})\b\s*(?:n\s*°|no\.)?\s*[:=]?\s*)?(?=\S)", re.I)
+
+
+def _without_answer(text: str) -> str:
+    """A letter or a number without what says that it is the answer: ``réponse b``, ``it is 2``."""
+    rest = _answer_words().sub("", text, count=1).strip()
+    return rest if any(form.fullmatch(rest) for form in (_ALONE, _PLACE, _BEFORE)) else text.strip()
+
+
+# --- places -----------------------------------------------------------------------------
+
+_PLACE = re.compile(r"[(\[#]?\s*(?:n\s*°\s*)?(?P<number>[0-9]{1,2})\s*[)\].:]?", re.I)
+
+
+def _by_place(text: str, choices: Choices, letters: Letters) -> list[str]:
+    """The choice at a place: ``2``. Where labels begin with numbers, a number is one of these, or it is two things."""
+    found = _PLACE.fullmatch(text)
+    if found is None:
+        return []
+    number = int(found["number"])
+    place = [*letters][number - 1 : number] if number else []
+    if not any(counts(labels) for labels in choices.values()):
+        return place
+    named = [key for key, labels in choices.items() if number in numbers_of(labels)]
+    return _together(named, place) if named else []
+
+
+# --- boxes ------------------------------------------------------------------------------
+
+_BOX = re.compile(
+    r"\[\s*(?P<square>[xX✓✔*])\s*\]|(?P<sign>[☒☑✓✔])|(?<!\S)\(\s*(?P<round>[xX✓✔])\s*\)(?=\s)"
+    r"|\[[\s_]*\]|[☐□]|(?<!\S)\(\s*\)(?=\s)"
+)
+
+
+def _ticked(text: str) -> str:
+    """What is ticked among others, the text itself where nothing is: ``b`` of ``☐ a ☒ b ☐ c``.
+
+    Boxes stand before all that they belong to, or behind it all; one alone belongs to what it touches.
+    """
+    boxes = list(_BOX.finditer(text))
+    ticks = [any(box.groups()) for box in boxes]
+    if True not in ticks:
+        return text
+    ends = [0, *(end for box in boxes for end in box.span()), len(text)]
+    pieces = [text[a:b] for a, b in zip(ends[::2], ends[1::2], strict=True)]
+    if not pieces[0].strip():
+        beside = pieces[1:]
+    elif not pieces[-1].strip():
+        beside = pieces[:-1]
+    else:
+        beside = [_touched(*pieces)] if len(boxes) == 1 else []
+    found = [piece.strip(" \t\r\n,;|/") for piece, tick in zip(beside, ticks, strict=False) if tick]
+    if len(found) != 1:
+        raise Stop("two_values" if found else "not_a_choice", text)
+    return found[0]
+
+
+def _touched(before: str, behind: str) -> str:
+    """Of what stands about a box, the piece that is nearer; none where both are as near: ``a [x] b``."""
+    left, right = before[len(before.rstrip()) :], behind[: len(behind) - len(behind.lstrip())]
+    nearness = [("\n" in gap, len(gap) > 0) for gap in (left, right)]
+    if nearness[0] == nearness[1]:
+        return ""
+    if nearness[0] < nearness[1]:
+        return re.split(r"\n" if "\n" in before.strip() else r"\s", before.strip())[-1]
+    return re.split(r"\n" if "\n" in behind.strip() else r"\s", behind.strip())[0]

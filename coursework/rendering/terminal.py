@@ -48,5 +48,9 @@ def _question(question: Question, lang: str) -> str:
     details = [question.id, unit, views.points_text(question.points, lang)]
     body = to_text(question.prompt, lang, WIDTH - len(mark))
     lines = [body, f"[{', '.join(filter(None, details))}]"]
-    lines += [f"( ) {key}: {to_text(label, lang)}" for key, label in question.choices]
+    for letter, label in views.offered(question):
+        marked = words(lang)["choices"]["lettered"].format(letter, label) if letter else label
+        lines.append(
+            textwrap.fill(f"( ) {to_text(marked, lang)}", WIDTH - len(mark), subsequent_indent=" " * 7)
+        )
     return mark + textwrap.indent("\n".join(lines), " " * len(mark)).lstrip()

@@ -416,16 +416,45 @@ def _surely_fits(markdown: str, wide: float, lang: str) -> bool:
     return 1.2 * Run(said, italic=False).width * SIZE <= wide - _SIDES
 
 
+def offered(question: Question) -> tuple[tuple[str, str], ...]:
+    """The choices as a sheet prints them: letter and label; the letter is empty on a sheet issued without."""
+    letters = question.letters or ("",) * len(question.choices)
+    return tuple((letter, label) for letter, (_, label) in zip(letters, question.choices, strict=True))
+
+
+_CHOICES_MM, _BOX_MM, _BETWEEN_MM = (
+    146.0,
+    11.0,
+    4.0,
+)  #: width of all choices; of a box and its letter; between columns
+
+
+def columns(question: Question, lang: str) -> int:
+    """In how many columns the choices stand: as many as hold each label on one line, one row of four at most."""
+    count = len(question.choices)
+    for wanted in {3: (3,), 4: (4, 2)}.get(count, (3, 2)):
+        room = _CHOICES_MM / wanted - _BOX_MM - _BETWEEN_MM
+        if wanted <= count and all(_surely_fits(label, room, lang) for _, label in question.choices):
+            return wanted
+    return 1
+
+
+def column_of(question: Question, lang: str) -> str:
+    """The share of a line that a column of choices takes."""
+    return f"{0.97 / columns(question, lang):.2f}"
+
+
 def python_name(name: str) -> str:
     """A quantity's public name as a Python variable: the same, unless Python keeps the word for itself."""
     return name + "_" if keyword.iskeyword(name) else name
 
 
 def answer_comment(question: Question, lang: str) -> str:
-    """What a notebook says beside an answer: its unit, the keys of a choice, or the form it takes."""
+    """What a notebook says beside an answer: its unit, the letters of a choice, or the form it takes."""
     said = words(lang)
     if question.choices and question.box != "several":
-        note = said["notebook"]["one_of"].format(", ".join(key for key, _ in question.choices))
+        offered = question.letters or [to_text(label, lang, sys.maxsize) for _, label in question.choices]
+        note = said["notebook"]["one_of"].format(", ".join(offered))
     else:
         unit = said["sheet"]["with_unit"] if question.asks_unit else question.unit
         note = ", ".join(filter(None, (said["hints"].get(question.kind, question.hint), unit)))

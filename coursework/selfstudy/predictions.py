@@ -177,9 +177,10 @@ def options(variant: Variant, prediction: Prediction) -> str:
 
 
 def choices(variant: Variant, part: Part) -> str:
-    """The cases of a choice: what is written, and what it is called."""
-    labels = {c: to_text(variant.label(part.id, c), variant.lang, sys.maxsize) for c in part.choices}
-    return " / ".join(c if c == label else f"{c} ({label})" for c, label in labels.items())
+    """The cases of a choice: the letter that is written, and what it is called."""
+    letters = variant.letters(part)
+    labels = {c: to_text(variant.label(part.id, c), variant.lang, sys.maxsize) for c in variant.cases(part)}
+    return " / ".join(f"{letters[c]} ({label})" if c in letters else label for c, label in labels.items())
 
 
 def is_understood(variant: Variant, prediction: Prediction, text: Any) -> bool:
@@ -252,7 +253,8 @@ def _compare(variant: Variant, prediction: Prediction, value: Any, said: Any) ->
 
 def _guess(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
     is_choice = bool(prediction.choices)
-    found = variant.label(prediction.id, str(value)) if is_choice else plain(int(value))
+    part = next(p for p in variant.parts if p.id == prediction.id)
+    found = variant.called(part, str(value)) if is_choice else plain(int(value))
     return found, value in (said or ())
 
 

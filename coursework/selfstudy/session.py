@@ -22,7 +22,7 @@ from coursework.marking.marking import mark as grade
 from coursework.markup.shown import Picture, Shown
 from coursework.motion.gauges import EFFECTS
 from coursework.rendering.displayed import DisplayedAnimation
-from coursework.rendering.views import points_number
+from coursework.rendering.views import offered, points_number
 from coursework.selfstudy import hints, predictions, refusals
 from coursework.selfstudy import word_answers as wording
 from coursework.selfstudy.predictions import Prediction
@@ -121,7 +121,7 @@ class StudySession:
         for q in sheet.questions:
             unit = said["with_unit"] if q.asks_unit else q.unit
             prompt = " ".join(q.prompt.split())
-            cases = "".join(f"\n   - `{key}`{colon} {label}" for key, label in q.choices)
+            cases = "".join(f"\n   - `{letter}`{colon} {label}" for letter, label in offered(q))
             questions.append(f"{q.number}. `{q.id}`{colon} {prompt}{f' ({unit})' if unit else ''}{cases}")
         pieces.append("\n".join(questions))
         return self._shown(*pieces)

@@ -217,7 +217,7 @@ def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
     if part.sort.is_open:
         return engine_words(variant.lang)["solution"]["by_hand"]
     value = values[part.quantity]
-    if said := part.sort.words(value, partial(variant.text.label, part.id)):
+    if said := part.sort.words(value, partial(variant.called, part)):
         return said
     latex = _value_latex(variant, part.quantity, value)
     if not latex:

@@ -91,7 +91,7 @@ def prompt(variant: Variant, part: Part, ways: Iterable[str] = ()) -> str:
 
 
 def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) -> Question:
-    choices = tuple((case, variant.text.label(part.id, case)) for case in part.choices)
+    choices = tuple((case, variant.text.label(part.id, case)) for case in variant.cases(part))
     return Question(
         number=number,
         id=part.id,
@@ -105,6 +105,7 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
         room=part.room,
         hint=part.sort.hint.get(variant.lang, ""),
         choices=choices,
+        letters=tuple(variant.letters(part).values()),
         points=part.points,
         tolerance=tolerance_words(part, variant.lang),
         asks_unit=part.asks_unit,

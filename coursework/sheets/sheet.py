@@ -38,7 +38,9 @@ class Question:
     prompt: str  #: Markdown
     unit: str  #: printed beside the answer box; empty if none
     kind: str  #: a file of :mod:`coursework.kinds`
-    choices: tuple[tuple[str, str], ...]  #: (key, label) pairs of a choice
+    choices: tuple[
+        tuple[str, str], ...
+    ]  #: (key, label) pairs of a choice, in the order printed; no sheet shows a key
     points: float
     tolerance: str  #: in words a student understands; empty for exact kinds
     is_exact: bool = False  #: judged without a margin
@@ -50,6 +52,7 @@ class Question:
         None  #: lines to write on, or width and height in mm of a box to draw in
     )
     judge: str = ""  #: of the parts that are judged together with this one
+    letters: tuple[str, ...] = ()  #: of the choices; none of a sheet that was issued without
 
 
 @dataclass(frozen=True)

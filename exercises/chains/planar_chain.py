@@ -150,7 +150,7 @@ EXERCISE = Exercise(
         mobility_is_small,
     ),
     parts=(
-        *(Part(f"planar_{k}", kind="choice", choices=PLANAR, points=1) for k in (1, 2, 3, 4)),
+        *(Part(f"planar_{k}", kind="choice", choices=PLANAR, ordered=True, points=1) for k in (1, 2, 3, 4)),
         Part("gamma", kind="integer", points=1),
         Part("Nc", kind="integer", points=1),
         Part("rc", kind="integer", points=2),

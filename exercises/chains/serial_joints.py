@@ -42,7 +42,7 @@ EXERCISE = Exercise(
         Part("m_useful", kind="integer", points=2),
         Part("m_internal", kind="integer", points=1),
         Part("h", kind="integer", points=1),
-        Part("equivalent", kind="choice", choices=EQUIVALENTS, points=2),
+        Part("equivalent", kind="choice", choices=EQUIVALENTS, ordered=True, points=2),
         *axis_parts(has_direction, has_line),
     ),
     tells=tells,

@@ -175,7 +175,9 @@ EXERCISE = Exercise(
         direction_of_the_guide_tells,
     ),
     parts=(
-        Part("nature_42", kind="choice", choices=("rotation", "translation", "general"), points=1),
+        Part(
+            "nature_42", kind="choice", choices=("rotation", "translation", "general"), ordered=True, points=1
+        ),
         _reason("why_v_40_A1"),
         _reason("why_v_14_A1"),
         _reason("why_v_24_B2"),

@@ -109,14 +109,20 @@ def test_a_choice_may_be_given_by_label_in_either_language_or_by_key(course, lan
     exercise = course["slotted_mechanism"]
     variant = next(v for v in exercise.variants(range(20), lang) if any(p.id == "guide" for p in v.parts))
     right = variant.solution()["guide"]
-    place = "ab"[("oscillates", "rotates").index(right)]
+    (part,) = (p for p in variant.parts if p.id == "guide")
+    place = variant.letters(part)[right]
     labels = [variant.in_language(other).text.label("guide", right) for other in ("fr", "en")]
     for answer in (*labels, right, right.upper(), f"{place}) {labels[1]}", labels[0].upper()):
         assert verdict(variant, "guide", answer) == "correct", answer
-    assert verdict(variant, "guide", f"{place})") == "unreadable"
+    assert verdict(variant, "guide", f"{place})") == "correct"
+    assert verdict(variant, "guide", f"{'ab'.replace(place, '')})") == "wrong"
     other = {"oscillates": "rotates", "rotates": "oscillates"}[right]
     assert verdict(variant, "guide", other) == "wrong"
     assert verdict(variant, "guide", "peut-être") == "unreadable"
+    record = {**variant.record, "parts": [{**p, "choices": []} for p in variant.record["parts"]]}
+    for one in record["parts"]:
+        del one["choices"]
+    assert verdict(exercise.from_record(record), "guide", f"{place})") == "unreadable"
 
 
 def test_a_known_mistake_is_recognised_with_its_share_of_the_points(slotted):
@@ -293,9 +299,17 @@ def test_what_may_be_written_for_a_choice_is_listed(course):
     seed = next(s for s in range(20) if "guide" in exercise.variant(s).part_ids)
     said = told(course, "slotted_mechanism", seed, "fr", guide="peut-être")["guide"]
     assert said.verdict == "unreadable"
-    assert "« oscille » ou « fait un tour complet »" in " ".join(said.feedback.split())
+    letters = exercise.variant(seed).letters(exercise.spec.part("guide"))
+    offered = {
+        "oscillates": ("« oscille »", "“oscillates”"),
+        "rotates": ("« fait un tour complet »", "“makes a full turn”"),
+    }
+    in_french, in_english = (
+        [f"{letter} ({offered[case][k]})" for case, letter in letters.items()] for k in (0, 1)
+    )
+    assert " ou ".join(in_french) in " ".join(said.feedback.split())
     said = told(course, "slotted_mechanism", seed, "en", guide="maybe")["guide"]
-    assert "“oscillates” or “makes a full turn”" in said.feedback
+    assert " or ".join(in_english) in said.feedback
 
 
 def test_long_labels_are_listed_by_what_stands_before_their_explanation(course):

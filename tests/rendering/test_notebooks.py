@@ -46,14 +46,16 @@ def test_one_cell_of_a_notebook_holds_the_answers_as_a_literal(lang):
 @every_language
 def test_a_notebook_names_each_choice_as_it_is_to_be_written_and_says_cases_as_words(lang):
     sheet = handout(lang)
-    question = replace(sheet.questions[0], kind="choice", choices=(("one", "$w = 1$"), ("two", "l'autre")))
+    choices = (("one", "$w = 1$"), ("two", "l'autre"))
+    question = replace(sheet.questions[0], kind="choice", choices=choices, letters=("a", "b"))
     case = Given("mode", r"\text{mode}", "l'autre", "", is_number=False)
     book = nbformat.reads(RENDERER.notebook(replace(sheet, questions=(question,), given=(case,))), 4)
     words_of = "\n".join(cells(book, "markdown"))
-    assert "- `one`" in words_of
-    assert "- `two`" in words_of
+    assert "- `a`" in words_of
+    assert "- `b`" in words_of
+    assert "`one`" not in words_of
     assert "| l’autre |" in words_of
-    assert "one, two" in "\n".join(cells(book, "code"))
+    assert "a, b" in "\n".join(cells(book, "code"))
 
 
 @every_language

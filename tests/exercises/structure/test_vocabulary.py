@@ -69,7 +69,7 @@ def test_who_is_wrong_is_told_what_was_confused():
     assert "twice" in mark.feedback
     for answer in ("twice", "2 |ω ṙ|", "2|omega r_dot|", "2 ω ṙ", "2*|omega*rdot|", r"2\,|\omega\,\dot r|"):
         assert variant.grade({"coriolis_size": answer})["coriolis_size"].verdict == "correct", answer
-    for answer in ("2 omega r", "b", "3 |ω ṙ|"):
+    for answer in ("2 omega r", "d", "3 |ω ṙ|"):
         assert variant.grade({"coriolis_size": answer})["coriolis_size"].verdict == "unreadable", answer
 
 

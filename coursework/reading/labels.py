@@ -1,0 +1,259 @@
+"""Cases of a choice as people call them in words: labels, numbers that labels begin with, formulas, a remark behind."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+
+from coursework.language.words import languages, words
+from coursework.reading.spelling import primes_as_dots, spelled_out
+
+_SIGN = re.compile(r"(^|[=<>(+])\s*[-‐‑‒–—−]\s*(?=[0-9])")
+_PLUS = re.compile(r"(^|[=<>(])\s*\+\s*(?=[0-9])")
+_ANY_MINUS = re.compile("[-‐‑‒–—−]")
+
+
+_LOOSE_COMMA = re.compile(r",(?![0-9])|(?<![0-9]),")
+
+
+@lru_cache(maxsize=4096)
+def folded(text: str) -> str:
+    """A label without case, accents, markup and punctuation; a formula without spaces, its signs kept."""
+    text = _PLUS.sub(r"\1", _SIGN.sub(r"\1−", text.strip("$ ")))
+    if "=" in text:
+        text = re.sub(r"[\s_*·{}\\]", "", _ANY_MINUS.sub("−", text))
+    text = re.sub(r"\\(?:mathrm|text|mathit|vec|overrightarrow)(?![A-Za-z])|\\[,;! ]", " ", text)
+    text = unicodedata.normalize("NFKD", text).casefold()
+    text = "".join(" " if c in "-_‐‑–—'’/" else c for c in text if not unicodedata.combining(c))
+    text = _LOOSE_COMMA.sub(" ", re.sub(r"[^\w\s+−<>=%°.,]", " ", text))
+    return " ".join(text.split()).strip(" .,")
+
+
+_AFTER_HEAD = re.compile(r"\s*(?:[(,;]|:\s).*", re.DOTALL)
+
+
+def head(label: str) -> str:
+    """A label as people shorten it: ``isostatic`` of "isostatic, all actions can be computed"."""
+    return _AFTER_HEAD.sub("", label.replace("\u202f", " "))
+
+
+def by_label(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that are called so: by their key, else by a whole label, else by the head of one."""
+    plain = folded(text)
+    if not plain:
+        return []
+    keys = [key for key in choices if folded(key) == plain]
+    keys = keys or [key for key, labels in choices.items() if any(_is_called(text, s) for s in labels)]
+    return keys or [k for k, labels in choices.items() if any(_is_called(text, head(s)) for s in labels)]
+
+
+def _is_called(text: str, label: str) -> bool:
+    """Whether a text is a label; one that is a formula is told from others by its operators too, not by its spaces."""
+    if _IN_WORDS.search(_COMMANDS.sub("", label)):
+        return folded(text) == folded(label)
+    if _squeezed(text) != _squeezed(label):
+        return False
+    written, offered = _operators(text), _operators(label)
+    return written in ("", offered) or "/" not in written + offered
+
+
+_COMMANDS = re.compile(r"\\[A-Za-z]+")
+_IN_WORDS = re.compile(r"[^\W\d_]{3,}")
+
+
+@lru_cache(maxsize=4096)
+def _squeezed(formula: str) -> str:
+    """A formula without its spaces and bars, Greek letters and dots spelled."""
+    return folded(primes_as_dots(spelled_out(formula.strip("$ "))).replace("*", " ")).replace(" ", "")
+
+
+@lru_cache(maxsize=4096)
+def _operators(formula: str) -> str:
+    """The signs of product and quotient of a formula, in order."""
+    formula = re.sub(r"\\(?:cdot|times)(?![A-Za-z])|[×·⋅]", "*", formula)
+    return re.sub(r"[^*/]", "", formula)
+
+
+def _by_value(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices of whose formula this is the right-hand side: ``-1`` where ``w = -1`` is offered."""
+    value = folded(f"= {text.strip('()[] ')}").removeprefix("=").strip()
+    found = [key for key, labels in choices.items() for s in labels if "=" in s and _value_of(s) == value]
+    return list(dict.fromkeys(found)) if value else []
+
+
+@lru_cache(maxsize=4096)
+def _value_of(label: str) -> str:
+    return folded(label).rpartition("=")[2].strip()
+
+
+_BEFORE = re.compile(
+    r"^\s*(?:(?:c['’]est|il|elle|it is|it|un|une|des|le|la|les|an|a|the)\s+|l['’]\s*)(?=\S)", re.I
+)  #: what people put before a label, and no label needs
+
+
+_ROMAN = ("i", "ii", "iii", "iv", "v", "vi", "vii", "viii", "ix", "x")
+
+
+@lru_cache(maxsize=1)
+def _numerals() -> Mapping[str, int]:
+    """Numbers as labels have them: digits, Roman numerals, words of any language; folded."""
+    found = {str(n): n for n in range(100)} | {name: n for n, name in enumerate(_ROMAN, start=1)}
+    for lang in languages():
+        for n, names in enumerate(words(lang)["study"]["reads"]["numbers"]):
+            found |= {folded(name): n for name in names.split("|")}
+    return found
+
+
+@lru_cache(maxsize=1)
+def _nouns() -> tuple[str, ...]:
+    """What labels are called together, ``class``; folded, the longest first."""
+    found = {folded(noun) for lang in languages() for noun in words(lang)["choices"]["nouns"]}
+    return tuple(sorted(found, key=len, reverse=True))
+
+
+@lru_cache(maxsize=4096)
+def _without_noun(text: str) -> str:
+    """A plain label without what all of its kind are called: ``classe III`` is ``iii``, ``rigid joint`` ``rigid``."""
+    plain = folded(text)
+    for noun in _nouns():
+        if plain.startswith(f"{noun} "):
+            return plain[len(noun) + 1 :]
+        if plain.endswith(f" {noun}") and len(plain) - len(noun) > _SMALL_WORD:
+            return plain[: -len(noun) - 1]
+    return plain
+
+
+_SMALL_WORD = 4  #: letters of a word and its space that say too little alone: ``no joint`` is not ``no``
+
+
+def _by_core(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that are called so but for a noun that all of their kind share: ``pivot``."""
+    core = _without_noun(text)
+    plain = {key: [head(s) for s in labels if not s.startswith("$")] for key, labels in choices.items()}
+    return [key for key, heads in plain.items() if core and any(_without_noun(s) == core for s in heads)]
+
+
+@lru_cache(maxsize=4096)
+def _beginnings(label: str) -> frozenset[str]:
+    """What a label begins with, two words or more, folded; ``and`` and ``or`` are not left to follow."""
+    pieces = [] if "=" in label or label.startswith("$") else label.split()
+    ends = (n for n in range(2, len(pieces)) if folded(pieces[n]) not in _conjunctions())
+    return frozenset(folded(" ".join(pieces[:n])) for n in ends)
+
+
+@lru_cache(maxsize=1)
+def _conjunctions() -> frozenset[str]:
+    return frozenset(folded(words(lang)["marking"][joint]) for lang in languages() for joint in ("and", "or"))
+
+
+def _by_beginning(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices whose label begins so: ``double balancier``, ``cas limite``; a word with a hyphen is one."""
+    plain = folded(text)
+    if " " not in plain:
+        return []
+    return [key for key, labels in choices.items() if any(plain in _beginnings(s) for s in labels)]
+
+
+_REMARK = re.compile(r"(?P<said>[^()]+?)\s*\((?P<remark>[^()]+)\)\s*")
+
+
+def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that stand before a remark in brackets which names no other: ``oscille (r2 < r1)``."""
+    found = _REMARK.fullmatch(text)
+    if found is None:
+        return []
+    keys = _called(found["said"], choices)
+    if len(keys) != 1 or any(key not in keys for key in _called(found["remark"], choices)):
+        return []
+    remark = f" {folded(found['remark'])} "
+    others = (
+        s for key, labels in choices.items() if key not in keys for s in (key, *labels, *map(head, labels))
+    )
+    return [] if any(f" {folded(s)} " in remark for s in others if folded(s)) else keys
+
+
+@lru_cache(maxsize=4096)
+def _numbered(text: str) -> tuple[int | None, str]:
+    """The number that a label begins with, and what follows: ``deux paires`` is 2, ``paires``."""
+    first, _, rest = _without_noun(text).partition(" ")
+    return _numerals().get(first), rest
+
+
+def _by_number(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choice whose label begins with this number, however it is written, where the numbers tell choices apart."""
+    number, rest = _numbered(text.strip("()[] "))
+    if number is None:
+        return []
+    found = {}
+    for key, labels in choices.items():
+        heads = [_numbered(head(label)) for label in labels]
+        if numbers := {n for n, _ in heads if n is not None}:
+            found[key] = numbers, {follows for n, follows in heads if n == number}
+    every = [n for numbers, _ in found.values() for n in numbers]
+    if len(found) < 2 or len(set(every)) < len(every):
+        return []
+    return [key for key, (ns, follows) in found.items() if number in ns and (not rest or rest in follows)]
+
+
+_MARKED = re.compile(r"[(\[]?\s*(?P<mark>[a-z]|[0-9]{1,2})\s*(?:[)\]:]|\.(?![0-9]))\s*(?P<label>\S.*)", re.I)
+
+
+def in_words(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that a text may mean, whatever letters a sheet prints; a mark before a label counts where it is a number."""
+    keys = by_label(text, choices)
+    if not keys and (marked := _MARKED.fullmatch(text.strip())):  # b) crossed
+        keys = list(dict.fromkeys((*_called(marked["label"], choices), *_by_number(marked["mark"], choices))))
+    return keys or _called(text, choices)
+
+
+def _called(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
+    """The choices that a text may mean, its article left out if need be; the surest way to call one first."""
+    said = _BEFORE.sub("", text)
+    for words_said in dict.fromkeys((text, said)):
+        keys = by_label(words_said, choices) or _by_core(words_said, choices)
+        keys = keys or list(
+            dict.fromkeys((*_by_number(words_said, choices), *_by_value(words_said, choices)))
+        )
+        if keys:
+            return keys
+    return _by_beginning(said, choices) or _by_remark(text, choices)
+
+
+def is_verbatim(text: str, choices: Mapping[str, Sequence[str]]) -> bool:
+    """Whether a label begins with a text of some words as it is printed, its case and spaces apart."""
+    plain = _plain(text)
+    begins = re.compile(rf"{re.escape(plain)}(?!\w)")
+    return " " in plain and any(begins.match(_plain(s)) for labels in choices.values() for s in labels)
+
+
+def _plain(text: str) -> str:
+    return " ".join(text.casefold().replace("’", "'").split()).rstrip(" .")
+
+
+def names_any(text: str, choices: Mapping[str, Sequence[str]]) -> bool:
+    """Whether a choice is named within a text."""
+    within = f" {folded(text)} "
+    names = (s for key, labels in choices.items() for s in (key, *labels, *map(head, labels)))
+    return any(f" {folded(s)} " in within for s in names if folded(s))
+
+
+def numbers_of(labels: Sequence[str]) -> set[int]:
+    """The numbers that labels begin with, and the values that they state: ``two pairs``, ``class II``, ``w = 1``."""
+    found = set()
+    for label in labels:
+        number, rest = _numbered(head(label))
+        is_letter = _without_noun(head(label)).partition(" ")[0] in _ROMAN and rest  # V_e / V_s
+        if number is not None and not is_letter:
+            found.add(number)
+        if "=" in label and _value_of(label).isdecimal():
+            found.add(int(_value_of(label)))
+    return found
+
+
+def counts(labels: Sequence[str]) -> bool:
+    """Whether labels begin with a number: one that is no article."""
+    return not numbers_of(labels) <= {1} or any(
+        re.search(r"[0-9]|\bI\b", head(s)) for s in labels if numbers_of([s])
+    )
