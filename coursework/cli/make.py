@@ -13,6 +13,7 @@ from coursework.cli.assignments import build_assignment, is_assignment
 from coursework.cli.options import (
     Lists,
     Whole,
+    decimal_option,
     exercise_names,
     exercises_argument,
     known_formats,
@@ -162,6 +163,7 @@ def notebook(
     help="Velocity and acceleration polygons in the worked solutions; without them a build takes half to two thirds of the time.",
 )
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder to write.")
+@decimal_option
 @click.option(
     "--overwrite",
     is_flag=True,
@@ -191,6 +193,7 @@ def build(
     booklet: bool,
     polygons: bool,
     out: Path | None,
+    decimal: str,
     overwrite: bool,
     again: Sequence[str],
     make_up: Sequence[str],
@@ -235,6 +238,7 @@ def build(
         paper=paper,
         booklet=booklet,
         polygons=polygons,
+        decimal=decimal,
         overwrite=overwrite,
     )
     click.echo(
@@ -259,13 +263,14 @@ def build_files(
     paper: str = "a4",
     booklet: bool = False,
     polygons: bool = True,
+    decimal: str = "point",
     overwrite: bool = False,
 ) -> int:
     """Issue and write a build; gives how many files were written."""
     from coursework.making import build as building
     from coursework.making.issued import issued_content
     from coursework.making.issuing import issue
-    from coursework.system.tables import json_text
+    from coursework.system.tables import SPREADSHEETS, json_text
     from coursework.system.writing import write_tree
 
     issues = issue(course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts)
@@ -278,7 +283,14 @@ def build_files(
         )
     wanted = list(
         building.files(
-            course, issues, formats, practice=practice, paper=paper, booklet=booklet, polygons=polygons
+            course,
+            issues,
+            formats,
+            practice=practice,
+            paper=paper,
+            booklet=booklet,
+            polygons=polygons,
+            spreadsheet=SPREADSHEETS[decimal],
         )
     )
     with progress_bar("building", len(wanted)) as advance:

@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.options import DONE, FOUND, json_option, lang_option, opened, tell_lack_of_charts
+from coursework.cli.options import (
+    DONE,
+    FOUND,
+    decimal_option,
+    json_option,
+    lang_option,
+    opened,
+    tell_lack_of_charts,
+)
 from coursework.cli.printing import print_json, progress_bar
 from coursework.errors import BadInput, counted
 
@@ -38,6 +46,7 @@ if TYPE_CHECKING:
     type=click.Path(path_type=Path, dir_okay=False, exists=True),
     help="CSV of answers accepted by hand: student,exercise,seed,part and, if wanted, points,reason.",
 )
+@decimal_option
 @click.pass_context
 def grade(
     context: click.Context,
@@ -46,6 +55,7 @@ def grade(
     out: Path | None,
     feedback: bool | None,
     accepted: Path | None,
+    decimal: str,
 ) -> int:
     """Mark CSV, JSON, Parquet and notebooks of answers, files or folders of them.
 
@@ -56,7 +66,9 @@ def grade(
         would_do = f"did you mean {inside}?" if inside.exists() else "name the issued.json that build wrote"
         raise BadInput(f"--issued takes a file; {issued} is a folder: {would_do}")
     out = out or issued.parent / "marks"
-    book = grade_with_bar(opened(context), submissions, issued, out, feedback=feedback, accepted=accepted)
+    book = grade_with_bar(
+        opened(context), submissions, issued, out, feedback=feedback, accepted=accepted, decimal=decimal
+    )
     told = f"{counted(book.rows_in, 'row')}: {book.marked} marked, {len(book.rejected)} rejected"
     told += f", {book.blanks} blank beside another" if book.blanks else ""
     click.echo(f"{told}; see {out}")
@@ -93,13 +105,22 @@ def grade_with_bar(
     *,
     feedback: bool | None = True,
     accepted: Path | None = None,
+    decimal: str = "point",
 ) -> Gradebook:
     """Mark files and write the tables, with a bar on a terminal."""
     from coursework.gradebook.grading import grade_files
+    from coursework.system.tables import SPREADSHEETS
 
     with progress_bar("marking", None) as advance:
         return grade_files(
-            course, submissions, issued, out, feedback=feedback, accepted=accepted, progress=advance
+            course,
+            submissions,
+            issued,
+            out,
+            feedback=feedback,
+            accepted=accepted,
+            spreadsheet=SPREADSHEETS[decimal],
+            progress=advance,
         )
 
 
@@ -112,9 +133,12 @@ def grade_with_bar(
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder to write; DIR/report unless told."
 )
+@decimal_option
 @json_option
 @click.pass_context
-def report(context: click.Context, folder: Path, lang: str, out: Path | None, as_json: bool) -> None:
+def report(
+    context: click.Context, folder: Path, lang: str, out: Path | None, decimal: str, as_json: bool
+) -> None:
     """Say how a class did, from the folder DIR that grade wrote: a page (HTML, PDF) and tables.
 
     With --json and no --out nothing is written.
@@ -132,7 +156,7 @@ def report(context: click.Context, folder: Path, lang: str, out: Path | None, as
         print_json(told.as_json())
     place = out or folder / "report"
     if out is not None or not as_json:
-        _write_report(course, told, lang, place)
+        _write_report(course, told, lang, place, decimal)
         tell_lack_of_charts()
     if not as_json:
         click.echo(
@@ -141,21 +165,22 @@ def report(context: click.Context, folder: Path, lang: str, out: Path | None, as
         )
 
 
-def _write_report(course: Course, told: Any, lang: str, out: Path) -> None:
+def _write_report(course: Course, told: Any, lang: str, out: Path, decimal: str) -> None:
     """Everything is made before the first file is written."""
     from coursework.rendering.renderer import renderer_of
     from coursework.statistics import measures as statistics
     from coursework.statistics import page as statistics_page
-    from coursework.system.tables import csv_text
+    from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole
 
     page = statistics_page.report(course, told, lang)
+    spreadsheet = SPREADSHEETS[decimal]
     mistakes = statistics_page.mistake_rows(course, told, lang)
     files = {
         "report.html": renderer_of(course.folder).report_html(page).encode("utf-8"),
         "report.pdf": renderer_of(course.folder).report_pdf(page),
-        "parts.csv": csv_text((p.row() for p in told.parts), statistics.PART_COLUMNS).encode("utf-8"),
-        "mistakes.csv": csv_text(mistakes, statistics.MISTAKE_COLUMNS).encode("utf-8"),
+        "parts.csv": csv_file((p.row() for p in told.parts), statistics.PART_COLUMNS, spreadsheet),
+        "mistakes.csv": csv_file(mistakes, statistics.MISTAKE_COLUMNS, spreadsheet),
     }
     for name, content in files.items():
         write_whole(out / name, content)

@@ -10,6 +10,7 @@ import click
 
 from coursework.cli.options import (
     Whole,
+    decimal_option,
     exercise_argument,
     json_option,
     lang_option,
@@ -41,6 +42,7 @@ from coursework.errors import WrongValue
 )
 @click.option("--duration", type=float, default=1.0, show_default=True, help="Seconds of a motion in time.")
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for table and plot.")
+@decimal_option
 @json_option
 @click.pass_context
 def simulate(
@@ -54,6 +56,7 @@ def simulate(
     drive: str | None,
     duration: float,
     out: Path | None,
+    decimal: str,
     as_json: bool,
 ) -> None:
     """Move a mechanism over a cycle or in time, with only the effects named.
@@ -74,7 +77,7 @@ def simulate(
             click.echo(f"note: {note}")
     if out is not None:
         stem = out / f"{exercise}-{'cycle' if drive is None else 'motion'}"
-        _write_scene(table, stem)
+        _write_scene(table, stem, decimal)
         if not (bare := tell_lack_of_charts()):
             _write_plot(table, exercise, stem)
         if not as_json:
@@ -84,13 +87,13 @@ def simulate(
         print_table([{h: _short_number(v) for h, v in row.items()} for row in shown_rows])
 
 
-def _write_scene(table: Any, stem: Path) -> None:
+def _write_scene(table: Any, stem: Path, decimal: str) -> None:
     """The table of a scene as ``STEM.csv``."""
-    from coursework.system.tables import csv_text
+    from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole
 
     rows = table.rows()
-    write_whole(stem.parent / f"{stem.name}.csv", csv_text(rows, list(rows[0])).encode("utf-8"))
+    write_whole(stem.parent / f"{stem.name}.csv", csv_file(rows, list(rows[0]), SPREADSHEETS[decimal]))
 
 
 def _write_plot(table: Any, title: str, stem: Path) -> None:

@@ -121,6 +121,13 @@ lang_option = click.option(
     help="Language of the sheet.",
     shell_complete=completion.languages,
 )
+decimal_option = click.option(
+    "--decimal",
+    type=click.Choice(["point", "comma"]),
+    default="point",
+    show_default=True,
+    help="The tables' decimal sign; 'comma' parts their cells by semicolons, as a French spreadsheet expects.",
+)
 exercise_argument = click.argument("exercise", shell_complete=completion.exercises)
 exercises_argument = click.argument("exercises", nargs=-1, shell_complete=completion.exercises)
 parts_option = click.option(

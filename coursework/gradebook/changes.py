@@ -46,7 +46,7 @@ class Before:
         if self.exists:
             alike: dict[tuple[str, str], tuple[str, str]] = {}
             for row in rows_of(path):
-                mark = (row.get("verdict", ""), row.get("points", ""))
+                mark = (row.get("verdict", ""), row.get("points", "").replace(",", "."))
                 name = folded(row.get("student", ""))
                 self._names.setdefault(name, row.get("student", ""))
                 self._points[name] = self._points.get(name, 0.0) + _number(mark[1])

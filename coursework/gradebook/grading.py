@@ -25,6 +25,7 @@ from coursework.gradebook.to_mark import TO_MARK_COLUMNS, ToMark, sorted_rows
 from coursework.making.issued import Issued
 from coursework.making.students import file_stems
 from coursework.system.build_folder import free_name
+from coursework.system.tables import SPREADSHEETS, Spreadsheet
 from coursework.system.writing import Progress, Tables, write_whole
 
 #: For so many students at most, feedback sheets are printed unless told.
@@ -39,6 +40,7 @@ def grade_files(
     *,
     feedback: bool | None,
     accepted: Path | None = None,
+    spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     progress: Progress = lambda done, of: None,
 ) -> Gradebook:
     """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets; ``to_mark.csv`` where
@@ -46,7 +48,7 @@ def grade_files(
 
     Where marks were there before, ``changes.csv`` says what differs now. ``accepted`` names answers that
     a person accepts; unless told, those of ``accepted.csv`` in ``out``. ``feedback`` None prints sheets for a
-    class of usual size.
+    class of usual size. ``spreadsheet`` is what the tables are written for.
 
     Raises
     ------
@@ -70,7 +72,7 @@ def grade_files(
         raise BadInput(_nothing(submissions, sheets.rejected))
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
     shown: list[Graded] = []
-    with Tables(out) as tables:
+    with Tables(out, spreadsheet) as tables:
         marks = tables.open("marks.csv", gradebook.MARKS_COLUMNS)
         summary = tables.open("summary.csv", gradebook.SUMMARY_COLUMNS)
         rejected = tables.open("rejected.csv", gradebook.REJECTED_COLUMNS)

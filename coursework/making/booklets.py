@@ -16,7 +16,7 @@ from coursework.course.course import Course
 from coursework.making.issuing import Issue
 from coursework.rendering.renderer import Renderer
 from coursework.sheets.sheet import AnswerSheet, Handout
-from coursework.system.tables import csv_file
+from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file
 from coursework.system.writing import File
 
 SHEETS = 50  #: in one booklet, at most
@@ -59,7 +59,12 @@ class _Booklet:
 
 
 def files(
-    course: Course, renderer: Renderer, issues: Sequence[Issue], *, polygons: bool = True
+    course: Course,
+    renderer: Renderer,
+    issues: Sequence[Issue],
+    *,
+    polygons: bool = True,
+    spreadsheet: Spreadsheet = SPREADSHEETS["point"],
 ) -> Iterator[File]:
     """The booklets of a build, and after them the table of the students' pages.
 
@@ -73,7 +78,7 @@ def files(
         if course.folder.has_solutions:
             make = partial(_solutions, renderer, booklet)
             yield File(Path("instructor") / f"{booklet.name}.solutions.pdf", make)
-    yield File(Path("handouts") / "pages.csv", lambda: _table(wanted, pages))
+    yield File(Path("handouts") / "pages.csv", lambda: _table(wanted, pages, spreadsheet))
 
 
 def _booklets(issues: Sequence[Issue], polygons: bool) -> Iterator[_Booklet]:
@@ -103,6 +108,6 @@ def _solutions(renderer: Renderer, booklet: _Booklet) -> bytes:
     return renderer.booklet(booklet.answer_sheets())[0]
 
 
-def _table(booklets: Sequence[_Booklet], pages: Sequence[Future[Pages]]) -> bytes:
+def _table(booklets: Sequence[_Booklet], pages: Sequence[Future[Pages]], spreadsheet: Spreadsheet) -> bytes:
     rows = (row for one, found in zip(booklets, pages, strict=True) for row in one.rows(found.result()))
-    return csv_file(rows, PAGE_COLUMNS)
+    return csv_file(rows, PAGE_COLUMNS, spreadsheet)

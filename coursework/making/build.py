@@ -13,7 +13,7 @@ from coursework.making.issued import COLUMNS, form_rows, issued_content, key_con
 from coursework.making.issuing import Issue
 from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.sheets.sheet import AnswerSheet, Handout
-from coursework.system.tables import csv_file, json_text
+from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
 from coursework.system.writing import File
 
 KEY_COLUMNS = ("student", "exercise", "seed", "part", "value", "unit", "tolerance")
@@ -35,33 +35,34 @@ def files(
     paper: str = "a4",
     booklet: bool = False,
     polygons: bool = True,
+    spreadsheet: Spreadsheet = SPREADSHEETS["point"],
 ) -> Iterator[File]:
     """Every file of a build, in order.
 
     ``practice`` makes the notebooks self-study notebooks, which check answers with the installed package. ``paper`` is
     ``a4`` or ``letter``. ``booklet`` adds the sheets of all students in one PDF for each exercise and
-    language. Without ``polygons`` the worked solutions leave out the drawn velocity and acceleration polygons. A
-    students' copy of the course gives the handouts alone.
+    language. Without ``polygons`` the worked solutions leave out the drawn velocity and acceleration polygons.
+    The tables are written for the ``spreadsheet``. A students' copy of the course gives the handouts alone.
     """
     renderer = renderer_of(course.folder).on(paper)
     for issue in issues:
         for lang in issue.langs:
             yield from _sheets(course, renderer, issue, lang, formats, practice, polygons)
     if booklet:
-        yield from booklets.files(course, renderer, issues, polygons=polygons)
+        yield from booklets.files(course, renderer, issues, polygons=polygons, spreadsheet=spreadsheet)
     content = issued_content(issues)
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
-    yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS))
+    yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS, spreadsheet))
     if course.folder.has_solutions:
-        yield from key_files(issues)
+        yield from key_files(issues, spreadsheet)
 
 
-def key_files(issues: Sequence[Issue]) -> Iterator[File]:
+def key_files(issues: Sequence[Issue], spreadsheet: Spreadsheet = SPREADSHEETS["point"]) -> Iterator[File]:
     """The key, for the staff: as JSON and as a table."""
     key = key_content(issues)
     folder = Path("instructor")
     yield File(folder / "key.json", _text(lambda: json_text(key)))
-    yield File(folder / "key.csv", lambda: csv_file(key_rows(key), KEY_COLUMNS))
+    yield File(folder / "key.csv", lambda: csv_file(key_rows(key), KEY_COLUMNS, spreadsheet))
 
 
 def _sheets(

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import codecs
 import csv
 import io
 import json
+import re
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, NamedTuple, TextIO
 
 MAX_LINES = 20  #: of one quoted cell
 _WARNINGS = {
@@ -35,8 +37,17 @@ def encoding_of(data: bytes) -> str:
     return "cp1252"
 
 
+def _marked_once(data: bytes) -> bytes:
+    """Without the marks that were put before a mark that was there already, as editors and scripts do."""
+    mark = codecs.BOM_UTF8
+    while data.startswith(2 * mark):
+        data = data[len(mark) :]
+    return data
+
+
 def decode(data: bytes) -> tuple[str, str]:
     """The text and a warning."""
+    data = _marked_once(data)
     encoding = encoding_of(data)
     return data.decode(encoding, "replace"), _WARNINGS[encoding]
 
@@ -74,7 +85,7 @@ def _cells(text: str, delimiter: str) -> list[str] | None:
 @contextmanager
 def open_csv(path: Path) -> Iterator[TextIO]:
     """A CSV to be read line by line, in any encoding that :func:`decode` knows; a cell may be of any length."""
-    data = path.read_bytes()
+    data = _marked_once(path.read_bytes())
     before = csv.field_size_limit(min(sys.maxsize, 2**31 - 1))
     try:
         yield io.TextIOWrapper(io.BytesIO(data), encoding_of(data), "replace", newline="")
@@ -93,19 +104,57 @@ def as_written(cell: str) -> str:
     return cell[1:] if cell[:1] == "'" and inert(cell[1:]) == cell else cell
 
 
-def csv_text(rows: Iterable[Mapping[str, Any]], columns: Sequence[str]) -> str:
+class Spreadsheet(NamedTuple):
+    """What parts the cells and the decimals of a table, by the spreadsheet that is to open it."""
+
+    delimiter: str = ","
+    decimal: str = "."
+
+    def cells(self, row: Mapping[str, Any], columns: Sequence[str]) -> list[Any]:
+        """The cells of a row. A text that a spreadsheet would run gets an apostrophe before it."""
+        if self.decimal == ".":
+            return [inert(row[c]) for c in columns]
+        return [self._number(row[c]) if _is_number(row[c], c) else inert(row[c]) for c in columns]
+
+    def _number(self, value: Any) -> str:
+        return str(value).replace(".", self.decimal)
+
+
+#: By the decimal sign. Spreadsheets that write a decimal comma part cells by semicolons.
+SPREADSHEETS = {"point": Spreadsheet(), "comma": Spreadsheet(";", ",")}
+_PLAIN = SPREADSHEETS["point"]
+
+#: Columns whose texts are numbers; what a student wrote stays as it was written.
+_NUMBERS = frozenset(("points", "out_of", "percent", "points_before", "points_now", "value", "tolerance"))
+_NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]?\d+)?")
+
+
+def _is_number(value: Any, column: str) -> bool:
+    """Whether a cell holds a number, or several."""
+    if isinstance(value, str):
+        return column in _NUMBERS and all(map(_NUMBER.fullmatch, value.split("; ")))
+    return isinstance(value, float)
+
+
+def csv_text(
+    rows: Iterable[Mapping[str, Any]], columns: Sequence[str], spreadsheet: Spreadsheet = _PLAIN
+) -> str:
     """Rows as CSV with a header. A text that a spreadsheet would run gets an apostrophe before it."""
     out = io.StringIO()
-    writer = csv.DictWriter(out, columns)  # lines end as the format's own description says
-    writer.writeheader()
+    writer = csv.writer(
+        out, delimiter=spreadsheet.delimiter
+    )  # lines end as the format's own description says
+    writer.writerow(columns)
     for row in rows:
-        writer.writerow({c: inert(row[c]) for c in columns})
+        writer.writerow(spreadsheet.cells(row, columns))
     return out.getvalue()
 
 
-def csv_file(rows: Iterable[Mapping[str, Any]], columns: Sequence[str]) -> bytes:
+def csv_file(
+    rows: Iterable[Mapping[str, Any]], columns: Sequence[str], spreadsheet: Spreadsheet = _PLAIN
+) -> bytes:
     """:func:`csv_text` as a file with the mark at its head without which Excel damages accents."""
-    return csv_text(rows, columns).encode("utf-8-sig")
+    return csv_text(rows, columns, spreadsheet).encode("utf-8-sig")
 
 
 def json_text(content: Any) -> str:

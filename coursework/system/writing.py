@@ -16,7 +16,7 @@ from coursework.errors import BadInput
 from coursework.system.blocks import processors
 from coursework.system.build_folder import place
 from coursework.system.processes import processes, workers
-from coursework.system.tables import inert
+from coursework.system.tables import SPREADSHEETS, Spreadsheet
 
 
 @dataclass(frozen=True)
@@ -142,18 +142,19 @@ Progress = Callable[[int, int], None]
 
 
 class _Table:
-    """A CSV file being written, beside the one whose place it is to take."""
+    """A CSV file being written, beside the one whose place it is to take; with the mark that Excel wants at its head."""
 
-    def __init__(self, path: Path, columns: Sequence[str]) -> None:
+    def __init__(self, path: Path, columns: Sequence[str], spreadsheet: Spreadsheet) -> None:
         self.path, self.part = path, path.with_name(path.name + ".part")
-        self.file = self.part.open("w", encoding="utf-8", newline="")
-        self._writer = csv.writer(self.file)
+        self.file = self.part.open("w", encoding="utf-8-sig", newline="")
+        self._writer = csv.writer(self.file, delimiter=spreadsheet.delimiter)
+        self._cells = spreadsheet.cells
         self._columns = tuple(columns)
         self._writer.writerow(self._columns)
         self.rows = 0
 
     def write(self, row: dict[str, Any]) -> None:
-        self._writer.writerow([inert(row[c]) for c in self._columns])
+        self._writer.writerow(self._cells(row, self._columns))
         self.rows += 1
 
 
@@ -166,8 +167,9 @@ class Tables:
         One of them cannot take its place; told before the first is written, and again before the first is kept.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, spreadsheet: Spreadsheet = SPREADSHEETS["point"]) -> None:
         self._folder = folder
+        self._spreadsheet = spreadsheet
         self._tables: list[_Table] = []
 
     def __enter__(self) -> Tables:
@@ -183,7 +185,7 @@ class Tables:
     def open(self, name: str, columns: Sequence[str]) -> _Table:
         path = self._folder / name
         _check_replaceable(path)
-        self._tables.append(_Table(path, columns))
+        self._tables.append(_Table(path, columns, self._spreadsheet))
         return self._tables[-1]
 
     def keep(self) -> None:

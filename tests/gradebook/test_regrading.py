@@ -50,7 +50,7 @@ def grade(folder, out, *more):
 
 
 def table(path):
-    with path.open(encoding="utf-8", newline="") as file:
+    with path.open(encoding="utf-8-sig", newline="") as file:
         return list(csv.DictReader(file))
 
 
@@ -260,7 +260,7 @@ def test_tables_saved_by_excel_are_read_again(small_course, named, tmp_path):
     marks = out / "marks" / "marks.csv"
     (line,) = (m for m in table(marks) if m["verdict"] == "accepted")
     assert (line["student"], line["feedback"].endswith("très bien")) == ("José García", True)
-    marks.write_bytes(marks.read_text("utf-8").encode("cp1252"))
+    marks.write_bytes(marks.read_text("utf-8-sig").encode("cp1252"))
     assert grade(small_course, out) == 0
     assert table(out / "marks" / "changes.csv") == []
 

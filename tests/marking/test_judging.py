@@ -280,7 +280,7 @@ def test_a_sheet_that_a_judge_cannot_judge_costs_itself_alone(course, tmp_path, 
     said = capsys.readouterr().err
     assert "1 sheet of sums cannot be marked" in said
     assert "says nothing of 'x'" in said
-    marks = list(csv.DictReader((out / "marks" / "marks.csv").read_text("utf-8").splitlines()))
-    rejected = list(csv.DictReader((out / "marks" / "rejected.csv").read_text("utf-8").splitlines()))
+    marks = list(csv.DictReader((out / "marks" / "marks.csv").read_text("utf-8-sig").splitlines()))
+    rejected = list(csv.DictReader((out / "marks" / "rejected.csv").read_text("utf-8-sig").splitlines()))
     assert [m["student"] for m in marks] == ["Ada", "Ada", "Cy", "Cy"]
     assert [r["student"] for r in rejected] == ["Bo"] * 3

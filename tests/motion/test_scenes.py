@@ -98,7 +98,7 @@ def test_the_command_writes_table_and_plot(tmp_path, capsys):
         str(tmp_path),
     ]
     assert run([*arguments, "--steps", "24"]) == 0
-    with (tmp_path / "slotted_mechanism-cycle.csv").open(encoding="utf-8") as file:
+    with (tmp_path / "slotted_mechanism-cycle.csv").open(encoding="utf-8-sig") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 25
     assert list(rows[0]) == ["theta2 [deg]", "rA_dot [mm/s]", "omega4 [rad/s]"]

@@ -499,7 +499,7 @@ def test_the_command_tells_a_graded_class(tmp_path, capsys, course):
     assert "3 students" in capsys.readouterr().out
     files = {p.name: p.read_bytes() for p in (marks / "report").iterdir()}
     assert set(files) == {"report.html", "report.pdf", "parts.csv", "mistakes.csv"}
-    parts = list(csv.DictReader(files["parts.csv"].decode("utf-8").splitlines()))
+    parts = list(csv.DictReader(files["parts.csv"].decode("utf-8-sig").splitlines()))
     assert [float(p["mean"]) for p in parts] == [p["mean"] for p in told["parts"]]
     assert all(sum(float(p[f]) for f in VERDICTS) == pytest.approx(1, abs=1e-3) for p in parts)
     assert run(["report", str(marks), "--lang", "en", "--out", str(tmp_path / "again")]) == 0
