@@ -270,6 +270,8 @@ def build_files(
     from coursework.making import build as building
     from coursework.making.issued import issued_content
     from coursework.making.issuing import issue
+    from coursework.making.letters import unprinted_names
+    from coursework.rendering.renderer import renderer_of
     from coursework.system.tables import SPREADSHEETS, json_text
     from coursework.system.writing import write_tree
 
@@ -295,6 +297,8 @@ def build_files(
     )
     with progress_bar("building", len(wanted)) as advance:
         notes = write_tree(out, wanted, advance, anew=overwrite)
+    if booklet or "pdf" in formats:
+        notes += unprinted_names(renderer_of(course.folder), (student.name for student in students))
     tell(notes)
     return len(wanted)
 

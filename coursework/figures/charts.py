@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
@@ -156,6 +157,18 @@ def formula_label(tex: str, otherwise: str) -> str:
     except ValueError:
         return plain_label(otherwise)
     return f"${tex}$"
+
+
+#: Scripts and signs that the charts' own font draws.
+_UNDRAWN = re.compile(
+    "[^ -~\u00a0-\u024f\u02b0-\u03ff\u0400-\u045f\u1e00-\u1eff\u2000-\u2040\u2070-\u209f\u20a0-\u20bf"
+    "\u2100-\u211e\u2126-\u214f\u2190-\u22ff\u2500-\u25ff\n\t]"
+)
+
+
+def drawable_label(text: str) -> str:
+    """The text with a square for each character that the charts' font does not draw."""
+    return _UNDRAWN.sub("\N{WHITE SQUARE}", text)
 
 
 def plain_label(text: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
 import unicodedata
 from collections.abc import Iterable
@@ -24,14 +25,19 @@ _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for 
 
 
 def file_stems(names: Iterable[str]) -> list[str]:
-    """File names from students' names: ASCII, short, all different, stable; empty where there is no name."""
+    """File names from students' names: ASCII, short, all different, stable; empty where there is no name.
+
+    A name without a letter that ASCII has is told by a number of its own, whoever stands before it.
+    """
     used: set[str] = set()
     stems = []
     for name in names:
         plain = unicodedata.normalize("NFKD", name.casefold()).encode("ascii", "ignore").decode()
         plain = re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:60].strip("-")
-        if plain in _DEVICES or (name and not plain):
-            plain = f"student-{plain}".strip("-")
+        if name and not plain:
+            plain = f"student-{hashlib.sha256(folded(name).encode()).hexdigest()[:8]}"
+        elif plain in _DEVICES:
+            plain = f"student-{plain}"
         stem, number = plain, 1
         while plain and stem in used:
             number += 1

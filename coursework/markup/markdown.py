@@ -49,29 +49,55 @@ def no_image(source: str) -> BadStatement:
 _TYPST_MARKS = re.compile(r"([\\`*_$#<>@~=+/\[\]{}\"'|-])")
 
 
-#: Scripts and signs that the typesetter's own fonts draw: Latin, Greek, Cyrillic, punctuation, mathematics.
+#: Scripts and signs that the typesetter's own fonts draw: Latin, Greek, Cyrillic, Armenian, Georgian, punctuation,
+#: mathematics. Where a word is more than its letters, from right to left or by syllables, they have some of it only.
 _UNDRAWN = re.compile(
-    "[^ -~\u00a0-\u024f\u02b0-\u03ff\u0400-\u045f\u1e00-\u1eff\u2000-\u2040\u2070-\u209f\u20a0-\u20bf"
-    "\u2100-\u211e\u2126-\u214f\u2190-\u22ff\u2500-\u25ff\n\t]"
+    "[^ -~\u00a0-\u036f\u0370-\u03ff\u0400-\u04ff\u0510-\u0513\u051a-\u051d\u0531-\u0556\u0559-\u058a\u10d0-\u10ff"
+    "\u1e00-\u1f15\u1f18-\u1f1d\u1f20-\u1f45\u1f48-\u1f4d\u1f50-\u1f57\u1f59\u1f5b\u1f5d\u1f5f-\u1f7d\u1f80-\u1fb4"
+    "\u1fb6-\u1fc4\u1fc6-\u1fd3\u1fd6-\u1fdb\u1fdd-\u1fef\u1ff2-\u1ff4\u1ff6-\u1ffe"
+    "\u2000-\u2040\u2070-\u209f\u20a0-\u20bf\u2100-\u211e\u2126-\u214f\u20d0-\u20f0\u2190-\u23ff\u2500-\u25ff\u27c0-\u2aff"
+    "\U0001d400-\U0001d454\U0001d456-\U0001d49c\U0001d49e-\U0001d49f\U0001d4a2\U0001d4a5-\U0001d4a6\U0001d4a9-\U0001d4ac"
+    "\U0001d4ae-\U0001d4b9\n\t]"
 )
+_ABOVE = re.compile(
+    "[\u20d0-\u20f0]"
+)  #: signs above a letter, which formulas have; no font of the text has them
+#: A vector's letter and its arrow: one font draws the two of them.
+_VECTOR = re.compile("([A-Za-zΑ-Ωα-ω]\u20d7)")
+_VECTOR_FONT = "New Computer Modern Math"
 SUBSTITUTE = "\N{WHITE SQUARE}"  #: stands for a character that no font at hand draws
 
 
-def drawable(text: str) -> str:
-    """The text with a square for each character that a PDF sheet cannot draw."""
-    return _UNDRAWN.sub(SUBSTITUTE, text)
+def drawable(text: str, drawn: Callable[[str], bool] = lambda char: False) -> str:
+    """The text with a square for each character that a PDF sheet cannot draw; ``drawn`` tells of those that only other
+    fonts than the typesetter's own may draw."""
+    return _UNDRAWN.sub(lambda found: found[0] if drawn(found[0]) else SUBSTITUTE, text)
+
+
+def undrawn(text: str, drawn: Callable[[str], bool] = lambda char: False) -> list[str]:
+    """The characters that a PDF sheet cannot draw, each once."""
+    return [char for char in dict.fromkeys(_UNDRAWN.findall(text)) if not drawn(char)]
 
 
 def typst_text(text: str, lang: str) -> str:
     """Plain text as Typst markup that prints exactly these characters."""
-    escaped = _TYPST_MARKS.sub(r"\\\1", typeset(drawable(text), lang))
+    pieces = _VECTOR.split(text)
+    pieces[::2] = [_typst_plain(piece, lang) for piece in pieces[::2]]
+    pieces[1::2] = [f'#text(font: "{_VECTOR_FONT}", "{one[0]}\\u{{20d7}}");' for one in pieces[1::2]]
+    return "".join(pieces)
+
+
+def _typst_plain(text: str, lang: str) -> str:
+    escaped = _TYPST_MARKS.sub(r"\\\1", typeset(_ABOVE.sub(SUBSTITUTE, text), lang))
     # A number with a dot at the head of a line would start a list; three dots would become one sign.
     return re.sub(r"(?<=[\d.])\.(?=\s|\.|$)", r"\\.", escaped)
 
 
 def typst_string(text: str) -> str:
     """A Typst string literal."""
-    return '"' + drawable(text).replace("\\", r"\\").replace('"', r"\"").replace("\n", r"\n") + '"'
+    return (
+        '"' + _ABOVE.sub(SUBSTITUTE, text).replace("\\", r"\\").replace('"', r"\"").replace("\n", r"\n") + '"'
+    )
 
 
 _WHOLE = 24  #: characters of a formula written out that a line of text does not cut

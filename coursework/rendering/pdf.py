@@ -6,7 +6,7 @@ import json
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +44,51 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = 
     ]
     printed = not isinstance(sheets[0], FeedbackSheet)
     page = contexts[0] | {"bodies": bodies, "paper": paper, "printed": printed}
-    return render(environment_of(tuple(folders), page["lang"]), "_page.typ.j2", page)
+    return drawn(render(environment_of(tuple(folders), page["lang"]), "_page.typ.j2", page), folders)
+
+
+# ------------------------------------------------------------------------ fonts
+
+
+def fonts_of(folders: Sequence[Path]) -> tuple[str, ...]:
+    """The folders of fonts that a course brings, ``fonts`` in its templates: for letters that the typesetter's own fonts
+    lack. The system's fonts are never asked, so that a sheet is the same everywhere."""
+    return tuple(str(folder / "fonts") for folder in folders if (folder / "fonts").is_dir())
+
+
+def drawn(typst_source: str, folders: Sequence[Path]) -> str:
+    """The source with a square for each character that no font at hand draws."""
+    return markup.drawable(typst_source, partial(_has_glyph, fonts_of(folders)))
+
+
+def undrawn(text: str, folders: Sequence[Path]) -> list[str]:
+    """The characters of a text that no font at hand draws, each once."""
+    return markup.undrawn(text, partial(_has_glyph, fonts_of(folders)))
+
+
+@lru_cache(maxsize=16_384)
+def _has_glyph(fonts: tuple[str, ...], char: str) -> bool:
+    """Whether a course's fonts draw a character: the standard of the PDF refuses one that has no glyph."""
+    import typst
+
+    if not fonts or not char.isprintable():
+        return False
+    page = f'#set document(title: "-")\n#set text(lang: "en")\n#"\\u{{{ord(char):x}}}"'
+    try:
+        _compiler(fonts).compile(input=page.encode(), format="pdf", pdf_standards=["ua-1"], timestamp=0)
+    except typst.TypstError:
+        return False
+    return True
+
+
+def _compiler(fonts: tuple[str, ...]) -> Any:
+    """A compiler serves one thread, and is kept: fonts are read once."""
+    import typst
+
+    kept = _LOCAL.__dict__.setdefault("compilers", {})
+    if fonts not in kept:
+        kept[fonts] = typst.Compiler(font_paths=list(fonts), ignore_system_fonts=True)
+    return kept[fonts]
 
 
 _DEFINITIONS_END = "\n//=\n"
@@ -73,22 +117,18 @@ def files(typst_source: str) -> dict[str, bytes]:
     return found
 
 
-def compile_pdf(typst_source: str) -> bytes:
-    """The tagged PDF (PDF/UA-1 and PDF/A-2a) of a Typst source; the same bytes for the same source.
+def compile_pdf(typst_source: str, fonts: tuple[str, ...] = ()) -> bytes:
+    """The tagged PDF (PDF/UA-1 and PDF/A-2a) of a Typst source; the same bytes for the same source and ``fonts``.
 
-    A compiler serves one thread, and is kept: fonts are read once. What the course's own template may
-    have got wrong is said as :class:`BadStatement`.
+    What the course's own template may have got wrong is said as :class:`BadStatement`.
     """
-    import typst
-
-    compiler = getattr(_LOCAL, "compiler", None)
-    if compiler is None:
-        compiler = _LOCAL.compiler = typst.Compiler(ignore_system_fonts=True)
     with _complaints():
-        return _written(compiler, files(typst_source))
+        return _written(_compiler(fonts), files(typst_source))
 
 
-def compile_booklet(typst_source: str) -> tuple[bytes, tuple[tuple[int, int], ...]]:
+def compile_booklet(
+    typst_source: str, fonts: tuple[str, ...] = ()
+) -> tuple[bytes, tuple[tuple[int, int], ...]]:
     """The PDF of a source of several sheets, and the first and last page of each.
 
     Raises BadStatement as :func:`compile_pdf` does.
@@ -99,7 +139,7 @@ def compile_booklet(typst_source: str) -> tuple[bytes, tuple[tuple[int, int], ..
     with _complaints():
         # Asked of the compiler that then writes the file, the pages are laid out once.
         opened: Any = typst.Compiler  # takes the files by name as well, which its types do not say
-        compiler = opened(input=written, ignore_system_fonts=True)
+        compiler = opened(input=written, font_paths=list(fonts), ignore_system_fonts=True)
         ends = json.loads(compiler.query("<sheet-last>", field="value"))
         made = _written(compiler, written)
         # The typesetter remembers what the last documents were made of, and a booklet is large: small

@@ -54,7 +54,9 @@ class Renderer:
         """Several sheets in one PDF, each with its own page numbers; those to print from an odd page on."""
         from coursework.rendering import pdf
 
-        return pdf.compile_pdf(pdf.source(self.template_folders, sheets, self.paper))
+        return pdf.compile_pdf(
+            pdf.source(self.template_folders, sheets, self.paper), pdf.fonts_of(self.template_folders)
+        )
 
     def booklet(
         self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]
@@ -62,7 +64,15 @@ class Renderer:
         """The PDF of :meth:`booklet_pdf`, and the first and last page of each sheet in it, from 1 on."""
         from coursework.rendering import pdf
 
-        return pdf.compile_booklet(pdf.source(self.template_folders, sheets, self.paper))
+        return pdf.compile_booklet(
+            pdf.source(self.template_folders, sheets, self.paper), pdf.fonts_of(self.template_folders)
+        )
+
+    def undrawn(self, text: str) -> list[str]:
+        """The characters of a text that no font of a PDF draws: they are printed as squares."""
+        from coursework.rendering import pdf
+
+        return pdf.undrawn(text, self.template_folders)
 
     def html(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
         """A sheet as one web page that fetches nothing and runs no script."""
@@ -157,7 +167,9 @@ class Renderer:
         """A report as a tagged PDF."""
         from coursework.rendering import pdf, reports
 
-        return pdf.compile_pdf(reports.source(self.template_folders, report, self.paper))
+        return pdf.compile_pdf(
+            reports.source(self.template_folders, report, self.paper), pdf.fonts_of(self.template_folders)
+        )
 
     def motion_html(self, animation: Animation) -> str:
         """A mechanism in motion as one web page that fetches nothing; its one script is in the page."""

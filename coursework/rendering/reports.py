@@ -26,7 +26,8 @@ def source(folders: Sequence[Path], report: Report, paper: str = "a4") -> str:
     """The Typst source; it stands alone."""
     env = pdf.environment_of(tuple(folders), report.lang)
     body = Markup(render(env, "report.typ.j2", _names(report) | {"chart": _drawn}))
-    return render(env, "_page.typ.j2", _names(report) | {"bodies": [body], "paper": paper})
+    page = render(env, "_page.typ.j2", _names(report) | {"bodies": [body], "paper": paper})
+    return pdf.drawn(page, folders)
 
 
 def _names(report: Report) -> dict[str, object]:

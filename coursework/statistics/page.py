@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 
 from coursework.course.course import Course
-from coursework.figures.charts import bars, formula_label, histogram, lacking, plain_label
+from coursework.figures.charts import bars, drawable_label, formula_label, histogram, lacking, plain_label
 from coursework.gradebook.book import VERDICTS
 from coursework.language.numbers import localise, plain
 from coursework.language.typography import typeset
 from coursework.language.words import listed, words
-from coursework.markup.markdown import drawable, to_text
+from coursework.markup.markdown import to_text
 from coursework.sheets.report import Chart, Report, Section, Table
 from coursework.statistics.captions import SHORT, Names
 from coursework.statistics.measures import (
@@ -335,7 +335,7 @@ def _shared_out(rows: Sequence[PartStatistics], most: int) -> list[Sequence[Part
 
 def _short(name: str, most: int = 40) -> str:
     """A name from a file on one line of a chart, in characters that its font has."""
-    one_line = drawable(" ".join(name.split()))
+    one_line = drawable_label(" ".join(name.split()))
     return one_line if len(one_line) <= most else one_line[: most - 1] + "…"
 
 
