@@ -7,7 +7,7 @@ the quantity graph evaluates what those need and nothing else.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -29,6 +29,7 @@ CORIOLIS = "a_coriolis"
 EFFORTS = ("N", "N*m")
 INERTIA, FRICTION = "inertia", "friction"
 ROUNDING = 1e-13  #: of a term: some 450 units in its last place
+_CORRECTIONS = 60  #: of an acceleration, at most
 
 
 @dataclass(frozen=True)
@@ -240,28 +241,50 @@ class _Motion:
     def acceleration(self, angle: float, speed: float) -> float:
         """The acceleration at which the effort asked is the drive's.
 
-        Without friction the effort is affine in it; with friction nearly so, and a few corrections do. They
-        end where what is lacking is nothing beside the drive and the inertia, or, where these are small beside
-        terms of the effort that cancel, where it no longer shrinks and is within the rounding of those terms.
+        Without friction the effort is affine in it; with little friction nearly so, and a few corrections by the
+        frictionless inertia do. Where they lead away, friction being strong, the effort's own slope corrects: the
+        effort is affine on either side of the acceleration at which the guide's other side bears.
 
         Raises
         ------
         Undefined
             What is lacking stays: no acceleration balances the drive.
         """
-        own, inertia = self.scene._own, self.inertia(angle)
+        inertia = self.inertia(angle)
+        for slope in (lambda value: inertia, lambda value: self._slope(angle, speed, value)):
+            value = self._balanced(angle, speed, inertia, slope)
+            if value is not None:
+                return value
+        raise Undefined(
+            f"no acceleration balances the drive at {math.degrees(angle):.4g} degrees: the guide jams"
+        )
+
+    def _balanced(
+        self, angle: float, speed: float, inertia: float, slope: Callable[[float], float]
+    ) -> float | None:
+        """The acceleration to which corrections by a slope lead, if they lead to one.
+
+        They end where what is lacking is nothing beside the drive and the inertia, or, where these are small beside
+        terms of the effort that cancel, where it no longer shrinks and is within the rounding of those terms.
+        """
         value, least = 0.0, math.inf
-        for _ in range(60):
-            lacking = self.drive - self.effort(angle, speed, value, own)
-            value += lacking / inertia
+        for _ in range(_CORRECTIONS):
+            lacking, per = self.drive - self.effort(angle, speed, value, self.scene._own), slope(value)
+            if not per:
+                return None
+            value += lacking / per
             if abs(lacking) <= ROUNDING * (abs(self.drive) + abs(value) * inertia):
                 return value
             if abs(lacking) >= least and abs(lacking) <= self.rounding(angle, speed, value):
                 return value
             least = min(least, abs(lacking))
-        raise Undefined(
-            f"no acceleration balances the drive at {math.degrees(angle):.4g} degrees: the guide jams"
-        )
+        return None
+
+    def _slope(self, angle: float, speed: float, acceleration: float) -> float:
+        """Effort per acceleration, by a step that leaves half of the digits."""
+        step = 1e-8 * max(1.0, abs(acceleration))
+        near, far = (self.effort(angle, speed, acceleration + by, self.scene._own) for by in (0.0, step))
+        return (far - near) / step
 
     def rounding(self, angle: float, speed: float, acceleration: float) -> float:
         """How far rounding may put the effort off, by the size of the terms that it is made of.

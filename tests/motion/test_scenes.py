@@ -208,3 +208,23 @@ def test_a_drive_that_nothing_balances_is_not_taken_for_rounding(course, short):
     for angle in range(0, 360, 30):
         with pytest.raises(Undefined, match=f"no acceleration balances the drive at {angle} degrees"):
             motion.acceleration(np.radians(angle), 30.0)
+
+
+@pytest.mark.parametrize("friction", [0.5, 1.2, 1.5])
+def test_strong_friction_balances_wherever_a_balance_exists(course, friction):
+    """Against the one root that a search over all accelerations brackets; where corrections by the frictionless inertia
+    lead away from it, the guide does not jam."""
+    given = {**course[TORQUE].variant(0).used, "f": friction}
+    scene = Scene(course[TORQUE], given, ("load", "inertia", "friction"))
+    motion = _Motion(scene, 3.0)
+    far = 10.0 ** np.arange(-3, 9)
+    tried = [*-far[::-1], *far]
+    for angle in np.radians(np.arange(0.5, 360.0, 15.0)).tolist():
+
+        def lacking(value, angle=angle):
+            return motion.drive - motion.effort(angle, 12.0, value, scene._own)
+
+        signs = np.sign([lacking(value) for value in tried])
+        (change,) = np.flatnonzero(signs[1:] != signs[:-1])
+        root = bisect(lacking, tried[change], tried[change + 1], xtol=1e-9, rtol=1e-14)
+        assert motion.acceleration(angle, 12.0) == pytest.approx(root, rel=1e-9, abs=1e-7)
