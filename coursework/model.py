@@ -315,7 +315,8 @@ class Exercise:
     helpers
         Functions that several conditions share; their names are quantities to the conditions.
     figure
-        A function of given quantities (and of ``helpers``) to a :class:`~coursework.figures.Figure`.
+        A function of given quantities (and of ``helpers``) to a :class:`~coursework.figures.Figure`, a
+        :class:`~coursework.figures.Picture` of a file beside the exercise, or a tuple of them.
     tells
         A function of given quantities to what the statement's text may use besides them: lists, records.
     version

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
 from coursework.course.exercise import CourseExercise
 from coursework.course.lettering import letters_of, printed_order
 from coursework.course.texts import Text
+from coursework.errors import BadCourse
 from coursework.language.numbers import localise, plain, significant, with_unit
 from coursework.language.words import languages, no_language, words
 from coursework.model import Part
@@ -17,7 +19,7 @@ from coursework.quantities.graph import call_on_quantities, plain_scalar
 
 if TYPE_CHECKING:
     from coursework.course.answer_key import Key, KeyNumbers
-    from coursework.figures import Figure
+    from coursework.figures import Figure, Picture
 
 
 class Variant:
@@ -260,12 +262,34 @@ class Variant:
         self._key = key
 
     @cached_property
-    def figure(self) -> Figure | None:
-        """The figure to scale: laid out once, shown on every sheet of the variant."""
-        spec = self.exercise.spec
-        return (
-            None if spec.figure is None else call_on_quantities(spec.figure, self.given, tuple(spec.helpers))
-        )
+    def figures(self) -> tuple[Figure | Picture, ...]:
+        """The figures to scale and the pictures, in order: laid out once, shown on every sheet of the variant.
+
+        Raises
+        ------
+        BadCourse
+            What the exercise gives is no figure, or a picture that cannot be shown.
+        """
+        function = self.exercise.spec.figure
+        if function is None:
+            return ()
+        from coursework.figures import Figure, Picture
+
+        given = call_on_quantities(function, self.given, tuple(self.exercise.spec.helpers))
+        shown = tuple(given) if isinstance(given, (tuple, list)) else (given,)
+        for one in shown:
+            if not isinstance(one, (Figure, Picture)):
+                raise BadCourse(
+                    f"{self.exercise.name}: figure(…) returns a Figure, a Picture, or a tuple of them; "
+                    f"found {str(one)[:60]}"
+                )
+        home = Path(function.__code__.co_filename).parent
+        return tuple(one.beside(home) if isinstance(one, Picture) else one for one in shown)
+
+    @property
+    def figure(self) -> Figure | Picture | None:
+        """The first of the figures, if there is one."""
+        return self.figures[0] if self.figures else None
 
 
 def _made_anew(

@@ -84,12 +84,14 @@ from coursework.figures.marks import (
     trace,
     vector,
 )
+from coursework.figures.picture import Picture
 
 __all__ = [
     "Beginning",
     "Element",
     "Figure",
     "LabelBox",
+    "Picture",
     "angle_mark",
     "arc",
     "axes",

@@ -137,7 +137,7 @@ def _mark_part(
     if reading.status != "read":
         return made(reading.status, 0.0, "", say_not_read(variant, part, reading))
     if part.sort.is_open:
-        return made("to_mark", 0.0, reading.read_as[0], say(variant, part, "to_mark"))
+        return made("to_mark", 0.0, "", say(variant, part, "to_mark"))
     index, gap = nearest
     explained = {} if gap <= 1 else dict(explanations(key, part, reading, judged_by, before))
     matches = tuple(explained)

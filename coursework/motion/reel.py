@@ -112,7 +112,10 @@ class Reel:
             return self._reel(self.film)
         start, step = self.variant.exercise.driver_angle(self.variant.given), 360.0 / self.count
         figure = self.variant.figure
-        assert figure is not None  # what has none is refused at the start
+        if not isinstance(figure, Figure) or len(self.variant.figures) > 1:
+            raise BadCourse(
+                f"{self.variant.exercise.name}: what a driver moves is one Figure, and no picture"
+            )
         found = {0: figure.elements}
         for k in range(1, self.count):
             if (elements := self._elements(start + k * step)) is None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from jinja2 import Environment
 
-from coursework.figures import Beginning, Figure
+from coursework.figures import Beginning, Figure, Picture
 from coursework.language.words import words
 from coursework.markup import markdown as markup
 from coursework.markup.mathml import to_mathml
@@ -45,7 +45,7 @@ def construction(folders: Sequence[Path], drawn: Construction) -> str:
     return render(environment_of(tuple(folders), drawn.lang), "_polygons.html.j2", names)
 
 
-def _drawing(figure: Figure | Beginning, alt: str) -> str:
+def _drawing(figure: Figure | Picture | Beginning, alt: str) -> str:
     """The figure as an image inside the page, its letters as outlines: it looks the same everywhere."""
     data = base64.b64encode(figure.outlined_svg().encode()).decode()
     return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(alt)}">'

@@ -11,7 +11,7 @@ from jinja2 import Environment
 from markdown_it.tree import SyntaxTreeNode
 
 from coursework.errors import BadStatement
-from coursework.figures import Figure
+from coursework.figures import Figure, Picture
 from coursework.markup import markdown as markup
 from coursework.markup.latex import latex_text, plain_latex, to_latex
 from coursework.rendering import views
@@ -58,7 +58,7 @@ def _environment(folders: tuple[Path, ...], lang: str) -> Environment:
     return environment(folders, lang, latex_text, filters, MARKS)
 
 
-def _width(figure: Figure, room: float, tall: float) -> str:
+def _width(figure: Figure | Picture, room: float, tall: float) -> str:
     """The width of a figure in mm: its own, for which it is laid out, or less where the room does not do."""
     wide, high = figure.size_mm
     return f"{wide * min(1.0, room / wide, tall / high):.1f}"

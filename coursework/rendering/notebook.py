@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 CELL_END = "<!-- cell -->"
 FIGURE = "figure.png"
+MORE = "figure-{}.png"  #: the second figure is figure-2.png
 _FIGURE_PPI = 200
 _FENCE = re.compile(
     r"^```python(?:[ \t]+\{tags=([\w,-]+)\})?[ \t]*\n(.*?)^```[ \t]*$", re.DOTALL | re.MULTILINE
@@ -147,11 +148,13 @@ def _cell(identity: str, kind: str, tags: tuple[str, ...], source: str) -> dict[
 
 
 def _attach_figure(cell: dict[str, Any], handout: Handout) -> None:
-    shown = any(f"attachment:{FIGURE}" in line for line in cell["source"])
-    figure = views.figure_of(handout)
-    if cell["cell_type"] == "markdown" and figure is not None and shown:
-        png = base64.b64encode(figure.png(ppi=_FIGURE_PPI)).decode()
-        cell["attachments"] = {FIGURE: {"image/png": png}}
+    figures = {FIGURE: views.figure_of(handout)}
+    figures |= {MORE.format(k): one for k, (one, _) in enumerate(views.more_figures(handout), start=2)}
+    for name, figure in figures.items():
+        shown = any(f"attachment:{name}" in line for line in cell["source"])
+        if cell["cell_type"] == "markdown" and figure is not None and shown:
+            png = base64.b64encode(figure.png(ppi=_FIGURE_PPI)).decode()
+            cell["attachments"] = {**cell.get("attachments", {}), name: {"image/png": png}}
 
 
 @lru_cache(maxsize=32)

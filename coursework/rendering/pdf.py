@@ -14,7 +14,7 @@ from jinja2 import Environment
 from markupsafe import Markup
 
 from coursework.errors import BadStatement
-from coursework.figures import Beginning, Figure
+from coursework.figures import Beginning, Figure, Picture
 from coursework.figures.text import SIZE
 from coursework.figures.writing import Letters
 from coursework.markup import markdown as markup
@@ -181,7 +181,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
     return environment(folders, lang, markup.typst_text, filters)
 
 
-def _drawing(figure: Figure | Beginning, alt: str, room: tuple[float, float] | None = None) -> str:
+def _drawing(figure: Figure | Picture | Beginning, alt: str, room: tuple[float, float] | None = None) -> str:
     """The figure inside the source, which so stands alone: an SVG without letters, its size, and the letters; and by
     how much it is made smaller for a room of so many mm that it was not laid out for."""
     width, height = figure.size_mm

@@ -91,11 +91,17 @@ class Renderer:
         return latex.source(self.template_folders, sheet, self.paper, figure, polygons)
 
     def figure_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
-        """The figure that a sheet shows, as a PDF of its own; nothing when it shows none."""
+        """The figure that a sheet shows, as a PDF of its own, several on a page each; nothing when it shows none."""
         from coursework.rendering import views
 
-        figure = views.figure_of(sheet)
-        return None if figure is None else figure.pdf()
+        figure, more = views.figure_of(sheet), [one for one, _ in views.more_figures(sheet)]
+        if figure is None:
+            return None
+        if not more:
+            return figure.pdf()
+        from coursework.figures.typesetting import pages
+
+        return pages([(one.svg(), one.size_mm[0]) for one in (figure, *more)])
 
     def polygons_pdf(self, sheet: Handout | AnswerSheet) -> bytes | None:
         """The drawings of a solution's polygons, one a page of its own size; nothing when it has none."""

@@ -25,6 +25,8 @@ def statement(handout: Handout) -> str:
     ]
     if handout.figure is not None:
         parts.append(textwrap.fill(f"[{said['figure']}{said['colon']} {handout.figure_alt}]", WIDTH))
+    for _, alt in handout.more_figures:
+        parts.append(textwrap.fill(f"[{said['figure']}{said['colon']} {alt}]", WIDTH))
     if handout.given:
         lines = (f"  {_given(given, lang)}" for given in handout.given)
         parts.append("\n".join([said["data"], *lines]))

@@ -29,7 +29,7 @@ from coursework.sheets.sheet import (
 )
 
 if TYPE_CHECKING:
-    from coursework.figures import Beginning, Figure
+    from coursework.figures import Beginning, Figure, Picture
     from coursework.polygons.construction import Row
 
 Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
@@ -71,6 +71,7 @@ def context(sheet: Sheet, place: int = 0) -> dict[str, object]:
         "summary_mm": SUMMARY_MM,
         "guide_together": GUIDE_TOGETHER,
         "polygon_mm": POLYGON_MM,
+        "more_figures": more_figures(sheet),
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
         "variant": variant_code(handout),
         "tolerances": tolerances(handout.questions, handout.lang, prefix),
@@ -86,10 +87,15 @@ def variant_code(handout: Handout) -> str:
     return f"{handout.exercise} · {handout.seed} · v{handout.version}"
 
 
-def figure_of(sheet: Sheet) -> Figure | None:
+def figure_of(sheet: Sheet) -> Figure | Picture | None:
     """The figure a sheet shows, laid out for its room: a solution's own, else the handout's."""
     figure = _shown(sheet)
     return figure and figure.fitted(*room(sheet))
+
+
+def more_figures(sheet: Sheet) -> tuple[tuple[Figure | Picture, str], ...]:
+    """The figures besides the first, laid out for the width of a page, each with what it shows."""
+    return tuple((figure.fitted(*ROOM_ALONE), alt) for figure, alt in handout_of(sheet).more_figures)
 
 
 def room(sheet: Sheet) -> tuple[float, float]:
@@ -110,7 +116,7 @@ def _is_slender(sheet: Sheet) -> bool:
     return few and figure is not None and figure.aspect < _SLENDER
 
 
-def _shown(sheet: Sheet) -> Figure | None:
+def _shown(sheet: Sheet) -> Figure | Picture | None:
     own = sheet.figure if isinstance(sheet, AnswerSheet) else None
     return own or handout_of(sheet).figure
 

@@ -32,7 +32,7 @@ from coursework.selfstudy.store import Kept, is_blank
 from coursework.sheets.handout import handout
 
 if TYPE_CHECKING:
-    from coursework.figures import Figure
+    from coursework import figures
 
 
 PANELS = 6  #: curves of a plot, unless some are named
@@ -114,6 +114,7 @@ class StudySession:
         pieces: list[str | Picture] = [f"{head}\n\n{sheet.statement}"]
         if sheet.figure is not None:
             pieces.append(Picture(sheet.figure.outlined_svg(), sheet.figure_alt))
+        pieces += [Picture(figure.outlined_svg(), alt) for figure, alt in sheet.more_figures]
         given = [f"- {hints._given(self.variant, g.name)}" for g in sheet.given]
         if given:
             pieces.append(f"**{said['data']}**\n\n" + "\n".join(given))
@@ -135,8 +136,8 @@ class StudySession:
     __repr__ = __str__
 
     @property
-    def figure(self) -> Figure | None:
-        """The figure to scale."""
+    def figure(self) -> figures.Figure | figures.Picture | None:
+        """The figure to scale, or the picture; the first where there are several."""
         return self.variant.figure
 
     def motion(self, *effects: str) -> Shown:

@@ -42,6 +42,10 @@ def _unnamed(variant: Variant) -> Handout:
         given=tuple(_given(variant, name) for name, spec in exercise.spec.given.items() if spec.shown),
         figure=variant.figure,
         figure_alt=" ".join(text.section("figure").text.split()) if exercise.spec.figure else "",
+        more_figures=tuple(
+            (one, " ".join(text.section(f"figure {k}").text.split()))
+            for k, one in enumerate(variant.figures[1:], start=2)
+        ),
         questions=tuple(
             _question(variant, n, p, ways)
             for n, (p, ways) in enumerate(zip(variant.parts, _ways_to_write(variant), strict=True), start=1)

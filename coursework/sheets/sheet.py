@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from coursework.figures import Figure
+    from coursework.figures import Figure, Picture
     from coursework.polygons.construction import Construction
 
 
@@ -68,10 +68,11 @@ class Handout:
     title: str
     statement: str  #: Markdown
     given: tuple[Given, ...]
-    figure: Figure | None
+    figure: Figure | Picture | None
     figure_alt: str
     questions: tuple[Question, ...]
     record: Mapping[str, object]  #: the variant's JSON record
+    more_figures: tuple[tuple[Figure | Picture, str], ...] = ()  #: besides the first, each with what it shows
     drawing_mm: tuple[int, int] | None = None  #: width and height of the box to draw in, where there is one
 
     @property

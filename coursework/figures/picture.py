@@ -1,0 +1,178 @@
+"""A picture from outside, SVG or PNG, shown where a figure is: in every format, and never with a script in it."""
+
+from __future__ import annotations
+
+import base64
+import re
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from xml.etree import ElementTree
+
+from coursework.errors import BadCourse, nearest
+from coursework.figures.writing import Letters
+
+_SVG, _XLINK = "http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"
+_PNG = b"\x89PNG\r\n\x1a\n"
+_MM = {"": 25.4 / 96, "px": 25.4 / 96, "mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6}
+_PPI = 150  #: of a PNG whose width is not told
+_LENGTH = re.compile(r"\s*([0-9.]+(?:e[+-]?\d+)?)\s*([a-z]*)\s*", re.I)
+_DOCTYPE = re.compile(rb"<!DOCTYPE[^>\[]*>", re.I)
+_RUNS = ("script", "foreignObject", "handler", "listener", "iframe", "embed", "object", "set", "animate")
+_FETCHES = re.compile(r"url\s*\(\s*['\"]?(?!['\"]?\s*(?:#|data:image/))|@import", re.I)
+
+ElementTree.register_namespace("", _SVG)
+ElementTree.register_namespace("xlink", _XLINK)
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """A picture of a file beside the exercise, or of its bytes; ``width_mm`` on paper, its own unless told.
+
+    Any other format, an SVG that holds a script or fetches something, and a file that is not there are refused with
+    :class:`BadCourse`. What it shows, in words, is a section ``## figure`` of the statement's text.
+    """
+
+    source: str | Path | bytes
+    width_mm: float | None = None
+
+    def beside(self, folder: Path) -> Picture:
+        """The picture read from its file, a relative path being one from this folder.
+
+        Raises
+        ------
+        BadCourse
+            There is no such file, or it is no picture that can be shown.
+        """
+        if not isinstance(self.source, bytes):
+            path = folder / self.source
+            try:
+                data = path.read_bytes()
+            except OSError as fault:
+                there = [p.name for p in folder.glob("*") if p.suffix.lower() in (".svg", ".png")]
+                raise BadCourse(f"no picture {path}: {fault.strerror}{nearest(path.name, there)}") from fault
+            picture = replace(self, source=data)
+            try:
+                picture._drawn  # noqa: B018  what cannot be shown is refused where it is named
+            except BadCourse as fault:
+                raise BadCourse(f"{path}: {fault}") from None
+            return picture
+        return self
+
+    @cached_property
+    def _drawn(self) -> tuple[str, float, float]:
+        """The drawing as SVG with a place for its size, its natural width in mm, height over width."""
+        data = self.source
+        if not isinstance(data, bytes):
+            raise BadCourse(f"the picture {data} has not been read yet")
+        if self.width_mm is not None and not 0 < self.width_mm <= 1000:
+            raise BadCourse(f"the width of a picture is a number of mm; found {self.width_mm!r}")
+        if data.startswith(_PNG) and len(data) > 24:
+            return _of_png(data)
+        if b"<svg" in data[:4096]:
+            return _of_svg(data)
+        raise BadCourse(f"a picture is SVG or PNG; this begins with {data[:12]!r}: save it as one of them")
+
+    @property
+    def aspect(self) -> float:
+        """Width over height."""
+        return 1 / self._drawn[2]
+
+    @property
+    def size_mm(self) -> tuple[float, float]:
+        """Width and height on paper."""
+        wide = self.width_mm or self._drawn[1]
+        return round(wide, 1), round(wide * self._drawn[2], 1)
+
+    def fitted(self, width: float, height: float) -> Picture:
+        """The picture made smaller where it does not fit a room of so many mm."""
+        wide, high = self.size_mm
+        ratio = min(1.0, width / wide, height / high)
+        return self if ratio == 1 else replace(self, width_mm=wide * ratio)
+
+    def svg(self) -> str:
+        """The picture as SVG of its size in mm; a PNG stands inside it."""
+        wide, high = self.size_mm
+        return self._drawn[0].replace("SIZE", f'width="{wide}mm" height="{high}mm"', 1)
+
+    outlined_svg = bare_svg = svg
+
+    def letters(self) -> tuple[Letters, ...]:
+        """None: the letters of a picture are in it."""
+        return ()
+
+    def _repr_svg_(self) -> str:
+        return self.svg()
+
+    def png(self, ppi: float = 200) -> bytes:
+        """The picture as PNG, ``ppi`` pixels an inch."""
+        from coursework.figures.typesetting import converted
+
+        return converted(self.svg(), self.size_mm[0], "png", ppi)
+
+    def pdf(self) -> bytes:
+        """The picture as one PDF page of its own size."""
+        from coursework.figures.typesetting import converted
+
+        return converted(self.svg(), self.size_mm[0], "pdf")
+
+
+def _of_png(data: bytes) -> tuple[str, float, float]:
+    wide, high = struct.unpack(">II", data[16:24])
+    if not wide or not high:
+        raise BadCourse("the PNG has no size")
+    inside = base64.b64encode(data).decode()
+    drawn = (
+        f'<svg xmlns="{_SVG}" xmlns:xlink="{_XLINK}" SIZE viewBox="0 0 {wide} {high}">'
+        f'<image width="{wide}" height="{high}" xlink:href="data:image/png;base64,{inside}"/></svg>'
+    )
+    return drawn, wide * 25.4 / _PPI, high / wide
+
+
+def _of_svg(data: bytes) -> tuple[str, float, float]:
+    try:
+        if b"<!ENTITY" in data:
+            raise BadCourse("the SVG declares entities, which are not read: save it as plain SVG")
+        root = ElementTree.fromstring(_DOCTYPE.sub(b"", data))
+    except ElementTree.ParseError as fault:
+        raise BadCourse(f"the SVG cannot be read: {fault}") from fault
+    for why in _dangers(root):
+        raise BadCourse(f"the SVG holds {why}: a sheet runs nothing and fetches nothing; save it without")
+    wide, high = (_length(root.get(side, "")) for side in ("width", "height"))
+    box = [float(n) for n in re.findall(r"-?[0-9.]+(?:e[+-]?\d+)?", root.get("viewBox", ""))]
+    if len(box) != 4 and wide and high:
+        root.set("viewBox", f"0 0 {wide / _MM['px']:g} {high / _MM['px']:g}")
+        box = [0.0, 0.0, wide, high]
+    if len(box) != 4 or not (box[2] > 0 and box[3] > 0):
+        raise BadCourse("the SVG says neither its width and height nor its viewBox")
+    for side in ("width", "height"):
+        root.attrib.pop(side, None)
+    text = ElementTree.tostring(root, encoding="unicode")
+    natural = wide or (high * box[2] / box[3] if high else box[2] * _MM["px"])
+    return text.replace("<svg ", "<svg SIZE ", 1), natural, box[3] / box[2]
+
+
+def _length(text: str) -> float:
+    """A length of SVG in mm; 0 where none is told, or a share of something."""
+    found = _LENGTH.fullmatch(text)
+    return float(found[1]) * _MM[found[2].lower()] if found and found[2].lower() in _MM else 0.0
+
+
+def _dangers(root: ElementTree.Element) -> Iterator[str]:
+    """What of an SVG would run or fetch something."""
+    for element in root.iter():
+        name = str(element.tag).rpartition("}")[2]
+        if name in _RUNS or name.startswith("animate"):
+            yield f"<{name}>"
+        for attribute, value in element.attrib.items():
+            own = attribute.rpartition("}")[2].lower()
+            if own.startswith("on"):
+                yield f"{own}=…"
+            if own in ("href", "src") and not re.match(r"\s*(?:#|data:image/(?:png|jpe?g|gif);)", value):
+                yield f"a link to {value[:40]!r}"
+            if _FETCHES.search(value):
+                yield f"{own}={value[:40]!r}"
+        if name == "style" and _FETCHES.search(element.text or ""):
+            yield "a style that fetches"
