@@ -18,6 +18,7 @@ from coursework.authoring.check_report import Report
 from coursework.course.variant import Variant
 from coursework.reading.printed_formulas import DEGREE, NotEvaluable, Reading, read
 from coursework.sheets.answer_sheet import PRINTED_DIGITS, answer_sheet
+from coursework.sheets.formula_latex import why_unprinted
 from coursework.sheets.sheet import AnswerSheet, Step
 
 TRIED = 20  #: variants whose worked solutions are read back
@@ -49,13 +50,20 @@ def check_formulas(drawn: Sequence[Variant], report: Report) -> None:
             report.counts["formulas proved"] += proof.holds
             if proof.why_not:
                 report.counts["formulas not proved"] += 1
-                report.unproved.setdefault(step.name, proof.why_not)
+                report.unproved.setdefault(step.name, _why_not(variant, step, proof))
             elif not proof.holds and step.name not in failed:
                 failed.add(step.name)
                 report.fail(
                     f"seed {variant.seed}: the printed formula of {step.name}, {step.formula}, with its numbers "
                     f"{step.substitution or step.formula}, gives {proof.gives}; printed is {step.value}"
                 )
+
+
+def _why_not(variant: Variant, step: Step, proof: Proof) -> str:
+    """Why a step proves nothing; with what its code holds that no formula says, where that is why it prints none."""
+    function = variant.exercise.solution.graph.node(step.name).function
+    unprinted = "" if step.formula or hasattr(function, "__formula__") else why_unprinted(function)
+    return f"{proof.why_not}, since {unprinted}; @formula may say it" if unprinted else proof.why_not
 
 
 def _shown_by_symbol(sheet: AnswerSheet) -> dict[str, str]:

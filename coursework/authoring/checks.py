@@ -27,9 +27,9 @@ from coursework.authoring.check_units import check_units
 from coursework.course import draws
 from coursework.course.answer_key import Key, exists
 from coursework.course.course import Course, opened
-from coursework.course.exercise import ALL, CourseExercise
+from coursework.course.exercise import ALL, CourseExercise, refuse_complex
 from coursework.course.variant import Variant
-from coursework.errors import CourseworkError, MissingQuantity, Starved, nearest
+from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starved, nearest
 from coursework.language.words import file_of, languages, words
 from coursework.making.flaws import conditioning, worthy
 from coursework.making.issuing import distinct_variants
@@ -43,6 +43,7 @@ from coursework.sheets.handout import prompt
 from coursework.system.processes import processes, workers
 
 RENDERED = 1  #: variants whose sheets are rendered in every format and language
+_SOME = 3  #: variants that show whether a quantity is complex
 NONSENSICAL = 20  #: variants that are answered by nonsense; it is read alike on all
 
 
@@ -52,7 +53,7 @@ def check(exercise: CourseExercise, variants: int, *, rendered: int = RENDERED) 
     Whatever breaks is reported, and the rest is tried all the same, unless no variant has an answer.
     """
     report = Report(exercise.name)
-    if not check_needs(exercise, report):
+    if not (check_needs(exercise, report) and check_reals(exercise, report)):
         return report
     steps: Sequence[Callable[[], None]] = (
         lambda: check_texts(exercise, report),
@@ -226,6 +227,22 @@ def check_needs(exercise: CourseExercise, report: Report) -> bool:
         return False
     except CourseworkError:
         pass  # it is told by what needs it
+    return True
+
+
+def check_reals(exercise: CourseExercise, report: Report) -> bool:
+    """Numbers that are asked are real; False where one is complex, which nothing can mark."""
+    for seed in range(_SOME):
+        try:
+            variant = exercise.variant(seed, parts=(ALL,))
+            found = variant.quantities(variant.asked_quantities)
+        except Exception:
+            continue  # it is told by what needs it
+        try:
+            refuse_complex(exercise, variant.parts, found)
+        except BadCourse as fault:
+            report.fail(str(fault))
+            return False
     return True
 
 

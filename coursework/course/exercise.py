@@ -332,6 +332,23 @@ class CourseExercise(Generic[V]):
         return self.texts.title(lang) or self.variant(0, lang).text.title
 
 
+def refuse_complex(exercise: CourseExercise[Any], parts: Iterable[Part], found: Mapping[str, Any]) -> None:
+    """Refuse a complex reference of a part that asks for one real number.
+
+    Raises
+    ------
+    BadCourse
+        It says which part, and what would do.
+    """
+    for part in parts:
+        value = found.get(part.quantity)
+        if part.sort.is_scalar and isinstance(value, (complex, np.complexfloating)):
+            raise BadCourse(
+                f"{exercise.solution.source}: {part.quantity} is a complex number, and part {part.id!r} asks "
+                "for a real one; return its .real, its .imag, abs(…) or angle(…) of it"
+            )
+
+
 def _check_shapes(values: Mapping[str, Any]) -> None:
     shapes = {n: v.shape for n, v in values.items() if isinstance(v, np.ndarray)}
     try:

@@ -85,8 +85,13 @@ class Batch:
         return _rows(columns, self.count, self.ranks)
 
     def is_whole(self, index: int, quantities: Sequence[str]) -> bool:
-        """Whether a variant has all these quantities."""
-        return all(q in self.reference and exists(self.reference[q][index]) for q in quantities)
+        """Whether a variant has all these quantities; a complex one it refuses by itself."""
+        return all(
+            q in self.reference
+            and exists(self.reference[q][index])
+            and not isinstance(self.reference[q][index], complex)
+            for q in quantities
+        )
 
     @cached_property
     def envelope(self) -> dict[str, list]:

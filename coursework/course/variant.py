@@ -8,7 +8,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Self
 
-from coursework.course.exercise import CourseExercise
+from coursework.course.exercise import CourseExercise, refuse_complex
 from coursework.course.lettering import letters_of, printed_order
 from coursework.course.texts import Text
 from coursework.errors import BadCourse
@@ -135,8 +135,11 @@ class Variant:
             The course folder has no solutions.
         Undefined
             One of them does not exist for the given values.
+        BadCourse
+            One of them is complex where its part asks for a real number.
         """
         found = self.quantities(self.asked_quantities)
+        refuse_complex(self.exercise, self.parts, found)
         return {name: self.exercise.existing(name, value, self.used) for name, value in found.items()}
 
     @property

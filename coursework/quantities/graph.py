@@ -15,6 +15,7 @@ A name that begins with an underscore is hidden: a function may need it, a reque
 from __future__ import annotations
 
 import inspect
+import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
@@ -112,10 +113,24 @@ def _run(steps: Sequence[tuple], values: dict[str, Value]) -> None:
         except CourseworkError:
             raise
         except (ArithmeticError, ValueError) as fault:
+            if "truth value of an array" in str(fault):
+                raise BrokenFunction(_branches(function, fault)) from fault
             told = ", ".join(f"{a} = {values[a]}" for a in arguments)[:300]
             raise Undefined(f"{name} does not exist for {told} ({fault})") from fault
         except Exception as fault:
             raise BrokenFunction(f"{_place(function)} fails: {type(fault).__name__}: {fault}") from fault
+
+
+def _branches(function: Callable[..., Value], fault: Exception) -> str:
+    """What is said of a function that chooses by ``if``, where each place of an array has its own case."""
+    code = getattr(function, "__code__", None)
+    frames = traceback.extract_tb(fault.__traceback__)
+    home = Path(code.co_filename).parent if code else Path()
+    line = next((f for f in reversed(frames) if Path(f.filename).parent == home), frames[-1])
+    return (
+        f"{_place(function)} branches on an array, at line {line.lineno} of {Path(line.filename).name}: {line.line}; "
+        "use np.where(condition, value where it holds, value elsewhere), and & | ~ for and, or, not"
+    )
 
 
 def _missing(found: Mapping[str, str]) -> MissingQuantity:

@@ -32,6 +32,10 @@ _FUNCTIONS = {
     "atan2": r"\operatorname{atan2}",
     "angle": r"\operatorname{arg}",
     "exp": r"\exp",
+    "log": r"\ln",
+    "sinh": r"\sinh",
+    "cosh": r"\cosh",
+    "tanh": r"\tanh",
     "sign": r"\operatorname{sgn}",
     "minimum": r"\operatorname{min}",
     "maximum": r"\operatorname{max}",
@@ -39,6 +43,7 @@ _FUNCTIONS = {
     "longest": r"\operatorname{max}",
 }
 _DIRECTIONS = ("asin", "acos", "atan", "atan2", "angle")  #: functions that give an angle, in degrees
+_PRINTED = {*_FUNCTIONS, "sqrt", "hypot", "abs", "absolute", "where", "stack", "broadcast_arrays"}
 _SUM, _PRODUCT, _UNARY, _POWER, _ATOM = range(5)
 
 
@@ -77,6 +82,39 @@ def _expression(function: Callable[..., Any]) -> ast.expr:
     if len(statements) != 1 or not isinstance(statements[0], ast.Return) or statements[0].value is None:
         raise Unprintable
     return statements[0].value
+
+
+def why_unprinted(function: Callable[..., Any]) -> str:
+    """What in a function's code no formula says: a choice, or a function that has no name on paper; empty where
+    it is something else, such as several steps."""
+    try:
+        body = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+    except (OSError, TypeError, SyntaxError):
+        return ""
+    statements = [s for s in getattr(body, "body", []) if not (_is_docstring(s) or _is_guard(s))]
+    if not all(isinstance(s, (ast.If, ast.Return)) for s in statements):
+        return ""
+    for node in (node for statement in statements for node in ast.walk(statement)):
+        if isinstance(node, (ast.If, ast.IfExp)):
+            return f"its code has an if, at line {_line_of(function, node)}"
+        if isinstance(node, ast.Call) and (name := _of_numbers(node.func)) and _called(node) not in _PRINTED:
+            return f"{name} is not printed, at line {_line_of(function, node)}"
+    return ""
+
+
+def _of_numbers(called: ast.expr) -> str:
+    """``np.log2``, ``math.gamma``; empty where what is called is no function of a number."""
+    match called:
+        case ast.Attribute(value=ast.Name(id="np" | "numpy" as home), attr=name):
+            return f"{home}.{name}" if isinstance(getattr(np, name, None), np.ufunc) else ""
+        case ast.Attribute(value=ast.Name(id="math" | "cmath" as home), attr=name):
+            return f"{home}.{name}"
+    return ""
+
+
+def _line_of(function: Callable[..., Any], node: ast.expr | ast.stmt) -> int:
+    first: int = inspect.getsourcelines(function)[1]
+    return first + node.lineno - 1
 
 
 def _is_docstring(statement: ast.stmt) -> bool:
@@ -174,12 +212,28 @@ class _Printer:
 
     def _name(self, name: str) -> tuple[str, int]:
         if name not in self.shown:
-            raise Unprintable
+            return self._constant(name)
         text, is_number, *_ = self.shown[name]
         if not is_number and re.search(r"(?<=[\w}]) [+-] ", text):
             return text, _SUM  # a symbol that is a sum by itself: "s + l"
         negative = text.startswith(r"\num{-") or text.startswith("-")
         return text, (_UNARY if negative else _ATOM) if is_number else _ATOM
+
+    def _constant(self, name: str) -> tuple[str, int]:
+        """A constant of the module: its name among symbols, its value among numbers."""
+        value = self._value_of(name)
+        if value is None:
+            raise Unprintable
+        if not self.shown or any(is_number for _, is_number, *_ in self.shown.values()):
+            return rf"\num{{{value:.10g}}}", _UNARY if value < 0 else _ATOM
+        stem, *below = (rf"\mathrm{{{part}}}" if len(part) > 1 else part for part in name.split("_") if part)
+        return f"{stem}_{{{','.join(below)}}}" if below else stem, _ATOM
+
+    def _value_of(self, name: str) -> float | None:
+        """The value of a constant of the module; None where a name is none."""
+        value = None if name in self.shown else self.helpers.get(name)
+        is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+        return value if is_number else None
 
     def _kind(self, name: str) -> str:
         return Told(*self.shown[name]).kind if name in self.shown else ""
@@ -217,6 +271,8 @@ class _Printer:
         match node:
             case ast.Constant(value=int() | float() as value):
                 return ast.Constant(_Degrees(value))
+            case ast.Name(id=name) if (constant := self._value_of(name)) is not None:
+                return ast.Constant(_Degrees(constant))
             case ast.UnaryOp(op=op, operand=operand):
                 return ast.UnaryOp(op, self._in_degrees(operand))
             case ast.BinOp(left=left, op=ast.Add() | ast.Sub() as op, right=right):
@@ -243,7 +299,7 @@ class _Printer:
         return out
 
     def _is_segment(self, factor: ast.expr) -> bool:
-        return isinstance(factor, ast.Name) and _is_segment(self.shown[factor.id][0])
+        return isinstance(factor, ast.Name) and _is_segment(self._name(factor.id)[0])
 
     def _fraction(self, node: ast.BinOp) -> tuple[str, int]:
         over, is_negative = _without_sign(node.left)

@@ -235,3 +235,53 @@ def test_a_printer_that_loses_its_brackets_is_caught(monkeypatch):
     finally:
         formula_in_symbols.cache_clear()
     assert any("printed formula of v_O3" in failure for failure in report.failures)
+
+
+CONSTANTS = """
+GRAVITY = 9.81
+TILT = 30
+
+
+def v(r, omega, theta):"""
+
+
+def printed_of(small_course, formula):
+    """The step of v of the small course, its code another, and what the check says of it."""
+    path = small_course / "solutions" / "crank_pin.py"
+    text = path.read_text("utf-8").replace("\ndef v(r, omega):", CONSTANTS)
+    path.write_text(text.replace("    return r * omega\n", f"    {formula}\n"), "utf-8")
+    variant = coursework.open_course(small_course)["crank_pin"].variant(3, "en")
+    report = Report("crank_pin")
+    check_formulas([variant], report)
+    return next(s for s in variant.answer_sheet(polygons=False).steps if s.name == "v"), report
+
+
+def test_a_constant_is_printed_by_its_name_then_by_its_value(small_course):
+    step, report = printed_of(small_course, "return r * omega + GRAVITY * sin(TILT + theta)")
+    assert r"\mathrm{GRAVITY}" in step.formula
+    assert r"\num{9.81}" in step.substitution
+    assert r"\num{30}^{\circ}" in step.substitution
+    assert report.failures == []
+    assert (report.unproved, report.counts["formulas proved"]) == ({}, 3)
+
+
+def test_pi_and_logarithms_are_printed(small_course):
+    step, report = printed_of(small_course, "return 2 * np.pi * r * np.log(r)")
+    assert r"\pi" in step.formula
+    assert r"\ln" in step.formula
+    assert report.failures == []
+    assert (report.unproved, report.counts["formulas proved"]) == ({}, 3)
+
+
+@pytest.mark.parametrize(
+    ("formula", "why"),
+    [
+        ("return r * omega if omega > 0 else -r * omega", "its code has an if, at line 25"),
+        ("if omega > 0:\n        return r * omega\n    return -r * omega", "its code has an if, at line 25"),
+        ("return r * np.log2(omega)", "np.log2 is not printed, at line 25"),
+    ],
+)
+def test_what_no_formula_says_is_named(small_course, formula, why):
+    step, report = printed_of(small_course, formula)
+    assert step.formula == ""
+    assert report.unproved == {"v": f"told in words, since {why}; @formula may say it"}
