@@ -40,13 +40,18 @@ def source(
         "polygons_file": polygons_file,
         "babel": BABEL.get(lang, lang),
     }
-    env = _environment(tuple(folders), lang)
+    env = environment_of(tuple(folders), lang)
     text = render(env, views.TEMPLATES[type(sheet)] + ".tex.j2", views.context(sheet) | names)
+    return without_gaps(text)
+
+
+def without_gaps(text: str) -> str:
+    """One empty line at most between two others."""
     return re.sub(r"\n{3,}", "\n\n", text)
 
 
 @lru_cache(maxsize=32)
-def _environment(folders: tuple[Path, ...], lang: str) -> Environment:
+def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
     filters: dict[str, Callable[..., str]] = {
         "markup": lambda text: to_latex_markup(text, lang),
         "inline": lambda text: re.sub(r"\n\n+", r" \\newline ", to_latex_markup(text, lang)),

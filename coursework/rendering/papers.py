@@ -16,7 +16,7 @@ from markupsafe import Markup
 from coursework.errors import BadInput
 from coursework.language.numbers import localise
 from coursework.language.words import words
-from coursework.rendering import html, pdf, views
+from coursework.rendering import html, latex, pdf, views
 from coursework.rendering.environment import render
 from coursework.sheets.paper import FeedbackPaper, Logo, Paper, SolutionPaper
 from coursework.sheets.sheet import AnswerSheet, FeedbackSheet
@@ -32,7 +32,8 @@ _LINE = 75  #: characters of a footer that leave room for a student's name
 #: Height of an exercise's heading with its first question, of a line of text, and letters in one, roughly.
 _HEAD_MM, _LINE_MM, _LETTERS = 40, 5.5, 95
 
-Body: TypeAlias = Callable[[str, Mapping[str, object]], str]  #: renders a template with these names
+Names: TypeAlias = Mapping[str, object]
+Body: TypeAlias = Callable[[str, Names], str]  #: renders a template with these names
 
 
 def sheets_of(paper: AnyPaper) -> tuple[views.Sheet, ...]:
@@ -54,10 +55,13 @@ def points_of(paper: AnyPaper) -> float:
     return sum(views.handout_of(sheet).points for sheet in sheets_of(paper))
 
 
-def context(paper: AnyPaper, end: str, write: Body) -> dict[str, Any]:
-    """The names that a paper's template sees; ``end`` is that of the templates' names, ``typ.j2``."""
+def context(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] = ()) -> dict[str, Any]:
+    """The names that a paper's template sees.
+
+    ``end`` is that of the templates' names, ``typ.j2``; ``files`` are names that each exercise's template sees besides.
+    """
     heading, kind = paper.heading, _KINDS[type(paper)]
-    exercises = exercises_of(paper, end, write)
+    exercises = exercises_of(paper, end, write, files)
     return {
         "heading": heading,
         "kind": kind,
@@ -78,11 +82,11 @@ def context(paper: AnyPaper, end: str, write: Body) -> dict[str, Any]:
     }
 
 
-def exercises_of(paper: AnyPaper, end: str, write: Body) -> list[dict[str, Any]]:
+def exercises_of(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] = ()) -> list[dict[str, Any]]:
     """What each exercise's sheet would show, its body, and of a solution its rows of the marking guide."""
     found = []
     for place, sheet in enumerate(sheets_of(paper), 1):
-        names: dict[str, Any] = views.context(sheet, place)
+        names: dict[str, Any] = views.context(sheet, place) | dict(files[place - 1] if files else {})
         names["start_mm"] = _start_mm(sheet)
         names["body"] = Markup(write(f"{BODIES[type(paper)]}.{end}", names))
         if isinstance(paper, SolutionPaper):
@@ -161,6 +165,25 @@ def page(folders: Sequence[Path], paper: AnyPaper, size: str = "a4") -> str:
 def _image(logo: Logo) -> Markup:
     data = base64.b64encode(logo_svg(logo).encode()).decode()
     return Markup(f'<img class="logo" src="data:image/svg+xml;base64,{data}" alt="{escape(logo.alt)}">')
+
+
+def tex(
+    folders: Sequence[Path],
+    paper: Paper | SolutionPaper,
+    size: str,
+    figures: Sequence[str],
+    polygons: Sequence[str] = (),
+) -> str:
+    """The LaTeX source of a paper; beside it are the PDF of each exercise's figure and that of its polygons."""
+    env, lang = latex.environment_of(tuple(folders), paper.heading.lang), paper.heading.lang
+    drawn = polygons or ["polygons.pdf"] * len(figures)
+    files = [{"figure_file": one, "polygons_file": two} for one, two in zip(figures, drawn, strict=True)]
+    names = context(paper, "tex.j2", partial(render, env), files) | {
+        "paper": size,
+        "figure_file": ", ".join(figures),
+        "babel": latex.BABEL.get(lang, lang),
+    }
+    return latex.without_gaps(render(env, f"{TEMPLATES[type(paper)]}.tex.j2", names))
 
 
 def typst_source(folders: Sequence[Path], papers: Sequence[AnyPaper], size: str = "a4") -> str:

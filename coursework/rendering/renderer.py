@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from coursework.motion.animation import Animation
     from coursework.polygons.construction import Construction
     from coursework.rendering.papers import AnyPaper
-    from coursework.sheets.paper import Paper
+    from coursework.sheets.paper import Paper, SolutionPaper
     from coursework.sheets.report import Report
     from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout, StudySheet
 
@@ -132,6 +132,17 @@ class Renderer:
         from coursework.rendering import papers
 
         return papers.page(self.template_folders, paper, self.paper)
+
+    def paper_tex(
+        self, paper: Paper | SolutionPaper, figures: Sequence[str], polygons: Sequence[str] = ()
+    ) -> str:
+        """A paper or its solutions as LaTeX source for pdflatex.
+
+        ``figures`` names the PDF file of each exercise's figure, ``polygons`` that of its polygons.
+        """
+        from coursework.rendering import papers
+
+        return papers.tex(self.template_folders, paper, self.paper, figures, polygons)
 
     def paper_notebook(self, paper: Paper) -> str:
         """A paper as a notebook to hand in (JSON, nbformat 4.5): an answers cell an exercise, and nothing that checks."""

@@ -300,3 +300,15 @@ def test_a_logo_is_a_picture_told_in_words(data, form):
 def test_a_logo_of_another_format_is_refused(data, form):
     with pytest.raises(BadInput, match=r"logo is no (PNG|SVG)"):
         RENDERER.paper_pdf(paper(replace(heading("en"), logo=Logo(data, form, ALT["en"])), NAMES[:1]))
+
+
+@every_language
+def test_latex_of_a_paper_names_its_figures_and_closes_what_it_opens(lang):
+    files = [f"{place}.figure.pdf" for place in range(3)]
+    for made in (paper(heading(lang, cover=True)), paper(bare(lang)), solution(heading(lang))):
+        source = RENDERER.paper_tex(made, files)
+        assert all(source.count(f"{{{name}}}") == 1 for name in files)
+        assert source.count("\\begin{") == source.count("\\end{")
+        assert source.count("{") - source.count("\\{") == source.count("}") - source.count("\\}")
+        assert f"/~{full_points():g} points" in source or f"({full_points():g} points)" in source
+        assert "2.3" in source
