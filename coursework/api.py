@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from coursework.course import variant as numbers
 from coursework.course.course import Course, opened
+from coursework.course.folder import UNTOLD
 
 if TYPE_CHECKING:
     from coursework.marking.mark import Marking
@@ -31,7 +32,7 @@ def study(
     exercise: str,
     *,
     seed: int = 0,
-    lang: str = "fr",
+    lang: str | None = None,
     course: str | Path | None = None,
     version: int | None = None,
     folder: str | Path = ".",
@@ -45,7 +46,7 @@ def study(
     seed
         Which variant.
     lang
-        Language of all that is said.
+        Language of all that is said; the course's own unless told.
     course
         The course's folder, or its name, looked for beside and above where the notebook is; the built-in
         course unless told.
@@ -65,7 +66,8 @@ def study(
     """
     from coursework.selfstudy.session import course_folder, open_session
 
-    chosen = open_course(course_folder(course, lang))
+    chosen = open_course(course_folder(course, lang or UNTOLD))
+    lang = chosen.folder.language if lang is None else lang
     return open_session(chosen, exercise, seed=seed, lang=lang, named=course, version=version, folder=folder)
 
 

@@ -17,6 +17,16 @@ def kept(tmp_path_factory):
         yield folder / "coursework"
 
 
+@pytest.fixture(scope="session", autouse=True)
+def no_language_around():
+    """No test depends on the language of the machine; those of the environment's say one."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name in ("LC_ALL", "LC_MESSAGES", "LANG"):
+            patch.delenv(name, raising=False)
+        patch.setenv("LANG", "C.UTF-8")
+        yield
+
+
 @pytest.fixture(scope="session")
 def course():
     return coursework.open_course()

@@ -30,7 +30,7 @@ from coursework.course.course import Course, opened
 from coursework.course.exercise import ALL, CourseExercise, refuse_complex
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starved, nearest
-from coursework.language.words import file_of, languages, words
+from coursework.language.words import file_of, words
 from coursework.making.flaws import conditioning, worthy
 from coursework.making.issuing import distinct_variants
 from coursework.model import Part
@@ -180,7 +180,7 @@ def check_texts(exercise: CourseExercise, report: Report) -> None:
             f"{path.relative_to(exercise.folder.root).as_posix()} is read by nothing: the engine speaks no {lang!r}, "
             f"whose words would be {file_of(lang)}"
         )
-    for lang in languages():
+    for lang in exercise.folder.languages:
         words(lang)  # a file of words that cannot be used says so here
         if lang not in exercise.languages:
             report.fail(

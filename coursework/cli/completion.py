@@ -23,7 +23,10 @@ def exercises(context: click.Context, parameter: click.Parameter, begun: str) ->
 
 
 def languages(context: click.Context, parameter: click.Parameter, begun: str) -> list[str]:
-    """The languages that the engine speaks."""
-    from coursework.language.words import languages as spoken
+    """The languages that the course speaks; none where there is no course."""
+    from coursework.course.folder import course_folder
 
-    return [lang for lang in spoken() if lang.startswith(begun)]
+    with suppress(CourseworkError):
+        spoken = course_folder(context.find_root().params.get("folder")).languages
+        return [lang for lang in sorted(spoken) if lang.startswith(begun)]
+    return []

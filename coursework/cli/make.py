@@ -11,6 +11,7 @@ import click
 
 from coursework.cli.assignments import build_assignment, is_assignment
 from coursework.cli.options import (
+    UNLESS_TOLD,
     Lists,
     Whole,
     decimal_option,
@@ -24,6 +25,7 @@ from coursework.cli.options import (
     replace_option,
     seed_option,
     split_list,
+    spoken,
     tell,
     unknown_language,
 )
@@ -86,7 +88,11 @@ def _spare(paths: Sequence[Path], overwrite: bool) -> None:
 @exercises_argument
 @seed_option
 @click.option(
-    "--lang", "langs", type=Lists(known_languages, unknown_language), default="fr", show_default=True
+    "--lang",
+    "langs",
+    type=Lists(known_languages, unknown_language),
+    callback=spoken,
+    help=f"Languages of the notebooks: fr, en, or both as fr,en; unless told, {UNLESS_TOLD}.",
 )
 @click.option(
     "--out",
@@ -143,9 +149,9 @@ def notebook(
     "--lang",
     "langs",
     type=Lists(known_languages, unknown_language),
-    default="fr",
-    show_default=True,
-    help="Languages of the sheets: fr, en, or both as fr,en. A student whose roster line says lang has that one.",
+    callback=spoken,
+    help="Languages of the sheets: fr, en, or both as fr,en. A student whose roster line says lang has that one. "
+    f"Unless told, {UNLESS_TOLD}.",
 )
 @parts_option
 @click.option("--practice", is_flag=True, help="Self-study notebooks, which check answers.")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -114,11 +115,30 @@ def known_formats() -> tuple[str, ...]:
 
 
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
+
+
+def spoken(context: click.Context, parameter: click.Parameter, told: Any) -> Any:
+    """The language, or the languages, that are told; else the environment's where the course speaks it, else the course's."""
+    from coursework.course.folder import course_folder
+    from coursework.language.environment import language_of
+
+    if context.resilient_parsing:
+        return told
+    folder = course_folder(context.obj)
+    for lang in [told] if isinstance(told, str) else told or ():
+        folder.check_speaks(lang)
+    if told:
+        return told
+    around = language_of(os.environ)
+    lang = around if around in folder.languages else folder.language
+    return (lang,) if isinstance(parameter.type, Lists) else lang
+
+
+UNLESS_TOLD = "that of the environment (LANG) where the course speaks it, else the course's"
 lang_option = click.option(
     "--lang",
-    default="fr",
-    show_default=True,
-    help="Language of the sheet.",
+    callback=spoken,
+    help=f"Language of the sheet; unless told, {UNLESS_TOLD}.",
     shell_complete=completion.languages,
 )
 decimal_option = click.option(

@@ -236,8 +236,8 @@ class CourseExercise(Generic[V]):
 
     # ----------------------------------------------------------------- variants
 
-    def variant(self, seed: int, lang: str = "fr", parts: Sequence[str] | None = None) -> V:
-        """The variant of a seed: the same for ever for this exercise and version.
+    def variant(self, seed: int, lang: str | None = None, parts: Sequence[str] | None = None) -> V:
+        """The variant of a seed: the same for ever for this exercise and version; in the course's language unless told.
 
         ``parts`` are the ids of those that it asks; ``usual`` stands for those that are asked unless told, ``all``
         for every one.
@@ -253,8 +253,11 @@ class CourseExercise(Generic[V]):
         """
         return self.variants([seed], lang, parts)[0]
 
-    def variants(self, seeds: Iterable[int], lang: str = "fr", parts: Sequence[str] | None = None) -> list[V]:
+    def variants(
+        self, seeds: Iterable[int], lang: str | None = None, parts: Sequence[str] | None = None
+    ) -> list[V]:
         """The variants of many seeds, drawn together."""
+        lang = self.folder.language if lang is None else lang
         chosen = self.chosen_parts(parts)
         seeds = list(seeds)
         for seed in seeds:
@@ -324,7 +327,7 @@ class CourseExercise(Generic[V]):
 
     @property
     def languages(self) -> tuple[str, ...]:
-        """The languages that this exercise has a statement in, among those the engine speaks."""
+        """The languages that this exercise has a statement in, among those that its course speaks."""
         return self.texts.languages
 
     def title(self, lang: str) -> str:

@@ -17,10 +17,13 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from coursework.course.builtin import builtin_root
-from coursework.errors import BadCourse, CourseworkError
+from coursework.errors import BadCourse, BadInput, CourseworkError
+from coursework.language.words import languages, no_language
 
 if TYPE_CHECKING:
     from coursework.course.marking_rules import Rules
+
+UNTOLD = "fr"  #: the language of a course that states none, where nobody says another
 
 _packages = itertools.count()
 
@@ -167,6 +170,46 @@ class Folder:
             raise BadCourse(f"{path}: {fault}") from fault
 
     @cached_property
+    def languages(self) -> tuple[str, ...]:
+        """The languages that the course speaks, its own first: those that it states, else every one of the engine.
+
+        Raises
+        ------
+        BadCourse
+            What it states is no list of languages that the engine speaks.
+        """
+        spoken = languages()
+        stated = self.settings.get("languages")
+        if stated is None:
+            return tuple(sorted(spoken, key=lambda lang: lang != UNTOLD))
+        is_list = isinstance(stated, list) and stated and all(isinstance(lang, str) for lang in stated)
+        if not is_list or len(set(stated)) < len(stated):
+            raise BadCourse(f'{self._settings_file}: write languages = ["en"], each once; found {stated!r}')
+        for lang in stated:
+            if lang not in spoken:
+                raise BadCourse(f"{self._settings_file}: languages: {no_language(lang)}")
+        return tuple(stated)
+
+    @property
+    def language(self) -> str:
+        """The language of what nobody says the language of."""
+        return self.languages[0]
+
+    def check_speaks(self, lang: str) -> None:
+        """Stop at a language that the course does not speak, though the engine does.
+
+        Raises
+        ------
+        BadInput
+            Says which ones it speaks.
+        """
+        if lang in languages() and lang not in self.languages:
+            raise BadInput(
+                f"{self.label} does not speak {lang!r}; it speaks {', '.join(self.languages)}: "
+                f"languages = … in {self.relative(self._settings_file)}"
+            )
+
+    @cached_property
     def rules(self) -> Rules:
         """How the course marks."""
         from coursework.course.marking_rules import Rules
@@ -184,6 +227,8 @@ class Folder:
 
     def _titles(self, lang: str) -> Mapping[str, Any]:
         titles = self.settings.get("title", {})
+        if isinstance(titles, str) and len(self.languages) == 1:
+            return {self.language: titles}
         if not isinstance(titles, dict):
             raise BadCourse(f'{self._settings_file}: write [title], then {lang} = "…"')
         return titles

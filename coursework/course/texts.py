@@ -282,8 +282,9 @@ class ExerciseTexts:
 
     @cached_property
     def languages(self) -> tuple[str, ...]:
-        """The languages that the exercise has a statement in, among those the engine speaks."""
-        return tuple(lang for lang in languages() if self.file("exercises", lang).exists())
+        """The languages that the exercise has a statement in, among those that the course speaks."""
+        spoken = sorted(self.folder.languages)
+        return tuple(lang for lang in spoken if self.file("exercises", lang).exists())
 
     def file(self, kind: str, lang: str) -> Path:
         """Where a text stands, or would stand."""
@@ -311,9 +312,12 @@ class ExerciseTexts:
 
         Raises
         ------
+        BadInput
+            The course does not speak the language.
         BadCourse
             The exercise has none in this language.
         """
+        self.folder.check_speaks(lang)
         path = self.file(kind, lang)
         source = self.folder.relative(path)
         if not path.exists() and kind == "solutions":
