@@ -303,3 +303,31 @@ def test_pieces_of_texts_of_any_length_are_put_together():
     found = joined(lambda place: {"text": texts[place.start // 2], "one": 5.0}, places, 8)
     assert found["text"].tolist() == ["a", "bb", "cccc", "cccc", "d", "e", "fffffff", ""]
     assert found["one"] == 5.0
+
+
+def test_rounding_moves_each_entry_of_a_matrix_alone():
+    from coursework.quantities.columns import matrix
+    from coursework.quantities.rounding import envelope, half_step
+
+    graph = Graph({"p": lambda x: x / 3, "M": lambda p: matrix([p, 0 * p], [7 * p, 2 * p])})
+
+    def by_hand(x):
+        p = x / 3
+        entries = [p, 7 * p, 2 * p]
+        return 1.1 * (np.linalg.norm([1, 7, 2]) * half_step(p, 3) + sum(half_step(e, 3) for e in entries))
+
+    alone = [float(envelope(graph, ("M",), {"x": x}, (), 3)["M"][0]) for x in (10.0, 47.0, 95.0)]
+    together = envelope(graph, ("M",), {"x": np.array([10.0, 47.0, 95.0])}, (), 3)["M"]
+    assert alone == pytest.approx([by_hand(x) for x in (10.0, 47.0, 95.0)])
+    assert together == pytest.approx(alone)
+
+
+def test_a_matrix_that_never_changes_is_whole_for_each_variant_and_not_moved():
+    from coursework.course.key_batch import _rows
+    from coursework.quantities.rounding import envelope
+
+    graph = Graph({"E": lambda: np.array([[1.5, 2.0], [0.0, 1.0]]), "y": lambda x: x + 1})
+    given = {"x": np.array([1.0, 2.0])}
+    found = graph.evaluate(("E", "y"), given)
+    assert all(np.array_equal(one, found["E"]) for one in _rows(found, 2, {"E": 2})["E"])
+    assert envelope(graph, ("E",), given, (), 3)["E"].tolist() == [0, 0]
