@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 
 import click
 
-from coursework.cli.options import DONE, FOUND, Whole, exercise_names, exercises_argument, json_option, opened
+from coursework.cli import completion
+from coursework.cli.options import (
+    DONE,
+    FOUND,
+    Lists,
+    Whole,
+    exercise_names,
+    exercises_argument,
+    json_option,
+    known_languages,
+    opened,
+    unknown_language,
+)
 from coursework.cli.printing import print_json, print_note, print_table, progress_bar
 from coursework.errors import BadInput
 
@@ -49,20 +62,61 @@ def check(context: click.Context, exercises: Sequence[str], count: int, as_json:
 @click.argument("folder", type=click.Path(path_type=Path, file_okay=False))
 @click.argument("exercise", required=False)
 @click.argument("asked", nargs=-1)
+@click.option(
+    "--from",
+    "source",
+    metavar="EXERCISE",
+    shell_complete=completion.exercises,
+    help="Copy this exercise of the course (the built-in one unless --course says another) with all that it needs.",
+)
+@click.option(
+    "--as", "renamed", metavar="NAME", help="What the copy is called; as what it is copied from unless told."
+)
+@click.option(
+    "--lang",
+    "langs",
+    type=Lists(known_languages, unknown_language),
+    help="Languages of a new course; unless told, that of the environment (LANG), else all.",
+)
 @click.pass_context
-def new(context: click.Context, folder: Path, exercise: str | None, asked: Sequence[str]) -> None:
-    """Write a working course folder, or a working exercise in one; or an assignment of exercises:
-    new assignment FILE.toml EXERCISE…"""
-    from coursework.authoring.scaffold import new_course, new_exercise
+def new(
+    context: click.Context,
+    folder: Path,
+    exercise: str | None,
+    source: str | None,
+    renamed: str | None,
+    langs: Sequence[str] | None,
+    asked: Sequence[str],
+) -> None:
+    """Write a working course folder, a working exercise in one, or a copy of an exercise to be changed; or an
+    assignment of exercises: new assignment FILE.toml EXERCISE…"""
+    from coursework.authoring.scaffold import languages_around, new_course, new_exercise
 
     if str(folder) == "assignment" and exercise is not None and exercise.endswith(".toml"):
         _new_assignment(context, Path(exercise), asked)
         return
     if asked:
         raise BadInput(f"one exercise at a time: coursework new {folder} {exercise}")
-    made = new_exercise(folder, exercise) if exercise else new_course(folder)
+    if (folder / "exercises").is_dir() and langs:
+        raise BadInput(
+            f"{folder} is a course already, and its own course.toml says its languages; leave --lang out"
+        )
+    if source is None and renamed is not None:
+        raise BadInput("--as names a copy; say of which exercise: --from EXERCISE")
+    if source is not None and exercise is not None:
+        raise BadInput(f"a copy is called by --as: coursework new {folder} --from {source} --as {exercise}")
+    spoken = langs or languages_around(os.environ)
+    there: list[Path] = []
+    if source is not None:
+        made, there = _copied(context, folder, source, renamed or source, spoken)
+    elif exercise is not None:
+        made = new_exercise(folder, exercise, spoken)
+    else:
+        made = new_course(folder, spoken)
     for path in made:
         click.echo(f"wrote {path}")
+    for path in there:
+        click.echo(f"{path} is there already, the same")
     click.echo(f"try: coursework --course {folder} check")
 
 
@@ -75,3 +129,12 @@ def _new_assignment(context: click.Context, path: Path, asked: Sequence[str]) ->
     own = f"--course {context.obj} " if context.obj else ""
     click.echo(f"wrote {made}")
     click.echo(f"try: coursework {own}build {made}")
+
+
+def _copied(
+    context: click.Context, folder: Path, source: str, renamed: str, langs: Sequence[str]
+) -> tuple[list[Path], list[Path]]:
+    from coursework.authoring.copying import copy_exercise
+    from coursework.course.folder import course_folder
+
+    return copy_exercise(course_folder(context.obj), source, folder, renamed, langs)

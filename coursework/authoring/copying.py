@@ -1,0 +1,222 @@
+"""A copy of an exercise with all that it needs: modules that it imports, texts that it includes, files that it reads."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Collection, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from coursework.authoring.scaffold import check_name, course_files
+from coursework.course.builtin import builtin_root
+from coursework.course.folder import Folder, course_folder
+from coursework.errors import BadCourse, BadInput, counted, unknown
+from coursework.system.writing import write_whole
+
+_KINDS = ("exercises", "solutions")
+_NO_COPIES = ("__pycache__", ".pyc")
+_TEXT = re.compile(r".*\.([a-z]{2,3})\.md\.j2")
+_PICTURE = re.compile(r"!\[[^\]]*\]\(([^)\s]+)\)")
+
+
+class Copied(NamedTuple):
+    """What became of a copy: files written, and files that were there already, the same."""
+
+    written: list[Path]
+    there: list[Path]
+
+
+def copy_exercise(source: Folder, name: str, target: Path, renamed: str, langs: Collection[str]) -> Copied:
+    """Copy an exercise of a course into a course folder, which is made if need be; nothing there is replaced.
+
+    Files keep their places in topics, so that imports keep working. A module of another exercise that this one imports
+    is copied as a shared one, its name after an underscore. ``langs`` are the languages of a folder that is made.
+
+    Raises
+    ------
+    UnknownName
+        There is no such exercise.
+    BadInput
+        The new name cannot be a module's or is taken, a file of another content stands in the way, or no text is in a
+        language of the course.
+    """
+    if name not in source.names:
+        raise unknown("exercise", name, source.names, source.label)
+    check_name(renamed)
+    is_course = (target / "exercises").is_dir()
+    spoken = course_folder(target).languages if is_course else langs
+    if is_course and (home := course_folder(target).home("exercises", renamed)):
+        raise BadInput(f"{home} exists already; name the copy otherwise: --as NAME")
+    if not set(spoken) & source.texts("exercises", name).keys():
+        have = ", ".join(source.texts("exercises", name))
+        raise BadInput(f"{name} has no text in {' or '.join(spoken)}, which {target} speaks; it has {have}")
+    files = {target / path: content for path, content in _Copy(source, name, renamed, spoken).files().items()}
+    there = [path for path in files if path.exists()]
+    for path in there:
+        if path.read_bytes() != files[path]:
+            more = f" (and {counted(len(there) - 1, 'file')} more)" if len(there) > 1 else ""
+            raise BadInput(
+                f"{path}{more} exists already, with other content than {name} needs; copy it into another folder"
+            )
+    made = {} if is_course else course_files(target, langs)
+    written = [path for path in (*made, *files) if path not in there]
+    for path in written:
+        write_whole(path, files[path] if path in files else made[path])
+    if not is_course:
+        (target / "templates").mkdir(parents=True, exist_ok=True)
+    return Copied(written, there)
+
+
+class _Copy:
+    """The files of a copy, by where they go."""
+
+    def __init__(self, source: Folder, name: str, renamed: str, langs: Collection[str]):
+        self.source, self.name, self.renamed, self.langs = source, name, renamed, langs
+        self._met: dict[Path, None] = {}
+
+    def files(self) -> dict[Path, bytes]:
+        """Contents by path from the course's folder."""
+        waiting = [path for kind in _KINDS for path in self._own(kind)]
+        while waiting:
+            path = waiting.pop()
+            if path not in self._met:
+                self._met[path] = None
+                waiting += self._needed(path)
+        return {self._place(path): self._content(path) for path in sorted(self._met)}
+
+    # --------------------------------------------------------------------- found
+
+    def _folder(self, kind: str) -> Path | None:
+        """The folder that bears the exercise's name, or would; none where it has no module of the kind."""
+        home = self.source.home(kind, self.name) if kind in _KINDS else None
+        if home is None:
+            return None
+        return home.parent if home.name == "__init__.py" else home.parent / self.name
+
+    def _own(self, kind: str) -> Iterator[Path]:
+        """What bears the name of the exercise: its module, its texts, data beside them, and a folder of its name."""
+        folder = self._folder(kind)
+        if folder is None:
+            return
+        for path in (*folder.parent.glob(f"{self.name}.*"), *folder.rglob("*")):
+            text = _TEXT.fullmatch(path.name)
+            is_copied = not any(part.endswith(_NO_COPIES) for part in path.parts)
+            if path.is_file() and is_copied and (text is None or text[1] in self.langs):
+                yield path
+
+    def _needed(self, path: Path) -> list[Path]:
+        """What a file names: modules, texts, data and pictures of the course."""
+        if path.suffix == ".py":
+            tree = _parsed(path)
+            found = [*_imported(tree, path), *_named(tree, path)]
+            return found + [other for each in found for other in self._beside(each)]
+        if path.name.endswith(".md.j2"):
+            return [*self._included(path), *self._pictures(path)]
+        return []
+
+    def _beside(self, path: Path) -> list[Path]:
+        """The data that stand beside the module of another exercise; its texts are not asked for."""
+        if not self._is_of_another(path):
+            return []
+        return [p for p in path.parent.glob(f"{path.stem}.*") if not p.name.endswith((".j2", *_NO_COPIES))]
+
+    def _is_of_another(self, path: Path) -> bool:
+        name, kind = path.name.partition(".")[0], path.relative_to(self.source.root).parts[0]
+        home = self.source.home(kind, name) if kind in _KINDS and name != self.name else None
+        return home is not None and home == path.with_name(f"{name}.py")
+
+    def _included(self, path: Path) -> list[Path]:
+        import jinja2
+        from jinja2 import meta
+
+        kind = path.relative_to(self.source.root).parts[0]
+        try:
+            names = list(
+                meta.find_referenced_templates(jinja2.Environment().parse(path.read_text("utf-8-sig")))
+            )
+        except jinja2.TemplateSyntaxError as fault:
+            raise BadCourse(f"{self.source.relative(path)}, line {fault.lineno}: {fault.message}") from fault
+        folders = (path.parent, self.source.root / kind, *self.source.template_folders)
+        found = [next((f / name for f in folders if (f / name).is_file()), None) for name in names if name]
+        brought = builtin_root().resolve() / "templates"  # every course has these
+        return [file for file in found if file is not None and brought not in file.parents]
+
+    def _pictures(self, path: Path) -> list[Path]:
+        named = _PICTURE.findall(path.read_text("utf-8-sig"))
+        return [path.parent / name for name in named if (path.parent / name).is_file()]
+
+    # -------------------------------------------------------------------- written
+
+    def _place(self, path: Path) -> Path:
+        """Where a file goes: under the new name if it is the exercise's own, as a shared one if it is another's."""
+        relative = path.relative_to(self.source.root)
+        folder = self._folder(relative.parts[0])
+        if folder is not None and folder in path.parents:
+            return folder.relative_to(self.source.root).with_name(self.renamed) / path.relative_to(folder)
+        if folder is not None and folder.parent == path.parent and path.name.partition(".")[0] == self.name:
+            return relative.with_name(self.renamed + path.name[len(self.name) :])
+        return relative.with_name(f"_{path.name}") if self._is_of_another(path) else relative
+
+    def _content(self, path: Path) -> bytes:
+        content = path.read_bytes()
+        if path.suffix not in (".py", ".toml", ".j2"):
+            return content
+        text = content.decode("utf-8-sig")
+        if path.suffix == ".py":
+            text = self._with_imports(text, path)
+        # A file is named by what follows its stem: vocabulary.toml, vocabulary.*.md.j2.
+        own = rf"(?<![\w./]){re.escape(self.name)}(?=\.(?:[\w*]+\.)*(?:md\.j2|toml|csv|json|svg|png|py)\b)"
+        return re.sub(own, self.renamed, text).encode("utf-8")
+
+    def _with_imports(self, text: str, path: Path) -> str:
+        """A module that imports what was renamed by its new name."""
+        lines = text.splitlines(keepends=True)
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.ImportFrom) and node.level:
+                for module in _modules(node, path):
+                    old, new = module.stem, self._place(module).stem
+                    if module in self._met and old != new:
+                        _rename(lines, node, old, new)
+        return "".join(lines)
+
+
+def _rename(lines: list[str], node: ast.ImportFrom, old: str, new: str) -> None:
+    """Write an import of a module by its new name; the code behind it goes on with the old one."""
+    first, last = node.lineno - 1, node.end_lineno or node.lineno
+    if (node.module or "").endswith(old):
+        lines[first] = re.sub(rf"(from\s+[\w.]*\.){old}(?=\s+import)", rf"\g<1>{new}", lines[first], count=1)
+        return
+    for k in range(first, last):
+        lines[k] = re.sub(rf"(?<![\w.]){old}(?!\w|\s+as\b)", f"{new} as {old}", lines[k])
+
+
+def _parsed(path: Path) -> ast.Module:
+    try:
+        return ast.parse(path.read_text("utf-8-sig"))
+    except SyntaxError as fault:
+        raise BadCourse(f"{path}, line {fault.lineno}: {fault.msg}") from fault
+
+
+def _imported(tree: ast.Module, path: Path) -> Iterator[Path]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            yield from _modules(node, path)
+
+
+def _modules(node: ast.ImportFrom, path: Path) -> Iterator[Path]:
+    """The files of the modules that a relative import names."""
+    folder = path.parents[node.level - 1]
+    place = folder.joinpath(*(node.module or "").split(".")) if node.module else folder
+    names = [place] if node.module else []
+    for name in (*names, *(place / alias.name for alias in node.names)):
+        yield from (p for p in (name.with_name(f"{name.name}.py"), name / "__init__.py") if p.is_file())
+
+
+def _named(tree: ast.Module, path: Path) -> Iterator[Path]:
+    """The files beside a module that it names in a text: ``"loads.csv"``."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            name = node.value
+            if re.fullmatch(r"[\w ./-]{1,120}\.\w{1,8}", name) and (path.parent / name).is_file():
+                yield path.parent / name
