@@ -1,4 +1,4 @@
-"""Answers in notebooks: one cell that holds a literal, read and never run."""
+"""Answers in notebooks: cells that hold a literal, read and never run; one an exercise."""
 
 from __future__ import annotations
 
@@ -36,6 +36,9 @@ def read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
     if not isinstance(about, dict) or not isinstance(cells, list):
         yield Rejected(source, "not a notebook of ours: its metadata names no exercise")
         return
+    if isinstance(about.get("sheets"), list):
+        yield from _read_paper(about, [c for c in cells if isinstance(c, dict)], source, warning)
+        return
     tagged = [c for c in cells if isinstance(c, dict) and "answers" in _tags(c)]
     if len(tagged) != 1:
         found = "\n".join(_code(c) for c in cells if isinstance(c, dict) and c.get("cell_type") == "code")
@@ -49,6 +52,72 @@ def read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
         return
     about, warning = _with_name(about, answers, source, warning)
     yield from sheet_rows(about, answers, source, warning)
+
+
+# ------------------------------------------------------------------------ paper
+
+
+def _read_paper(
+    about: dict[str, Any], cells: list[dict[str, Any]], source: str, warning: str
+) -> Iterator[Row | Rejected]:
+    """A notebook of several exercises: an answers cell each, which says whose answers it holds."""
+    sheets = [
+        (name_in(s.get("exercise")), name_in(s.get("seed"))) for s in about["sheets"] if isinstance(s, dict)
+    ]
+    tagged = [cell for cell in cells if "answers" in _tags(cell)]
+    read = [(_sheet_of(cell, sheets), literal_answers(_code(cell)), _code(cell)) for cell in tagged]
+    name, warning = _name_in_paper(about, [found for _, found, _ in read], source, warning)
+    for (exercise, seed), found, code in read:
+        own = {"student": name, "exercise": exercise, "seed": seed, "lang": about.get("lang")}
+        place = f"{source}, {exercise}" if exercise else source
+        if isinstance(found, str):
+            yield Rejected(place, found, _about(own, source) | {"answer": code[:200]})
+        elif not exercise:
+            which = (
+                f"which exercise an answers cell is of cannot be told: write {_example(sheets)} after its {{"
+            )
+            yield Rejected(place, which, _about(own, source) | {"answer": code[:200]})
+        else:
+            yield from sheet_rows(own, found, place, warning)
+    there = {sheet for sheet, _, _ in read}
+    for exercise, seed in sheets:
+        if (exercise, seed) not in there:
+            own = {"student": name, "exercise": exercise, "seed": seed}
+            code = "\n".join(_code(c) for c in cells if c.get("cell_type") == "code" and c not in tagged)
+            reason = f"no cell tagged 'answers' is of {exercise}, seed {seed}"
+            yield Rejected(
+                f"{source}, {exercise}", reason, _about(own, source) | {"answer": code.strip()[:200]}
+            )
+    if not sheets and not tagged:
+        yield Rejected(source, "the notebook holds no answers", _about({"student": name}, source))
+
+
+_OF = re.compile(r"#[ \t]*(\w+)[ \t]+([0-9]{1,30})[ \t]*$", re.MULTILINE)
+
+
+def _sheet_of(cell: dict[str, Any], sheets: list[tuple[str, str]]) -> tuple[str, str]:
+    """Exercise and seed of an answers cell: by its metadata, else by the comment at its head, else the only ones."""
+    metadata = cell.get("metadata")
+    own = metadata.get("coursework") if isinstance(metadata, dict) else None
+    if isinstance(own, dict) and name_in(own.get("exercise")):
+        return name_in(own["exercise"]), name_in(own.get("seed"))
+    for told in _OF.findall(re.sub(r"\r\n?", "\n", _code(cell))):
+        if told in sheets:
+            return told
+    return sheets[0] if len(sheets) == 1 else ("", "")
+
+
+def _example(sheets: list[tuple[str, str]]) -> str:
+    return "# " + " ".join(sheets[0]) if sheets else "# EXERCISE SEED"
+
+
+def _name_in_paper(
+    about: dict[str, Any], read: list[dict[Any, Any] | str], source: str, warning: str
+) -> tuple[str, str]:
+    """Whose notebook it is; the name may stand in any of the cells."""
+    written = [name_in(answers.pop("student", None)) for answers in read if isinstance(answers, dict)]
+    named, warning = _with_name(about, {"student": next(filter(None, written), None)}, source, warning)
+    return name_in(named.get("student")), warning
 
 
 def _with_name(
