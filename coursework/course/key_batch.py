@@ -13,6 +13,7 @@ import numpy as np
 from coursework.course.answer_key import Key, envelopes, exists, with_other_cases
 from coursework.course.asked import Asked
 from coursework.course.exercise import CourseExercise
+from coursework.course.marking_rules import Rules
 from coursework.errors import CourseworkError
 from coursework.quantities.graph import plain_scalar
 
@@ -25,15 +26,17 @@ class Keyed(Asked, Protocol):
     key: Key
 
 
-def keys_of(exercise: CourseExercise[Any], variants: Sequence[Keyed]) -> Batch:
-    """Give many variants of one exercise keys that are computed together.
+def keys_of(exercise: CourseExercise[Any], variants: Sequence[Keyed], rules: Rules | None = None) -> Batch:
+    """Give many variants of one exercise keys that are computed together; they mark by the course's rules unless told.
 
     A variant that has some quantity that does not exist keeps a key of its own, which says why.
     """
-    batch = Batch(exercise, variants)
+    batch = Batch(exercise, variants, rules)
     for index, variant in enumerate(variants):
         if batch.is_whole(index, variant.asked_quantities):
             variant.key = _KeyOfBatch(variant, batch, index)
+        elif rules is not None:
+            variant.key = Key(variant, rules)
     return batch
 
 
@@ -43,8 +46,11 @@ class Batch:
     A column is computed when the first variant asks for it.
     """
 
-    def __init__(self, exercise: CourseExercise[Any], variants: Sequence[Keyed]) -> None:
+    def __init__(
+        self, exercise: CourseExercise[Any], variants: Sequence[Keyed], rules: Rules | None = None
+    ) -> None:
         self.exercise = exercise
+        self.rules = exercise.folder.rules if rules is None else rules
         self.count = len(variants)
         names = (n for n in exercise.spec.given if n in exercise.quantity_names)
         self.given = {n: np.array([v.given[n] for v in variants]) for n in names}
@@ -95,8 +101,8 @@ class Batch:
 
     @cached_property
     def envelope(self) -> dict[str, list]:
-        rules, effects = self.exercise.folder.rules, self.exercise.spec.effects
-        return _rows(envelopes(self.exercise, self.quantities, self.given, effects, rules.digits), self.count)
+        effects, digits = self.exercise.spec.effects, self.rules.digits
+        return _rows(envelopes(self.exercise, self.quantities, self.given, effects, digits), self.count)
 
     @cached_property
     def wrong(self) -> dict[str, dict[str, list]]:
@@ -122,7 +128,7 @@ class _KeyOfBatch(Key):
     """The key of one variant among many."""
 
     def __init__(self, variant: Asked, batch: Batch, index: int) -> None:
-        super().__init__(variant)
+        super().__init__(variant, batch.rules)
         self._batch, self._index = batch, index
 
     @cached_property

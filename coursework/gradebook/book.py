@@ -9,28 +9,31 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+from coursework.gradebook.columns import (
+    MARK,
+    SITTING,
+    carried_columns,
+    exercise_columns,
+    identity,
+    own_columns,
+)
+from coursework.gradebook.columns import MARKS_COLUMNS as MARKS_COLUMNS
+from coursework.gradebook.columns import REJECTED_COLUMNS as REJECTED_COLUMNS
+from coursework.gradebook.columns import SUMMARY_COLUMNS as SUMMARY_COLUMNS
+from coursework.gradebook.columns import VERDICTS as VERDICTS
 from coursework.gradebook.graded import Graded
 from coursework.gradebook.rows import Rejected
+from coursework.gradebook.scale import exact, mark_of
 from coursework.making.issued import Issued
+from coursework.making.students import folded
 from coursework.marking.mark import Mark
 
 # ------------------------------------------------------------------------- tables
-
-MARKS_COLUMNS = (
-    "student", "exercise", "seed", "part", "answer", "read_as", "verdict", "points", "out_of", "feedback",
-)  # fmt: skip
-#: Kinds of verdict, in the order of the summary's columns.
-VERDICTS = (
-    "correct", "follow_through", "mistake", "slip", "accepted", "partial", "wrong", "wrong_unit", "missing_unit",
-    "unreadable", "to_mark", "missing",
-)  # fmt: skip
-SUMMARY_COLUMNS = ("student", "points", "out_of", "percent", *VERDICTS)
-REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "reason")
 
 
 def marks_rows(graded: Graded) -> Iterator[dict[str, Any]]:
@@ -48,6 +51,7 @@ def marks_rows(graded: Graded) -> Iterator[dict[str, Any]]:
             "points": f"{line.points:g}",
             "out_of": f"{line.out_of:g}",
             "feedback": line.feedback,
+            SITTING: graded.sitting,
         }
 
 
@@ -65,11 +69,15 @@ class Total:
     out_of: float = 0.0
     answers: int = 0
     verdicts: Counter[str] = field(default_factory=Counter)
+    by_exercise: dict[str, float] = field(default_factory=dict)  #: points of a student's sheets
 
     def add(self, line: Mark) -> None:
         self.points += line.points
         self.out_of += line.out_of
         self.verdicts[line.verdict.partition(":")[0]] += 1
+
+
+Sitting = tuple[str, int]  #: a student, and which time they sit
 
 
 @dataclass
@@ -82,10 +90,12 @@ class Gradebook:
     rejected: list[Rejected] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)  #: of what was accepted by hand, for somebody to mend
-    students: dict[str, Total] = field(default_factory=dict)
+    students: dict[Sitting, Total] = field(default_factory=dict)  #: of sheets that were handed in
     exercises: dict[str, Total] = field(default_factory=dict)  #: of the answers that came
-    handed_in: dict[str, set[str]] = field(default_factory=dict)  #: exercises by student
-    blank: dict[tuple[str, str], set[str]] = field(default_factory=dict)  #: parts by sheet; see ``unread``
+    handed_in: dict[Sitting, set[str]] = field(default_factory=dict)  #: exercises
+    blank: dict[tuple[Sitting, str], set[str]] = field(
+        default_factory=dict
+    )  #: parts by sheet; see ``unread``
     waiting: int = 0  #: answers that wait to be marked by a person
     changes: int = 0  #: marks that differ from those that were there before
 
@@ -95,14 +105,17 @@ class Gradebook:
 
     def add(self, graded: Graded) -> None:
         """Count a sheet: all its parts for the student, its answers for the exercise."""
-        student = self.students.setdefault(graded.student, Total())
+        sitting = graded.student, graded.sitting
+        student = self.students.setdefault(sitting, Total())
         exercise = self.exercises.setdefault(graded.exercise, Total())
-        self.handed_in.setdefault(graded.student, set()).add(graded.exercise)
+        self.handed_in.setdefault(sitting, set()).add(graded.exercise)
         for line in graded.lines.values():
             student.add(line)
+        own = student.by_exercise
+        own[graded.exercise] = own.get(graded.exercise, 0.0) + graded.points
         if graded.student in self._rejected_of:
             blank = {line.part for line in graded.lines.values() if line.verdict == "missing"}
-            self.blank[graded.student, graded.exercise] = blank
+            self.blank[sitting, graded.exercise] = blank
         for part in graded.answered:
             exercise.add(graded.lines[part])
             exercise.answers += 1
@@ -114,27 +127,37 @@ class Gradebook:
         """The students of rejected rows."""
         return frozenset(filter(None, (self.issued.student(r.row.get("student", "")) for r in self.rejected)))
 
-    def unread(self) -> dict[str, dict[tuple[str, int], set[str]]]:
-        """What came in rejected rows alone: by student, the parts of exercise and seed."""
+    def unread(self) -> dict[Sitting, dict[tuple[str, int], set[str]]]:
+        """What came in rejected rows alone: by student and sitting, the parts of exercise and seed."""
         issued = self.issued
-        found: dict[str, dict[tuple[str, int], set[str]]] = {}
+        found: dict[Sitting, dict[tuple[str, int], set[str]]] = {}
         for row in (one.row for one in self.rejected):
             student, exercise = issued.student(row.get("student", "")), row.get("exercise", "")
             if not student or not row.get("answer", "").strip():
                 continue
-            written = row.get("seed", "")
-            seed = int(written) if not issued.has_roster and re.fullmatch("[0-9]{1,30}", written) else -1
-            sheet = exercise, issued.seeds.get((student, exercise), seed)
+            sheet = exercise, self._seed_of(student, exercise, row.get("seed", ""))
             if sheet not in issued.records:
                 continue
+            sitting = student, issued.sitting_of(student, *sheet)
             parts = {str(part["id"]) for part in issued.records[sheet]["parts"]}
             if row.get("part"):
                 parts &= {row["part"]}
-            if exercise in self.handed_in.get(student, ()):
-                parts &= self.blank.get((student, exercise), set())
+            if exercise in self.handed_in.get(sitting, ()):
+                parts &= self.blank.get((sitting, exercise), set())
             if parts:
-                found.setdefault(student, {}).setdefault(sheet, set()).update(parts)
+                found.setdefault(sitting, {}).setdefault(sheet, set()).update(parts)
         return found
+
+    def _seed_of(self, student: str, exercise: str, written: str) -> int:
+        """The variant that a rejected row is of: the student's own, where there is a roster."""
+        issued = self.issued
+        seed = int(written) if re.fullmatch("[0-9]{1,30}", written) else -1
+        own = issued.seeds_of(student, exercise)
+        return (
+            seed
+            if seed in own or not (own or issued.has_roster)
+            else issued.seeds.get((student, exercise), -1)
+        )
 
     @property
     def unreadable(self) -> int:
@@ -147,30 +170,83 @@ class Gradebook:
         return len(self.rejected) + self.unreadable + len(self.faults) + self.waiting
 
 
-def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
-    """The lines of ``summary.csv``: every student of the roster and every one who answered.
+# ---------------------------------------------------------------------- summary
 
-    Points are out of all that a student was issued, or without a roster of all that they answered to. What came in
-    rejected rows alone is unreadable, and not missing.
+BEST = "best"
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a student has of one sitting; what was not handed in counts."""
+
+    sitting: int
+    points: float
+    out_of: float
+    by_exercise: Mapping[str, float]
+    verdicts: Mapping[str, int]
+
+
+def results(book: Gradebook) -> Iterator[tuple[str, Result]]:
+    """Every student of the roster and every one who answered, with the sitting that counts.
+
+    Points are out of all that a student was issued, or without a roster of all that they answered to; those of an
+    assignment out of all of it. What came in rejected rows alone is unreadable, and not missing.
     """
-    issued, unread = book.issued, book.unread()
-    for student in dict.fromkeys((*issued.students, *book.students, *unread)):
-        total = book.students.get(student, Total())
-        own = unread.get(student, {})
-        owed = {
-            (e, seed)
-            for e, seed in (*issued.issued_to(student).items(), *own)
-            if e not in book.handed_in.get(student, ())
-        }
-        lost = [part for key in owed for part in issued.records[key]["parts"]]
-        out_of = total.out_of + sum(part["points"] for part in lost)
-        waiting = sum(map(len, own.values()))
+    unread = book.unread()
+    came: dict[str, set[int]] = {}
+    for student, sitting in (*book.students, *unread):
+        came.setdefault(student, set()).add(sitting)
+    for student in dict.fromkeys((*book.issued.students, *came)):
+        sat = sorted(came.get(student, {1}))
+        found = [_result(book, (student, n), unread.get((student, n), {})) for n in sat]
+        yield student, counted_one(book.issued, found)
+
+
+def counted_one(issued: Issued, found: Sequence[Result]) -> Result:
+    """Which of the sittings counts: the best, or as the assignment says the last; of two as good the later."""
+    if (issued.assignment or {}).get("sittings", BEST) != BEST:
+        return found[-1]
+    return max(found, key=lambda r: (exact(r.points) / exact(r.out_of) if r.out_of else 0, r.sitting))
+
+
+def _result(book: Gradebook, place: Sitting, own: Mapping[tuple[str, int], set[str]]) -> Result:
+    total = book.students.get(place, Total())
+    lost = [part for key in _owed(book, place, own) for part in book.issued.records[key]["parts"]]
+    waiting = sum(map(len, own.values()))
+    verdicts = Counter(total.verdicts)
+    verdicts["unreadable"] += waiting
+    verdicts["missing"] += len(lost) - waiting
+    out_of = total.out_of + sum(part["points"] for part in lost)
+    return Result(place[1], total.points, out_of, total.by_exercise, verdicts)
+
+
+def _owed(book: Gradebook, place: Sitting, own: Iterable[tuple[str, int]]) -> set[tuple[str, int]]:
+    """The variants of which nothing could be marked."""
+    issued, done = book.issued, book.handed_in.get(place, set())
+    owed = {(e, seed) for e, seed in (*issued.issued_to(*place).items(), *own) if e not in done}
+    if issued.assignment is not None and not issued.has_roster:
+        # Nobody's paper asks all the exercises too; which variant was theirs bears on no points.
+        met = {e for e, _ in owed} | done
+        owed |= {next(k for k in issued.records if k[0] == e) for e in issued.exercises if e not in met}
+    return owed
+
+
+def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
+    """The lines of ``summary.csv``."""
+    issued = book.issued
+    own, exercises, carried = identity(issued), exercise_columns(issued), carried_columns(issued)
+    for student, result in results(book):
+        told = own_columns(issued, student)
+        points, out_of = result.points, result.out_of
         yield {
+            **{column: told.get(title, "") for title, column in carried.items()},
+            **{column: told.get(folded(title), "") for title, column in own.items()},
+            **{column: f"{result.by_exercise.get(e, 0):g}" for e, column in exercises.items()},
             "student": student,
-            "points": f"{total.points:g}",
+            SITTING: result.sitting,
+            "points": f"{points:g}",
             "out_of": f"{out_of:g}",
-            "percent": f"{100 * total.points / out_of:.1f}" if out_of else "",
-            **{verdict: total.verdicts[verdict] for verdict in VERDICTS},
-            "unreadable": total.verdicts["unreadable"] + waiting,
-            "missing": total.verdicts["missing"] + len(lost) - waiting,
+            MARK: mark_of(issued, points, out_of),
+            "percent": f"{100 * points / out_of:.1f}" if out_of else "",
+            **{verdict: result.verdicts[verdict] for verdict in VERDICTS},
         }

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from coursework.errors import BadInput
-from coursework.gradebook.book import VERDICTS
+from coursework.gradebook.columns import VERDICTS
 from coursework.making.students import folded
 from coursework.system.tables import as_written, delimiter_of, open_csv
 
@@ -40,8 +40,8 @@ class Before:
     def __init__(self, path: Path) -> None:
         self._marks: dict[str, tuple[str, str]] = {}
         self._names: dict[str, str] = {}  #: as they are written
-        self._points: dict[str, float] = {}
-        self._verdicts: Counter[str] = Counter()
+        self._points: dict[tuple[str, str], float] = {}  #: by student and sitting
+        self._verdicts: dict[tuple[str, str], Counter[str]] = {}
         self.exists = path.exists()
         if self.exists:
             alike: dict[tuple[str, str], tuple[str, str]] = {}
@@ -49,8 +49,9 @@ class Before:
                 mark = (row.get("verdict", ""), row.get("points", "").replace(",", "."))
                 name = folded(row.get("student", ""))
                 self._names.setdefault(name, row.get("student", ""))
-                self._points[name] = self._points.get(name, 0.0) + _number(mark[1])
-                self._verdicts[mark[0].partition(":")[0]] += 1
+                sitting = name, row.get("sitting", "")
+                self._points[sitting] = self._points.get(sitting, 0.0) + _number(mark[1])
+                self._verdicts.setdefault(sitting, Counter())[mark[0].partition(":")[0]] += 1
                 self._marks[_place(row)] = alike.setdefault(mark, mark)
 
     @property
@@ -63,12 +64,17 @@ class Before:
         if not (self.exists and summary.exists()):
             return False
         told: Counter[str] = Counter()
+        found: Counter[str] = Counter()
+        others = {name for name, sitting in self._points if not sitting}
         for row in rows_of(summary):
-            points = self._points.get(folded(row.get("student", "")), 0.0)
+            sitting = folded(row.get("student", "")), row.get("sitting", "")
+            others.discard(sitting[0])
+            points = self._points.get(sitting, 0.0)
+            found.update(self._verdicts.get(sitting, ()))
             if not abs(_number(row.get("points", "")) - points) < _ROUNDING * max(1.0, points):
                 return True
             told.update({v: int(row[v]) for v in _IN_BOTH if row.get(v, "").isdecimal()})
-        return any(told[verdict] != self._verdicts[verdict] for verdict in _IN_BOTH)
+        return bool(others) or any(told[verdict] != found[verdict] for verdict in _IN_BOTH)
 
     def changed(self, row: Mapping[str, Any]) -> dict[str, Any] | None:
         """What changed in a row of the new marks; None when nothing did."""

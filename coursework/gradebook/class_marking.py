@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 from coursework.course.course import Course, opened
 from coursework.course.key_batch import keys_of
+from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
-from coursework.errors import CourseworkError, NoSolution
+from coursework.errors import BadCourse, BadInput, CourseworkError, NoSolution
 from coursework.gradebook.graded import Graded
 from coursework.gradebook.placing import Sheets, as_texts
 from coursework.gradebook.rows import Rejected
@@ -36,6 +38,31 @@ class _Job(NamedTuple):
     answers: Mapping[str, Any]
 
 
+class _How(NamedTuple):
+    """How sheets are marked, here and in other processes."""
+
+    printed: bool  #: feedback sheets are to be made of them
+    rules: Rules | None  #: the course's unless the assignment says others
+
+
+def rules_of(course: Course, issued: Issued) -> Rules | None:
+    """The course's rules of marking, overridden by the assignment's; None where it states none.
+
+    Raises
+    ------
+    BadInput
+        A rule that there is not, or a value that makes no sense.
+    """
+    stated = (issued.assignment or {}).get("marking")
+    if not stated:
+        return None
+    try:
+        own = Rules.of(stated, "the assignment in issued.json")
+    except BadCourse as fault:
+        raise BadInput(str(fault)) from fault
+    return replace(course.folder.rules, **{name: getattr(own, name) for name in stated})
+
+
 def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True) -> Iterator[Graded]:
     """The sheets marked, in their order; ``printed`` where feedback sheets are to be made of them.
 
@@ -51,7 +78,7 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
     chunks = [places[i : i + CHUNK] for i in range(0, len(places), CHUNK)]
 
     def record(place: tuple[str, str, int]) -> Mapping[str, Any]:
-        issued_as = issued.records[place[1:]]
+        issued_as = issued.record_of(*place)
         return {**issued_as, "lang": sheets.langs[place]} if place in sheets.langs else issued_as
 
     def jobs(chunk: Sequence[tuple[str, str, int]]) -> list[_Job]:
@@ -59,9 +86,9 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
             _Job(record(place), {p: row.answer for p, row in sheets.sheets[place].items()}) for place in chunk
         ]
 
-    for chunk, results in zip(
-        chunks, _marked_chunks(course, map(jobs, chunks), sheets.answers, printed), strict=True
-    ):
+    how = _How(printed, rules_of(course, issued))
+    marking = _marked_chunks(course, map(jobs, chunks), sheets.answers, how)
+    for chunk, results in zip(chunks, marking, strict=True):
         for place, result in zip(chunk, results, strict=True):
             rows = sheets.sheets[place]
             if isinstance(result, str):
@@ -69,37 +96,38 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
                 reason = f"cannot be marked, somebody must look at it ({result})"
                 sheets.rejected += [Rejected(row.source, reason, as_texts(row)) for row in rows.values()]
             else:
-                lines = map(Mark.received, result)
-                yield Graded(*place, {line.part: line for line in lines}, tuple(rows), record(place))
+                lines = {line.part: line for line in map(Mark.received, result)}
+                sitting = issued.sitting_of(*place)
+                yield Graded(*place, lines, tuple(rows), record(place), sitting=sitting)
     for (exercise, why), count in unmarked.items():
         what = "1 sheet" if count == 1 else f"{count} sheets"
         sheets.warnings.append(f"{what} of {exercise} cannot be marked, see the rejected rows: {why}")
 
 
 def _marked_chunks(
-    course: Course, chunks: Iterator[list[_Job]], answers: int, printed: bool
+    course: Course, chunks: Iterator[list[_Job]], answers: int, how: _How
 ) -> Iterator[list[list[tuple] | str]]:
     """Each chunk marked, in order; by processes where there is much to do."""
     count = workers(answers)
     if answers < WORTH_PROCESSES or count < 2:
         for chunk in chunks:
-            yield _mark_chunk(course, chunk, printed)
+            yield _mark_chunk(course, chunk, how)
         return
     with processes(count) as submit:
         waiting: list[Any] = []
         for chunk in chunks:
-            waiting.append(submit(_mark_elsewhere, str(course.folder.root), chunk, printed))
+            waiting.append(submit(_mark_elsewhere, str(course.folder.root), chunk, how))
             if len(waiting) >= 3 * count:
                 yield waiting.pop(0).result()
         for task in waiting:
             yield task.result()
 
 
-def _mark_elsewhere(root: str, chunk: list[_Job], printed: bool) -> list[list[tuple] | str]:
-    return _mark_chunk(opened(root, Variant), chunk, printed)
+def _mark_elsewhere(root: str, chunk: list[_Job], how: _How) -> list[list[tuple] | str]:
+    return _mark_chunk(opened(root, Variant), chunk, how)
 
 
-def _mark_chunk(course: Course, chunk: Sequence[_Job], printed: bool) -> list[list[tuple] | str]:
+def _mark_chunk(course: Course, chunk: Sequence[_Job], how: _How) -> list[list[tuple] | str]:
     """Lines a sheet, or why it cannot be marked."""
     variants = [course[job.record["exercise"]].from_record(job.record) for job in chunk]
     by_exercise: dict[str, list[int]] = {}
@@ -107,13 +135,13 @@ def _mark_chunk(course: Course, chunk: Sequence[_Job], printed: bool) -> list[li
         by_exercise.setdefault(variant.exercise.name, []).append(i)
     right: list[dict[str, str]] = [{} for _ in chunk]
     for name, places in by_exercise.items():
-        batch = keys_of(course[name], [variants[i] for i in places])
-        if not printed:
+        batch = keys_of(course[name], [variants[i] for i in places], how.rules)
+        if not how.printed:
             found = plainly_right(course[name], batch, [chunk[i].answers for i in places])
             for i, digits in zip(places, found, strict=True):
                 right[i] = digits
     return [
-        _mark_sheet(variant, job.answers, own, printed)
+        _mark_sheet(variant, job.answers, own, how.printed)
         for variant, job, own in zip(variants, chunk, right, strict=True)
     ]
 

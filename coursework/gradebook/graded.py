@@ -18,6 +18,7 @@ class Graded(NamedTuple):
     answered: tuple[str, ...]
     record: Mapping[str, Any]  #: what was issued, in the language of the sheet that came back
     unanswered: tuple[str, ...] = ()  #: parts accepted by hand that no row answers
+    sitting: int = 1
 
     @property
     def points(self) -> float:

@@ -16,6 +16,7 @@ from coursework.gradebook.accepted import Accepted
 from coursework.gradebook.book import Gradebook
 from coursework.gradebook.changes import CHANGES_COLUMNS, Before
 from coursework.gradebook.class_marking import marked
+from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns, summary_columns
 from coursework.gradebook.feedback_sheets import write_feedback
 from coursework.gradebook.graded import Graded
 from coursework.gradebook.placing import placed
@@ -73,9 +74,9 @@ def grade_files(
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
     shown: list[Graded] = []
     with Tables(out, spreadsheet) as tables:
-        marks = tables.open("marks.csv", gradebook.MARKS_COLUMNS)
-        summary = tables.open("summary.csv", gradebook.SUMMARY_COLUMNS)
-        rejected = tables.open("rejected.csv", gradebook.REJECTED_COLUMNS)
+        marks = tables.open("marks.csv", marks_columns(issued))
+        summary = tables.open("summary.csv", summary_columns(issued))
+        rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
         changes = tables.open("changes.csv", CHANGES_COLUMNS) if before.exists else None
         for done, graded in enumerate(marked(course, issued, sheets, printed=feedback), start=1):
             lang = str(graded.record.get("lang", "fr"))
@@ -92,7 +93,7 @@ def grade_files(
             for change in before.gone():
                 changes.write(change)
             book.changes = changes.rows
-        book.faults, notes = by_hand.unfollowed(issued, book.students)
+        book.faults, notes = by_hand.unfollowed(issued, dict.fromkeys(s for s, _ in book.students))
         book.warnings += notes
         book.waiting = by_person.waiting
         _list_to_mark(by_person, tables, book)

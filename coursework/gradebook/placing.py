@@ -54,21 +54,34 @@ def place_of(issued: Issued, row: Row) -> tuple[str, str, int]:
         raise Refused(
             f"no exercise {row.exercise!r} was issued{_near_or_all(row.exercise, issued.exercises)}"
         )
-    mine = issued.seeds.get((student, row.exercise))
-    if not row.seed and mine is not None:
-        return student, row.exercise, mine
+    mine = issued.seeds_of(student, row.exercise)
+    if not row.seed and mine:
+        return student, row.exercise, mine[-1]
     if not row.seed and issued.has_roster:
         raise Refused(f"{student} was issued no {row.exercise}")
     if not re.fullmatch(r"[0-9]{1,30}(\.0)?", row.seed):
         raise Refused(f"a seed is a whole number; found {row.seed[:40]!r}")
     seed = int(row.seed.removesuffix(".0"))
-    theirs = f"; {student} has seed {mine}" if mine is not None else f"; {student} was issued none"
-    theirs = theirs if issued.has_roster else ""
+    theirs = _theirs(issued, student, row.exercise, mine) if issued.has_roster else ""
     if (row.exercise, seed) not in issued.records:
         raise Refused(f"seed {seed} of {row.exercise} was not issued{theirs}")
-    if issued.has_roster and mine != seed:
-        raise Refused(f"seed {seed} of {row.exercise} is another student's{theirs}")
+    if issued.has_roster and seed not in mine:
+        raise Refused(f"seed {seed} of {row.exercise} is {_whose(issued, row.exercise, seed)}{theirs}")
     return student, row.exercise, seed
+
+
+def _whose(issued: Issued, exercise: str, seed: int) -> str:
+    version = issued.versions.get((exercise, seed))
+    return f"version {version}'s" if version else "another student's"
+
+
+def _theirs(issued: Issued, student: str, exercise: str, mine: Sequence[int]) -> str:
+    """What a student has, to end a refusal."""
+    if not mine:
+        return f"; {student} was issued none"
+    version = issued.versions.get((exercise, mine[0]))
+    letter = f"version {version}, " if version else ""
+    return f"; {student} has {letter}seed {' and '.join(map(str, mine))}"
 
 
 def near(name: str, known: Iterable[str]) -> str:
@@ -102,6 +115,7 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
         course[exercise].from_record(one)
     asked: dict[tuple[str, int], frozenset[str]] = {}
     places: dict[tuple[str, str, str], tuple[str, str, int] | str] = {}
+    unsaid: set[tuple[str, str, int]] = set()  #: sheets of several sittings, whose answers do not say which
     for row in rows:
         found.rows_in += 1
         if isinstance(row, Rejected):
@@ -120,6 +134,14 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
             found.rejected.append(Rejected(row.source, place, as_texts(row)))
             continue
         key, reason = place[1:], ""
+        if (
+            issued.has_sittings
+            and not row.seed
+            and place not in unsaid
+            and len(issued.seeds_of(*place[:2])) > 1
+        ):
+            unsaid.add(place)
+            found.warnings.append(_latest(issued, place))
         if key not in asked:
             asked[key] = frozenset(str(part["id"]) for part in issued.records[key]["parts"])
         sheet = found.sheets.setdefault(place, {})
@@ -143,6 +165,15 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
                 found.langs[place] = row.lang
     found.sheets = {place: sheet for place, sheet in found.sheets.items() if sheet}
     return found
+
+
+def _latest(issued: Issued, place: tuple[str, str, int]) -> str:
+    """That answers without a seed are taken for those of the latest sitting."""
+    sitting = issued.sitting_of(*place)
+    return (
+        f"{place[0]}, {place[1]}: answers without a seed are taken for sitting {sitting}, seed {place[2]}, the latest; "
+        "write the seed of the other sitting where they are of that one"
+    )
 
 
 def _is_blank(row: Row) -> bool:

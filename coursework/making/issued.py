@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,36 +21,59 @@ ISSUED_FORMAT = 1
 
 
 class Issued:
-    """What was issued: records by exercise and seed, and to whom when there was a roster."""
+    """What was issued: records by exercise and seed, and to whom when there was a roster.
+
+    A record may be of several students, as versions are, and a student may have an exercise in several sittings.
+    """
 
     def __init__(self, content: Mapping[str, Any], source: str):
         records = content.get("issued") if isinstance(content, Mapping) else None
         if not isinstance(records, list) or not records:
             raise BadInput(f"{source} is no list of issued records; 'coursework build' writes issued.json")
         self.has_roster = bool(content.get("roster"))
+        self.assignment = _stated(content.get("assignment"), source)
+        self.columns = _columns(content.get("students"), source)
         self.records: dict[tuple[str, int], Mapping[str, Any]] = {}
-        self.owner: dict[tuple[str, int], str] = {}
-        self.seeds: dict[tuple[str, str], int] = {}
+        self.owners: dict[tuple[str, int], tuple[str, ...]] = {}
+        self.versions: dict[
+            tuple[str, int], str
+        ] = {}  #: letters by exercise and seed, where versions were dealt
+        self.seeds: dict[tuple[str, str], int] = {}  #: of the latest sitting
+        self._sittings: dict[tuple[str, str], dict[int, int]] = {}  #: seeds by sitting
+        self._langs: dict[tuple[str, str, int], str] = {}  #: where another owner reads another language
         alike: dict[tuple[str, str], Any] = {}
         for item in records:
             try:
                 record, student = item["record"], str(item.get("student", ""))
                 key = (str(record["exercise"]), int(record["seed"]))
                 sum(part["points"] for part in record["parts"])
+                sitting = int(item.get("sitting", 1))
                 # Records of an exercise ask the same; once is enough for all of them.
                 usual = alike.setdefault((key[0], str(record["version"])), record["parts"])
                 if usual == record["parts"]:
                     record["parts"] = usual
             except (KeyError, TypeError, ValueError, AttributeError) as fault:
                 raise BadInput(f"{source}: an item is no issued record ({fault})") from fault
-            self.records[key] = record
+            first = self.records.setdefault(key, record)
+            if item.get("version"):
+                self.versions[key] = str(item["version"])
             if student:
-                self.owner[key] = student
-                self.seeds[student, key[0]] = key[1]
+                if first is not record and first.get("lang") != record.get("lang"):
+                    self._langs[student, *key] = str(record.get("lang"))
+                self._own(student, key, sitting)
         self.exercises = tuple(dict.fromkeys(exercise for exercise, _ in self.records))
-        self.students = tuple(dict.fromkeys(self.owner.values()))
+        self.students = tuple(dict.fromkeys(student for student, _ in self._sittings))
+        self.has_sittings = any(max(own) > 1 for own in self._sittings.values())
         self._named = frozenset(self.students)
         self._known = {folded(s): s for s in self.students}
+
+    def _own(self, student: str, key: tuple[str, int], sitting: int) -> None:
+        exercise, seed = key
+        if student not in (owners := self.owners.get(key, ())):
+            self.owners[key] = (*owners, student)
+        own = self._sittings.setdefault((student, exercise), {})
+        own[sitting] = seed
+        self.seeds[student, exercise] = own[max(own)]
 
     @staticmethod
     def read(path: Path) -> Issued:
@@ -75,9 +99,54 @@ class Issued:
             return self._known.setdefault(folded(name), name)
         return self._known.get(folded(name))
 
-    def issued_to(self, student: str) -> dict[str, int]:
-        """The seeds that a student of the roster was issued, by exercise."""
-        return {e: self.seeds[student, e] for e in self.exercises if (student, e) in self.seeds}
+    def issued_to(self, student: str, sitting: int | None = None) -> dict[str, int]:
+        """The seeds that a student of the roster was issued, by exercise: of a sitting, else the latest of each."""
+        if sitting is None:
+            return {e: self.seeds[student, e] for e in self.exercises if (student, e) in self.seeds}
+        own = {e: self._sittings.get((student, e), {}) for e in self.exercises}
+        return {e: seeds[sitting] for e, seeds in own.items() if sitting in seeds}
+
+    def seeds_of(self, student: str, exercise: str) -> tuple[int, ...]:
+        """The seeds of an exercise that a student of the roster was issued, sitting by sitting."""
+        own = self._sittings.get((student, exercise), {})
+        return tuple(own[sitting] for sitting in sorted(own))
+
+    def sitting_of(self, student: str, exercise: str, seed: int) -> int:
+        """In which sitting a student has a variant: the latest, where several have the same one; 1 without a roster."""
+        own = self._sittings.get((student, exercise), {})
+        return max((sitting for sitting, one in own.items() if one == seed), default=1)
+
+    def record_of(self, student: str, exercise: str, seed: int) -> Mapping[str, Any]:
+        """The record of a variant, in the student's language."""
+        record = self.records[exercise, seed]
+        lang = self._langs.get((student, exercise, seed))
+        return record if lang is None else {**record, "lang": lang}
+
+
+def _stated(content: Any, source: str) -> Mapping[str, Any] | None:
+    """What the file says of its assignment; None for a build of exercises alone."""
+    if content is None:
+        return None
+    fits = isinstance(content, Mapping) and isinstance(content.get("exercises"), list)
+    mark = content.get("mark") if fits else None
+    if mark is not None:
+        fits = isinstance(mark, Mapping) and all(_is_size(mark.get(n)) for n in ("of", "step"))
+    if not fits:
+        raise BadInput(f"{source}: its assignment is none; 'coursework build FILE.toml' writes it")
+    return dict(content)
+
+
+def _is_size(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and 0 < value < math.inf
+
+
+def _columns(content: Any, source: str) -> dict[str, Mapping[str, str]]:
+    """The columns of the roster, by student."""
+    if content is None:
+        return {}
+    if not isinstance(content, Mapping) or not all(isinstance(own, Mapping) for own in content.values()):
+        raise BadInput(f"{source}: its students are no columns by name; 'coursework build' writes them")
+    return {str(s): {str(c): str(v) for c, v in own.items()} for s, own in content.items()}
 
 
 def issued_content(issues: Sequence[Issue], assignment: Assignment | None = None) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import BadInput
-from coursework.gradebook.book import VERDICTS
+from coursework.gradebook.columns import SITTING, VERDICTS
 from coursework.system.tables import delimiter_of, open_csv
 
 MOST_POINTS = 1e9  #: more is no number of points
@@ -71,7 +71,8 @@ class _Decimals(dict):
 def read(folder: Path) -> Marks:
     """Read a folder of marks: ``marks.csv``, and ``summary.csv`` and ``rejected.csv`` if they are there.
 
-    Points come from ``marks.csv`` alone, so that a mark mended by hand there counts.
+    Points come from ``marks.csv`` alone, so that a mark mended by hand there counts. Of a student with several
+    sittings the one counts that the summary names.
 
     Raises
     ------
@@ -85,7 +86,7 @@ def read(folder: Path) -> Marks:
     codes = [array("i") for _ in range(3)]
     student, part, verdict = codes
     got_points, most_points = array("d"), array("d")
-    for who, exercise, asked, judged, got, of in _lines(path, _MARKS, decimals):
+    for who, exercise, asked, judged, got, of in _counting(folder, decimals):
         student.append(students[who])
         part.append(parts[exercise, asked])
         verdict.append(verdicts[judged])
@@ -118,6 +119,27 @@ def read(folder: Path) -> Marks:
         sum(1 for _ in _lines(rejected, _REJECTED)) if rejected.is_file() else 0,
         sum(1 for student in unread if students[student] >= marked),
     )
+
+
+def _counting(folder: Path, decimals: _Decimals) -> Iterator[tuple[Any, ...]]:
+    """The lines of the marks; of a student with several sittings those of the one that counts."""
+    path, summary = folder / "marks.csv", folder / "summary.csv"
+    if not (summary.is_file() and SITTING in _header(path) and SITTING in _header(summary)):
+        yield from _lines(path, _MARKS, decimals)
+        return
+    counts = dict(_lines(summary, ("student", SITTING)))
+    for sitting, who, *mark in _lines(path, (SITTING, *_MARKS), decimals):
+        if counts.get(who, sitting) == sitting:
+            yield who, *mark
+
+
+def _header(path: Path) -> list[str]:
+    try:
+        with open_csv(path) as file:
+            line = file.readline()
+    except OSError as fault:
+        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+    return [name.strip().strip('"').casefold() for name in line.split(delimiter_of(line))]
 
 
 def _summary(path: Path, students: _Numbered, decimals: _Decimals) -> tuple[dict[str, float], int, set[str]]:

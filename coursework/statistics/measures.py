@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.gradebook.book import VERDICTS
+from coursework.gradebook.columns import VERDICTS
 from coursework.statistics.marks import Marks, family_of
 
 RIGHT = ("correct", "follow_through", "accepted")

@@ -13,7 +13,7 @@ import numpy as np
 
 from coursework.course.course import Course
 from coursework.figures.charts import bars, drawable_label, formula_label, histogram, lacking, plain_label
-from coursework.gradebook.book import VERDICTS
+from coursework.gradebook.columns import VERDICTS
 from coursework.language.numbers import localise, plain
 from coursework.language.typography import typeset
 from coursework.language.words import listed, words

@@ -1,0 +1,70 @@
+"""What the columns of the tables are called: the usual ones, and those of an assignment and of the roster."""
+
+from __future__ import annotations
+
+from coursework.making.issued import Issued
+from coursework.making.students import folded
+
+MARKS_COLUMNS = (
+    "student", "exercise", "seed", "part", "answer", "read_as", "verdict", "points", "out_of", "feedback",
+)  # fmt: skip
+#: Kinds of verdict, in the order of the summary's columns.
+VERDICTS = (
+    "correct", "follow_through", "mistake", "slip", "accepted", "partial", "wrong", "wrong_unit", "missing_unit",
+    "unreadable", "to_mark", "missing",
+)  # fmt: skip
+SUMMARY_COLUMNS = ("student", "points", "out_of", "percent", *VERDICTS)
+SITTING = "sitting"  #: a column of the marks and of the summary where somebody has several
+REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "reason")
+MARK = "mark"
+
+
+def marks_columns(issued: Issued) -> tuple[str, ...]:
+    """The columns of ``marks.csv``; the sitting is the last where there are several."""
+    return (*MARKS_COLUMNS, SITTING) if issued.has_sittings else MARKS_COLUMNS
+
+
+def summary_columns(issued: Issued) -> tuple[str, ...]:
+    """The columns: identity, exercises and the mark of an assignment stand among the usual ones; what else the roster
+    holds follows."""
+    sitting = (SITTING,) if issued.has_sittings else ()
+    if issued.assignment is None:
+        return (*SUMMARY_COLUMNS, *sitting, *carried_columns(issued).values())
+    student, points, out_of, *others = SUMMARY_COLUMNS
+    mark = (MARK,) if issued.assignment.get("mark") else ()
+    own = identity(issued)
+    rest = (c for title, c in carried_columns(issued).items() if title not in map(folded, own))
+    exercises = exercise_columns(issued).values()
+    return (student, *own.values(), *sitting, *exercises, points, out_of, *mark, *others, *rest)
+
+
+def identity(issued: Issued) -> dict[str, str]:
+    """The columns that tell a student of the assignment: title as it is stated -> name in the summary."""
+    stated = (issued.assignment or {}).get("identity") or ()
+    return {str(title): _apart(str(title), _taken(issued)) for title in stated}
+
+
+def exercise_columns(issued: Issued) -> dict[str, str]:
+    """The column of each exercise of an assignment."""
+    asked = map(str, (issued.assignment or {}).get("exercises", ()))
+    return {e: f"{e} points" if e in (*SUMMARY_COLUMNS, MARK, SITTING) else e for e in asked}
+
+
+def carried_columns(issued: Issued) -> dict[str, str]:
+    """The columns of the roster: folded title -> name in the summary."""
+    titles = {folded(title): title for own in issued.columns.values() for title in own}
+    return {f: _apart(title, _taken(issued)) for f, title in titles.items() if f}
+
+
+def _taken(issued: Issued) -> frozenset[str]:
+    return frozenset(map(folded, (*SUMMARY_COLUMNS, MARK, SITTING, *exercise_columns(issued).values())))
+
+
+def _apart(title: str, taken: frozenset[str]) -> str:
+    """A roster's title that is no name of another column."""
+    return f"{title} (roster)" if folded(title) in taken else title
+
+
+def own_columns(issued: Issued, student: str) -> dict[str, str]:
+    """What the roster says of a student, by folded title."""
+    return {folded(title): value for title, value in issued.columns.get(student, {}).items()}
