@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("submissions", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("submissions", nargs=-1, type=click.Path(path_type=Path))
 @click.option(
     "--issued", type=click.Path(path_type=Path), required=True, help="The issued.json of the build."
 )
@@ -47,6 +47,12 @@ if TYPE_CHECKING:
     help="CSV of answers accepted by hand: student,exercise,seed,part and, if wanted, points,reason.",
 )
 @decimal_option
+@click.option(
+    "--from",
+    "marks",
+    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    help="Marks as they stand in a marks.csv, changed by hand; no SUBMISSIONS then. Summary and feedback are made of them.",
+)
 @click.pass_context
 def grade(
     context: click.Context,
@@ -56,6 +62,7 @@ def grade(
     feedback: bool | None,
     accepted: Path | None,
     decimal: str,
+    marks: Path | None,
 ) -> int:
     """Mark CSV, JSON, Parquet and notebooks of answers, files or folders of them.
 
@@ -65,6 +72,12 @@ def grade(
         inside = issued / "issued.json"
         would_do = f"did you mean {inside}?" if inside.exists() else "name the issued.json that build wrote"
         raise BadInput(f"--issued takes a file; {issued} is a folder: {would_do}")
+    _check_source(submissions, marks, accepted)
+    if marks is not None:
+        out = out or marks.parent
+        return _told_standing(
+            _grade_standing(opened(context), marks, issued, out, feedback, decimal), marks, out
+        )
     out = out or issued.parent / "marks"
     book = grade_with_bar(
         opened(context), submissions, issued, out, feedback=feedback, accepted=accepted, decimal=decimal
@@ -94,6 +107,42 @@ def grade(
     if len(book.rejected) > 10:
         more = len(book.rejected) - 10
         click.echo(f"coursework: and {more} more in {out / 'rejected.csv'}", err=True)
+    return FOUND if book.needs_a_look else DONE
+
+
+def _check_source(submissions: Sequence[Path], marks: Path | None, accepted: Path | None) -> None:
+    """What is marked: submissions, or marks as they stand."""
+    if marks is None and not submissions:
+        raise BadInput("nothing to mark; name SUBMISSIONS, files or folders of answers, or --from marks.csv")
+    if marks is not None and submissions:
+        raise BadInput(
+            f"--from takes the marks as they stand in {marks}: name no SUBMISSIONS, or leave --from to mark them anew"
+        )
+    if marks is not None and accepted is not None:
+        raise BadInput(
+            f"--from takes the marks as they stand in {marks}: change them there, or leave --from to accept answers"
+        )
+
+
+def _grade_standing(
+    course: Course, marks: Path, issued: Path, out: Path, feedback: bool | None, decimal: str
+) -> Gradebook:
+    from coursework.gradebook.grading import grade_standing
+    from coursework.system.tables import SPREADSHEETS
+
+    with progress_bar("marking", None) as advance:
+        return grade_standing(
+            course, marks, issued, out, feedback=feedback, spreadsheet=SPREADSHEETS[decimal], progress=advance
+        )
+
+
+def _told_standing(book: Gradebook, marks: Path, out: Path) -> int:
+    click.echo(f"{counted(book.rows_in, 'mark')} as they stand in {marks}; see {out}")
+    if book.changes:
+        what = "1 mark was" if book.changes == 1 else f"{book.changes} marks were"
+        click.echo(f"{what} changed by hand; see {out / 'changes.csv'}")
+    for warning in book.warnings:
+        click.echo(f"coursework: note: {warning}", err=True)
     return FOUND if book.needs_a_look else DONE
 
 

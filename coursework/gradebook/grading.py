@@ -21,14 +21,16 @@ from coursework.gradebook.feedback_sheets import write_feedback
 from coursework.gradebook.graded import Graded
 from coursework.gradebook.placing import placed
 from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.standing import Standing, differs
 from coursework.gradebook.submissions import find, read_file
-from coursework.gradebook.to_mark import TO_MARK_COLUMNS, ToMark, sorted_rows
+from coursework.gradebook.to_mark import TO_MARK, TO_MARK_COLUMNS, ToMark, sorted_rows
 from coursework.making.issued import Issued
 from coursework.making.students import file_stems
 from coursework.system.build_folder import free_name
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
-from coursework.system.writing import Progress, Tables, write_whole
+from coursework.system.writing import Progress, Table, Tables, write_whole
 
+BY_HAND = "by_hand.csv"  #: marks of the folder that a hand changed
 #: For so many students at most, feedback sheets are printed unless told.
 FEEDBACK_STUDENTS = 1000
 
@@ -97,15 +99,79 @@ def grade_files(
         book.warnings += notes
         book.waiting = by_person.waiting
         _list_to_mark(by_person, tables, book)
-        for row in gradebook.summary_rows(book):
-            summary.write(row)
-        for row in gradebook.rejected_rows(book.rejected):
-            rejected.write(row)
-        if book.changes and before.edited(out / "summary.csv"):
+        _write_counts(book, summary, rejected)
+        stood = (out / BY_HAND).exists()
+        if book.changes and (stood or before.edited(out / "summary.csv")):
             book.warnings.insert(0, _kept(out / "marks.csv"))
         tables.keep()
+    (out / BY_HAND).unlink(missing_ok=True)
     if feedback:
         made = file_stems(dict.fromkeys((*issued.students, *before.students)))
+        write_feedback(course, book, shown, out / "feedback", made, progress)
+    return book
+
+
+def _write_counts(book: Gradebook, summary: Table, rejected: Table) -> None:
+    for row in gradebook.summary_rows(book):
+        summary.write(row)
+    for row in gradebook.rejected_rows(book.rejected):
+        rejected.write(row)
+
+
+def grade_standing(
+    course: Course,
+    marks: Path,
+    issued_path: Path,
+    out: Path,
+    *,
+    feedback: bool | None,
+    spreadsheet: Spreadsheet = SPREADSHEETS["point"],
+    progress: Progress = lambda done, of: None,
+) -> Gradebook:
+    """Write ``summary.csv``, ``rejected.csv`` and feedback sheets of the marks as they stand in a file.
+
+    ``changes.csv`` says which of them are not what the marking gives: a hand changed them. They are kept in
+    ``by_hand.csv`` too, so that a later marking knows of them. The file itself stays as it is.
+
+    Raises
+    ------
+    BadInput
+        A line that holds no mark of what was issued; then nothing is written.
+    """
+    issued = Issued.read(issued_path)
+    if feedback is None:
+        feedback = max(len(issued.students), len(issued.records)) <= FEEDBACK_STUDENTS
+    kept = marks.with_name("accepted.csv")
+    accepted, by_person = Accepted(kept if kept.exists() else None), ToMark(marks.with_name("to_mark.csv"))
+    standing = Standing(course, issued, marks)
+    sheets = standing.sheets
+    earlier = len(sheets.rejected)
+    machine = list(marked(course, issued, sheets, printed=feedback))
+    standing.refuse(sheets.rejected[earlier:])
+    book = Gradebook(issued, sheets.rows_in, 0, sheets.rejected, sheets.warnings)
+    shown = []
+    before = Before(out / "marks.csv").students
+    with Tables(out, spreadsheet) as tables:
+        summary = tables.open("summary.csv", summary_columns(issued))
+        rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
+        changes, by_hand = (tables.open(name, CHANGES_COLUMNS) for name in ("changes.csv", BY_HAND))
+        for graded in machine:
+            shown.append(standing.of(graded))
+            book.add(shown[-1])
+            lang = str(graded.record.get("lang", "fr"))
+            for change in differs(accepted.apply(by_person.apply(graded, lang), lang), shown[-1]):
+                changes.write(change)
+                by_hand.write(change)
+        book.changes = changes.rows
+        book.waiting = sum(line.verdict == TO_MARK for one in shown for line in one.lines.values())
+        _write_counts(book, summary, rejected)
+        tables.keep()
+    if not book.changes:
+        (out / BY_HAND).unlink()
+    if marks.resolve() != (out / "marks.csv").resolve():
+        write_whole(out / "marks.csv", marks.read_bytes())
+    if feedback:
+        made = file_stems(dict.fromkeys((*issued.students, *before)))
         write_feedback(course, book, shown, out / "feedback", made, progress)
     return book
 

@@ -141,7 +141,7 @@ def write_whole(path: Path, data: bytes) -> None:
 Progress = Callable[[int, int], None]
 
 
-class _Table:
+class Table:
     """A CSV file being written, beside the one whose place it is to take; with the mark that Excel wants at its head."""
 
     def __init__(self, path: Path, columns: Sequence[str], spreadsheet: Spreadsheet) -> None:
@@ -170,7 +170,7 @@ class Tables:
     def __init__(self, folder: Path, spreadsheet: Spreadsheet = SPREADSHEETS["point"]) -> None:
         self._folder = folder
         self._spreadsheet = spreadsheet
-        self._tables: list[_Table] = []
+        self._tables: list[Table] = []
 
     def __enter__(self) -> Tables:
         self._folder.mkdir(parents=True, exist_ok=True)
@@ -182,10 +182,10 @@ class Tables:
                 table.file.close()
             table.part.unlink(missing_ok=True)
 
-    def open(self, name: str, columns: Sequence[str]) -> _Table:
+    def open(self, name: str, columns: Sequence[str]) -> Table:
         path = self._folder / name
         _check_replaceable(path)
-        self._tables.append(_Table(path, columns, self._spreadsheet))
+        self._tables.append(Table(path, columns, self._spreadsheet))
         return self._tables[-1]
 
     def keep(self) -> None:

@@ -1,0 +1,184 @@
+"""Marks as they stand in ``marks.csv``, changed by hand or not: read back, so that summary and feedback are of them.
+
+The answers are marked once more for what is said of them and for what the hand changed; verdict and points are those
+of the file.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from coursework.course.course import Course
+from coursework.errors import BadInput, nearest
+from coursework.gradebook.changes import rows_of
+from coursework.gradebook.columns import MARKS_COLUMNS, REJECTED_COLUMNS, VERDICTS
+from coursework.gradebook.graded import Graded
+from coursework.gradebook.placing import Sheets, placed
+from coursework.gradebook.rows import Rejected, Row
+from coursework.making.issued import Issued
+from coursework.making.students import folded
+from coursework.marking.feedback import Told
+from coursework.marking.mark import Mark
+from coursework.system.tables import as_written, delimiter_of, open_csv
+
+_NEEDED = tuple(c for c in MARKS_COLUMNS if c not in ("read_as", "feedback"))
+
+
+class _Line(NamedTuple):
+    """A mark as it stands."""
+
+    place: str  #: file and line
+    verdict: str
+    points: str
+    out_of: str
+    feedback: str | None  #: None where the file has no such column
+
+
+class Standing:
+    """The marks of a file, each in the place that it was issued for.
+
+    Raises
+    ------
+    BadInput
+        A line that holds no mark, is of nothing that was issued, or repeats another; told by line.
+    """
+
+    def __init__(self, course: Course, issued: Issued, path: Path) -> None:
+        self.path = path
+        self._lines: dict[str, _Line] = {}
+        self.sheets: Sheets = placed(course, issued, self._rows())
+        self.refuse(self.sheets.rejected)
+        if not self.sheets.sheets:
+            raise BadInput(f"{path} holds no mark, so nothing is written; 'coursework grade' writes it")
+        self.sheets.rejected += _rejected_before(path.with_name("rejected.csv"))
+
+    def refuse(self, rejected: list[Rejected]) -> None:
+        """Lines that cannot be read back are told, the first of them with its reason."""
+        if rejected:
+            more = f" (and {len(rejected) - 1} lines more)" if len(rejected) > 1 else ""
+            raise BadInput(f"{rejected[0].source}: {rejected[0].reason}{more}; nothing is written")
+
+    def _rows(self) -> Iterator[Row]:
+        met: dict[tuple[str, ...], str] = {}
+        for number, row in _table(self.path):
+            place = f"{self.path}, line {number}"
+            named = folded(row["student"]), row["exercise"], row["seed"], row["part"]
+            if named in met:
+                raise BadInput(f"{place}: repeats {met[named]}; leave one mark an answer")
+            met[named] = f"line {number}"
+            _check_verdict(place, row["verdict"])
+            self._lines[place] = _Line(
+                place, row["verdict"], row["points"], row["out_of"], row.get("feedback")
+            )
+            yield Row(row["student"], row["exercise"], row["seed"], row["part"], row["answer"], place)
+
+    def of(self, graded: Graded) -> Graded:
+        """The sheet with the marks of the file.
+
+        Raises
+        ------
+        BadInput
+            Points that are no number from 0 to those of the part, or another number to have than was issued.
+        """
+        rows = self.sheets.sheets[graded[:3]]
+        own = {part: _stood(graded.lines[part], self._lines[row.source]) for part, row in rows.items()}
+        return graded._replace(lines={**graded.lines, **own})
+
+
+def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
+    """The lines with a cell in them, by number; columns by name."""
+    try:
+        with open_csv(path) as file:
+            delimiter = delimiter_of(file.readline())
+            file.seek(0)
+            reader = csv.reader(file, delimiter=delimiter)
+            header = [title.strip().casefold() for title in next(reader, [])]
+            if missing := [c for c in _NEEDED if c not in header]:
+                found = ", ".join(filter(None, header)) or "nothing"
+                raise BadInput(
+                    f"{path} needs the columns {', '.join(_NEEDED)}; {', '.join(missing)} missing, found {found[:200]}"
+                )
+            for cells in reader:
+                if any(cell.strip() for cell in cells):
+                    if len(cells) < len(header):
+                        raise BadInput(
+                            f"{path}, line {reader.line_num}: {len(cells)} cells where the header has {len(header)}"
+                        )
+                    values = (as_written(cell.strip()) for cell in cells)
+                    yield reader.line_num, dict(zip(header, values, strict=False))
+    except OSError as fault:
+        raise BadInput(f"{path} cannot be read: {fault.strerror or fault}") from fault
+    except csv.Error as fault:
+        raise BadInput(f"{path} is not CSV: {fault}") from fault
+
+
+def _check_verdict(place: str, verdict: str) -> None:
+    family = verdict.partition(":")[0]
+    if family not in VERDICTS:
+        raise BadInput(f"{place}: no verdict {verdict[:40]!r}{nearest(family, VERDICTS)}")
+
+
+def _stood(mark: Mark, line: _Line) -> Mark:
+    """The mark with the verdict, the points and the words of the file."""
+    if _number(line.out_of) != float(f"{mark.out_of:g}"):
+        raise BadInput(
+            f"{line.place}: {mark.part} is out of {mark.out_of:g} points, as issued; found out of {line.out_of[:40]!r}"
+        )
+    points = mark.points
+    if line.points != f"{points:g}":
+        points = _number(line.points)
+        if not 0 <= points <= mark.out_of:
+            raise BadInput(
+                f"{line.place}: points of {mark.part} are a number from 0 to {mark.out_of:g}; found {line.points[:40]!r}"
+            )
+    told = mark.told
+    if line.feedback is not None and line.feedback != " ".join(mark.feedback.split()):
+        told = (Told(_verbatim(line.feedback), line.feedback),)
+    return mark._replace(verdict=line.verdict, points=points, told=told)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text.replace(",", "."))
+    except ValueError:
+        return math.nan
+
+
+def _verbatim(text: str) -> str:
+    """Markdown that prints a text as it stands."""
+    return re.sub(r"([\\`*_\[\]<>$#])", r"\\\1", text)
+
+
+def _rejected_before(path: Path) -> list[Rejected]:
+    """The rows that could not be marked, as they were told."""
+    if not path.exists():
+        return []
+    own = [c for c in REJECTED_COLUMNS if c not in ("source", "reason")]
+    return [
+        Rejected(row.get("source", ""), row.get("reason", ""), {c: row.get(c, "") for c in own})
+        for row in rows_of(path)
+    ]
+
+
+def differs(machine: Graded, stands: Graded) -> Iterator[dict[str, Any]]:
+    """The lines of ``changes.csv``: what a hand changed."""
+    for part in stands.answered:
+        before, now = machine.lines[part], stands.lines[part]
+        was, is_now = (before.verdict, f"{before.points:g}"), (now.verdict, f"{now.points:g}")
+        if was != is_now:
+            yield {
+                "student": stands.student,
+                "exercise": stands.exercise,
+                "seed": stands.seed,
+                "part": part,
+                "answer": now.answer,
+                "verdict_before": was[0],
+                "verdict_now": is_now[0],
+                "points_before": was[1],
+                "points_now": is_now[1],
+            }
