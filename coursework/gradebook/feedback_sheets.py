@@ -1,34 +1,158 @@
-"""Feedback: a sheet a student and exercise, printed."""
+"""Feedback, printed: a sheet a student and exercise; of an assignment one paper a student."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import datetime
+from collections.abc import Callable, Collection, Iterator, Sequence
 from pathlib import Path
 
 from coursework.course.course import Course
+from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook
+from coursework.gradebook.columns import own_columns
 from coursework.gradebook.graded import Graded
-from coursework.making.students import file_stems
+from coursework.gradebook.scale import mark_of
+from coursework.language.numbers import localise, plain
+from coursework.language.words import words
+from coursework.making.assignment import text_in
+from coursework.making.issued import Issued
+from coursework.making.papers import date_text
+from coursework.making.students import file_stems, folded
 from coursework.marking.feedback import localised
+from coursework.marking.marking import mark
 from coursework.rendering.renderer import renderer_of
+from coursework.sheets.answer_sheet import answer_text
 from coursework.sheets.handout import handout as handout_of
+from coursework.sheets.paper import FeedbackPaper, Heading
 from coursework.sheets.sheet import FeedbackLine, FeedbackSheet
 from coursework.system.writing import File, Progress, write
 
 
-def feedback_sheet(course: Course, graded: Graded) -> FeedbackSheet:
-    """A student's marks on one exercise, ready to print."""
+def feedback_sheet(course: Course, graded: Graded, *, answers: bool = False) -> FeedbackSheet:
+    """A student's marks on one exercise, ready to print; with the right ``answers`` where they may be shown."""
     variant = course[graded.exercise].from_record(graded.record)
     handout = handout_of(variant, graded.student)
+    right = _right_answers(variant) if answers else {}
     lines = []
     for question in handout.questions:
         line = graded.lines[question.id]
-        read_as = localised(line.read_as, variant.lang)
-        lines.append(
-            FeedbackLine(question, line.answer, read_as, line.verdict, line.points, line.out_of, line.says)
-        )
+        told = localised(line.read_as, variant.lang), line.verdict, line.points, line.out_of, line.says
+        lines.append(FeedbackLine(question, line.answer, *told, right=right.get(question.id, "")))
     return FeedbackSheet(handout, tuple(lines), graded.points, graded.out_of)
+
+
+def _right_answers(variant: Variant) -> dict[str, str]:
+    """The reference answers by part, Markdown; none to an open question."""
+    values = variant.walk
+    return {part.id: answer_text(variant, part, values) for part in variant.parts if not part.sort.is_open}
+
+
+# ------------------------------------------------------------------------ paper
+
+_ADVISED = 3  #: places that are pointed at
+_WAIT = ("unreadable", "to_mark")  #: verdicts that are not the last word
+
+
+def feedback_paper(
+    course: Course,
+    issued: Issued,
+    student: str,
+    graded: Sequence[Graded],
+    lang: str,
+    waiting: Collection[str] = (),
+) -> FeedbackPaper:
+    """A student's marks on an assignment, of one sitting: one total, the mark, and what to look at next.
+
+    An exercise that was not handed in has its sheet too, without answers, unless it is ``waiting``: handed in, and not
+    read yet.
+    """
+    stated = issued.assignment or {}
+    sitting = graded[0].sitting if graded else 1
+    by_exercise = {g.exercise: g._replace(record={**g.record, "lang": lang}) for g in graded}
+    blank = _blank(course, issued, student, sitting, lang)
+    sheets, left_out = [], 0.0
+    for exercise in map(str, stated.get("exercises", issued.exercises)):
+        own = by_exercise.get(exercise) or (None if exercise in waiting else blank(exercise))
+        if own is None:
+            left_out += _worth(issued, exercise)
+        else:
+            sheets.append(feedback_sheet(course, own, answers=stated.get("answers") != "never"))
+    points, out_of = sum(s.points for s in sheets), sum(s.out_of for s in sheets) + left_out
+    return FeedbackPaper(
+        _heading(course, issued, student, sitting, lang),
+        tuple(sheets),
+        points,
+        out_of,
+        localise(mark_of(issued, points, out_of), lang),
+        stated.get("answers") != "never",
+        tuple(_advice(sheets, set(by_exercise), lang)),
+    )
+
+
+def _blank(
+    course: Course, issued: Issued, student: str, sitting: int, lang: str
+) -> Callable[[str], Graded | None]:
+    """Sheets that a student was issued and did not hand in."""
+    seeds = issued.issued_to(student, sitting)
+
+    def sheet(exercise: str) -> Graded | None:
+        if exercise not in seeds:
+            return None
+        place = student, exercise, seeds[exercise]
+        record = {**issued.record_of(*place), "lang": lang}
+        lines = mark(course[exercise].from_record(record), {})
+        return Graded(*place, dict(lines), (), record, sitting=sitting)
+
+    return sheet
+
+
+def _worth(issued: Issued, exercise: str) -> float:
+    """The points of an exercise, which are those of all its variants."""
+    record = next((r for (e, _), r in issued.records.items() if e == exercise), {"parts": ()})
+    return float(sum(part["points"] for part in record["parts"]))
+
+
+def _heading(course: Course, issued: Issued, student: str, sitting: int, lang: str) -> Heading:
+    stated = issued.assignment or {}
+    own = own_columns(issued, student)
+    versions = (issued.versions.get(key) for key in issued.issued_to(student, sitting).items())
+    scale = stated.get("mark")
+    date = str(stated.get("date") or "")
+    return Heading(
+        lang=lang,
+        title=text_in(stated.get("title") or {}, lang) or str(stated.get("name", "")),
+        course=text_in(stated.get("course") or {}, lang) or course.folder.title(lang),
+        student=student,
+        identity=tuple((str(t), own.get(folded(str(t)), "")) for t in stated.get("identity") or ()),
+        date=date_text(datetime.date.fromisoformat(date) if date else None, lang),
+        duration=text_in(stated.get("duration") or {}, lang),
+        version=next(filter(None, versions), ""),
+        mark_of=localise(plain(scale["of"]), lang) if scale else "",
+    )
+
+
+def _advice(sheets: Sequence[FeedbackSheet], handed_in: Collection[str], lang: str) -> Iterator[str]:
+    """Where most points are left to gain: questions, and exercises that were not handed in."""
+    said = words(lang)["feedback"]
+    places: list[tuple[float, float, str]] = []
+    for sheet in sheets:
+        if sheet.handout.exercise not in handed_in:
+            places.append((0.0, sheet.out_of, sheet.handout.title))
+            continue
+        for line in sheet.lines:
+            if line.verdict not in _WAIT:
+                name = said["advised"].format(exercise=sheet.handout.title, number=line.question.number)
+                symbol = f", ${line.question.symbol}$" if line.question.symbol else ""
+                places.append((line.points, line.out_of, name + symbol))
+    places.sort(key=lambda place: place[0] - place[1])
+    for points, out_of, name in places[:_ADVISED]:
+        if points < out_of:
+            got, most = (localise(f"{n:g}", lang) for n in (points, out_of))
+            yield f"{name} ({got} / {most})"
+
+
+# ---------------------------------------------------------------------- writing
 
 
 def write_feedback(
@@ -39,18 +163,27 @@ def write_feedback(
     before: Sequence[str],
     progress: Progress,
 ) -> None:
-    """One PDF a student, an exercise after another, called as the student's handouts are.
+    """One PDF a student, an exercise after another, called as the student's handouts are; of an assignment one a sitting.
 
     Those of an earlier marking, whose stems are ``before``, make way; any other file stays. A sheet that cannot be printed is a warning, and costs no other.
     """
-    by_student: dict[str, list[Graded]] = {student: [] for student in book.issued.students}
+    by_student: dict[str, dict[int, list[Graded]]] = {student: {} for student in book.issued.students}
     for graded in shown:
-        by_student.setdefault(graded.student, []).append(graded)
+        by_student.setdefault(graded.student, {}).setdefault(graded.sitting, []).append(graded)
+    unread = {place: {e for e, _ in own} for place, own in book.unread().items()}
+
+    def printed(student: str, sheets: list[Graded]) -> bytes:
+        renderer = renderer_of(course.folder)
+        if book.issued.assignment is None:
+            return renderer.booklet_pdf([feedback_sheet(course, g) for g in sheets])
+        lang = str(sheets[0].record.get("lang", "fr"))
+        waiting = unread.get((student, sheets[0].sitting), ())
+        return renderer.paper_pdf(feedback_paper(course, book.issued, student, sheets, lang, waiting))
 
     def maker(student: str, sheets: list[Graded]) -> Callable[[], bytes | None]:
         def make() -> bytes | None:
             try:
-                return renderer_of(course.folder).booklet_pdf([feedback_sheet(course, g) for g in sheets])
+                return printed(student, sheets)
             except CourseworkError as fault:
                 book.warnings.append(f"no feedback sheet for {student}: {fault}")
                 return None
@@ -58,12 +191,13 @@ def write_feedback(
         return make
 
     for stem in before:
-        (folder / f"{stem}.pdf").unlink(missing_ok=True)
+        for path in (folder / f"{stem}.pdf", *folder.glob(f"{stem}.sitting-*.pdf")):
+            path.unlink(missing_ok=True)
     stems = file_stems(by_student)
     files = [
-        File(Path(f"{stem}.pdf"), maker(student, mine))
-        for stem, (student, mine) in zip(stems, by_student.items(), strict=True)
-        if mine
+        File(Path(f"{stem}.pdf" if n == 1 else f"{stem}.sitting-{n}.pdf"), maker(student, mine))
+        for stem, (student, sittings) in zip(stems, by_student.items(), strict=True)
+        for n, mine in sorted(sittings.items())
     ]
     done = iter(range(1, len(files) + 1))
     write(folder, files, lambda _: progress(next(done), len(files)))
