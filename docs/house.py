@@ -22,7 +22,7 @@ def rooms() -> dict[str, set[str]]:
     """The rooms that each room imports from."""
     needs: dict[str, set[str]] = {}
     for path in PACKAGE.rglob("*.py"):
-        if {"skeleton", "_course"} & set(path.parts) or path == PACKAGE / "__init__.py":
+        if {"skeleton", "examples", "_course"} & set(path.parts) or path == PACKAGE / "__init__.py":
             continue
         room = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
         found = needs.setdefault(room, set())

@@ -78,6 +78,9 @@ def check(context: click.Context, exercises: Sequence[str], count: int, as_json:
     type=Lists(known_languages, unknown_language),
     help="Languages of a new course; unless told, that of the environment (LANG), else all.",
 )
+@click.option(
+    "--example", metavar="NAME", help="Copy a whole course that comes with the package: engineering."
+)
 @click.pass_context
 def new(
     context: click.Context,
@@ -87,11 +90,15 @@ def new(
     renamed: str | None,
     langs: Sequence[str] | None,
     asked: Sequence[str],
+    example: str | None,
 ) -> None:
     """Write a working course folder, a working exercise in one, or a copy of an exercise to be changed; or an
     assignment of exercises: new assignment FILE.toml EXERCISE…"""
     from coursework.authoring.scaffold import languages_around, new_course, new_exercise
 
+    if example is not None:
+        _new_example(folder, example, exercise or source or renamed or langs)
+        return
     if str(folder) == "assignment" and exercise is not None and exercise.endswith(".toml"):
         _new_assignment(context, Path(exercise), asked)
         return
@@ -117,6 +124,16 @@ def new(
         click.echo(f"wrote {path}")
     for path in there:
         click.echo(f"{path} is there already, the same")
+    click.echo(f"try: coursework --course {folder} check")
+
+
+def _new_example(folder: Path, name: str, more: object) -> None:
+    from coursework.authoring.example_courses import new_example
+
+    if more:
+        raise BadInput(f"an example is copied whole: coursework new {folder} --example {name}")
+    for path in new_example(folder, name):
+        click.echo(f"wrote {path}")
     click.echo(f"try: coursework --course {folder} check")
 
 

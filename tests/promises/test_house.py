@@ -18,7 +18,7 @@ ROOMS = (
 FILES = {
     path.relative_to(PACKAGE).as_posix(): path.read_text("utf-8")
     for path in sorted(PACKAGE.rglob("*.py"))
-    if not {"skeleton", "_course"} & set(path.parts)
+    if not {"skeleton", "examples", "_course"} & set(path.parts)
 }
 
 
