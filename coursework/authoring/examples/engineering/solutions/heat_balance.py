@@ -2,7 +2,7 @@
 
 from coursework.solution import given, mistake
 
-UNITS = {"R_1": "1/W", "R_2": "1/W"}
+UNITS = {"R_1": "K/W", "R_2": "K/W"}
 
 
 def R_1(A, e_1, lambda_1):

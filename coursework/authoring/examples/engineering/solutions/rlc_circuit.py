@@ -1,4 +1,4 @@
-"""Ohm's law with complex numbers: L is in thousandths of its unit, C in millionths, and the formulas write so."""
+"""Ohm's law with complex numbers: inductances are in mH and capacitances in µF, whence the powers of ten."""
 
 import numpy as np
 
