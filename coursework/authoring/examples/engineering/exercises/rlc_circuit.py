@@ -50,7 +50,7 @@ def figure():
         note(R, "R"),
         line(R + 8, L - 12),
         *(arc(L - 9 + 6 * k, 3, 0, 180) for k in range(4)),
-        note(L - 8j, "L"),
+        note(L - 5j, "L"),
         line(L + 12, corners[1]),
         line(corners[1], C + 1.5j),
         line(C + 1.5j - 6, C + 1.5j + 6, thin=False),

@@ -3,7 +3,7 @@
 The answers are vectors and a matrix.
 """
 
-from coursework.figures import Figure, line, link, pin, trace, vector
+from coursework.figures import Figure, line, link, note, pin, trace, vector
 from coursework.model import Exercise, Part, drawn
 
 
@@ -26,8 +26,8 @@ def figure():
         link(-12j, 12j),
         _spring(wall, first),
         _spring(first, second),
-        line(wall + 9j, first + 9j, dashed=True, label="k_1"),
-        line(first + 9j, second + 9j, dashed=True, label="k_2"),
+        note(first / 2 + 11j, "k_1"),
+        note((first + second) / 2 + 11j, "k_2"),
         vector(first - 14j, 22, "F_1"),
         line(first, first - 14j),
         vector(second - 14j, 22, "F_2"),

@@ -6,11 +6,11 @@ UNITS = {"R_1": "K/W", "R_2": "K/W"}
 
 
 def R_1(A, e_1, lambda_1):
-    return e_1 / 1000 / (lambda_1 * A)
+    return e_1 / (1000 * lambda_1 * A)
 
 
 def R_2(A, e_2, lambda_2):
-    return e_2 / 1000 / (lambda_2 * A)
+    return e_2 / (1000 * lambda_2 * A)
 
 
 def R_th(R_1, R_2):

@@ -30,7 +30,7 @@ def phi(Z):
 
 
 def f_0(L, C):
-    return 1 / (2 * np.pi * sqrt(L / 1000 * C / 1000000))
+    return 1 / (2 * np.pi * sqrt(L * C / 1000000000))
 
 
 def Q(R, L, C):
