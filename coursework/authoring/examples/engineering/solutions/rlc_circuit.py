@@ -85,12 +85,13 @@ def residual(U, f, R, L, C, Z, I, phi, f_0, Q):
     )
 
 
-#: By hand at 1000 rad/s, where 50 mH and 50 µF have 50 and 20 ohms; the triangles are 3, 4, 5.
+#: By hand at 1000 rad/s, where 50 mH and 50 µF have 50 and 20 ohms; the triangles are 3, 4, 5. In the second the coil
+#: has more than the voltage of the source, and the capacitor less.
 KNOWN = (
     given(U=10, f=500 / np.pi, R=40, L=50, C=50).gives(
         Z=40 + 30j, I=0.2, phi="36.870", f_0="100.658", Q="0.7906"
     ),
-    given(U=10, f=500 / np.pi, R=40, L=50, C=50).gives(holds="inductive"),
+    given(U=10, f=500 / np.pi, R=40, L=100, C=50).gives(holds="inductive"),
     given(U=10, f=500 / np.pi, R=15, L=80, C=10).gives(
         Z=15 - 20j, I=0.4, phi="-53.130", f_0="177.941", Q="5.963"
     ),
