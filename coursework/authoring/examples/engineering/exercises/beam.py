@@ -3,7 +3,7 @@
 Lengths are in m, forces in kN: units are what this file says they are. The figure takes the same numbers.
 """
 
-from coursework.figures import Figure, dimension, ground_pivot, line, link, pin, rail, slider, vector
+from coursework.figures import Figure, dimension, ground_pivot, line, link, pin, point, rail, slider, vector
 from coursework.model import Exercise, Part, drawn
 
 
@@ -23,12 +23,13 @@ def both_loads_count(L, F, q):
 
 def figure(L, a):
     A, B, load = 0, L, a
-    spread, point_load, arrows = 0.1j * L, 0.27j * L, 12
+    spread, force, arrows = 0.1j * L, 0.17j * L, 12
     return Figure(
         link(A, B),
         line(spread, B + spread, label="q"),
         *(vector(L * k / arrows + spread, -spread) for k in range(arrows + 1)),
-        vector(load + point_load, -point_load, "F"),
+        vector(load + spread + force, -force, "F"),
+        point(load),
         rail(0.93 * L, 1.07 * L),
         slider(B),
         ground_pivot(A, "A"),
