@@ -71,11 +71,16 @@ def test_an_unknown_example_is_told_with_those_there_are(tmp_path, capsys):
     assert not (tmp_path / "own").exists()
 
 
-def test_an_example_never_overwrites_and_takes_no_exercise(copied, tmp_path, capsys):
+def test_an_example_never_overwrites(copied, capsys):
     assert run(["new", str(copied), "--example", "engineering"]) == 2
     assert "is not empty" in capsys.readouterr().err
-    assert run(["new", str(tmp_path / "own"), "beam", "--example", "engineering"]) == 2
+
+
+@pytest.mark.parametrize("more", [["beam"], ["--from", "assour"], ["--as", "mine"], ["--lang", "fr"]])
+def test_an_example_is_copied_whole_and_takes_nothing_more(tmp_path, capsys, more):
+    assert run(["new", str(tmp_path / "own"), *more, "--example", "engineering"]) == 2
     assert "copied whole" in capsys.readouterr().err
+    assert not (tmp_path / "own").exists()
 
 
 # ---------------------------------------------------------------- marked right, from the data alone
