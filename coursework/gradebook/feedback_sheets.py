@@ -136,16 +136,17 @@ def _advice(sheets: Sequence[FeedbackSheet], handed_in: Collection[str], lang: s
     """Where most points are left to gain: questions, and exercises that were not handed in."""
     said = words(lang)["feedback"]
     places: list[tuple[float, float, str]] = []
-    for sheet in sheets:
+    for place, sheet in enumerate(sheets, start=1):
         if sheet.handout.exercise not in handed_in:
             places.append((0.0, sheet.out_of, sheet.handout.title))
             continue
         for line in sheet.lines:
             if line.verdict not in _WAIT:
-                name = said["advised"].format(exercise=sheet.handout.title, number=line.question.number)
+                number = f"{place}.{line.question.number}"  # as papers number their questions
+                name = said["advised"].format(exercise=sheet.handout.title, number=number)
                 symbol = f", ${line.question.symbol}$" if line.question.symbol else ""
                 places.append((line.points, line.out_of, name + symbol))
-    places.sort(key=lambda place: place[0] - place[1])
+    places.sort(key=lambda one: one[0] - one[1])
     for points, out_of, name in places[:_ADVISED]:
         if points < out_of:
             got, most = (localise(f"{n:g}", lang) for n in (points, out_of))

@@ -70,7 +70,7 @@ def test_what_to_look_at_next_is_where_most_points_are_lost(tmp_path, issued_fil
     found = paper(tmp_path, issued_file(), rows, "fr")
     title = found.sheets[0].handout.title
     lost = next(line for line in found.sheets[0].lines if line.question.id == "rA")
-    assert found.advice[0] == f"{title}, question {lost.question.number}, $r_A$ (0 / {lost.out_of:g})"
+    assert found.advice[0] == f"{title}, question 1.{lost.question.number}, $r_A$ (0 / {lost.out_of:g})"
     everything = answers("Ada", NAMES[0], 5) + answers("Ada", NAMES[1], 6)
     assert paper(tmp_path, issued_file(), everything).advice == ()
 
