@@ -62,8 +62,10 @@ def build_assignment(
     from coursework.making.assignment import read_assignment
     from coursework.making.dealing import deal
     from coursework.making.issued import issued_content
+    from coursework.making.letters import unprinted_names
     from coursework.making.roster import Student, read_roster
-    from coursework.system.tables import json_text
+    from coursework.rendering.renderer import renderer_of
+    from coursework.system.tables import SPREADSHEETS, json_text
     from coursework.system.writing import write_tree
 
     course = opened(context)
@@ -105,6 +107,7 @@ def build_assignment(
             paper=settings.of("paper"),
             booklet=settings.of("booklet"),
             polygons=settings.of("polygons"),
+            spreadsheet=SPREADSHEETS[settings.of("decimal")],
             only=only,
         )
     )
@@ -114,7 +117,10 @@ def build_assignment(
     same = json_text(issued_content(dealt.issues, assignment)).encode("utf-8")
     kept = before is not None and (out / "issued.json").read_bytes() == same
     with progress_bar("building", len(wanted)) as advance:
-        tell(write_tree(out, wanted, advance, anew=overwrite))
+        notes = list(write_tree(out, wanted, advance, anew=overwrite))
+    if settings.of("booklet") or "pdf" in settings.of("formats"):
+        notes += unprinted_names(renderer_of(course.folder), names if only is None else only)
+    tell(notes)
     count = len({(i.stem, i.sitting) for i in dealt.issues if only is None or i.student in only})
     what = "as it was issued" if kept or again else "to give away, issued.json and answers.csv to keep"
     click.echo(f"{counted(count, 'paper')} in {out}: {counted(len(wanted), 'file')}, {what}")
@@ -149,8 +155,10 @@ def _check_identity(assignment: Assignment, students: Sequence[Any], notes: list
 
     columns = list(dict.fromkeys(title for student in students for title in student.columns))
     known = set(map(folded, columns))
-    for title in assignment.identity:
+    asked = [(title, "a box to fill in by hand is printed") for title in assignment.identity]
+    if assignment.sort:
+        asked.append((assignment.sort, "a booklet stands as the roster does"))
+    for title, then in asked:
         if folded(title) not in known:
-            notes.append(
-                f"the roster has no column {title!r}{nearest(title, columns) if columns else ''}: a box to fill in by hand is printed"
-            )
+            near = nearest(title, columns) if columns else ""
+            notes.append(f"the roster has no column {title!r}{near}: {then}")

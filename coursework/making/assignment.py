@@ -26,7 +26,7 @@ MOST_VERSIONS = 26
 SITTINGS = ("best", "last")
 ANSWERS = ("shown", "never")
 #: Options of ``build`` that may stand in the file; the option wins.
-OPTIONS = ("roster", "formats", "lang", "paper", "practice", "booklet", "polygons", "out")
+OPTIONS = ("roster", "formats", "lang", "paper", "practice", "booklet", "polygons", "out", "decimal")
 
 
 class Exercises(Protocol):
@@ -75,6 +75,7 @@ class Assignment:
     mark: Scale | None = None
     versions: int | None = None  #: so many are dealt out; None: one a student
     identity: tuple[str, ...] = ()
+    sort: str = ""  #: the column by which a booklet is sorted; none: as the roster
     sittings: str = "best"
     answers: str = "shown"
     marking: Mapping[str, Any] = field(default_factory=dict)
@@ -180,6 +181,7 @@ class _Reader:
             "mark": self._mark,
             "versions": self._versions,
             "identity": self._identity,
+            "sort": self._sort,
             "sittings": self._word("sittings", SITTINGS),
             "answers": self._word("answers", ANSWERS),
             "marking": self._marking,
@@ -279,6 +281,11 @@ class _Reader:
                 "identity", f'identity lists columns of the roster: ["number", "group"]; found {value!r}'
             )
         return tuple(value)
+
+    def _sort(self, value: Any) -> str:
+        if not isinstance(value, str) or not value.strip():
+            raise self.refused("sort", f'sort is a column of the roster: "group"; found {value!r}')
+        return value
 
     def _marking(self, value: Any) -> Mapping[str, Any]:
         try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -20,7 +21,7 @@ from coursework.making.issuing import Issue
 from coursework.making.students import folded
 from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.sheets.paper import Heading, Paper, SolutionPaper
-from coursework.system.tables import csv_file, json_text
+from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
 from coursework.system.writing import File
 
 PAPERS = 50  #: in one booklet, at most
@@ -41,9 +42,19 @@ class IssuedPaper:
     def first(self) -> Issue:
         return self.issues[0]
 
+    @property
+    def _columns(self) -> dict[str, str]:
+        """What the roster says of the student, by the folded title of the column."""
+        return {folded(title): value for title, value in self.first.columns.items()}
+
+    @property
+    def sorted_by(self) -> tuple[tuple[int, int, str], ...]:
+        """Where the paper stands in a booklet: by words and by numbers, group 10 after group 2."""
+        pieces = re.findall(r"\d+|\D+", self._columns.get(folded(self.assignment.sort), ""))
+        return tuple((0, int(p), "") if p.isdecimal() else (1, 0, folded(p)) for p in pieces)
+
     def heading(self, lang: str) -> Heading:
-        assignment, first = self.assignment, self.first
-        own = {folded(title): value for title, value in first.columns.items()}
+        assignment, first, own = self.assignment, self.first, self._columns
         mark = assignment.mark
         return Heading(
             lang=lang,
@@ -96,6 +107,7 @@ def files(
     paper: str = "a4",
     booklet: bool = False,
     polygons: bool = True,
+    spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     only: Collection[str] | None = None,
 ) -> Iterator[File]:
     """Every file of an assignment, in order; with ``only``, the papers of these students alone, and no table."""
@@ -108,12 +120,12 @@ def files(
     if only is not None:
         return
     if booklet:
-        yield from _booklets(course, renderer, made)
+        yield from _booklets(course, renderer, made, spreadsheet)
     content = issued_content(issues, assignment)
     yield File(Path("issued.json"), lambda: json_text(content).encode("utf-8"))
-    yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS))
+    yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS, spreadsheet))
     if course.folder.has_solutions:
-        yield from key_files(issues)
+        yield from key_files(issues, spreadsheet)
 
 
 def _paper(
@@ -165,8 +177,11 @@ class _Booklet:
             }
 
 
-def _booklets(course: Course[Any], renderer: Renderer, made: Sequence[IssuedPaper]) -> Iterator[File]:
+def _booklets(
+    course: Course[Any], renderer: Renderer, made: Sequence[IssuedPaper], spreadsheet: Spreadsheet
+) -> Iterator[File]:
     """All papers of a language in one PDF, and where each is; the table is made after them."""
+    made = sorted(made, key=lambda one: one.sorted_by)
     wanted = []
     for lang in dict.fromkeys(lang for one in made for lang in one.first.langs):
         group = [one for one in made if lang in one.first.langs]
@@ -184,7 +199,7 @@ def _booklets(course: Course[Any], renderer: Renderer, made: Sequence[IssuedPape
 
     def table() -> bytes:
         rows = (row for one, found in zip(wanted, pages, strict=True) for row in one.rows(found.result()))
-        return csv_file(rows, PAGE_COLUMNS)
+        return csv_file(rows, PAGE_COLUMNS, spreadsheet)
 
     yield File(Path("handouts") / "pages.csv", table)
 

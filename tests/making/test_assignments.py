@@ -241,3 +241,18 @@ def test_issued_json_keeps_the_assignment_and_the_columns_and_no_answer(midterm)
     assert content["assignment"]["mark"] == {"of": 20.0, "step": 0.5}
     assert content["students"]["Abel Roy"] == {"number": "101", "group": "B"}
     assert "answers" not in {key for item in content["issued"] for key in item["record"]}
+
+
+def test_a_booklet_is_sorted_by_the_column_that_the_file_names_and_else_as_the_roster(tmp_path):
+    groups = ("10", "2", "A", "2", "", "10", "B", "a")
+    students = [Student(name, columns={"Group": g}) for name, g in zip(NAMES, groups, strict=True)]
+
+    def order(text):
+        assignment = read_assignment(stated(tmp_path, text), COURSE)
+        made = papers(assignment, deal(COURSE, assignment, students, ("fr",), None).issues, polygons=False)
+        return [one.first.student for one in sorted(made, key=lambda one: one.sorted_by)]
+
+    assert order(TEXT) == list(NAMES)
+    sorted_names = order('sort = "group"\n' + TEXT)
+    assert [dict(zip(NAMES, groups, strict=True))[n] for n in sorted_names] == ["", "2", "2", "10", "10", "A", "a", "B"]
+    assert sorted_names.index("Abel Roy") < sorted_names.index("Ömer Öz")  # of one group: as the roster
