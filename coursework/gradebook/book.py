@@ -231,6 +231,12 @@ def _owed(book: Gradebook, place: Sitting, own: Iterable[tuple[str, int]]) -> se
     return owed
 
 
+def _number(points: float) -> float:
+    """Points as tables print them, whole where they are: a number, which a decimal comma may print."""
+    shown = float(f"{points:g}")
+    return int(shown) if shown.is_integer() else shown
+
+
 def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
     """The lines of ``summary.csv``."""
     issued = book.issued
@@ -241,7 +247,7 @@ def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
         yield {
             **{column: told.get(title, "") for title, column in carried.items()},
             **{column: told.get(folded(title), "") for title, column in own.items()},
-            **{column: f"{result.by_exercise.get(e, 0):g}" for e, column in exercises.items()},
+            **{column: _number(result.by_exercise.get(e, 0.0)) for e, column in exercises.items()},
             "student": student,
             SITTING: result.sitting,
             "points": f"{points:g}",

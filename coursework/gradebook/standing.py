@@ -130,7 +130,7 @@ def _stood(mark: Mark, line: _Line) -> Mark:
             f"{line.place}: {mark.part} is out of {mark.out_of:g} points, as issued; found out of {line.out_of[:40]!r}"
         )
     points = mark.points
-    if line.points != f"{points:g}":
+    if line.points.replace(",", ".") != f"{points:g}":
         points = _number(line.points)
         if not 0 <= points <= mark.out_of:
             raise BadInput(

@@ -125,7 +125,9 @@ SPREADSHEETS = {"point": Spreadsheet(), "comma": Spreadsheet(";", ",")}
 _PLAIN = SPREADSHEETS["point"]
 
 #: Columns whose texts are numbers; what a student wrote stays as it was written.
-_NUMBERS = frozenset(("points", "out_of", "percent", "points_before", "points_now", "value", "tolerance"))
+_NUMBERS = frozenset(
+    ("points", "out_of", "percent", "mark", "points_before", "points_now", "value", "tolerance")
+)
 _NUMBER = re.compile(r"-?\d+(\.\d+)?(e[-+]?\d+)?")
 
 

@@ -57,12 +57,24 @@ def test_another_version_is_refused_with_what_the_student_has(course, versions):
 
 def test_the_summary_names_who_and_each_exercise_and_loses_no_column(course, versions):
     _, marks = grade(course, versions, right(course, "Ada", 5))
-    header = (marks / "summary.csv").read_text("utf-8").splitlines()[0].split(",")
+    header = (marks / "summary.csv").read_text("utf-8-sig").splitlines()[0].split(",")
     assert header[:7] == ["student", "number", "crank_pin", "points", "out_of", "mark", "percent"]
     assert header[-2:] == ["group", "mark (roster)"]
     assert "Number" not in header  # it is the identity's column, whatever its case
     ada = table(marks / "summary.csv")[0]
     assert (ada["number"], ada["group"], ada["mark (roster)"], ada["crank_pin"]) == ("100", "A", "x", "4")
+
+
+def test_a_mark_has_the_decimal_sign_of_the_table(course, versions):
+    _, marks = grade(course, versions, right(course, "Ada", 5, v=0, x=0), "--decimal", "comma")
+    cells = (marks / "summary.csv").read_text("utf-8-sig").splitlines()[1].split(";")
+    assert cells[:6] == ["Ada", "100", "1", "1", "4", "5"]
+    accepted = versions.parent / "accepted.csv"
+    accepted.write_text("student,exercise,part,points\nAda,crank_pin,v,0.5\n", "utf-8")
+    rows = right(course, "Ada", 5, v=0, x=0)
+    _, marks = grade(course, versions, rows, "--decimal", "comma", "--accepted", accepted)
+    cells = (marks / "summary.csv").read_text("utf-8-sig").splitlines()[1].split(";")
+    assert cells[:6] == ["Ada", "100", "1,5", "1,5", "4", "7,5"]
 
 
 def test_a_version_speaks_the_language_of_each_student(course, tmp_path):
