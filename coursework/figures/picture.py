@@ -9,10 +9,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 from xml.etree import ElementTree
 
 from coursework.errors import BadCourse, nearest
-from coursework.figures.writing import Letters
+
+if TYPE_CHECKING:
+    from coursework.figures.writing import Letters
 
 _SVG, _XLINK = "http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"
 _PNG = b"\x89PNG\r\n\x1a\n"

@@ -72,7 +72,7 @@ def deal(
     issues = []
     for (student, sitting), (place, variants) in zip(sittings, papers.items(), strict=True):
         own = (student.lang,) if student.lang else tuple(langs)
-        stem = stems[place[0]] if sitting == 1 else f"{stems[place[0]]}-{sitting}"
+        stem = stems[place[0]] if sitting == 1 else f"{stems[place[0]]}.sitting-{sitting}"
         version = versions.get(place[0], "") if sitting == 1 else ""
         issues += [
             Issue(student.name, v.in_language(own[0]), own, stem, sitting, version, student.columns)

@@ -254,5 +254,14 @@ def test_a_booklet_is_sorted_by_the_column_that_the_file_names_and_else_as_the_r
 
     assert order(TEXT) == list(NAMES)
     sorted_names = order('sort = "group"\n' + TEXT)
-    assert [dict(zip(NAMES, groups, strict=True))[n] for n in sorted_names] == ["", "2", "2", "10", "10", "A", "a", "B"]
+    assert [dict(zip(NAMES, groups, strict=True))[n] for n in sorted_names] == [
+        "",
+        "2",
+        "2",
+        "10",
+        "10",
+        "A",
+        "a",
+        "B",
+    ]
     assert sorted_names.index("Abel Roy") < sorted_names.index("Ömer Öz")  # of one group: as the roster
