@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import re
 import shlex
+from dataclasses import fields
 from pathlib import Path
 
 import click
@@ -13,6 +14,7 @@ import pytest
 import coursework
 from coursework.cli import run
 from coursework.cli.commands import commands as cli
+from coursework.making.assignment import OPTIONS, read_assignment
 from coursework.rendering.renderer import renderer_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -113,7 +115,7 @@ def test_every_command_shown_exists_with_its_options(page):
         name, given = read_command(arguments)
         if name != "new" and "--course" not in arguments:
             named = {given["exercise"]} if "exercise" in given else set(given.get("exercises", ()))
-            assert named <= set(COURSE.names), arguments
+            assert {one for one in named if not one.endswith(".toml")} <= set(COURSE.names), arguments
 
 
 def test_pages_do_show_commands():
@@ -204,3 +206,16 @@ def test_every_picture_and_page_that_the_gallery_points_to_is_made(name):
 def test_the_picture_of_a_sheet_is_one_page_as_png():
     handout = COURSE["slotted_mechanism"].variant(0, "en").handout()
     assert gallery().first_page(renderer_of(COURSE.folder).typst(handout)).startswith(b"\x89PNG")
+
+
+def test_the_assignment_that_is_shown_is_one_of_the_course(tmp_path):
+    (shown,) = blocks(DOCS / "assignments.md", "toml")
+    (tmp_path / "midterm.toml").write_text(shown, "utf-8")
+    assignment = read_assignment(tmp_path / "midterm.toml", COURSE)
+    assert set(assignment.names) == {"slotted_mechanism", "vocabulary", "grashof"}
+    table = (DOCS / "assignments.md").read_text("utf-8")
+    for key in [
+        *OPTIONS,
+        *(f.name for f in fields(assignment) if f.name not in ("name", "exercises", "options")),
+    ]:
+        assert f"`{key}`" in table or f"`[{key}]`" in table or key == "practice", key
