@@ -3,28 +3,25 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from coursework.course.course import Course
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, NoSolution, Starved, WrongValue
-from coursework.figures.plot import Axis, Plot, Spot
-from coursework.language.numbers import unit_text
 from coursework.language.words import words
-from coursework.marking.answers import read
-from coursework.marking.feedback import part_name
-from coursework.marking.mark import Mark, Marking
+from coursework.marking.mark import Marking
 from coursework.marking.marking import mark as grade
 from coursework.markup.shown import Picture, Shown
+from coursework.model import Part
 from coursework.motion.gauges import EFFECTS
 from coursework.rendering.displayed import DisplayedAnimation
 from coursework.rendering.views import offered, points_number
 from coursework.selfstudy import hints, predictions, refusals
 from coursework.selfstudy import word_answers as wording
+from coursework.selfstudy.answers import is_open, judged_out_of, quoted, same_as_another, sentence_of, sign_of
+from coursework.selfstudy.plotting import curves, usual_parts
 from coursework.selfstudy.predictions import Prediction
 from coursework.selfstudy.right_answers import Own, right_ones
 from coursework.selfstudy.sheet import fresh_variants
@@ -33,9 +30,6 @@ from coursework.sheets.handout import handout
 
 if TYPE_CHECKING:
     from coursework import figures
-
-
-PANELS = 6  #: curves of a plot, unless some are named
 
 
 def open_session(
@@ -206,7 +200,7 @@ class StudySession:
         unread = [n for n in made if not predictions.is_understood(self.variant, asked[n], now[n])]
         lines += [
             self._said["not_understood"].format(
-                name=n, said=_quoted(now[n]), options=predictions.options(self.variant, asked[n])
+                name=n, said=quoted(now[n]), options=predictions.options(self.variant, asked[n])
             )
             for n in unread
         ]
@@ -291,20 +285,21 @@ class StudySession:
         except Exception:
             self._kept.add(self.variant.seed, "answers", given)  # nothing is lost by a fault of the course
             raise
-        copied, theirs = self._same_as_another(given, marking)
+        copied, theirs = same_as_another(self.variant, self._kept, given, marking)
         self._kept.add(self.variant.seed, "answers", {n: a for n, a in given.items() if n not in theirs})
         lines, unanswered = [], []
         for number, mark in enumerate(marking.values(), start=1):
             if mark.verdict == "missing" or (mark.verdict == "to_mark" and is_blank(mark.answer)):
                 unanswered.append(mark.part)
             else:
-                lines.append(f"- {_sign(mark)} **{number}.** `{mark.part}` — {self._says(mark)}")
+                said = sentence_of(self.variant, mark, self._call("reveal", mark.part))
+                lines.append(f"- {sign_of(mark)} **{number}.** `{mark.part}` — {said}")
         if copied is not None:
             lines.insert(0, self._said["copied"].format(seed=copied) + "\n")
         right = {m.part for m in marking.values() if m.verdict == "correct"}
         total = self._said["total"].format(
             points=points_number(marking.points, self.variant.lang),
-            out_of=points_number(_judged_out_of(self.variant, marking), self.variant.lang),
+            out_of=points_number(judged_out_of(self.variant, marking), self.variant.lang),
         )
         before = [n for n in now if (named or answers is not None) and is_blank(given.get(n))]
         after = [self._left(unanswered)] if unanswered else []
@@ -321,47 +316,6 @@ class StudySession:
             self._compared(asked_before, self._own_in(marking, now)),
             self._trouble,
         )
-
-    def _says(self, mark: Mark) -> str:
-        """What is said to a student alone of an answer: where nobody will look at it, what to write instead."""
-        if mark.verdict == "to_mark":
-            part = next(p for p in self.variant.parts if p.id == mark.part)
-            name, sentence = part_name(self.variant, part), words(self.variant.lang)["marking"]["open"]
-            return sentence.format(name=name[:1].upper() + name[1:], call=self._call("reveal", mark.part))
-        if mark.verdict != "unreadable":
-            return mark.says
-        table = words(self.variant.lang)["marking"]["unreadable"]
-        part = next(p for p in self.variant.parts if p.id == mark.part)
-        family = part.sort.family
-        general = [table["otherwise"]] if family == "number" else [table["otherwise"], table["not_a_number"]]
-        if not part.choices and not any(mark.says.endswith(s.rpartition("{found}")[2]) for s in general):
-            return mark.says
-        colon = words(self.variant.lang)["sheet"]["colon"]
-        name = part_name(self.variant, part)
-        choices = predictions.choices(self.variant, part)
-        return f"{name[:1].upper()}{name[1:]}{colon} " + self._said["not_read"][family].format(
-            found=_quoted(mark.answer), choices=choices
-        )
-
-    def _same_as_another(self, given: Mapping[str, Any], marking: Marking) -> tuple[int | None, list[str]]:
-        """The seed of another variant that these very answers were for, and which of them are wrong here.
-
-        Two numbers at least that are wrong here, and would be others there, make a copy: what is right in both,
-        and a small whole number, may well be the same.
-        """
-        written = {n: a for n, a in given.items() if not is_blank(a)}
-        wrong = [p for p in self.variant.parts if p.id in written and marking[p.id].verdict != "correct"]
-        wrong = [p for p in wrong if not p.is_exact]
-        for seed in self._kept.seeds if len(wrong) > 1 else ():
-            theirs = self._kept.of(seed, "answers")
-            if seed == self.variant.seed or any(theirs.get(n) != a for n, a in written.items()):
-                continue
-            other = self.variant.exercise.variant(seed, self.variant.lang).walk
-            here = self.variant.walk
-            differ = [p.id for p in wrong if not _are_same(other.get(p.quantity), here.get(p.quantity))]
-            if len(differ) > 1:
-                return seed, differ
-        return None, []
 
     @property
     def _own(self) -> dict[str, Own]:
@@ -449,31 +403,13 @@ class StudySession:
         called = [self._named(name) for name in names]
         for name in called:
             refusals.expect(self.variant.lang, "curve", name, parts)
-        first = [p.quantity for p in predictions.over_the_cycle(self.variant)]
-        usual = sorted(parts, key=lambda i: parts[i].quantity not in first)[:PANELS]
-        chosen = [parts[n] for n in (called or sorted(usual, key=list(parts).index))]
-        spec, lang = self.variant.exercise.spec, self.variant.lang
-        assert spec.driver is not None  # without one no part moves
-        driver = spec.driver.angle
-        at = float(self.variant.given[driver]) % 360.0
-        curves, spots, own = [], [], self._own
-        for part in chosen:
-            angles, values = predictions.curve(self.variant, part.quantity)
-            curves.append(
-                Axis(self.variant.exercise.symbol(part.quantity), unit_text(part.unit, lang), values)
-            )
-            spots.append(self._spots(part, at, own, values))
-        turn = Axis(self.variant.exercise.symbol(driver), "°", angles)
-        picture = Plot(turn, curves, lang, at, spots)
-        symbols = ", ".join(f"${self.variant.exercise.symbol(p.quantity)}$" for p in chosen)
-        said = self._said["plot"].format(list=symbols, driver=f"${self.variant.exercise.symbol(driver)}$")
-        beside = [p for p in chosen if p.quantity in own and not own[p.quantity].is_usual]
-        outside = [p for p, far in zip(chosen, picture.has_outside, strict=True) if far]
+        chosen = [parts[name] for name in called] or list(usual_parts(self.variant))
+        own, symbol = self._own, self.variant.exercise.symbol
+        drawn = curves(self.variant, chosen, self.answers, own)
+        said = self._said["plot"].format(list=_symbols(chosen, symbol), driver=f"${symbol(drawn.driver)}$")
         notes = [
-            self._said[note].format(
-                list=", ".join(f"${self.variant.exercise.symbol(p.quantity)}$" for p in found)
-            )
-            for note, found in (("beside_curve", beside), ("outside", outside))
+            self._said[note].format(list=_symbols(found, symbol))
+            for note, found in (("beside_curve", drawn.beside), ("outside", drawn.outside))
             if found
         ]
         others = [n for n in parts if parts[n] not in chosen]
@@ -483,26 +419,9 @@ class StudySession:
             else ""
         )
         asked = [p.id for p in predictions.over_the_cycle(self.variant)]
-        plain = f"{', '.join(p.id for p in chosen)} / {driver}"
-        return self._shown(said, Picture(picture.svg(), plain), *notes, more, self._compared(asked, own))
-
-    def _spots(self, part: Any, at: float, own: Mapping[str, Own], values: np.ndarray) -> tuple[Spot, ...]:
-        """The student's answer as a point, where it can be read; none where it is right, but not of this curve."""
-        mine = own.get(part.quantity)
-        if mine is not None and not mine.is_usual:
-            return ()
-        answer = self.answers.get(part.id)
-        if is_blank(answer):
-            return ()
-        reading = read(self.variant, part, answer)
-        if reading.status != "read":
-            return ()
-        value = written = float(reading.values[0]) if mine is None or mine.value is None else mine.value
-        if turn := part.sort.turn:
-            # Of all turns the one beside the curve, so that a point above it is above.
-            middle = (np.nanmin(values) + np.nanmax(values)) / 2
-            value = middle + (value - middle + turn / 2) % turn - turn / 2
-        return (Spot(at, value, mine is not None, written),)
+        return self._shown(
+            said, Picture(drawn.plot.svg(), drawn.plain), *notes, more, self._compared(asked, own)
+        )
 
     # ----------------------------------------------------------- other variants
 
@@ -543,7 +462,7 @@ class StudySession:
             variant = self.variant.exercise.variant(seed, self.variant.lang)
             marking = grade(variant, self._asked_of(variant))
             right = sum(m.verdict == "correct" for m in marking.values())
-            judged = sum(not _is_open(variant, m) for m in marking.values())
+            judged = sum(not is_open(variant, m) for m in marking.values())
             lines.append("- " + self._said["progress"].format(seed=seed, right=right, of=judged))
         return self._shown("\n".join(lines), self._trouble)
 
@@ -583,37 +502,9 @@ class StudySession:
         return Shown(self.variant.lang, *pieces)
 
 
-def _is_open(variant: Variant, mark: Mark) -> bool:
-    return next(p for p in variant.parts if p.id == mark.part).sort.is_open
-
-
-def _judged_out_of(variant: Variant, marking: Marking) -> float:
-    """The points of what is marked here."""
-    return sum(m.out_of for m in marking.values() if not _is_open(variant, m))
+def _symbols(parts: Iterable[Part], symbol: Callable[[str], str]) -> str:
+    return ", ".join(f"${symbol(p.quantity)}$" for p in parts)
 
 
 def _names(names: Iterable[str]) -> str:
     return ", ".join(f"`{n}`" for n in names)
-
-
-def _quoted(text: Any) -> str:
-    """What was written, shortened, as no Markdown reader takes for markup."""
-    said = "".join(c for c in str(text) if c.isprintable() and c not in "$`*_\\<>[]#|{}")
-    return said if len(said) <= 60 else f"{said[:59]}…"
-
-
-def _are_same(one: Any, other: Any) -> bool:
-    if one is None or other is None:
-        return one is other
-    return bool(np.array_equal(np.asarray(one), np.asarray(other)))
-
-
-def _sign(mark: Mark) -> str:
-    """The mark at the head of a line, told apart without colour."""
-    if mark.verdict == "correct":
-        return "✓"
-    if mark.verdict == "to_mark":
-        return "…"
-    if mark.verdict in ("unreadable", "missing_unit", "wrong_unit"):
-        return "?"
-    return "≈" if mark.points else "✗"
