@@ -15,6 +15,7 @@ from coursework.cli.options import (
     json_option,
     lang_option,
     opened,
+    tell,
     tell_lack_of_charts,
 )
 from coursework.cli.printing import print_json, progress_bar
@@ -195,11 +196,20 @@ def report(
     from coursework.language.words import words
     from coursework.statistics import measures as statistics
     from coursework.statistics import page as statistics_page
-    from coursework.statistics.marks import read
+    from coursework.statistics.marks import read, unlike_summary
 
     words(lang)  # an unknown language stops here
     course = opened(context)
     marks = read(folder)
+    if unlike := unlike_summary(folder, marks):
+        path = folder / "marks.csv"
+        tell(
+            [
+                f"{counted(len(unlike), 'student')} with other points in {path} than in summary.csv ({unlike[0]}"
+                f"{', …' if len(unlike) > 1 else ''}): the report is of {path}; 'coursework grade --issued … --from {path}' "
+                "makes summary and feedback agree with it"
+            ]
+        )
     told = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
     if as_json:
         print_json(told.as_json())

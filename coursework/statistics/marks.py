@@ -121,6 +121,17 @@ def read(folder: Path) -> Marks:
     )
 
 
+def unlike_summary(folder: Path, marks: Marks) -> list[str]:
+    """The students whose points in the marks are not those of the summary beside them: a hand changed one of the two."""
+    path = folder / "summary.csv"
+    if not path.is_file() or "points" not in _header(path):
+        return []
+    sums = np.bincount(marks.student, marks.points, minlength=len(marks.students))
+    found = dict(zip(marks.students, sums.tolist(), strict=True))
+    told = _lines(path, ("student", "points", "out_of"), _Decimals())
+    return [name for name, points, _ in told if abs(found[name] - points) > 1e-5 * max(1.0, points)]
+
+
 def _counting(folder: Path, decimals: _Decimals) -> Iterator[tuple[Any, ...]]:
     """The lines of the marks; of a student with several sittings those of the one that counts."""
     path, summary = folder / "marks.csv", folder / "summary.csv"

@@ -129,3 +129,18 @@ def test_what_is_marked_is_said_once(course, marks, capsys):
         == 2
     )
     assert "nothing to mark; name SUBMISSIONS" in capsys.readouterr().err
+
+
+def test_the_report_says_when_a_mark_was_changed_and_the_summary_was_not_told(course, marks, capsys):
+    def said():
+        assert run(["--course", str(course.folder.root), "report", str(marks), "--json", "--lang", "en"]) == 0
+        return capsys.readouterr().err
+
+    assert said() == ""
+    change(marks, "v", points="0.25")
+    assert "1 student with other points in" in (told := said())
+    assert "Ada" in told
+    assert f"--from {marks / 'marks.csv'}" in told
+    assert again(course, marks) == 1
+    capsys.readouterr()
+    assert said() == ""
