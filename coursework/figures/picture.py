@@ -10,11 +10,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
-from xml.etree import ElementTree
 
 from coursework.errors import BadCourse, nearest
 
 if TYPE_CHECKING:
+    from xml.etree import ElementTree
+
     from coursework.figures.writing import Letters
 
 _SVG, _XLINK = "http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"
@@ -25,9 +26,6 @@ _LENGTH = re.compile(r"\s*([0-9.]+(?:e[+-]?\d+)?)\s*([a-z]*)\s*", re.I)
 _DOCTYPE = re.compile(rb"<!DOCTYPE[^>\[]*>", re.I)
 _RUNS = ("script", "foreignObject", "handler", "listener", "iframe", "embed", "object", "set", "animate")
 _FETCHES = re.compile(r"url\s*\(\s*['\"]?(?!['\"]?\s*(?:#|data:image/))|@import", re.I)
-
-ElementTree.register_namespace("", _SVG)
-ElementTree.register_namespace("xlink", _XLINK)
 
 
 @dataclass(frozen=True, eq=False)
@@ -135,6 +133,10 @@ def _of_png(data: bytes) -> tuple[str, float, float]:
 
 
 def _of_svg(data: bytes) -> tuple[str, float, float]:
+    from xml.etree import ElementTree
+
+    ElementTree.register_namespace("", _SVG)
+    ElementTree.register_namespace("xlink", _XLINK)
     try:
         if b"<!ENTITY" in data:
             raise BadCourse("the SVG declares entities, which are not read: save it as plain SVG")
