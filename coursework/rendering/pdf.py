@@ -44,7 +44,7 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = 
     ]
     printed = not isinstance(sheets[0], FeedbackSheet)
     page = contexts[0] | {"bodies": bodies, "paper": paper, "printed": printed}
-    return drawn(render(environment_of(tuple(folders), page["lang"]), "_page.typ.j2", page), folders)
+    return render(environment_of(tuple(folders), page["lang"]), "_page.typ.j2", page)
 
 
 # ------------------------------------------------------------------------ fonts
@@ -117,17 +117,19 @@ def files(typst_source: str) -> dict[str, bytes]:
     return found
 
 
-def compile_pdf(typst_source: str, fonts: tuple[str, ...] = ()) -> bytes:
-    """The tagged PDF (PDF/UA-1 and PDF/A-2a) of a Typst source; the same bytes for the same source and ``fonts``.
+def compile_pdf(typst_source: str, folders: Sequence[Path] = ()) -> bytes:
+    """The tagged PDF (PDF/UA-1 and PDF/A-2a) of a Typst source; the same bytes for the same source and fonts.
+
+    ``folders`` of templates bring fonts of their own; a character that no font draws is a square.
 
     What the course's own template may have got wrong is said as :class:`BadStatement`.
     """
     with _complaints():
-        return _written(_compiler(fonts), files(typst_source))
+        return _written(_compiler(fonts_of(folders)), files(drawn(typst_source, folders)))
 
 
 def compile_booklet(
-    typst_source: str, fonts: tuple[str, ...] = ()
+    typst_source: str, folders: Sequence[Path] = ()
 ) -> tuple[bytes, tuple[tuple[int, int], ...]]:
     """The PDF of a source of several sheets, and the first and last page of each.
 
@@ -135,11 +137,11 @@ def compile_booklet(
     """
     import typst
 
-    written = files(typst_source)
+    written = files(drawn(typst_source, folders))
     with _complaints():
         # Asked of the compiler that then writes the file, the pages are laid out once.
         opened: Any = typst.Compiler  # takes the files by name as well, which its types do not say
-        compiler = opened(input=written, font_paths=list(fonts), ignore_system_fonts=True)
+        compiler = opened(input=written, font_paths=list(fonts_of(folders)), ignore_system_fonts=True)
         ends = json.loads(compiler.query("<sheet-last>", field="value"))
         made = _written(compiler, written)
         # The typesetter remembers what the last documents were made of, and a booklet is large: small

@@ -44,7 +44,7 @@ class Renderer:
         """The Typst source of a sheet; it stands alone."""
         from coursework.rendering import pdf
 
-        return pdf.source(self.template_folders, [sheet], self.paper)
+        return pdf.drawn(pdf.source(self.template_folders, [sheet], self.paper), self.template_folders)
 
     def pdf(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> bytes:
         """A sheet as a tagged PDF."""
@@ -54,9 +54,7 @@ class Renderer:
         """Several sheets in one PDF, each with its own page numbers; those to print from an odd page on."""
         from coursework.rendering import pdf
 
-        return pdf.compile_pdf(
-            pdf.source(self.template_folders, sheets, self.paper), pdf.fonts_of(self.template_folders)
-        )
+        return pdf.compile_pdf(pdf.source(self.template_folders, sheets, self.paper), self.template_folders)
 
     def booklet(
         self, sheets: Sequence[Handout | AnswerSheet | FeedbackSheet]
@@ -65,7 +63,7 @@ class Renderer:
         from coursework.rendering import pdf
 
         return pdf.compile_booklet(
-            pdf.source(self.template_folders, sheets, self.paper), pdf.fonts_of(self.template_folders)
+            pdf.source(self.template_folders, sheets, self.paper), self.template_folders
         )
 
     def undrawn(self, text: str) -> list[str]:
@@ -118,14 +116,18 @@ class Renderer:
         """A paper, its solutions or its feedback as a tagged PDF."""
         from coursework.rendering import papers, pdf
 
-        return pdf.compile_pdf(papers.typst_source(self.template_folders, [paper], self.paper))
+        return pdf.compile_pdf(
+            papers.typst_source(self.template_folders, [paper], self.paper), self.template_folders
+        )
 
     def papers_pdf(self, handed: Sequence[AnyPaper]) -> tuple[bytes, tuple[tuple[int, int], ...]]:
         """Several papers in one PDF, each with its own page numbers and from an odd page on, and the first and last page
         of each in it, from 1 on."""
         from coursework.rendering import papers, pdf
 
-        return pdf.compile_booklet(papers.typst_source(self.template_folders, handed, self.paper))
+        return pdf.compile_booklet(
+            papers.typst_source(self.template_folders, handed, self.paper), self.template_folders
+        )
 
     def paper_html(self, paper: AnyPaper) -> str:
         """A paper, its solutions or its feedback as one web page that fetches nothing and runs no script."""
@@ -185,7 +187,7 @@ class Renderer:
         from coursework.rendering import pdf, reports
 
         return pdf.compile_pdf(
-            reports.source(self.template_folders, report, self.paper), pdf.fonts_of(self.template_folders)
+            reports.source(self.template_folders, report, self.paper), self.template_folders
         )
 
     def motion_html(self, animation: Animation) -> str:

@@ -26,8 +26,7 @@ def source(folders: Sequence[Path], report: Report, paper: str = "a4") -> str:
     """The Typst source; it stands alone."""
     env = pdf.environment_of(tuple(folders), report.lang)
     body = Markup(render(env, "report.typ.j2", _names(report) | {"chart": _drawn}))
-    page = render(env, "_page.typ.j2", _names(report) | {"bodies": [body], "paper": paper})
-    return pdf.drawn(page, folders)
+    return render(env, "_page.typ.j2", _names(report) | {"bodies": [body], "paper": paper})
 
 
 def _names(report: Report) -> dict[str, object]:

@@ -312,3 +312,12 @@ def test_latex_of_a_paper_names_its_figures_and_closes_what_it_opens(lang):
         assert source.count("{") - source.count("\\{") == source.count("}") - source.count("\\}")
         assert f"/~{full_points():g} points" in source or f"({full_points():g} points)" in source
         assert "2.3" in source
+
+
+@every_language
+def test_a_name_that_no_font_draws_is_printed_with_squares_and_stops_nobodys_paper(lang):
+    for made in (paper(heading(lang, "李 明")), solution(heading(lang, "李 明"))):
+        assert "□ □" in page_texts(RENDERER.paper_pdf(made))[0]
+    made, pages = RENDERER.papers_pdf([paper(bare(lang, name), NAMES[:1]) for name in ("李 明", "Zoé Roy")])
+    assert len(pages) == 2
+    assert "Zoé Roy" in "".join(page_texts(made))
