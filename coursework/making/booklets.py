@@ -1,16 +1,17 @@
-"""All students' sheets of one exercise in one PDF, to print at once, and a table of where each sheet is.
+"""All students' sheets in one PDF, to print at once, and a table of where each is.
 
-A booklet holds so many sheets at most; a larger class has several, named with the sheets they hold. The
+A booklet holds so many sheets, or papers, at most; a larger class has several, named with those they hold. The
 typesetter keeps a whole document in memory, and a document joined from parts would lose its tags.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import TypeVar
 
 from coursework.course.course import Course
 from coursework.making.issuing import Issue
@@ -19,43 +20,67 @@ from coursework.sheets.sheet import AnswerSheet, Handout
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file
 from coursework.system.writing import File
 
-SHEETS = 50  #: in one booklet, at most
+SHEETS = 50  #: or papers, in one booklet, at most
 PAGE_COLUMNS = ("student", "exercise", "seed", "lang", "first page", "last page", "file")
 
-Pages = tuple[tuple[int, int], ...]
+Pages = tuple[tuple[int, int], ...]  #: the first and the last of each sheet
+_Sheet = TypeVar("_Sheet")
 
 
 @dataclass(frozen=True)
-class _Booklet:
-    """The sheets of one file, in one language."""
+class Booklet:
+    """One file of several sheets, and the solutions of these."""
 
-    lang: str
-    issues: tuple[Issue, ...]
     name: str
-    polygons: bool
+    print_sheets: Callable[[], tuple[bytes, Pages]]
+    print_solutions: Callable[[], bytes]
+    told: Sequence[Mapping[str, object]]  #: of each sheet, what the table says but for pages and file
 
-    def handouts(self) -> list[Handout]:
-        return [i.variant.in_language(self.lang).handout(i.student) for i in self.issues]
+    def rows(self, pages: Pages) -> Iterator[dict[str, object]]:
+        for told, (first, last) in zip(self.told, pages, strict=True):
+            yield {**told, "first page": first, "last page": last, "file": f"{self.name}.pdf"}
 
-    def answer_sheets(self) -> list[AnswerSheet]:
-        return [
-            i.variant.in_language(self.lang).answer_sheet(i.student, polygons=self.polygons)
-            for i in self.issues
-        ]
 
-    def rows(self, pages: Pages) -> list[dict[str, object]]:
-        return [
-            {
-                "student": issue.student,
-                "exercise": issue.variant.exercise.name,
-                "seed": issue.variant.seed,
-                "lang": self.lang,
-                "first page": first,
-                "last page": last,
-                "file": f"{self.name}.pdf",
-            }
-            for issue, (first, last) in zip(self.issues, pages, strict=True)
-        ]
+def parted(name: str, sheets: Sequence[_Sheet]) -> Iterator[tuple[str, Sequence[_Sheet]]]:
+    """The sheets of each booklet, and its name."""
+    digits = len(str(len(sheets)))
+    for start in range(0, len(sheets), SHEETS):
+        part = sheets[start : start + SHEETS]
+        which = f".{start + 1:0{digits}}-{start + len(part):0{digits}}" if len(sheets) > SHEETS else ""
+        yield f"{name}{which}", part
+
+
+def bound(
+    course: Course, booklets: Iterable[Booklet], columns: Sequence[str], spreadsheet: Spreadsheet
+) -> Iterator[File]:
+    """The files of booklets, and after them the table of the students' pages.
+
+    The files are to be made in this order, by one thread or several.
+    """
+    wanted = [(booklet, Future[Pages]()) for booklet in booklets]
+    for booklet, pages in wanted:
+        yield File(Path("handouts") / f"{booklet.name}.pdf", partial(_printed, booklet, pages))
+        if course.folder.has_solutions:
+            yield File(Path("instructor") / f"{booklet.name}.solutions.pdf", booklet.print_solutions)
+
+    def table() -> bytes:
+        rows = (row for booklet, pages in wanted for row in booklet.rows(pages.result()))
+        return csv_file(rows, columns, spreadsheet)
+
+    yield File(Path("handouts") / "pages.csv", table)
+
+
+def _printed(booklet: Booklet, found: Future[Pages]) -> bytes:
+    try:
+        made, pages = booklet.print_sheets()
+    except BaseException as fault:
+        found.set_exception(fault)
+        raise
+    found.set_result(pages)
+    return made
+
+
+# ------------------------------------------------------------- of single exercises
 
 
 def files(
@@ -66,48 +91,33 @@ def files(
     polygons: bool = True,
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
 ) -> Iterator[File]:
-    """The booklets of a build, and after them the table of the students' pages.
-
-    The files are to be made in this order, by one thread or several.
-    """
-    wanted = list(_booklets(issues, polygons))
-    pages: list[Future[Pages]] = [Future() for _ in wanted]
-    for booklet, found in zip(wanted, pages, strict=True):
-        make = partial(_handouts, renderer, booklet, found)
-        yield File(Path("handouts") / f"{booklet.name}.pdf", make)
-        if course.folder.has_solutions:
-            make = partial(_solutions, renderer, booklet)
-            yield File(Path("instructor") / f"{booklet.name}.solutions.pdf", make)
-    yield File(Path("handouts") / "pages.csv", lambda: _table(wanted, pages, spreadsheet))
-
-
-def _booklets(issues: Sequence[Issue], polygons: bool) -> Iterator[_Booklet]:
+    """The booklets of a build, one an exercise and language, and the table of the students' pages."""
     groups: dict[tuple[str, str], list[Issue]] = {}
     for issue in issues:
         for lang in issue.langs:
             groups.setdefault((issue.variant.exercise.name, lang), []).append(issue)
-    for (exercise, lang), group in groups.items():
-        digits = len(str(len(group)))
-        for start in range(0, len(group), SHEETS):
-            part = tuple(group[start : start + SHEETS])
-            which = f".{start + 1:0{digits}}-{start + len(part):0{digits}}" if len(group) > SHEETS else ""
-            yield _Booklet(lang, part, f"{exercise}.{lang}{which}", polygons)
+    booklets = (
+        _of_sheets(renderer, name, part, lang, polygons)
+        for (exercise, lang), group in groups.items()
+        for name, part in parted(f"{exercise}.{lang}", group)
+    )
+    return bound(course, booklets, PAGE_COLUMNS, spreadsheet)
 
 
-def _handouts(renderer: Renderer, booklet: _Booklet, found: Future[Pages]) -> bytes:
-    try:
-        made, pages = renderer.booklet(booklet.handouts())
-    except BaseException as fault:
-        found.set_exception(fault)
-        raise
-    found.set_result(pages)
-    return made
+def _of_sheets(renderer: Renderer, name: str, issues: Sequence[Issue], lang: str, polygons: bool) -> Booklet:
+    def handout(issue: Issue) -> Handout:
+        return issue.variant.in_language(lang).handout(issue.student)
 
+    def solution(issue: Issue) -> AnswerSheet:
+        return issue.variant.in_language(lang).answer_sheet(issue.student, polygons=polygons)
 
-def _solutions(renderer: Renderer, booklet: _Booklet) -> bytes:
-    return renderer.booklet(booklet.answer_sheets())[0]
-
-
-def _table(booklets: Sequence[_Booklet], pages: Sequence[Future[Pages]], spreadsheet: Spreadsheet) -> bytes:
-    rows = (row for one, found in zip(booklets, pages, strict=True) for row in one.rows(found.result()))
-    return csv_file(rows, PAGE_COLUMNS, spreadsheet)
+    told = [
+        {"student": i.student, "exercise": i.variant.exercise.name, "seed": i.variant.seed, "lang": lang}
+        for i in issues
+    ]
+    return Booklet(
+        name,
+        lambda: renderer.booklet([handout(issue) for issue in issues]),
+        lambda: renderer.booklet([solution(issue) for issue in issues])[0],
+        told,
+    )

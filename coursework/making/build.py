@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 from coursework.course.course import Course
 from coursework.making import booklets
+from coursework.making.assignment import Assignment
 from coursework.making.issued import COLUMNS, form_rows, issued_content, key_content, key_rows
 from coursework.making.issuing import Issue
 from coursework.rendering.renderer import Renderer, renderer_of
@@ -50,7 +51,14 @@ def files(
             yield from _sheets(course, renderer, issue, lang, formats, practice, polygons)
     if booklet:
         yield from booklets.files(course, renderer, issues, polygons=polygons, spreadsheet=spreadsheet)
-    content = issued_content(issues)
+    yield from tables(course, issues, None, spreadsheet)
+
+
+def tables(
+    course: Course, issues: Sequence[Issue], assignment: Assignment | None, spreadsheet: Spreadsheet
+) -> Iterator[File]:
+    """What was issued, the form for answers, and, for the staff, the key."""
+    content = issued_content(issues, assignment)
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
     yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS, spreadsheet))
     if course.folder.has_solutions:
@@ -81,23 +89,20 @@ def _sheets(
     handout = partial(variant.handout, issue.student)
     solution = partial(variant.answer_sheet, issue.student, polygons=polygons)
 
-    def file(path: Path, ending: str, render: Callable[[Any], Made], sheet: Callable[[], Any]) -> File:
-        return File(_with(path, ending), partial(_rendered, render, sheet), anywhere=True)
-
     if "pdf" in formats:
-        yield file(for_student, ".pdf", renderer.pdf, handout)
+        yield rendered(for_student, ".pdf", renderer.pdf, handout)
     if "html" in formats:
-        yield file(for_student, ".html", renderer.html, handout)
+        yield rendered(for_student, ".html", renderer.html, handout)
     if "ipynb" in formats and practice:
-        yield file(for_student, ".ipynb", renderer.study, partial(variant.study_sheet, issue.student))
+        yield rendered(for_student, ".ipynb", renderer.study, partial(variant.study_sheet, issue.student))
     elif "ipynb" in formats:
-        yield file(for_student, ".ipynb", renderer.notebook, handout)
+        yield rendered(for_student, ".ipynb", renderer.notebook, handout)
     if "tex" in formats:
         yield from _tex(renderer, for_student, ".tex", "figure", handout)
     if course.folder.has_solutions and "pdf" in formats:
-        yield file(for_staff, ".solution.pdf", renderer.pdf, solution)
+        yield rendered(for_staff, ".solution.pdf", renderer.pdf, solution)
     if course.folder.has_solutions and "html" in formats:
-        yield file(for_staff, ".solution.html", renderer.html, solution)
+        yield rendered(for_staff, ".solution.html", renderer.html, solution)
     if course.folder.has_solutions and "tex" in formats:
         drawn = polygons and variant.exercise.solution.polygons is not None
         yield from _tex(renderer, for_staff, ".solution.tex", "solution-figure", solution, polygons=drawn)
@@ -112,20 +117,25 @@ def _tex(
     *,
     polygons: bool = False,
 ) -> Iterator[File]:
-    """A source and its drawings beside it; one dot in their names, as every LaTeX reads it."""
-    stem = path.name.replace(".", "-")
+    """A source and its drawings beside it."""
+    stem = tex_stem(path)
     figure, pages = f"{stem}-{what}.pdf", f"{stem}-polygons.pdf"
-    source = partial(renderer.tex, figure=figure, polygons=pages)
-    yield File(_with(path, ending), partial(_rendered, source, sheet), anywhere=True)
-    yield File(path.with_name(figure), partial(_rendered, renderer.figure_pdf, sheet), anywhere=True)
+    yield rendered(path, ending, partial(renderer.tex, figure=figure, polygons=pages), sheet)
+    yield rendered(path.with_name(figure), "", renderer.figure_pdf, sheet)
     if polygons:
-        yield File(path.with_name(pages), partial(_rendered, renderer.polygons_pdf, sheet), anywhere=True)
+        yield rendered(path.with_name(pages), "", renderer.polygons_pdf, sheet)
+
+
+def tex_stem(path: Path) -> str:
+    """What the drawings beside a source are called by: one dot in their names, as every LaTeX reads it."""
+    return path.name.replace(".", "-")
+
+
+def rendered(path: Path, ending: str, render: Callable[[Any], Made], sheet: Callable[[], Any]) -> File:
+    """A file that a renderer makes of a sheet, wherever it is made."""
+    return File(path.with_name(path.name + ending), partial(_rendered, render, sheet), anywhere=True)
 
 
 def _rendered(render: Callable[[Any], Made], sheet: Callable[[], Any]) -> bytes | None:
     made = render(sheet())
     return made.encode("utf-8") if isinstance(made, str) else made
-
-
-def _with(path: Path, ending: str) -> Path:
-    return path.with_name(path.name + ending)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import datetime
 import re
 from collections.abc import Callable, Collection, Iterator, Sequence
-from concurrent.futures import Future
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -14,20 +13,19 @@ from typing import Any
 from coursework.course.course import Course
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
+from coursework.making import booklets
 from coursework.making.assignment import Assignment, text_in
-from coursework.making.build import key_files
-from coursework.making.issued import COLUMNS, form_rows, issued_content
+from coursework.making.booklets import Booklet
+from coursework.making.build import rendered, tables, tex_stem
 from coursework.making.issuing import Issue
 from coursework.making.students import folded
 from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.sheets.paper import Heading, Paper, SolutionPaper
-from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
+from coursework.sheets.sheet import AnswerSheet, Handout
+from coursework.system.tables import SPREADSHEETS, Spreadsheet
 from coursework.system.writing import File
 
-PAPERS = 50  #: in one booklet, at most
 PAGE_COLUMNS = ("student", "version", "lang", "first page", "last page", "file")
-
-Pages = tuple[tuple[int, int], ...]
 
 
 @dataclass(frozen=True)
@@ -120,99 +118,72 @@ def files(
     if only is not None:
         return
     if booklet:
-        yield from _booklets(course, renderer, made, spreadsheet)
-    content = issued_content(issues, assignment)
-    yield File(Path("issued.json"), lambda: json_text(content).encode("utf-8"))
-    yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS, spreadsheet))
-    if course.folder.has_solutions:
-        yield from key_files(issues, spreadsheet)
+        yield from booklets.bound(course, _booklets(renderer, made), PAGE_COLUMNS, spreadsheet)
+    yield from tables(course, issues, assignment, spreadsheet)
 
 
 def _paper(
     course: Course[Any], renderer: Renderer, one: IssuedPaper, lang: str, formats: Sequence[str]
 ) -> Iterator[File]:
-    stem = f"{one.first.stem}.{lang}"
-    handouts, staff = Path("handouts"), Path("instructor")
-
-    def file(path: Path, render: Callable[[Any], str | bytes], sheet: Callable[[str], Any]) -> File:
-        return File(path, partial(_rendered, render, sheet, lang), anywhere=True)
-
+    for_student = Path("handouts") / f"{one.first.stem}.{lang}"
+    for_staff = Path("instructor") / f"{one.first.stem}.{lang}"
+    paper, solution = partial(one.paper, lang), partial(one.solution, lang)
     if "pdf" in formats:
-        yield file(handouts / f"{stem}.pdf", renderer.paper_pdf, one.paper)
+        yield rendered(for_student, ".pdf", renderer.paper_pdf, paper)
     if "html" in formats:
-        yield file(handouts / f"{stem}.html", renderer.paper_html, one.paper)
+        yield rendered(for_student, ".html", renderer.paper_html, paper)
     if "ipynb" in formats:
-        yield file(handouts / f"{stem}.ipynb", renderer.paper_notebook, one.paper)
+        yield rendered(for_student, ".ipynb", renderer.paper_notebook, paper)
+    if "tex" in formats:
+        yield from _tex(renderer, one, lang, for_student, solved=False)
     if course.folder.has_solutions and "pdf" in formats:
-        yield file(staff / f"{stem}.solution.pdf", renderer.paper_pdf, one.solution)
+        yield rendered(for_staff, ".solution.pdf", renderer.paper_pdf, solution)
     if course.folder.has_solutions and "html" in formats:
-        yield file(staff / f"{stem}.solution.html", renderer.paper_html, one.solution)
+        yield rendered(for_staff, ".solution.html", renderer.paper_html, solution)
+    if course.folder.has_solutions and "tex" in formats:
+        yield from _tex(renderer, one, lang, for_staff, solved=True)
 
 
-def _rendered(render: Callable[[Any], str | bytes], sheet: Callable[[str], Any], lang: str) -> bytes:
-    made = render(sheet(lang))
-    return made.encode("utf-8") if isinstance(made, str) else made
+def _tex(renderer: Renderer, one: IssuedPaper, lang: str, path: Path, *, solved: bool) -> Iterator[File]:
+    """A source, and beside it the drawings of each exercise."""
+    stem, places = tex_stem(path), range(1, len(one.issues) + 1)
+    figures = [f"{stem}-{'solution-figure' if solved else 'figure'}-{place}.pdf" for place in places]
+    polygons = [f"{stem}-polygons-{place}.pdf" for place in places]
+    source = partial(renderer.paper_tex, figures=figures, polygons=polygons)
+    yield rendered(
+        path,
+        ".solution.tex" if solved else ".tex",
+        source,
+        partial(one.solution if solved else one.paper, lang),
+    )
+    for issue, figure, drawn in zip(one.issues, figures, polygons, strict=True):
+        variant = issue.variant.in_language(lang)
+        sheet: Callable[[], Handout | AnswerSheet] = (
+            partial(variant.answer_sheet, issue.student, polygons=one.polygons)
+            if solved
+            else partial(variant.handout, issue.student)
+        )
+        yield rendered(path.with_name(figure), "", renderer.figure_pdf, sheet)
+        if solved and one.polygons and variant.exercise.solution.polygons is not None:
+            yield rendered(path.with_name(drawn), "", renderer.polygons_pdf, sheet)
 
 
 # --------------------------------------------------------------------- booklets
 
 
-@dataclass(frozen=True)
-class _Booklet:
-    """The papers of one file, in one language."""
-
-    lang: str
-    papers: tuple[IssuedPaper, ...]
-    name: str
-
-    def rows(self, pages: Pages) -> Iterator[dict[str, object]]:
-        for one, (first, last) in zip(self.papers, pages, strict=True):
-            yield {
-                "student": one.first.student,
-                "version": one.first.version,
-                "lang": self.lang,
-                "first page": first,
-                "last page": last,
-                "file": f"{self.name}.pdf",
-            }
-
-
-def _booklets(
-    course: Course[Any], renderer: Renderer, made: Sequence[IssuedPaper], spreadsheet: Spreadsheet
-) -> Iterator[File]:
-    """All papers of a language in one PDF, and where each is; the table is made after them."""
+def _booklets(renderer: Renderer, made: Sequence[IssuedPaper]) -> Iterator[Booklet]:
+    """All papers of a language, sorted as the assignment says."""
     made = sorted(made, key=lambda one: one.sorted_by)
-    wanted = []
     for lang in dict.fromkeys(lang for one in made for lang in one.first.langs):
         group = [one for one in made if lang in one.first.langs]
-        digits = len(str(len(group)))
-        for start in range(0, len(group), PAPERS):
-            part = tuple(group[start : start + PAPERS])
-            which = f".{start + 1:0{digits}}-{start + len(part):0{digits}}" if len(group) > PAPERS else ""
-            wanted.append(_Booklet(lang, part, f"class.{lang}{which}"))
-    pages: list[Future[Pages]] = [Future() for _ in wanted]
-    for booklet, found in zip(wanted, pages, strict=True):
-        yield File(Path("handouts") / f"{booklet.name}.pdf", partial(_bound, renderer, booklet, found))
-        if course.folder.has_solutions:
-            make = partial(_bound_solutions, renderer, booklet)
-            yield File(Path("instructor") / f"{booklet.name}.solutions.pdf", make)
-
-    def table() -> bytes:
-        rows = (row for one, found in zip(wanted, pages, strict=True) for row in one.rows(found.result()))
-        return csv_file(rows, PAGE_COLUMNS, spreadsheet)
-
-    yield File(Path("handouts") / "pages.csv", table)
+        for name, part in booklets.parted(f"class.{lang}", group):
+            yield _of_papers(renderer, name, part, lang)
 
 
-def _bound(renderer: Renderer, booklet: _Booklet, found: Future[Pages]) -> bytes:
-    try:
-        made, pages = renderer.papers_pdf([one.paper(booklet.lang) for one in booklet.papers])
-    except BaseException as fault:
-        found.set_exception(fault)
-        raise
-    found.set_result(pages)
-    return made
-
-
-def _bound_solutions(renderer: Renderer, booklet: _Booklet) -> bytes:
-    return renderer.papers_pdf([one.solution(booklet.lang) for one in booklet.papers])[0]
+def _of_papers(renderer: Renderer, name: str, papers: Sequence[IssuedPaper], lang: str) -> Booklet:
+    return Booklet(
+        name,
+        lambda: renderer.papers_pdf([one.paper(lang) for one in papers]),
+        lambda: renderer.papers_pdf([one.solution(lang) for one in papers])[0],
+        [{"student": one.first.student, "version": one.first.version, "lang": lang} for one in papers],
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import pickle
+import re
 from itertools import pairwise
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from coursework.errors import BadInput
 from coursework.making.assignment import read_assignment
 from coursework.making.dealing import deal, shared_out
 from coursework.making.issued import issued_content
-from coursework.making.papers import date_text, papers
+from coursework.making.papers import date_text, files, papers
 from coursework.making.roster import Student, read_roster
 
 COURSE = coursework.open_course()
@@ -265,3 +266,15 @@ def test_a_booklet_is_sorted_by_the_column_that_the_file_names_and_else_as_the_r
         "B",
     ]
     assert sorted_names.index("Abel Roy") < sorted_names.index("Ömer Öz")  # of one group: as the roster
+
+
+def test_latex_of_a_paper_stands_beside_the_drawings_that_it_names(midterm):
+    issues = dealt(midterm, CLASS[:1]).issues
+    written = {f.path.as_posix(): f.make() for f in files(COURSE, midterm, issues, ["tex"])}
+    sources = {name: made.decode() for name, made in written.items() if name.endswith(".tex")}
+    assert len(sources) == 2 * len(issues[0].langs)
+    for name, source in sources.items():
+        named = re.findall(r"\\includegraphics\[[^\]]*\]\{([^}]+)\}", source)
+        folder = name.rpartition("/")[0]
+        assert named
+        assert all(written[f"{folder}/{figure}"].startswith(b"%PDF") for figure in named)
