@@ -32,7 +32,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from coursework.errors import BadCourse, CourseworkError, unknown
+from coursework.errors import BadCourse, CourseworkError, nearest, unknown
+from coursework.quantities.error_kinds import PRICES
 from coursework.quantities.graph import Graph, Node, Replacement
 from coursework.quantities.loops import Loop, quantities, stated
 from coursework.reading.units import check_unit
@@ -43,12 +44,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Mistake:
-    """A named wrong way: what it replaces, and the share of a part's points it still earns."""
+    """A named wrong way: what it replaces, and what of a part's points it still earns: the price of errors of its
+    ``kind``, unless it says a ``share``."""
 
     name: str
     replacement: Replacement
-    share: float
+    share: float | None
     approximation: bool
+    kind: str = "mistake"
 
     @property
     def targets(self) -> tuple[str, ...]:
@@ -56,23 +59,26 @@ class Mistake:
 
 
 def mistake(
-    *targets: str, share: float = 0.0, approximation: bool = False
+    *targets: str, kind: str = "mistake", share: float | None = None, approximation: bool = False
 ) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Mark a function as a named mistake about ``targets``, given or computed quantities.
 
     The function returns the wrong value, or a tuple of them for several targets. A parameter that
     bears a target's name stands for its right value, so ``def sign(omega5): return -omega5`` reads
-    as it sounds. ``share``, 0 to 1, is the part of the points that the mistake leaves;
+    as it sounds. ``kind`` says which error it is, of those that :data:`~coursework.quantities.error_kinds.PRICES` knows:
+    what it leaves of the points is the course's price for it. ``share``, 0 to 1, is a price of its own;
     ``approximation`` declares a legitimate one.
     """
     if not targets or not all(isinstance(t, str) for t in targets):
         raise BadCourse('@mistake names what it gets wrong: @mistake("theta4")')
-    if not 0 <= share <= 1:
+    if kind not in PRICES:
+        raise BadCourse(f"a mistake is of a kind that has a price; found {kind!r}{nearest(kind, PRICES)}")
+    if share is not None and not 0 <= share <= 1:
         raise BadCourse(f"a mistake leaves a share of the points between 0 and 1; found {share}")
 
     def mark(function: Callable[..., Any]) -> Callable[..., Any]:
         function.__mistake__ = Mistake(  # type: ignore[attr-defined]  # marks a function
-            function.__name__, Replacement(targets, function), share, approximation
+            function.__name__, Replacement(targets, function), share, approximation, kind
         )
         return function
 

@@ -18,7 +18,7 @@ def share_of_half_a_turn(Q):
     return 180 * Q
 
 
-@mistake("alpha", share=0.5)
+@mistake("alpha", kind="exchanged")
 def angle_of_the_return(Q):
     return 360 / (1 + Q)
 

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 
 from coursework.authoring.check_report import Report
 from coursework.course.variant import Variant
+from coursework.quantities.formula_latex import why_unprinted
 from coursework.reading.printed_formulas import DEGREE, NotEvaluable, Reading, read
 from coursework.sheets.answer_sheet import PRINTED_DIGITS, answer_sheet
-from coursework.sheets.formula_latex import why_unprinted
 from coursework.sheets.sheet import AnswerSheet, Step
 
 TRIED = 20  #: variants whose worked solutions are read back

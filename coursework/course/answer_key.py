@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.course.asked import Asked
+from coursework.course.error_values import ErrorValues, UsualError
 from coursework.course.exercise import CourseExercise
 from coursework.course.marking_rules import ILL_DEGREES, ILL_SHARE, Rules
 from coursework.errors import CourseworkError
@@ -120,12 +121,30 @@ class Key:
             if quantity in values:
                 yield name, values[quantity]
 
+    def price(self, name: str) -> float:
+        """The share of the points that a named mistake leaves."""
+        mistake = self.solution.mistakes[name]
+        return self.rules.share(mistake.kind) if mistake.share is None else mistake.share
+
+    def usual_ways(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
+        """The errors that nobody need list, those in a quantity's own formula first, and the values that they give.
+
+        Shape ``(errors,)``; NaN where one leads nowhere.
+        """
+        errors, values = self._error_values.of(quantity)
+        return errors, values[:, 0]
+
+    @cached_property
+    def _error_values(self) -> ErrorValues:
+        variant = self.variant
+        return ErrorValues(variant.exercise, self._quantities, variant.used, variant.effects, 1)
+
     def followed(self, part: Part, own: Mapping[str, Any], wrong: Collection[str]) -> Any:
         """What a right method gives from a student's own earlier answers, or None.
 
         ``own`` holds them by quantity, right ones too: a student goes on from what they wrote. None where
         no ``wrong`` one bears on this quantity, and where nothing comes of it: the linkage does not
-        close, the value is not finite, or trivially 0. A count of 0 is not trivial.
+        close, the value is not finite, or within the margin of 0. A count of 0 is not trivial.
         """
         quantity = part.quantity
         sorts = {p.quantity: p.sort for p in self.variant.parts}
@@ -140,9 +159,17 @@ class Key:
             given = {**self.variant.used, **before}
             found = self.solution.graph.evaluate((quantity,), given, self.variant.effects)
             value = plain_scalar(found[quantity])
-            if isinstance(value, str) or (exists(value) and not part.sort.is_trivial(value)):
+            if isinstance(value, str) or (exists(value) and not self._is_nothing(part, value)):
                 return value
         return None
+
+    def _is_nothing(self, part: Part, value: Any) -> bool:
+        """Whether a value cannot be told from 0, which follows from whatever is small enough; a count of 0 can."""
+        if part.sort.is_trivial(value):
+            return True
+        if not part.sort.is_scalar or not part.has_margin:
+            return False
+        return bool(part.sort.distance(part, value, 0.0, None, self.half_width(part)) <= 1)
 
     def slips(self, part: Part) -> Iterator[tuple[str, Any]]:
         """Wrong values that need nobody to declare them, by kind of slip."""

@@ -12,6 +12,7 @@ import numpy as np
 
 from coursework.course.answer_key import Key, envelopes, exists, with_other_cases
 from coursework.course.asked import Asked
+from coursework.course.error_values import ErrorValues, UsualError
 from coursework.course.exercise import CourseExercise
 from coursework.course.marking_rules import Rules
 from coursework.errors import CourseworkError
@@ -87,6 +88,12 @@ class Batch:
                     found.setdefault(quantity, []).append(column)
         return found
 
+    @cached_property
+    def error_values(self) -> ErrorValues:
+        """What usual errors make of the asked quantities."""
+        effects = self.exercise.spec.effects
+        return ErrorValues(self.exercise, self.quantities, self.given, effects, self.count)
+
     def _rows(self, columns: Mapping[str, Any]) -> dict[str, list]:
         return _rows(columns, self.count, self.ranks)
 
@@ -151,6 +158,10 @@ class _KeyOfBatch(Key):
     def _other_values(self, quantity: str) -> list[Any]:
         columns = self._batch.other_cases.get(quantity, ())
         return [column[self._index] for column in columns if exists(column[self._index])]
+
+    def usual_ways(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
+        errors, values = self._batch.error_values.of(quantity)
+        return errors, values[:, self._index]
 
     def wrong_ways(self, quantity: str) -> Iterator[tuple[str, Any]]:
         for name, columns in self._batch.wrong.items():

@@ -3,28 +3,42 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 from coursework.errors import BadCourse, nearest
+from coursework.quantities.error_kinds import PRICES
 
 #: Beyond these a variant is ill-conditioned: rounding alone may cost a student the answer.
 ILL_SHARE, ILL_DEGREES = 0.03, 1.0
+
+_SLIPS = ("sign", "conjugate", "unit", "radians", "turns_a_minute", "other_case")
 
 
 @dataclass(frozen=True)
 class Rules:
     """``digits``: significant digits that a student keeps on the way; the tolerance is as wide as that
-    may cost. ``follow_through`` and ``slip``: share of the points for a right method from an earlier wrong
-    answer, and for a slip that nobody declared."""
+    may cost. ``follow_through``: share of the points for a right method from an earlier wrong
+    answer; ``other_case``: the same where it follows from the other case than the stated one. ``prices``: share that
+    an error leaves, by kind; ``slip``: of the answer's sign, unit and case together."""
 
     digits: int = 4
     follow_through: float = 1.0
-    slip: float = 0.0
+    other_case: float = 1.0
+    slip: float | None = None
+    prices: Mapping[str, float] = field(default_factory=dict)
+
+    def share(self, kind: str) -> float:
+        """The share of the points that an error of a kind leaves."""
+        if kind in self.prices:
+            return self.prices[kind]
+        if self.slip is not None and kind in _SLIPS:
+            return self.slip
+        return PRICES.get(kind, 0.0)
 
     @staticmethod
-    def of(table: Any, source: str) -> Rules:
-        """The rules that a course states.
+    def of(table: Any, source: str, usual: Rules | None = None) -> Rules:
+        """The rules that a course states; what it leaves unsaid is as ``usual``.
 
         Raises
         ------
@@ -33,13 +47,33 @@ class Rules:
         """
         if not isinstance(table, Mapping):
             raise BadCourse(f"{source}: [marking] is a table: digits = 4")
+        usual = usual or Rules()
         names = {f.name for f in fields(Rules)}
+        stated: dict[str, Any] = {}
         for name, value in table.items():
             if name not in names:
                 raise BadCourse(f"{source}: no rule of marking {name!r}{nearest(str(name), names)}")
             whole = isinstance(value, int) and not isinstance(value, bool)
             if name == "digits" and not (whole and 2 <= value <= 12):
                 raise BadCourse(f"{source}: digits is a whole number from 2 to 12; found {value!r}")
-            if name != "digits" and not (isinstance(value, (int, float)) and 0 <= value <= 1):
-                raise BadCourse(f"{source}: {name} is a share from 0 to 1; found {value!r}")
-        return Rules(**table)
+            if name == "prices":
+                value = {**usual.prices, **_prices(value, source)}
+            elif name != "digits":
+                _check_share(name, value, source)
+            stated[name] = value
+        return Rules(**{**{name: getattr(usual, name) for name in names}, **stated})
+
+
+def _prices(table: Any, source: str) -> Mapping[str, float]:
+    if not isinstance(table, Mapping):
+        raise BadCourse(f"{source}: [marking.prices] is a table: sign = 0.5")
+    for kind, value in table.items():
+        if kind not in PRICES:
+            raise BadCourse(f"{source}: no price for {kind!r}{nearest(str(kind), PRICES)}")
+        _check_share(f"the price of {kind}", value, source)
+    return table
+
+
+def _check_share(name: str, value: Any, source: str) -> None:
+    if isinstance(value, bool) or not (isinstance(value, (int, float)) and 0 <= value <= 1):
+        raise BadCourse(f"{source}: {name} is a share from 0 to 1; found {value!r}")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any, NamedTuple
 
 from coursework.course.course import Course, opened
@@ -57,10 +56,9 @@ def rules_of(course: Course, issued: Issued) -> Rules | None:
     if not stated:
         return None
     try:
-        own = Rules.of(stated, "the assignment in issued.json")
+        return Rules.of(stated, "the assignment in issued.json", course.folder.rules)
     except BadCourse as fault:
         raise BadInput(str(fault)) from fault
-    return replace(course.folder.rules, **{name: getattr(own, name) for name in stated})
 
 
 def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True) -> Iterator[Graded]:

@@ -1,15 +1,22 @@
-"""Why an answer is not right: what explains it among known mistakes, slips and what a student wrote before."""
+"""Why an answer is not right: what explains it among known mistakes, slips, usual errors and what a student wrote before."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from coursework.course.answer_key import Key
 from coursework.course.asked import Asked
+from coursework.course.error_values import UsualError
+from coursework.marking.usual import usual_errors_that_fit
 from coursework.model import Part
 from coursework.reading.reading import Reading
+
+CLOSE = (
+    0.2  #: half-widths within which an answer is the value that an error gives; up to one it may be another
+)
 
 
 def nearest_reading(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[int, float]:
@@ -27,14 +34,46 @@ def nearest_reading(part: Part, reading: Reading, key: Key, judged_by: Part) -> 
     return index, gaps[index]
 
 
-class Before(NamedTuple):
+@dataclass
+class Before:
     """What a student has answered before a part: numbers and cases by quantity, and which of them are wrong."""
 
-    own: dict[str, Any]
-    wrong: set[str]
-    right: set[str]  #: quantities, of any kind of answer
-    shown: set[str]  #: verdicts that explain earlier answers
-    read: list[tuple[Part, Reading]]  #: numbers, whole ones too, and choices
+    own: dict[str, Any] = field(default_factory=dict)
+    wrong: set[str] = field(default_factory=set)  #: those from which one may go on
+    mistaken: set[str] = field(default_factory=set)  #: all that are not right
+    everywhere: set[float] = field(default_factory=set)  #: numbers that are written for many different things
+    right: set[str] = field(default_factory=set)  #: quantities, of any kind of answer
+    shown: set[str] = field(default_factory=set)  #: verdicts that explain earlier answers
+    read: list[tuple[Part, Reading]] = field(default_factory=list)  #: numbers, whole ones too, and choices
+    in_other_case: bool = False  #: an answer was that of the other case than the stated one
+
+    @property
+    def answered(self) -> set[str]:
+        """The quantities that were answered, rightly or not."""
+        return self.own.keys() | self.right | self.mistaken
+
+
+class Explanation(NamedTuple):
+    """What may have given an answer."""
+
+    verdict: str
+    reading: int  #: which honest reading it explains
+    gap: float  #: from the value that it gives, in half-widths
+    is_here: bool = True  #: it is about this very quantity
+    is_likely: bool = True
+    error: UsualError | None = None
+
+    @property
+    def rank(self) -> tuple[bool, bool, bool, int]:
+        """The lowest is named: what is likely, what follows, what is close; the author's before the engine's; from afar
+        the author's only where it is close."""
+        kind, far = self.verdict.partition(":")[0], not self.is_here
+        is_close = self.gap <= CLOSE
+        if kind == "mistake":
+            order = 0 if self.is_here else 1 if is_close else 4
+        else:
+            order = (3 if self.error else 2) + 2 * far
+        return not self.is_likely, kind != "follow_through", not is_close, order
 
 
 def mistakes_that_fit(key: Key, part: Part, reading: Reading) -> list[str]:
@@ -43,15 +82,14 @@ def mistakes_that_fit(key: Key, part: Part, reading: Reading) -> list[str]:
     return [name for name, value in ways if _fits(part, reading, value, None, 0.0)]
 
 
-def is_likely(match: str, key: Key, part: Part, before: Before) -> bool:
-    """Whether a verdict may be told of an answer that it explains.
+def _is_likely(name: str, key: Key, part: Part, before: Before) -> bool:
+    """Whether a mistake may be told of an answer that it explains.
 
-    Not a mistake made elsewhere, where what it is about has been answered rightly before. Among few cases, besides,
+    Not one made elsewhere, where what it is about has been answered rightly before. Among few cases, besides,
     many mistakes lead to the same one: a choice tells nothing of a mistake made elsewhere that an earlier answer,
     which it would have changed, does not show.
     """
-    kind, _, name = match.partition(":")
-    if kind != "mistake" or match in before.shown:
+    if f"mistake:{name}" in before.shown:
         return True
     about = key.solution.mistakes[name].targets
     if part.quantity in about:
@@ -77,32 +115,60 @@ def _shows(key: Key, mistake: str, quantity: str) -> bool:
     )
 
 
-def explanations(
+def explained(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> list[Explanation]:
+    """Every explanation of a wrong answer, the one to name first."""
+    return sorted(_explanations(key, part, reading, judged_by, before), key=lambda e: e.rank)
+
+
+def alternatives(found: Sequence[Explanation]) -> list[Explanation]:
+    """The first explanation, and those that fit as well: nothing tells which of them it was."""
+    first = found[0]
+    if first.is_here and first.error is None:
+        return [first]
+    same = [e for e in found if e.rank == first.rank and e.reading == first.reading]
+    return list({(e.verdict, e.error): e for e in same}.values())
+
+
+def _explanations(
     key: Key, part: Part, reading: Reading, judged_by: Part, before: Before
-) -> Iterator[tuple[str, int]]:
-    """Every verdict that explains a wrong answer, the one to give first; each with the reading that it explains."""
+) -> Iterator[Explanation]:
     quantity = judged_by.quantity
     width = key.envelope.get(quantity, 0.0)
     reference = key.reference[quantity]
     if part.sort.is_followed and before.wrong:
         expected = key.followed(judged_by, before.own, before.wrong)
-        if expected is not None and (place := _fitting(part, reading, expected, None, width)) is not None:
-            yield "follow_through", place
+        fit = None if expected is None else _fitting(part, reading, expected, None, width)
+        if fit is not None and not _is_constant(key, judged_by, reading.values[fit[0]], before):
+            yield Explanation("follow_through", *fit)
     for name, value in key.wrong_ways(quantity):
         along = key.reference.get(judged_by.along)
         if judged_by.along:
             along = key.wrong[name].get(judged_by.along, along)
-        if (place := _fitting(part, reading, value, along, width)) is not None:
-            yield f"mistake:{name}", place
+        if (fit := _fitting(part, reading, value, along, width)) is not None:
+            is_here = quantity in key.solution.mistakes[name].targets
+            is_likely = _is_likely(name, key, judged_by, before)
+            yield Explanation(f"mistake:{name}", *fit, is_here, is_likely)
     for slip in part.sort.slips(part, reading.values[0], reference, _lengths(key.variant)):
-        yield f"slip:{slip}", 0
+        yield Explanation(f"slip:{slip}", 0, 0.0)
     seen = set()
     for kind, value in key.slips(judged_by):
         # A slip scales what rounding may have moved.
         own = part.sort.scaled(width, value, reference)
-        if kind not in seen and (place := _fitting(part, reading, value, None, own)) is not None:
+        if kind not in seen and (fit := _fitting(part, reading, value, None, own)) is not None:
             seen.add(kind)
-            yield f"slip:{kind}", place
+            yield Explanation(f"slip:{kind}", *fit)
+    for fits in usual_errors_that_fit(key, part, reading, judged_by, before.right, before.answered):
+        yield Explanation(
+            f"slip:{fits.error.kind}", fits.reading, fits.gap, fits.is_here, is_likely=True, error=fits.error
+        )
+
+
+def _is_constant(key: Key, part: Part, value: Any, before: Before) -> bool:
+    """Whether an answer only repeats a number that is written everywhere, as do those that it would follow from."""
+    if not part.sort.is_scalar or value not in before.everywhere:
+        return False
+    above = [q for q in before.wrong if part.quantity in key.solution.depending_on(q)]
+    return all(before.own[q] == value for q in above)
 
 
 def _lengths(variant: Asked) -> dict[str, float]:
@@ -115,9 +181,10 @@ def _fits(part: Part, reading: Reading, value: Any, along: Any, width: float) ->
     return _fitting(part, reading, value, along, width) is not None
 
 
-def _fitting(part: Part, reading: Reading, value: Any, along: Any, width: float) -> int | None:
-    """The first reading that is this value, if any is."""
-    places = range(len(reading.values))
-    return next(
-        (i for i in places if part.sort.distance(part, reading.values[i], value, along, width) <= 1), None
-    )
+def _fitting(part: Part, reading: Reading, value: Any, along: Any, width: float) -> tuple[int, float] | None:
+    """The first reading that is this value, if any is, and how far from it in half-widths."""
+    for place, read in enumerate(reading.values):
+        gap = part.sort.distance(part, read, value, along, width)
+        if gap <= 1:
+            return place, gap
+    return None

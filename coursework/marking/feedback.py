@@ -196,16 +196,17 @@ def _harmless(text: str) -> str:
 def amount(variant: Variant, name: str, value: float) -> str:
     """A quantity and its value as Markdown: ``$r_3$ = 120,4 mm``."""
     unit = variant.exercise.units.get(name, "1")
-    return f"${_symbol(variant, name)}$ = {with_unit(significant(value), unit, variant.lang)}"
+    return f"${symbol(variant, name)}$ = {with_unit(significant(value), unit, variant.lang)}"
 
 
 def either_symbol(variant: Variant, names: Sequence[str], *, both: bool) -> str:
     """Names of quantities as they are printed: ``$r_2$ or $r_3$``; ``and`` where ``both`` are meant."""
     joint = words(variant.lang)["marking"]["and" if both else "or"]
-    return f" {joint} ".join(f"${_symbol(variant, name)}$" for name in names)
+    return f" {joint} ".join(f"${symbol(variant, name)}$" for name in names)
 
 
-def _symbol(variant: Variant, name: str) -> str:
+def symbol(variant: Variant, name: str) -> str:
+    """The LaTeX symbol of a quantity, asked or met on the way."""
     return variant.exercise.solution.symbols.get(name) or variant.exercise.symbol(name)
 
 

@@ -15,15 +15,16 @@ from typing import TYPE_CHECKING, Any
 
 from coursework.course.answer_key import Key
 from coursework.errors import WrongValue, unknown
-from coursework.language.words import quoted, words
+from coursework.language.words import words
 from coursework.marking.answers import read
-from coursework.marking.explaining import Before, explanations, is_likely, nearest_reading
+from coursework.marking.attempts import is_attempt, written_everywhere
+from coursework.marking.explaining import Before, nearest_reading
 from coursework.marking.feedback import Said, echo, say, say_not_read
 from coursework.marking.judges import best_judged
 from coursework.marking.loop_judge import loop_verdicts
 from coursework.marking.mark import Mark, Marking, made_mark
+from coursework.marking.mending import mark_wrong, shown_as
 from coursework.marking.together import is_scale, is_told_with, mark_judged, waits_for
-from coursework.markup.markdown import plain_line
 from coursework.model import Part
 from coursework.reading.reading import Reading
 
@@ -56,7 +57,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
-    before = Before({}, set(), set(), set(), [])
+    before = Before(everywhere=written_everywhere(asked, readings, key))
     marks, no_scale = {}, set()
     waiting: dict[str, dict[str, frozenset[str]]] = {}
     for i, part in asked.items():
@@ -80,14 +81,23 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
         else:
             nearest = nearest_reading(part, reading, key, judged_by)
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
+            before.in_other_case |= marks[i].verdict == "slip:other_case"
         before.shown.update(marks[i].matches)
         if marks[i].verdict == "correct":
             before.right.add(judged_by.quantity)
         if reading.status == "read" and part.sort.is_followed:
             before.read.append((judged_by, reading))
-            before.own[judged_by.quantity] = reading.values[nearest[0]]
-            if marks[i].verdict != "correct":
+            own, verdict = reading.values[nearest[0]], marks[i].verdict
+            if verdict != "correct":
+                before.mistaken.add(judged_by.quantity)
+                expected, is_explained = (
+                    key.reference[judged_by.quantity],
+                    verdict not in ("wrong", "wrong_unit"),
+                )
+                if not is_attempt(judged_by, own, expected, is_explained=is_explained):
+                    continue
                 before.wrong.add(judged_by.quantity)
+            before.own[judged_by.quantity] = own
     for i in marks:
         if target[i] != i and marks[i].verdict == "correct":
             note = Said(words(variant.lang)["marking"]["either_order"], {})
@@ -139,37 +149,9 @@ def _mark_part(
     if part.sort.is_open:
         return made("to_mark", 0.0, "", say(variant, part, "to_mark"))
     index, gap = nearest
-    explained = {} if gap <= 1 else dict(explanations(key, part, reading, judged_by, before))
-    matches = tuple(explained)
-    likely = {m for m in matches if is_likely(m, key, judged_by, before)}
-    matches = tuple(sorted(matches, key=lambda m: m not in likely))
-    verdict = matches[0] if likely else "wrong"
     if gap > 1:
-        # What is told is told of the reading that it explains, else of the text as it stands.
-        index = explained[verdict] if likely else 0
-    read_as = reading.read_as[index]
-    case = part.sort.words(reading.values[index], partial(variant.label, part.id))
-    if case:
-        lettered = part.sort.words(reading.values[index], partial(variant.called, part))
-        read_as, case = (plain_line(said, variant.lang) for said in (lettered, case))
-
-    def told(sentence: str, **pieces: str) -> Said:
-        read = quoted(echo(case, variant.lang), variant.lang) if case else echo(read_as, variant.lang)
-        return say(variant, part, sentence, read=read, **pieces)
-
-    if gap <= 1:
-        if part.asks_unit and not reading.unit_given:
-            return made("missing_unit", 0.0, read_as, told("missing_unit"))
-        return made("correct", 1.0, read_as, told("correct"))
-    kind, _, name = verdict.partition(":")
-    if kind == "mistake":
-        share = key.solution.mistakes[name].share
-        return made(verdict, share, read_as, told("mistake", says=variant.told(name)), matches)
-    if kind == "slip":
-        return made(verdict, key.rules.slip, read_as, told(f"slip_{name}"), matches)
-    if kind == "follow_through":
-        return made(verdict, key.rules.follow_through, read_as, told("follow_through"), matches)
-    share = part.sort.share(part, reading.values[index], key.reference[judged_by.quantity])
-    if share > 0:
-        return made("partial", share, read_as, told("partial"), matches)
-    return made("wrong", 0.0, read_as, told(part.sort.wrong), matches)
+        return mark_wrong(variant, key, part, reading, judged_by, before)
+    read_as, read = shown_as(variant, part, reading, index)
+    if part.asks_unit and not reading.unit_given:
+        return made("missing_unit", 0.0, read_as, say(variant, part, "missing_unit", read=read))
+    return made("correct", 1.0, read_as, say(variant, part, "correct", read=read))

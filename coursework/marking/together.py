@@ -62,7 +62,7 @@ def mark_judged(
     shown = [verdict.mistake, *verdict.also] if verdict.mistake else mistakes_that_fit(key, part, reading)
     matches = tuple(f"mistake:{name}" for name in shown) + ((f"slip:{found.slip}",) if found.slip else ())
     if shown:
-        share = share if verdict.mistake and share else key.solution.mistakes[shown[0]].share
+        share = share if verdict.mistake and share else key.price(shown[0])
 
         if told_with and verdict.mistake:
             said = told("told_with", first=part_name(variant, told_with))
@@ -71,7 +71,9 @@ def mark_judged(
         return made(matches[0], share, read_as, said, matches)
     if found.slip:
         about = either_symbol(variant, found.about, both=found.slip == "frame_missing")
-        return made(matches[0], key.rules.slip, read_as, told(f"slip_{found.slip}", about=about), matches)
+        return made(
+            matches[0], key.rules.share(found.slip), read_as, told(f"slip_{found.slip}", about=about), matches
+        )
     return made("wrong", share, read_as, told(part.sort.wrong))
 
 

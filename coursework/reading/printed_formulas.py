@@ -80,7 +80,7 @@ def read(latex: str, rounded_to: int, *, is_angle: bool = False) -> Reading:
 def _columns(tree: Row, numbers: Sequence[Num], halves: Sequence[float]) -> list[np.ndarray]:
     """The coordinates that a tree gives: as printed, then with each number moved up, and down."""
     with np.errstate(all="ignore"):
-        found = _Evaluation(numbers, halves).of(tree)
+        found = Evaluation(numbers, halves).of(tree)
         coordinates = found if isinstance(found, tuple) else (found,)
         return [np.broadcast_to(np.asarray(c), (1 + 2 * len(halves),)) for c in coordinates]
 
@@ -162,11 +162,12 @@ _SEVERAL = ("atan2", "hypot", "min", "max")
 _PLUS, _MINUS = Symbol("+", "binary"), Symbol("−", "binary")
 _TIMES = (Symbol("×", "binary"), Symbol("⋅", "binary"))
 _SEMICOLON = Symbol(";", "punctuation")
-_DEGREES = (Symbol("∘", "ordinary"), Symbol("°", "ordinary"))
+_DEGREE = (Symbol("∘", "ordinary"), Symbol("°", "ordinary"))
+DEGREE_SIGNS = (*_DEGREE, *(Row((sign,)) for sign in _DEGREE))
 _LETTERS = {"π": math.pi, "i": 1j}
 
 
-class _Evaluation:
+class Evaluation:
     """One evaluation of a tree. Every value is a column: as printed, then with each number moved up, and down."""
 
     def __init__(self, numbers: Sequence[Num], halves: Sequence[float]):
@@ -206,13 +207,17 @@ class _Evaluation:
         return column
 
     def _raised(self, base: Node, above: Node) -> Any:
-        if above in _DEGREES or above in [Row((sign,)) for sign in _DEGREES]:
+        if above in DEGREE_SIGNS:
             return self.of(base) * DEGREE
         if base == Symbol("e", "letter"):
             return np.exp(self.of(above))
         if isinstance(base, Num) and base.negative:
             return -self.power(np.abs(self.of(base)), above)  # the sign stands before the power
         return self.power(self.of(base), above)
+
+    def called(self, name: str, arguments: Sequence[Any]) -> Any:
+        """A function of its arguments."""
+        return _FUNCTIONS[name](*arguments)
 
     def power(self, value: Any, exponent: Node) -> Any:
         """A whole exponent is exact: a negative number has no other power."""
@@ -223,7 +228,7 @@ class _Evaluation:
 class _Line:
     """Items side by side: sums of products, and what functions are of."""
 
-    def __init__(self, evaluation: _Evaluation, items: Sequence[Node]):
+    def __init__(self, evaluation: Evaluation, items: Sequence[Node]):
         self.evaluation = evaluation
         self.items = items
         self.at = 0
@@ -305,7 +310,7 @@ class _Line:
         arguments = argument if isinstance(argument, tuple) else (argument,)
         if (len(arguments) > 1) != (name in _SEVERAL):
             raise NotEvaluable(f"{name} of {len(arguments)} values is not known")
-        return _FUNCTIONS[name](*arguments)
+        return self.evaluation.called(name, arguments)
 
 
 def _is_digits(item: Node) -> bool:

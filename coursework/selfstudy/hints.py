@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 from coursework.language.words import is_whole, words
 from coursework.markup.formula_tree import tokens
+from coursework.quantities.formula_latex import Told, formula_latex, kind_of, number_latex
 from coursework.rendering.views import chain_on_lines, given_formula, given_words
 from coursework.selfstudy.refusals import expect
 from coursework.sheets.answer_sheet import answer_sheet
-from coursework.sheets.formula_latex import Told, formula_latex, kind_of, number_latex
 from coursework.sheets.handout import handout
 
 if TYPE_CHECKING:

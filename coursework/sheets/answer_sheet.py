@@ -13,9 +13,7 @@ from coursework.language.numbers import localise, significant, unit_latex, unit_
 from coursework.language.words import is_whole, quoted
 from coursework.language.words import words as engine_words
 from coursework.model import Part
-from coursework.quantities.graph import plain_scalar
-from coursework.sheets.drawings import solution_figure, stated_polygons
-from coursework.sheets.formula_latex import (
+from coursework.quantities.formula_latex import (
     Shown,
     Told,
     formula_in_symbols,
@@ -23,6 +21,8 @@ from coursework.sheets.formula_latex import (
     kind_of,
     number_latex,
 )
+from coursework.quantities.graph import plain_scalar
+from coursework.sheets.drawings import solution_figure, stated_polygons
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Answer, AnswerSheet, Remark, Step
 

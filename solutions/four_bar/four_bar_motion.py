@@ -90,7 +90,7 @@ def a_BA_t(r3, alpha3):
     return r3 * alpha3
 
 
-@mistake("omega3", "omega4")
+@mistake("omega3", "omega4", kind="angle_sign")
 def sum_in_denominator(r2, omega2, r3, r4, theta2, theta3, theta4):
     return (
         r2 * omega2 * sin(theta2 - theta4) / (r3 * sin(theta3 + theta4)),
@@ -98,7 +98,7 @@ def sum_in_denominator(r2, omega2, r3, r4, theta2, theta3, theta4):
     )
 
 
-@mistake("omega3", "omega4", share=0.5)
+@mistake("omega3", "omega4", kind="sign")
 def signs_of_omegas(omega3, omega4):
     return -omega3, -omega4
 

@@ -147,12 +147,12 @@ def theta4(theta4_open):
     return theta4_open
 
 
-@mistake("c")
+@mistake("c", kind="term_sign")
 def notes_c_sign(r1, c):
     return c + 2 * r1**2
 
 
-@mistake("c")
+@mistake("c", kind="term_sign")
 def c_cosine_sign(r1, r2, theta2, c):
     return c - 4 * r1 * r2 * cos(theta2)
 
@@ -162,12 +162,12 @@ def a_without_r1(r2, r3, theta2):
     return 2 * r2 * r3 * cos(theta2)
 
 
-@mistake("phi", share=0.5)
+@mistake("phi", kind="quadrant")
 def theta3_arctan_no_quadrant(a, b):
     return atan(b / a)
 
 
-@mistake("theta4_open", "theta4_crossed", share=0.5)
+@mistake("theta4_open", "theta4_crossed", kind="quadrant")
 def theta4_arctan_no_quadrant(theta4_open, theta4_crossed):
     return atan(sin(theta4_open) / cos(theta4_open)), atan(sin(theta4_crossed) / cos(theta4_crossed))
 
@@ -184,17 +184,17 @@ def degrees_as_radians(theta2):
     return theta2 * 180 / np.pi
 
 
-@mistake("AC")
+@mistake("AC", kind="term_sign")
 def diagonal_sign(r1, r2, theta2):
     return sqrt(r1**2 + r2**2 + 2 * r1 * r2 * cos(theta2))
 
 
-@mistake("mu", share=0.5)
+@mistake("mu", kind="branch")
 def acute_mu(mu):
     return np.minimum(mu, 180 - mu)
 
 
-@mistake("mu", share=0.5)
+@mistake("mu", kind="branch")
 def inverse_angle_B(mu):
     return 180 - mu
 

@@ -53,7 +53,7 @@ def frame_and_coupler_exchanged(linkage_type):
     return _exchanged(linkage_type, "double-crank", "double-rocker")
 
 
-@mistake("linkage_type", share=0.5)
+@mistake("linkage_type", kind="exchanged")
 def input_and_output_exchanged(linkage_type):
     return _exchanged(linkage_type, "crank-rocker", "rocker-crank")
 

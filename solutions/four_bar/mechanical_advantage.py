@@ -90,7 +90,7 @@ def Gamma_s(Gamma_e, torque_ratio):
     return torque_ratio * Gamma_e
 
 
-@mistake("omega4")
+@mistake("omega4", kind="angle_sign")
 def sum_in_denominator(r2, omega2, r4, theta2, theta3, theta4):
     return r2 * omega2 * sin(theta2 - theta3) / (r4 * sin(theta3 + theta4))
 
@@ -100,7 +100,7 @@ def other_mode(mode):
     return np.where(side_of(mode) > 0, "crossed", "open")
 
 
-@mistake("mechanical_advantage", share=0.5)
+@mistake("mechanical_advantage", kind="inverse")
 def advantage_inverse(V_e, V_s):
     return V_s / V_e
 
@@ -125,7 +125,7 @@ def force_divided(F_e, mechanical_advantage):
     return F_e / mechanical_advantage
 
 
-@mistake("torque_ratio", share=0.5)
+@mistake("torque_ratio", kind="inverse")
 def torque_ratio_inverse(omega2, omega4):
     return abs(omega4 / omega2)
 

@@ -216,7 +216,7 @@ def spin_is_omega(omega):
     return omega
 
 
-@mistake("spin_D")
+@mistake("spin_D", kind="term_sign")
 def spin_plus(omega, theta_dot):
     return omega + theta_dot
 
@@ -258,12 +258,12 @@ def radius_R(R, phi_dot, phi_ddot):
     return R * phi_dot, -R * phi_dot**2, R * phi_ddot
 
 
-@mistake("a_O3_x", share=0.5)
+@mistake("a_O3_x", kind="sign")
 def centripetal_sign(a_O3_x):
     return -a_O3_x
 
 
-@mistake("rho")
+@mistake("rho", kind="inverse")
 def rho_inverse(rho):
     return 1 / rho
 
@@ -283,7 +283,7 @@ def phi_equals_theta(theta_dot):
     return theta_dot
 
 
-@mistake("no_slip_A", "no_slip_C", "no_slip_D", "omega", share=0.5)
+@mistake("no_slip_A", "no_slip_C", "no_slip_D", "omega", kind="sign")
 def omega_sign(omega):
     return (
         "(R + r)*phi_dot - r*omega = 0",

@@ -249,7 +249,7 @@ def vector_direction(v10, v40, v14, v24, v20, v30):
     return v10, turned, v14, v24, v20, v30
 
 
-@mistake("v10", "v40", "v14", "v24", "v20", "v30", share=0.5)
+@mistake("v10", "v40", "v14", "v24", "v20", "v30", kind="sign")
 def vector_sense(v10, v40, v14, v24, v20, v30):
     return v10, v40, -v14, v24, v20, v30
 
@@ -275,7 +275,7 @@ def too_small(kv, v10, v40, v14, v24, v20, v30):
     return 10 * kv, v10 / 10, v40 / 10, v14 / 10, v24 / 10, v20 / 10, v30 / 10
 
 
-@mistake("omega4", "omega3", share=0.5)
+@mistake("omega4", "omega3", kind="sign")
 def value_sense(omega4, omega3):
     return -omega4, -omega3
 

@@ -124,12 +124,12 @@ def guide_angle_from_O1(theta1):
     return theta1
 
 
-@mistake("theta4", share=0.5)
+@mistake("theta4", kind="quadrant")
 def arctan_no_quadrant(theta4):
     return atan(tan(theta4))
 
 
-@mistake("rA")
+@mistake("rA", kind="term_sign")
 def cosine_rule_sign(d, e, theta1):
     return sqrt(d**2 + e**2 - 2 * d * e * cos(theta1))
 
@@ -139,7 +139,7 @@ def omega2_is_omega1(omega1):
     return omega1
 
 
-@mistake("v_slide", share=0.5)
+@mistake("v_slide", kind="sign")
 def slide_sign(v_slide):
     return -v_slide
 
@@ -154,7 +154,7 @@ def B2_with_crank(e, omega1, theta1):
     return -e * omega1 * sin(theta1), e * omega1 * cos(theta1)
 
 
-@mistake("omega3")
+@mistake("omega3", kind="term_sign")
 def omega3_plus(e, omega1, r2, omega2, r3):
     return (e * omega1 + r2 * omega2) / r3
 

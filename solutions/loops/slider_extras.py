@@ -171,12 +171,12 @@ def r6_ddot(r4, omega4, alpha4, theta4, r5, omega5, alpha5, theta5):
 # Where two mistakes give one answer, the first is told: what is wrong there before what is wrong earlier.
 
 
-@mistake("omega5", share=0.5)
+@mistake("omega5", kind="sign")
 def omega5_sign(omega5):
     return -omega5
 
 
-@mistake("r6_dot", share=0.5)
+@mistake("r6_dot", kind="sign")
 def r6_dot_sign(r6_dot):
     return -r6_dot
 
@@ -196,7 +196,7 @@ def notes_N_without_frame():
     return 7 - 5 + 1
 
 
-@mistake("loop_1_y", share=0.5)
+@mistake("loop_1_y", kind="exchanged")
 def notes_r1_called_r6():
     return "r6 + r2*sin(theta2) + r3*sin(theta3) = r4*sin(theta4)"
 
@@ -219,7 +219,7 @@ def coupler_reversed():
     )
 
 
-@mistake("loop_2_x", "loop_2_y", share=0.5)
+@mistake("loop_2_x", "loop_2_y", kind="link_sign")
 def rod_reversed():
     return "r4*cos(theta4) + r5*cos(theta5) = r6", "r4*sin(theta4) + r5*sin(theta5) = 0"
 
@@ -254,42 +254,42 @@ def other_mode(side):
     return -side
 
 
-@mistake("theta3", share=0.5)
+@mistake("theta3", kind="quadrant")
 def theta3_arctan_no_quadrant(a, b, c, side):
     return wrap(atan(b / a) - side * acos(c / abs(a + 1j * b)))
 
 
-@mistake("theta3", share=0.5)
+@mistake("theta3", kind="quadrant")
 def notes_two_arctans(a, b, c, side):
     return wrap(atan(b / a) - side * atan(sqrt(a**2 + b**2 - c**2) / c))
 
 
-@mistake("theta4", share=0.5)
+@mistake("theta4", kind="quadrant")
 def theta4_arctan_no_quadrant(theta4):
     return atan(tan(theta4))
 
 
-@mistake("r6")
+@mistake("r6", kind="term_sign")
 def smaller_root(A, B, C):
     return (-B - sqrt(B**2 - 4 * A * C)) / (2 * A)
 
 
-@mistake("B", share=0.5)
+@mistake("B", kind="sign")
 def B_sign(B):
     return -B
 
 
-@mistake("C", share=0.5)
+@mistake("C", kind="sign")
 def C_sign(C):
     return -C
 
 
-@mistake("theta5", share=0.5)
+@mistake("theta5", kind="quadrant")
 def arctan_no_quadrant(r4, theta4, r6):
     return atan(r4 * sin(theta4) / (r4 * cos(theta4) - r6))
 
 
-@mistake("omega3", "omega4")
+@mistake("omega3", "omega4", kind="angle_sign")
 def sum_in_denominator(r2, omega2, r3, r4, theta2, theta3, theta4):
     return (
         r2 * omega2 * sin(theta2 - theta4) / (r3 * sin(theta3 + theta4)),
@@ -297,12 +297,12 @@ def sum_in_denominator(r2, omega2, r3, r4, theta2, theta3, theta4):
     )
 
 
-@mistake("omega3", "omega4", share=0.5)
+@mistake("omega3", "omega4", kind="sign")
 def signs_of_omegas(omega3, omega4):
     return -omega3, -omega4
 
 
-@mistake("r6_dot")
+@mistake("r6_dot", kind="term_sign")
 def notes_eq7(r4, omega4, theta4, r5, omega5, theta5):
     return r4 * omega4 * sin(theta4) + r5 * omega5 * sin(theta5)
 

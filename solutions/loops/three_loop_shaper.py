@@ -226,7 +226,7 @@ def x8_ddot(r5, omega5, alpha5, theta5, r7, omega7, alpha7, theta7):
     )
 
 
-@mistake("loop_1_x", "loop_1_y", share=0.5)
+@mistake("loop_1_x", "loop_1_y", kind="link_sign")
 def coupler_reversed():
     return (
         "r2*cos(theta2) - r3*cos(theta3) = xC + r4*cos(theta4)",
@@ -265,7 +265,7 @@ def beta_forgotten():
     )
 
 
-@mistake("beta", "loop_2_x", "loop_2_y")
+@mistake("beta", "loop_2_x", "loop_2_y", kind="sign")
 def beta_sign(beta):
     return (
         -beta,
@@ -283,12 +283,12 @@ def r6_is_r5(r5):
     )
 
 
-@mistake("yC", "loop_1_y")
+@mistake("yC", "loop_1_y", kind="sign")
 def alpha_sign(yC):
     return -yC, "r2*sin(theta2) + r3*sin(theta3) = r4*sin(theta4) - yC"
 
 
-@mistake("yD", "loop_2_y", "loop_3_y")
+@mistake("yD", "loop_2_y", "loop_3_y", kind="sign")
 def D_sign(yD):
     return (
         -yD,
@@ -302,27 +302,27 @@ def other_mode(side):
     return -side
 
 
-@mistake("theta5", share=0.5)
+@mistake("theta5", kind="quadrant")
 def arctan_no_quadrant(theta5):
     return atan(tan(theta5))
 
 
-@mistake("theta7", share=0.5)
+@mistake("theta7", kind="sign")
 def theta7_sign(theta7):
     return -theta7
 
 
-@mistake("omega3", "omega4", share=0.5)
+@mistake("omega3", "omega4", kind="sign")
 def signs_of_omegas(omega3, omega4):
     return -omega3, -omega4
 
 
-@mistake("d5_dot", share=0.5)
+@mistake("d5_dot", kind="sign")
 def d5_dot_sign(d5_dot):
     return -d5_dot
 
 
-@mistake("omega7", share=0.5)
+@mistake("omega7", kind="sign")
 def omega7_sign(omega7):
     return -omega7
 

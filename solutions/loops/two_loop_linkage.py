@@ -235,12 +235,12 @@ def notes_N_without_frame():
     return 7 - 5 + 1
 
 
-@mistake("cycles")
+@mistake("cycles", kind="count")
 def joint_count_minus():
     return 7 - 6
 
 
-@mistake("loop_1_x", "loop_1_y", share=0.5)
+@mistake("loop_1_x", "loop_1_y", kind="link_sign")
 def coupler_reversed():
     return (
         "r2*cos(theta2) - r3*cos(theta3) = xC + r4*cos(theta4)",
@@ -275,7 +275,7 @@ def beta_forgotten():
     )
 
 
-@mistake("beta", "loop_2_x", "loop_2_y")
+@mistake("beta", "loop_2_x", "loop_2_y", kind="sign")
 def beta_sign(beta):
     return (
         -beta,
@@ -303,12 +303,12 @@ def mode_2_other(side_2):
     return -side_2
 
 
-@mistake("omega6", "omega7", share=0.5)
+@mistake("omega6", "omega7", kind="sign")
 def omega6_sign(omega6, omega7):
     return -omega6, -omega7
 
 
-@mistake("omega3", "omega4", share=0.5)
+@mistake("omega3", "omega4", kind="sign")
 def omega3_sign(omega3, omega4):
     return -omega3, -omega4
 

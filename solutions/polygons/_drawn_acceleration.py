@@ -56,7 +56,7 @@ def n_direction(a, n):
     return turned(a, n, 90)
 
 
-@mistake("n", share=0.5)
+@mistake("n", kind="sign")
 def n_sense(a, n):
     """From A to B."""
     return 2 * a - n
@@ -78,7 +78,7 @@ def bt_direction(n, _start, _lines):
     return met(n, along * np.exp(-0.35j), _start, other)
 
 
-@mistake("b", share=0.5)
+@mistake("b", kind="sign")
 def bt_sense(n, b):
     return 2 * n - b
 

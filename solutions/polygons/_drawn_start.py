@@ -20,7 +20,7 @@ def a_direction(p, a):
     return turned(p, a, 90)
 
 
-@mistake("a", share=0.5)
+@mistake("a", kind="sign")
 def a_sense(p, a):
     return 2 * p - a
 

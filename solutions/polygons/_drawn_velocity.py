@@ -64,12 +64,12 @@ def vb_direction(p, a, _lines):
     return met(a, across, p, way * np.exp(-0.35j))
 
 
-@mistake("b", share=0.5)
+@mistake("b", kind="sign")
 def ba_sense(a, b):
     return 2 * a - b
 
 
-@mistake("b", share=0.5)
+@mistake("b", kind="sign")
 def vb_sense(p, b):
     return 2 * p - b
 
@@ -90,7 +90,7 @@ def too_small(kv, p, a, b):
     return 10 * kv, p / 10, a / 10, b / 10
 
 
-@mistake("kv", "p", "a", "b", "ab", "pv_b", share=0.5)
+@mistake("kv", "p", "a", "b", "ab", "pv_b", kind="inverse")
 def scale_upside_down(kv, p, a, b, ab, pv_b):
     """The drawing is right."""
     return 1 / kv, p, a, b, ab, pv_b

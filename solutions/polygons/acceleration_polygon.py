@@ -116,7 +116,7 @@ def m_direction(p, m):
     return turned(p, m, 90)
 
 
-@mistake("m", share=0.5)
+@mistake("m", kind="sign")
 def m_sense(p, m):
     """From C to B."""
     return 2 * p - m
@@ -138,7 +138,7 @@ def ct_direction(n, _start, _lines):
     return met(n, along, _start, other * np.exp(-0.35j))
 
 
-@mistake("b", share=0.5)
+@mistake("b", kind="sign")
 def ct_sense(_start, b):
     return 2 * _start - b
 
@@ -155,7 +155,7 @@ def too_small(ka, p, a, n, m, b):
     return 10 * ka, p / 10, a / 10, n / 10, m / 10, b / 10
 
 
-@mistake("ka", "p", "a", "n", "m", "b", "bb_t", "pa_b", "a_B", "alpha3", "alpha4", share=0.5)
+@mistake("ka", "p", "a", "n", "m", "b", "bb_t", "pa_b", "a_B", "alpha3", "alpha4", kind="inverse")
 def scale_upside_down(ka, p, a, n, m, b, bb_t, pa_b, a_B, alpha3, alpha4):
     """The drawing is right."""
     return 1 / ka, p, a, n, m, b, bb_t, pa_b, a_B, alpha3, alpha4
@@ -172,7 +172,7 @@ def scale_forgotten(pa_b):
     return pa_b
 
 
-@mistake("alpha3", "alpha4", share=0.5)
+@mistake("alpha3", "alpha4", kind="sign")
 def value_sense(alpha3, alpha4):
     return -alpha3, -alpha4
 

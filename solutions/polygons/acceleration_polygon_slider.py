@@ -91,7 +91,7 @@ def pb_direction(n, _start, _lines):
     return met(n, along, _start, other * np.exp(-0.35j))
 
 
-@mistake("b", share=0.5)
+@mistake("b", kind="sign")
 def pb_sense(_start, b):
     return 2 * _start - b
 
@@ -101,7 +101,7 @@ def too_small(ka, p, a, n, b):
     return 10 * ka, p / 10, a / 10, n / 10, b / 10
 
 
-@mistake("ka", "p", "a", "n", "b", "bb_t", "pa_b", "r1_ddot", "alpha3", share=0.5)
+@mistake("ka", "p", "a", "n", "b", "bb_t", "pa_b", "r1_ddot", "alpha3", kind="inverse")
 def scale_upside_down(ka, p, a, n, b, bb_t, pa_b, r1_ddot, alpha3):
     """The drawing is right."""
     return 1 / ka, p, a, n, b, bb_t, pa_b, r1_ddot, alpha3
@@ -118,12 +118,12 @@ def scale_forgotten(pa_b, r1_ddot):
     return np.sign(r1_ddot) * pa_b
 
 
-@mistake("r1_ddot", share=0.5)
+@mistake("r1_ddot", kind="sign")
 def a_B_sense(r1_ddot):
     return -r1_ddot
 
 
-@mistake("alpha3", share=0.5)
+@mistake("alpha3", kind="sign")
 def value_sense(alpha3):
     return -alpha3
 

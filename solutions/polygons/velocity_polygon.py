@@ -71,7 +71,7 @@ def scale_forgotten(pv_b):
     return pv_b
 
 
-@mistake("omega3", "omega4", share=0.5)
+@mistake("omega3", "omega4", kind="sign")
 def value_sense(omega3, omega4):
     return -omega3, -omega4
 

@@ -68,12 +68,12 @@ def scale_forgotten(pv_b, r1_dot):
     return np.sign(r1_dot) * pv_b
 
 
-@mistake("r1_dot", share=0.5)
+@mistake("r1_dot", kind="sign")
 def V_B_sense(r1_dot):
     return -r1_dot
 
 
-@mistake("omega3", share=0.5)
+@mistake("omega3", kind="sign")
 def value_sense(omega3):
     return -omega3
 

@@ -301,7 +301,7 @@ def B_other_side(B_side):
     return np.where(side_of(B_side) > 0, "right", "left")
 
 
-@mistake("OB")
+@mistake("OB", kind="term_sign")
 def cosine_rule_sign(r2, r3, angle_OAB):
     return sqrt(r2**2 + r3**2 + 2 * r2 * r3 * cos(angle_OAB))
 
@@ -336,22 +336,22 @@ def strokes_of_equal_arcs(alpha):
     return 180 + 0 * alpha
 
 
-@mistake("Q", share=0.5)
+@mistake("Q", kind="inverse")
 def Q_inverse(alpha, beta):
     return beta / alpha
 
 
-@mistake("T")
+@mistake("T", kind="inverse")
 def T_is_frequency(omega2):
     return abs(omega2) / (2 * math.pi)
 
 
-@mistake("alpha", "beta", share=0.5)
+@mistake("alpha", "beta", kind="exchanged")
 def advance_and_return_exchanged(alpha, beta):
     return beta, alpha
 
 
-@mistake("mechanical_advantage", share=0.5)
+@mistake("mechanical_advantage", kind="inverse")
 def advantage_inverse(r2, omega2, v_C):
     return abs(v_C / (r2 * omega2))
 

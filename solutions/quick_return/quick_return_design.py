@@ -90,7 +90,7 @@ def ratio_missed(stroke, r2, r3, e):
     return stroke / 2, r3, 0 * e
 
 
-@mistake("e")
+@mistake("e", kind="sign")
 def slow_stroke_reversed(e):
     return -e
 

@@ -121,7 +121,7 @@ def alpha(phi1, phi2):
     return 180 + phi1 - phi2
 
 
-@mistake("e", share=0.5)
+@mistake("e", kind="sign")
 def e_sign(e):
     return -e
 
@@ -131,7 +131,7 @@ def e_forgotten(e):
     return 0 * e
 
 
-@mistake("v_C")
+@mistake("v_C", kind="sign")
 def velocity_sign(r2, omega2, theta2, p, q):
     return r2 * omega2 * sin(theta2) - r2 * omega2 * cos(theta2) * p / q
 
@@ -156,12 +156,12 @@ def Q_one(alpha):
     return 180 + 0 * alpha
 
 
-@mistake("alpha", share=0.5)
+@mistake("alpha", kind="constant")
 def half_asymmetry(alpha):
     return 90 + alpha / 2
 
 
-@mistake("alpha", share=0.5)
+@mistake("alpha", kind="term_sign")
 def sum_of_angles(phi1, phi2):
     return 180 + phi1 + phi2
 
@@ -171,17 +171,17 @@ def one_dead_point(phi1):
     return 180 + phi1
 
 
-@mistake("Q", share=0.5)
+@mistake("Q", kind="inverse")
 def Q_inverse(alpha, beta):
     return beta / alpha
 
 
-@mistake("T")
+@mistake("T", kind="inverse")
 def T_is_frequency(omega2):
     return abs(omega2) / (2 * math.pi)
 
 
-@mistake("alpha", "beta", share=0.5)
+@mistake("alpha", "beta", kind="exchanged")
 def advance_and_return_exchanged(alpha, beta):
     return beta, alpha
 

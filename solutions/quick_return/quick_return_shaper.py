@@ -119,7 +119,7 @@ def stroke_formula(r4):
     return 2 * r4
 
 
-@mistake("alpha", share=0.5)
+@mistake("alpha", kind="constant")
 def Q_half(sigma):
     return 180 + sigma
 
@@ -129,17 +129,17 @@ def Q_acos(r1, r2):
     return acos(r2 / r1)
 
 
-@mistake("Q", share=0.5)
+@mistake("Q", kind="inverse")
 def Q_inverse(alpha, beta):
     return beta / alpha
 
 
-@mistake("T")
+@mistake("T", kind="inverse")
 def T_is_frequency(omega2):
     return abs(omega2) / (2 * math.pi)
 
 
-@mistake("alpha", "beta", share=0.5)
+@mistake("alpha", "beta", kind="exchanged")
 def advance_and_return_exchanged(alpha, beta):
     return beta, alpha
 

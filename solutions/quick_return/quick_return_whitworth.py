@@ -119,7 +119,7 @@ def alpha(phi1, phi2, psi1, psi2):
     return 180 + abs(psi1 + psi2 + phi1 - phi2)
 
 
-@mistake("theta4", share=0.5)
+@mistake("theta4", kind="quadrant")
 def arctan_no_quadrant(r1, r2, theta2):
     return atan((r1 + r2 * sin(theta2)) / (r2 * cos(theta2)))
 
@@ -149,7 +149,7 @@ def stroke_r4r2_r1(r1, r2, r4):
     return 2 * r4 * r2 / r1
 
 
-@mistake("psi2", share=0.5)
+@mistake("psi2", kind="constant")
 def Q_half(psi2):
     return 0 * psi2
 
@@ -164,22 +164,22 @@ def Q_acos(r1, r2, phi1, phi2):
     return acos(r1 * cos(phi1) / r2), acos(r1 * cos(phi2) / r2)
 
 
-@mistake("alpha", share=0.5)
+@mistake("alpha", kind="inverse")
 def line_through_O4(r1, r2):
     return 180 + 2 * asin(r1 / r2)
 
 
-@mistake("Q", share=0.5)
+@mistake("Q", kind="inverse")
 def Q_inverse(alpha, beta):
     return beta / alpha
 
 
-@mistake("T")
+@mistake("T", kind="inverse")
 def T_is_frequency(omega2):
     return abs(omega2) / (2 * math.pi)
 
 
-@mistake("alpha", "beta", share=0.5)
+@mistake("alpha", "beta", kind="exchanged")
 def advance_and_return_exchanged(alpha, beta):
     return beta, alpha
 

@@ -83,12 +83,12 @@ def F_s(F_e, mechanical_advantage):
     return mechanical_advantage * F_e
 
 
-@mistake("r1_dot", share=0.5)
+@mistake("r1_dot", kind="term_sign")
 def notes_piston_sign(r2, omega2, theta2, p, q):
     return r2 * omega2 * sin(theta2) - r2 * omega2 * cos(theta2) * p / q
 
 
-@mistake("r1_dot")
+@mistake("r1_dot", kind="term_sign")
 def one_sign_wrong(r2, omega2, theta2, p, q):
     return -r2 * omega2 * sin(theta2) - r2 * omega2 * cos(theta2) * p / q
 
@@ -98,7 +98,7 @@ def rod_forgotten_in_v(r2, omega2, theta2):
     return -r2 * omega2 * sin(theta2)
 
 
-@mistake("mechanical_advantage", share=0.5)
+@mistake("mechanical_advantage", kind="inverse")
 def advantage_inverse(V_e, V_s):
     return V_s / V_e
 

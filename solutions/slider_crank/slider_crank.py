@@ -122,7 +122,7 @@ def pa_b(r1_ddot, ka):
     return abs(r1_ddot) / ka
 
 
-@mistake("r1_dot")
+@mistake("r1_dot", kind="sign")
 def notes_piston_sign(r2, omega2, theta2, p, q):
     return r2 * omega2 * sin(theta2) - r2 * omega2 * cos(theta2) * p / q
 
@@ -137,12 +137,12 @@ def rod_forgotten_in_v(r2, omega2, theta2):
     return -r2 * omega2 * sin(theta2)
 
 
-@mistake("p", share=0.5)
+@mistake("p", kind="sign")
 def theta3_sign(p):
     return -p
 
 
-@mistake("omega3", share=0.5)
+@mistake("omega3", kind="sign")
 def omega3_sign(omega3):
     return -omega3
 
@@ -162,7 +162,7 @@ def scales_exchanged(kv, ka):
     return ka, kv
 
 
-@mistake("kv", "ka")
+@mistake("kv", "ka", kind="inverse")
 def multiplied_by_the_scale(kv, ka):
     return 1 / kv, 1 / ka
 

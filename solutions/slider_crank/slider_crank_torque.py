@@ -262,12 +262,12 @@ def R_O(R_A):
     return R_A
 
 
-@mistake("load", share=0.5)
+@mistake("load", kind="term_sign")
 def load_sign(F):
     return _Loads(X4=-F)
 
 
-@mistake("friction", share=0.5)
+@mistake("friction", kind="term_sign")
 def friction_wrong_way(friction):
     return -friction
 
@@ -287,7 +287,7 @@ def rod_weight_forgotten(m4):
     return _Loads(Y4=-m4 * GRAVITY)
 
 
-@mistake("inertia", share=0.5)
+@mistake("inertia", kind="term_sign")
 def inertia_sign(inertia):
     return _Loads(*(-part for part in inertia))
 
@@ -317,7 +317,7 @@ def rod_obliquity_forgotten(r2, theta2, F):
     return r2 * F * sin(theta2) / 1000
 
 
-@mistake("torque", share=0.5)
+@mistake("torque", kind="sign")
 def torque_of_the_rod_on_the_crank(torque):
     return -torque
 

@@ -42,7 +42,7 @@ def relative_motion(points):
     return np.select([points == pair for pair in _CASES], list(_CASES.values()), "")
 
 
-@mistake("a_coriolis")
+@mistake("a_coriolis", kind="constant")
 def no_factor_2(omega, r_dot):
     return abs(omega * r_dot)
 
@@ -52,17 +52,17 @@ def turns_for_radians(a_coriolis):
     return a_coriolis / (2 * pi)
 
 
-@mistake("sense", share=0.5)
+@mistake("sense", kind="sign")
 def crossed_product_sign(r_dot):
     return np.sign(r_dot)
 
 
-@mistake("sense", share=0.5)
+@mistake("sense", kind="sign")
 def sense_of_rotation_alone(omega):
     return np.sign(omega)
 
 
-@mistake("sense", share=0.5)
+@mistake("sense", kind="sign")
 def wrong_way(sense):
     return -sense
 
@@ -79,12 +79,12 @@ def _exchanged(case, one, other):
     )
 
 
-@mistake("relative_motion", share=0.5)
+@mistake("relative_motion", kind="exchanged")
 def bodies_confused(relative_motion):
     return _exchanged(relative_motion, "same_body", "different_bodies")
 
 
-@mistake("relative_motion", share=0.5)
+@mistake("relative_motion", kind="exchanged")
 def points_confused(relative_motion):
     return _exchanged(relative_motion, "same_point_", "different_points_")
 

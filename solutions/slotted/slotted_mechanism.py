@@ -103,7 +103,7 @@ def a_tangential(rA, alpha4):
     return rA * alpha4
 
 
-@mistake("theta4", share=0.5)
+@mistake("theta4", kind="quadrant")
 def arctan_no_quadrant(r1, r2, theta1, theta2):
     arm = polar(r1, theta1) + polar(r2, theta2)
     return atan(arm.imag / arm.real)
@@ -120,12 +120,12 @@ def degrees_as_radians(theta2):
     return theta2 * 180 / np.pi
 
 
-@mistake("rA")
+@mistake("rA", kind="term_sign")
 def cosine_rule_sign(r1, r2, delta):
     return sqrt(r1**2 + r2**2 - 2 * r1 * r2 * cos(delta))
 
 
-@mistake("swing", share=0.5)
+@mistake("swing", kind="constant")
 def half_swing(swing):
     return swing / 2
 
@@ -135,7 +135,7 @@ def guide_speed_no_projection(r2, omega2, rA):
     return r2 * omega2 / rA
 
 
-@mistake("rA_dot", share=0.5)
+@mistake("rA_dot", kind="sign")
 def rA_dot_sign(rA_dot):
     return -rA_dot
 
@@ -145,7 +145,7 @@ def no_coriolis(r2, alpha2, omega2, theta2, theta4, rA):
     return (r2 * alpha2 * cos(theta2 - theta4) - r2 * omega2**2 * sin(theta2 - theta4)) / rA
 
 
-@mistake("a_coriolis")
+@mistake("a_coriolis", kind="constant")
 def coriolis_no_2(omega4, rA_dot):
     return omega4 * rA_dot
 

@@ -142,7 +142,7 @@ def class_by_bodies(groups, body):
     return own, sizes
 
 
-@mistake("group_count", share=0.5)
+@mistake("group_count", kind="count")
 def driver_as_group(group_count):
     return group_count + 1
 

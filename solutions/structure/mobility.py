@@ -55,7 +55,7 @@ def frame_counted(N):
     return N, N
 
 
-@mistake("N", share=0.5)
+@mistake("N", kind="count")
 def notes_N_without_frame(n):
     return n
 
@@ -95,7 +95,7 @@ def higher_left_out(n, b):
     return 3 * n - 2 * b
 
 
-@mistake("gamma")
+@mistake("gamma", kind="count")
 def joint_count_minus(L, N):
     return L - N
 

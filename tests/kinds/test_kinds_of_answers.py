@@ -83,7 +83,7 @@ def test_a_complex_number_is_read_as_people_write_it(variant, answer, verdict):
 
 def test_a_conjugate_is_told(variant):
     mark = variant.grade({"Z": "30+40i", "I": "1.2 + 1.6i"})["I"]
-    assert (mark.verdict, mark.points) == ("slip:conjugate", 0)
+    assert (mark.verdict, mark.points) == ("slip:conjugate", 0.5 * mark.out_of)
 
 
 def test_what_follows_from_a_wrong_complex_number_is_right(variant):

@@ -7,8 +7,8 @@ import pytest
 
 from coursework.degrees import acos, angle, atan2, cos, polar, sin, sqrt, wrap
 from coursework.errors import Undefined
+from coursework.quantities.formula_latex import Told, formula_latex, number_latex
 from coursework.sheets import answer_sheet as sheets
-from coursework.sheets.formula_latex import Told, formula_latex, number_latex
 from coursework.solution import formula
 
 

@@ -27,7 +27,7 @@ def sine_and_cosine_exchanged(x, y):
     return y, x
 
 
-@mistake("v", share=0.5)
+@mistake("v", kind="constant")
 def turns_for_radians(r, omega):
     return r * omega * 2 * np.pi
 

@@ -47,7 +47,7 @@ def middle_of_the_span(L):
     return L / 2
 
 
-@mistake("M", share=0.5)
+@mistake("M", kind="constant")
 def lever_of_the_even_load(a, F, q, R_A, x_M):
     return R_A * x_M - q * x_M**2 - F * maximum(x_M - a, 0)
 

@@ -30,7 +30,7 @@ def layers_side_by_side(R_1, R_2):
     return R_1 * R_2 / (R_1 + R_2)
 
 
-@mistake("R_th", share=0.5)
+@mistake("R_th", kind="factor")
 def area_forgotten(A, R_th):
     return R_th * A
 

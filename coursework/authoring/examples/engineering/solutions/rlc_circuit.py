@@ -41,7 +41,7 @@ def holds(f, U, X_L, X_C, I, f_0):
     return cases(inductive=X_L > X_C, capacitive=X_L < X_C, below=f < f_0, magnified=X_C * I > U)
 
 
-@mistake("Z", share=0.5)
+@mistake("Z", kind="exchanged")
 def reactances_exchanged(R, X_L, X_C):
     return R + 1j * (X_C - X_L)
 
@@ -61,7 +61,7 @@ def sizes_added(U, R, X_L, X_C):
     return U / (R + abs(X_L - X_C))
 
 
-@mistake("f_0", share=0.5)
+@mistake("f_0", kind="constant")
 def pulsation_for_frequency(f_0):
     return 2 * np.pi * f_0
 

@@ -49,7 +49,7 @@ def mean_for_series(k1, k2):
     return vector((k1 + k2) / 2, k1 + k2)
 
 
-@mistake("K", share=0.5)
+@mistake("K", kind="sign")
 def sign_of_the_coupling(K):
     return abs(K)
 
@@ -69,7 +69,7 @@ def first_spring_carries_one_force(k1, k2, F1, F2):
     return vector(F1 / k1, F1 / k1 + F2 / k2)
 
 
-@mistake("E", share=0.5)
+@mistake("E", kind="constant")
 def half_forgotten(E):
     return 2 * E
 

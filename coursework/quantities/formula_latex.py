@@ -9,7 +9,6 @@ expression itself stands in its place. A function that does more says its formul
 from __future__ import annotations
 
 import ast
-import copy
 import inspect
 import itertools
 import re
@@ -21,6 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.language.numbers import significant
+from coursework.quantities.formula_code import NoExpression, call, called, expression, put_in, returning
 
 _FUNCTIONS = {
     "sin": r"\sin",
@@ -67,21 +67,7 @@ def kind_of(value: Any, unit: str) -> str:
 
 
 class Unprintable(Exception):
-    """The function's source is not one expression that we can print."""
-
-
-@lru_cache(maxsize=1024)
-def _expression(function: Callable[..., Any]) -> ast.expr:
-    """What a function returns, where that is all it does besides refusing what does not exist."""
-    try:
-        source = textwrap.dedent(inspect.getsource(function))
-    except (OSError, TypeError) as fault:
-        raise Unprintable from fault
-    body = ast.parse(source).body[0]
-    statements = [s for s in getattr(body, "body", []) if not (_is_docstring(s) or _is_guard(s))]
-    if len(statements) != 1 or not isinstance(statements[0], ast.Return) or statements[0].value is None:
-        raise Unprintable
-    return statements[0].value
+    """An expression that we cannot print."""
 
 
 def why_unprinted(function: Callable[..., Any]) -> str:
@@ -91,13 +77,13 @@ def why_unprinted(function: Callable[..., Any]) -> str:
         body = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
     except (OSError, TypeError, SyntaxError):
         return ""
-    statements = [s for s in getattr(body, "body", []) if not (_is_docstring(s) or _is_guard(s))]
+    statements = returning(body)
     if not all(isinstance(s, (ast.If, ast.Return)) for s in statements):
         return ""
     for node in (node for statement in statements for node in ast.walk(statement)):
         if isinstance(node, (ast.If, ast.IfExp)):
             return f"its code has an if, at line {_line_of(function, node)}"
-        if isinstance(node, ast.Call) and (name := _of_numbers(node.func)) and _called(node) not in _PRINTED:
+        if isinstance(node, ast.Call) and (name := _of_numbers(node.func)) and called(node) not in _PRINTED:
             return f"{name} is not printed, at line {_line_of(function, node)}"
     return ""
 
@@ -117,33 +103,8 @@ def _line_of(function: Callable[..., Any], node: ast.expr | ast.stmt) -> int:
     return first + node.lineno - 1
 
 
-def _is_docstring(statement: ast.stmt) -> bool:
-    return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
-
-
-def _is_guard(statement: ast.stmt) -> bool:
-    """``if …: raise …``, which says where the formula does not exist."""
-    return (
-        isinstance(statement, ast.If)
-        and not statement.orelse
-        and [type(s) for s in statement.body] == [ast.Raise]
-    )
-
-
 class _Degrees(float):
     """A constant that is an angle: it stands in a sum with angles."""
-
-
-def _called(node: ast.expr) -> str:
-    """The name of the function that is called, without its module's; empty where nothing is."""
-    if not isinstance(node, ast.Call):
-        return ""
-    function = node.func
-    return function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
-
-
-def _call(name: str, *arguments: ast.expr) -> ast.Call:
-    return ast.Call(ast.Name(name), list(arguments), [])
 
 
 def _square(node: ast.expr) -> ast.expr:
@@ -199,7 +160,7 @@ class _Printer:
             ):
                 return rf"\left({self._listed(coordinates)}\right)", _ATOM
             case ast.Call(args=arguments, keywords=[]):
-                return self._call(_called(node), arguments)
+                return self._call(called(node), arguments)
         raise Unprintable
 
     def _second(self, node: ast.expr, within: int) -> str:
@@ -262,7 +223,7 @@ class _Printer:
             case ast.BinOp(left=left, op=ast.Add() | ast.Sub() | ast.Mult(), right=right):
                 return self._is_angle(left) or self._is_angle(right)
             case ast.Call(args=arguments):
-                name = _called(node)
+                name = called(node)
                 return name in _DIRECTIONS or (name in ("abs", "wrap") and self._is_angle(arguments[0]))
         return False
 
@@ -332,7 +293,7 @@ class _Printer:
             case "sqrt", [inside]:
                 return rf"\sqrt{{{self.latex(inside)}}}", _ATOM
             case "hypot", [one, other]:
-                return self._print(_call("sqrt", ast.BinOp(_square(one), ast.Add(), _square(other))))
+                return self._print(call("sqrt", ast.BinOp(_square(one), ast.Add(), _square(other))))
             case "abs" | "absolute", [inside]:
                 return rf"\left|{self.latex(inside)}\right|", _ATOM
             case "polar", [length, theta]:
@@ -369,8 +330,8 @@ class _Printer:
                 return one and other and (one[0] + other[0], one[1] + other[1])
             case ast.BinOp(left=ast.Constant(value=1j), op=ast.Mult(), right=along):
                 return [], [(False, along)]
-            case ast.Call(args=[length, theta]) if _called(node) == "polar":
-                along, across = _times(length, _call("cos", theta)), _times(length, _call("sin", theta))
+            case ast.Call(args=[length, theta]) if called(node) == "polar":
+                along, across = _times(length, call("cos", theta)), _times(length, call("sin", theta))
                 return [(False, along)], [(False, across)]
             case ast.Name(id=name) if self._kind(name) != "complex":
                 return [(False, node)], []
@@ -379,24 +340,11 @@ class _Printer:
     def _helper(self, name: str, arguments: Sequence[ast.expr]) -> tuple[str, int]:
         """A private function that is one expression, with these arguments in place of its parameters."""
         helper = self.helpers.get(name)
-        if not inspect.isfunction(helper):
-            raise Unprintable
-        parameters = tuple(inspect.signature(helper).parameters)
-        if len(parameters) != len(arguments):
-            raise Unprintable
-        put_in = _PutIn(dict(zip(parameters, arguments, strict=True)))
-        body = put_in.visit(copy.deepcopy(_expression(helper)))
-        return _Printer(self.shown, {**self.helpers, **helper.__globals__})._print(body)
-
-
-class _PutIn(ast.NodeTransformer):
-    """Trees in place of names."""
-
-    def __init__(self, trees: Mapping[str, ast.expr]):
-        self.trees = trees
-
-    def visit_Name(self, node: ast.Name) -> ast.expr:
-        return self.trees.get(node.id, node)
+        try:
+            body = put_in(helper, arguments)
+        except NoExpression as fault:
+            raise Unprintable from fault
+        return _Printer(self.shown, {**self.helpers, **getattr(helper, "__globals__", {})})._print(body)
 
 
 def _turned(parts: tuple[list, list] | None) -> tuple[list, list] | None:
@@ -460,8 +408,16 @@ def formula_latex(function: Callable[..., Any], shown: Shown) -> str:
     if template is not None:
         return re.sub(r"<(\w+)>", lambda m: _in_template(shown, m), template)
     try:
-        return _Printer(shown, getattr(function, "__globals__", {})).latex(_expression(function))
-    except Unprintable:
+        return _Printer(shown, getattr(function, "__globals__", {})).latex(expression(function))
+    except (NoExpression, Unprintable):
+        return ""
+
+
+def tree_latex(tree: ast.expr, shown: Shown, space: Mapping[str, Any]) -> str:
+    """LaTeX of a piece of a formula; ``space`` holds what names mean besides. Empty when words must say it."""
+    try:
+        return _Printer(shown, space).latex(tree)
+    except (NoExpression, Unprintable):
         return ""
 
 

@@ -1,0 +1,132 @@
+"""What is said of an answer that is not right, and what it earns: where to mend it, and never the value."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+from coursework.course.answer_key import Key
+from coursework.language.words import listed, quoted, words
+from coursework.marking.explaining import Before, Explanation, alternatives, explained
+from coursework.marking.feedback import Said, echo, questions, say, symbol
+from coursework.marking.mark import Mark, made_mark
+from coursework.marking.usual import NAMED, whys
+from coursework.markup.markdown import plain_line
+from coursework.model import Part
+from coursework.reading.reading import Reading
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+
+
+def shown_as(variant: Variant, part: Part, reading: Reading, index: int) -> tuple[str, str]:
+    """What was read, for the tables, and as a sentence quotes it."""
+    read_as = reading.read_as[index]
+    case = part.sort.words(reading.values[index], partial(variant.label, part.id))
+    if not case:
+        return read_as, echo(read_as, variant.lang)
+    lettered = part.sort.words(reading.values[index], partial(variant.called, part))
+    read_as, case = (plain_line(said, variant.lang) for said in (lettered, case))
+    return read_as, quoted(echo(case, variant.lang), variant.lang)
+
+
+def mark_wrong(
+    variant: Variant, key: Key, part: Part, reading: Reading, judged_by: Part, before: Before
+) -> Mark:
+    """The mark of an answer that was read and is not right."""
+    found = explained(key, part, reading, judged_by, before)
+    matches = tuple(dict.fromkeys(e.verdict for e in found))
+    named = _named(found)
+    # What is told is told of the reading that it explains, else of the text as it stands.
+    index = named[0].reading if named else 0
+    read_as, read = shown_as(variant, part, reading, index)
+    made = partial(made_mark, variant, part, reading)
+    if named:
+        shares = [_share(key, e, before) for e in named]
+        said = _told(variant, part, judged_by, named, read, before)
+        return made(named[0].verdict, max(shares), read_as, said, matches)
+    share = part.sort.share(part, reading.values[index], key.reference[judged_by.quantity])
+    if share > 0:
+        return made("partial", share, read_as, say(variant, part, "partial", read=read), matches)
+    return made("wrong", 0.0, read_as, _told_wrong(variant, part, read, before), matches)
+
+
+def _named(found: Sequence[Explanation]) -> list[Explanation]:
+    """What is told as the explanation: one, or several of which nothing tells which it was; none of too many."""
+    if not found or not found[0].is_likely:
+        return []
+    named = alternatives(found)
+    return named if len(named) <= NAMED else []
+
+
+def _share(key: Key, explanation: Explanation, before: Before) -> float:
+    kind, _, name = explanation.verdict.partition(":")
+    if kind == "follow_through":
+        return min(key.rules.follow_through, key.rules.other_case if before.in_other_case else 1.0)
+    return key.rules.share(name) if kind == "slip" else key.price(name)
+
+
+def _told(
+    variant: Variant,
+    part: Part,
+    judged_by: Part,
+    named: Sequence[Explanation],
+    read: str,
+    before: Before,
+) -> Said:
+    kind, _, name = named[0].verdict.partition(":")
+    tell = partial(say, variant, part, read=read)
+    if kind == "follow_through":
+        earlier = [p.id for p in _asked_above(variant, judged_by.quantity, before.wrong)]
+        if not earlier:
+            return tell("follow_through")
+        return tell("follow_through_from", earlier=questions(variant, earlier, "and"))
+    if kind == "mistake":
+        hints = dict.fromkeys(variant.told(e.verdict.partition(":")[2]) for e in named)
+        if len(hints) > 1:
+            joint = words(variant.lang)["marking"]["one_of_these"]
+            return tell("mistake", says=f"{joint} {' — '.join(hints)}")
+        return tell("mistake", says=variant.told(name))
+    errors = [e.error for e in named if e.error is not None]
+    if errors:
+        return tell("usual_error", why=whys(variant, errors, judged_by.quantity))
+    return tell(f"slip_{name}")
+
+
+def _told_wrong(variant: Variant, part: Part, read: str, before: Before) -> Said:
+    """What an answer that nothing explains is computed from, of what was asked, and which of that is right."""
+    table = words(variant.lang)["marking"]
+    asked = _asked_above(variant, part.quantity, {p.quantity for p in variant.parts})
+    asked = [p for p in asked if p.sort.is_called_by_symbol and not p.judge]
+    if part.sort.wrong != "wrong" or not asked:
+        return say(variant, part, part.sort.wrong, read=read)
+    told = []
+    for other in asked:
+        state = (
+            "right"
+            if other.quantity in before.right
+            else "wrong"
+            if other.quantity in before.mistaken
+            else "open"
+        )
+        told.append(table["depends_on"][state].format(f"${symbol(variant, other.quantity)}$"))
+    sentence = "wrong_from_right" if all(p.quantity in before.right for p in asked) else "wrong_from"
+    return say(variant, part, sentence, read=read, list=listed(told, variant.lang))
+
+
+def _asked_above(variant: Variant, quantity: str, among: set[str]) -> list[Part]:
+    """The nearest parts that a quantity is computed from, of some quantities, in the order of the sheet."""
+    graph = variant.exercise.solution.graph.textbook
+    met: set[str] = set()
+    found: set[str] = set()
+    waiting = [quantity]
+    while waiting:
+        name = waiting.pop()
+        for argument in graph.node(name).arguments if name in graph.names else ():
+            if argument in among and argument != quantity:
+                found.add(argument)
+            elif argument not in met:
+                met.add(argument)
+                waiting.append(argument)
+    return [part for part in variant.parts if part.quantity in found]

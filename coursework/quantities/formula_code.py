@@ -1,0 +1,280 @@
+"""The formula of a quantity as an expression tree of Python: from the code that computes it, or from how it is printed.
+
+A function whose body is one expression is that expression; guards that raise are passed over. A private helper that is
+one expression itself stands in its place. A function that says its formula by
+:func:`coursework.solution.formula` is read off that.
+"""
+
+from __future__ import annotations
+
+import ast
+import copy
+import inspect
+import re
+import textwrap
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from coursework import degrees
+from coursework.errors import BadStatement
+from coursework.markup.formula_tree import Fence, Fraction, Node, Num, Root, Script, Symbol, parse
+from coursework.reading.printed_formulas import DEGREE_SIGNS, Evaluation, NotEvaluable
+
+
+class NoExpression(Exception):
+    """The function's source is not one expression."""
+
+
+@lru_cache(maxsize=1024)
+def expression(function: Callable[..., Any]) -> ast.expr:
+    """What a function returns, where that is all it does besides refusing what does not exist.
+
+    Raises
+    ------
+    NoExpression
+        It does more, or has no source.
+    """
+    try:
+        source = textwrap.dedent(inspect.getsource(function))
+        body = ast.parse(source).body[0]
+    except (OSError, TypeError, SyntaxError) as fault:
+        raise NoExpression from fault
+    statements = returning(body)
+    if len(statements) != 1 or not isinstance(statements[0], ast.Return) or statements[0].value is None:
+        raise NoExpression
+    return statements[0].value
+
+
+def returning(function: ast.stmt) -> list[ast.stmt]:
+    """The statements of a function but for its docstring and its guards."""
+    return [s for s in getattr(function, "body", []) if not (_is_docstring(s) or _is_guard(s))]
+
+
+def _is_docstring(statement: ast.stmt) -> bool:
+    return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+
+
+def _is_guard(statement: ast.stmt) -> bool:
+    """``if …: raise …``, which says where the formula does not exist."""
+    return (
+        isinstance(statement, ast.If)
+        and not statement.orelse
+        and [type(s) for s in statement.body] == [ast.Raise]
+    )
+
+
+def called(node: ast.expr) -> str:
+    """The name of the function that is called, without its module's; empty where nothing is."""
+    if not isinstance(node, ast.Call):
+        return ""
+    function = node.func
+    return function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+
+
+def call(name: str, *arguments: ast.expr) -> ast.Call:
+    """The tree of a call."""
+    return ast.Call(ast.Name(name, ast.Load()), list(arguments), [])
+
+
+def put_in(helper: Any, arguments: Sequence[ast.expr]) -> ast.expr:
+    """A helper that is one expression, with these arguments in place of its parameters.
+
+    Raises
+    ------
+    NoExpression
+        It is none, or takes another number of arguments.
+    """
+    if not inspect.isfunction(helper):
+        raise NoExpression
+    parameters = tuple(inspect.signature(helper).parameters)
+    if len(parameters) != len(arguments):
+        raise NoExpression
+    trees = dict(zip(parameters, arguments, strict=True))
+    found: ast.expr = _PutIn(trees).visit(copy.deepcopy(expression(helper)))
+    return found
+
+
+class _PutIn(ast.NodeTransformer):
+    """Trees in place of names."""
+
+    def __init__(self, trees: Mapping[str, ast.expr]):
+        self.trees = trees
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return self.trees.get(node.id, node)
+
+
+# ---------------------------------------------------------------------- formulas
+
+
+@dataclass(frozen=True)
+class Formula:
+    """An expression of quantities, and what its other names mean."""
+
+    tree: ast.expr
+    names: tuple[str, ...]  #: the quantities
+    space: Mapping[str, Any]
+
+    def __call__(self, values: Mapping[str, Any]) -> Any:
+        """Its value, for scalars or arrays ``(n,)`` by name; NaN where it does not exist."""
+        with np.errstate(all="ignore"):
+            return self._function(*(values[name] for name in self.names))
+
+    @cached_property
+    def _function(self) -> Callable[..., Any]:
+        parameters = ast.arguments([], [ast.arg(name) for name in self.names], None, [], [], None, [])
+        whole = ast.fix_missing_locations(ast.Expression(ast.Lambda(parameters, copy.deepcopy(self.tree))))
+        made: Callable[..., Any] = eval(
+            compile(whole, "<formula>", "eval"), dict(self.space)
+        )  # of the course's own code
+        return made
+
+
+@lru_cache(maxsize=1024)
+def formula_of(function: Callable[..., Any]) -> Formula | None:
+    """The formula of a quantity's function; None where it is told in words alone."""
+    template = getattr(function, "__formula__", None)
+    try:
+        return _of_code(function) if template is None else _of_template(template)
+    except (NoExpression, NotEvaluable):
+        return None
+
+
+def _of_code(function: Callable[..., Any]) -> Formula:
+    space = dict(getattr(function, "__globals__", {}))
+    closure = inspect.getclosurevars(function).nonlocals if inspect.isfunction(function) else {}
+    inlined = _Inlined(space | dict(closure))
+    tree = inlined.visit(copy.deepcopy(expression(function)))
+    names = tuple(inspect.signature(function).parameters)
+    return Formula(tree, names, MappingProxyType(inlined.space))
+
+
+class _Inlined(ast.NodeTransformer):
+    """Private helpers that are one expression, with their arguments in place."""
+
+    def __init__(self, space: dict[str, Any]):
+        self.space = space
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        self.generic_visit(node)
+        helper = self.space.get(node.func.id) if isinstance(node.func, ast.Name) else None
+        if not called(node).startswith("_") or node.keywords or helper is None:
+            return node
+        try:
+            tree = put_in(helper, node.args)
+        except NoExpression:
+            return node
+        for name, meaning in helper.__globals__.items():
+            self.space.setdefault(name, meaning)
+        found: ast.expr = self.visit(tree)
+        return found
+
+
+# --------------------------------------------------------------- printed formulas
+
+_ANGLES = {
+    name: getattr(degrees, name)
+    for name in ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "angle", "sqrt")
+}
+_SPACE: Mapping[str, Any] = {
+    **_ANGLES,
+    "abs": np.abs,
+    "minimum": lambda *values: np.minimum.reduce(np.broadcast_arrays(*values)),
+    "maximum": lambda *values: np.maximum.reduce(np.broadcast_arrays(*values)),
+    "hypot": np.hypot, "exp": np.exp, "log": np.log, "sign": np.sign, "sinh": np.sinh, "cosh": np.cosh,
+    "tanh": np.tanh, "real": np.real, "imag": np.imag,
+}  # fmt: skip
+_CALLED = {
+    "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log", "sgn": "sign", "min": "minimum",
+    "max": "maximum", "arg": "angle", "Re": "real", "Im": "imag",
+}  # fmt: skip
+_FIRST = 10**9  #: numbers from here on stand for names
+
+
+def _of_template(template: str) -> Formula:
+    """A printed formula, its angles in degrees."""
+    names = tuple(dict.fromkeys(re.findall(r"<(\w+)>", template)))
+    latex = re.sub(r"<(\w+)>", lambda m: rf"\num{{{_FIRST + names.index(m[1])}}}", template)
+    try:
+        tree = parse(latex)
+    except BadStatement as fault:
+        raise NotEvaluable(str(fault)) from fault
+    found = _Coding(names).of(tree)
+    if not isinstance(found, _Code):
+        raise NotEvaluable("it is no expression of quantities")
+    return Formula(found.tree, names, _SPACE)
+
+
+class _Code:
+    """An expression that grows by what is done with it."""
+
+    def __init__(self, tree: ast.expr):
+        self.tree = tree
+
+    def _with(self, op: ast.operator, other: Any, *, first: bool = True) -> _Code:
+        one, two = (self.tree, _code(other)) if first else (_code(other), self.tree)
+        return _Code(ast.BinOp(one, op, two))
+
+    def __add__(self, other: Any) -> _Code:
+        return self._with(ast.Add(), other)
+
+    def __radd__(self, other: Any) -> _Code:
+        return self._with(ast.Add(), other, first=False)
+
+    def __sub__(self, other: Any) -> _Code:
+        return self._with(ast.Sub(), other)
+
+    def __rsub__(self, other: Any) -> _Code:
+        return self._with(ast.Sub(), other, first=False)
+
+    def __mul__(self, other: Any) -> _Code:
+        return self._with(ast.Mult(), other)
+
+    def __rmul__(self, other: Any) -> _Code:
+        return self._with(ast.Mult(), other, first=False)
+
+    def __neg__(self) -> _Code:
+        return _Code(ast.UnaryOp(ast.USub(), self.tree))
+
+
+def _code(value: Any) -> ast.expr:
+    return value.tree if isinstance(value, _Code) else ast.Constant(value)
+
+
+class _Coding(Evaluation):
+    """The reader of printed formulas, writing code in place of numbers."""
+
+    def __init__(self, names: Sequence[str]):
+        super().__init__((), ())
+        self.names = names
+
+    def of(self, node: Node) -> Any:
+        match node:
+            case Num(negative=negative, digits=digits, exponent=exponent):
+                value = float(f"{digits}e{exponent or 0}")
+                if value >= _FIRST:
+                    return _Code(ast.Name(self.names[int(value) - _FIRST], ast.Load()))
+                value = -value if negative else value
+                return _Code(ast.Constant(int(value) if value.is_integer() else value))
+            case Fraction(above=above, below=below):
+                return _Code(ast.BinOp(_code(self.of(above)), ast.Div(), _code(self.of(below))))
+            case Root(body=body, index=None):
+                return self.called("sqrt", [self.of(body)])
+            case Fence(left="|", body=body, right="|"):
+                return self.called("abs", [self.of(body)])
+            case Script(base=Symbol(text="e", kind="letter")):
+                raise NotEvaluable("an exponential has no angle in degrees")
+            case Script(base=base, below=None, above=above, primes=0) if above in DEGREE_SIGNS:
+                return self.of(base)
+        return super().of(node)
+
+    def called(self, name: str, arguments: Sequence[Any]) -> Any:
+        return _Code(call(_CALLED.get(name, name), *map(_code, arguments)))
+
+    def power(self, value: Any, exponent: Node) -> Any:
+        return _Code(ast.BinOp(_code(value), ast.Pow(), _code(self.of(exponent))))

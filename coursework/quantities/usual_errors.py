@@ -1,0 +1,298 @@
+"""The errors that students usually make in a formula, made from the formula itself: nobody need list them.
+
+Each term of a sum left out, each of its signs turned; a factor, a square or a root forgotten; a fraction upside down; sine
+and cosine exchanged; degrees taken for radians, in one angle or in all; an arc tangent that loses its
+quadrant, the other angle of the same sine or cosine.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator, Sequence
+from copy import copy, deepcopy
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+from coursework import degrees
+from coursework.quantities.formula_code import Formula, call, called, formula_of
+
+TERM, SIGN, FACTOR, SQUARE, ROOT, INVERSE = "term", "term_sign", "factor", "square", "root", "inverse"
+FUNCTION, DEGREES, ALL_DEGREES, QUADRANT, BRANCH = "function", "degrees", "all_degrees", "quadrant", "branch"
+ANGLE, ANGLE_SIGN, CONSTANT, ARGUMENTS, COUNT = "angle", "angle_sign", "constant", "arguments", "count"
+#: The kinds of errors in a formula, in the order in which one is named that gives the same value as another.
+KINDS = (
+    TERM,
+    COUNT,
+    SIGN,
+    CONSTANT,
+    FACTOR,
+    SQUARE,
+    ROOT,
+    INVERSE,
+    FUNCTION,
+    ARGUMENTS,
+    QUADRANT,
+    BRANCH,
+    ALL_DEGREES,
+    DEGREES,
+    ANGLE,
+    ANGLE_SIGN,
+)
+
+_NEIGHBOURS = {name: getattr(degrees, name) for name in ("sin", "cos", "atan")} | {"abs": abs}
+_HALF_TURN = 180.0
+_RADIAN = 57.29577951308232  #: degrees
+
+
+@dataclass(frozen=True)
+class FormulaError:
+    """One error: its kind, what in the formula it is about, if one thing, and the formula with it."""
+
+    kind: str
+    about: ast.expr | None
+    formula: Formula
+
+
+_Change = tuple[str, ast.expr | None, ast.expr]  #: kind, what it is about, the tree with the error
+
+
+@lru_cache(maxsize=1024)
+def formula_errors(function: Callable[..., Any]) -> tuple[FormulaError, ...]:
+    """The usual errors in the formula of a quantity's function; none where words alone tell it."""
+    formula = formula_of(function)
+    if formula is None:
+        return ()
+    formula = replace(formula, space={**_NEIGHBOURS, **formula.space})
+    changes = list(_Changes(formula).of(formula.tree))
+    changes += _whole(formula)
+    found: dict[str, FormulaError] = {}
+    for kind, about, tree in sorted(changes, key=lambda change: KINDS.index(change[0])):
+        found.setdefault(ast.dump(tree), FormulaError(kind, about, replace(formula, tree=tree)))
+    found.pop(ast.dump(formula.tree), None)
+    return tuple(found.values())
+
+
+def _whole(formula: Formula) -> Iterator[_Change]:
+    """Errors in all of a formula at once."""
+    match formula.tree:
+        case ast.BinOp(left=left, op=ast.Div(), right=right):
+            yield INVERSE, None, ast.BinOp(right, ast.Div(), left)
+    in_radians = _AllInRadians(formula)
+    tree = in_radians.visit(deepcopy(formula.tree))
+    if in_radians.angles > 1:
+        yield ALL_DEGREES, None, tree
+
+
+class _Changes:
+    """Every formula that differs from one in one place."""
+
+    def __init__(self, formula: Formula):
+        self.formula = formula
+
+    def of(self, node: ast.expr) -> Iterator[_Change]:
+        match node:
+            case ast.BinOp(op=ast.Add() | ast.Sub()):
+                yield from self._of_sum(node)
+            case ast.BinOp(op=ast.Mult() | ast.Div()):
+                yield from self._of_product(node)
+            case ast.BinOp(left=left, op=ast.Pow(), right=ast.Constant(value=power)):
+                yield (ROOT if power == 0.5 else SQUARE), left, left
+                yield from _within(node, "left", self.of(left))
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                yield SIGN, operand, operand
+                yield from _within(node, "operand", self.of(operand))
+            case ast.UnaryOp(operand=operand) if not isinstance(node.op, ast.Not):
+                yield from _within(node, "operand", self.of(operand))
+            case ast.Attribute(value=value, attr="real" | "imag") | ast.Subscript(value=value):
+                yield from _within(node, "value", self.of(value))
+            case ast.Call():
+                yield from self._of_call(node)
+            case ast.Tuple(elts=items) | ast.List(elts=items):
+                yield from self._inside(items, lambda changed: _changed(node, "elts", changed))
+
+    def _inside(
+        self, items: Sequence[ast.expr], whole: Callable[[list[ast.expr]], ast.expr]
+    ) -> Iterator[_Change]:
+        """The changes of each of some trees, in the tree that they make up."""
+        for place, item in enumerate(items):
+            for kind, about, tree in self.of(item):
+                yield kind, about, whole([*items[:place], tree, *items[place + 1 :]])
+
+    # ------------------------------------------------------------- sums, products
+
+    def _of_sum(self, node: ast.BinOp) -> Iterator[_Change]:
+        terms = _terms(node)
+        for place, (minus, term) in enumerate(terms):
+            others = terms[:place] + terms[place + 1 :]
+            yield (COUNT if isinstance(term, ast.Constant) else TERM), term, _sum(others)
+            yield SIGN, term, _sum([*terms[:place], (not minus, term), *terms[place + 1 :]])
+        signs = [minus for minus, _ in terms]
+        yield from self._inside(
+            [term for _, term in terms], lambda changed: _sum(list(zip(signs, changed, strict=True)))
+        )
+
+    def _of_product(self, node: ast.BinOp) -> Iterator[_Change]:
+        above, below = _factors(node)
+        for place, factor in enumerate(above):
+            if (len(above) > 1 or below) and not _is_sum(factor):
+                yield _of_factor(factor), factor, _quotient(above[:place] + above[place + 1 :], below)
+        for place, factor in enumerate(below):
+            if not _is_sum(factor):
+                yield _of_factor(factor), factor, _quotient(above, below[:place] + below[place + 1 :])
+        yield from self._inside(
+            [*above, *below],
+            lambda changed: _quotient(changed[: len(above)], changed[len(above) :]),
+        )
+
+    # ----------------------------------------------------------------- functions
+
+    def _of_call(self, node: ast.Call) -> Iterator[_Change]:
+        name, arguments = called(node), node.args
+        takes_degrees = self._is_of_degrees(node)
+        match name, arguments:
+            case ("sin" | "cos", [angle]):
+                yield FUNCTION, node, _called_as(node, "cos" if name == "sin" else "sin", [angle])
+            case "sqrt", [inside]:
+                yield ROOT, inside, inside
+            case "hypot", [one, other]:
+                yield TERM, one, call("abs", other)
+                yield TERM, other, call("abs", one)
+            case "atan2", [y, x] if takes_degrees:
+                yield QUADRANT, node, _called_as(node, "atan", [ast.BinOp(y, ast.Div(), x)])
+                yield ARGUMENTS, node, _called_as(node, "atan2", [x, y])
+            case "asin", [_] if takes_degrees:
+                yield BRANCH, node, ast.BinOp(ast.Constant(_HALF_TURN), ast.Sub(), node)
+            case "acos", [_] if takes_degrees:
+                yield BRANCH, node, ast.UnaryOp(ast.USub(), node)
+        if takes_degrees and name in _TAKE_ANGLES:
+            angle = arguments[-1]
+            yield DEGREES, angle, _called_as(node, name, [*arguments[:-1], _in_radians(angle)])
+        inner = slice(1, None) if name == "where" else slice(None)  # a condition is no part of a formula
+        for kind, about, tree in self._inside(
+            arguments[inner],
+            lambda changed: _changed(node, "args", [*arguments[: inner.start or 0], *changed]),
+        ):
+            is_angle = name in _OF_ANGLES or (name == "polar" and kind in _OF_TERMS)
+            yield _OF_TERMS.get(kind, kind) if is_angle else kind, about, tree
+
+    def _is_of_degrees(self, node: ast.Call) -> bool:
+        return _is_of_degrees(self.formula, node)
+
+
+_OF_ANGLES = ("sin", "cos", "tan")
+_OF_TERMS = {TERM: ANGLE, COUNT: ANGLE, SIGN: ANGLE_SIGN}  #: what an error in a sum of angles is called
+_TAKE_ANGLES = ("sin", "cos", "tan", "polar")
+
+
+def _is_of_degrees(formula: Formula, node: ast.Call) -> bool:
+    """Whether the function that is called takes, or gives, degrees."""
+    name = called(node)
+    if not isinstance(node.func, ast.Name) or not hasattr(degrees, name):
+        return False
+    return formula.space.get(name) is getattr(degrees, name)
+
+
+def _in_radians(angle: ast.expr) -> ast.expr:
+    """The angle whose number of degrees was taken for radians."""
+    return ast.BinOp(angle, ast.Mult(), ast.Constant(_RADIAN))
+
+
+class _AllInRadians(ast.NodeTransformer):
+    """Degrees taken for radians wherever an angle is handed in."""
+
+    def __init__(self, formula: Formula):
+        self.formula = formula
+        self.angles = 0
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        self.generic_visit(node)
+        if called(node) in _TAKE_ANGLES and _is_of_degrees(self.formula, node):
+            self.angles += 1
+            node.args[-1] = _in_radians(node.args[-1])
+        return node
+
+
+def _called_as(node: ast.Call, name: str, arguments: list[ast.expr]) -> ast.Call:
+    """A call of the neighbour of a function: ``np.cos`` for ``np.sin``."""
+    function = node.func
+    other = _changed(function, "attr", name) if isinstance(function, ast.Attribute) else call(name).func
+    return ast.Call(other, arguments, [])
+
+
+# --------------------------------------------------------------------------- trees
+
+
+def _within(node: ast.expr, field: str, changes: Iterator[_Change]) -> Iterator[_Change]:
+    for kind, about, tree in changes:
+        yield kind, about, _changed(node, field, tree)
+
+
+def _changed(node: ast.expr, field: str, value: Any) -> ast.expr:
+    other = copy(node)
+    setattr(other, field, value)
+    return other
+
+
+def _of_factor(factor: ast.expr) -> str:
+    is_pi = isinstance(factor, ast.Attribute) and factor.attr == "pi"
+    return CONSTANT if is_pi or isinstance(factor, ast.Constant) else FACTOR
+
+
+def _is_sum(node: ast.expr) -> bool:
+    return isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub))
+
+
+def _terms(node: ast.expr) -> list[tuple[bool, ast.expr]]:
+    """The terms of a sum, each with whether it is subtracted."""
+    match node:
+        case ast.BinOp(left=left, op=ast.Add(), right=right):
+            return _terms(left) + _terms(right)
+        case ast.BinOp(left=left, op=ast.Sub(), right=right):
+            return _terms(left) + [(not minus, term) for minus, term in _terms(right)]
+        case ast.UnaryOp(op=ast.USub(), operand=operand):
+            return [(not minus, term) for minus, term in _terms(operand)]
+        case ast.BinOp(
+            left=ast.UnaryOp(op=ast.USub(), operand=left), op=ast.Mult() | ast.Div() as op, right=right
+        ):
+            return [(True, ast.BinOp(left, op, right))]
+        case ast.BinOp(left=ast.BinOp() as left, op=ast.Mult() | ast.Div() as op, right=right):
+            ((minus, first), *more) = (
+                _terms(left) if isinstance(left.op, (ast.Mult, ast.Div)) else [(False, left)]
+            )
+            return [(minus, ast.BinOp(first, op, right))] if not more else [(False, node)]
+    return [(False, node)]
+
+
+def _sum(terms: Sequence[tuple[bool, ast.expr]]) -> ast.expr:
+    (minus, total), *others = terms
+    total = ast.UnaryOp(ast.USub(), total) if minus else total
+    for minus, term in others:
+        total = ast.BinOp(total, ast.Sub() if minus else ast.Add(), term)
+    return total
+
+
+def _factors(node: ast.expr) -> tuple[list[ast.expr], list[ast.expr]]:
+    """The factors of a product or a quotient, above and below its line."""
+    match node:
+        case ast.BinOp(left=left, op=ast.Mult(), right=right):
+            (above, below), (more, under) = _factors(left), _factors(right)
+            return above + more, below + under
+        case ast.BinOp(left=left, op=ast.Div(), right=right):
+            (above, below), (under, more) = _factors(left), _factors(right)
+            return above + more, below + under
+    return [node], []
+
+
+def _quotient(above: Sequence[ast.expr], below: Sequence[ast.expr]) -> ast.expr:
+    over = _product(above)
+    return ast.BinOp(over, ast.Div(), _product(below)) if below else over
+
+
+def _product(factors: Sequence[ast.expr]) -> ast.expr:
+    if not factors:
+        return ast.Constant(1.0)
+    found, *others = factors
+    for factor in others:
+        found = ast.BinOp(found, ast.Mult(), factor)
+    return found
