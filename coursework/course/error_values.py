@@ -106,9 +106,8 @@ class ErrorValues:
             with suppress(CourseworkError):
                 values = graph.evaluate(some, given, self.effects)
                 for name, value in values.items():
-                    array = np.asarray(value)
-                    if array.dtype.kind in "iuf" and array.shape in ((), (made.size,)):
-                        columns[name] = np.broadcast_to(array, (made.size,)).reshape(made.shape)
+                    if (found := _real(value, (made.size,))) is not None:
+                        columns[name] = np.broadcast_to(found, (made.size,)).reshape(made.shape)
                 if len(some) == len(reached):
                     break
         return columns
@@ -135,10 +134,17 @@ class ErrorValues:
 
     def _column(self, value: Any) -> np.ndarray:
         """A number, or one a variant, as a column ``(n,)``; NaN for whatever else."""
-        array = np.asarray(value)
-        is_one = array.dtype.kind in "iuf" and array.shape in ((), (self.count,) if self._is_batch else ())
-        return np.broadcast_to(array.astype(float) if is_one else np.nan, (self.count,))
+        found = _real(value, (self.count,) if self._is_batch else ())
+        return np.broadcast_to(np.nan if found is None else found, (self.count,))
 
     @property
     def _is_batch(self) -> bool:
         return any(np.ndim(value) for value in self.given.values())
+
+
+def _real(value: Any, shape: tuple[int, ...]) -> np.ndarray | None:
+    """A real number, or an array of this shape; None for whatever else."""
+    if isinstance(value, bool) or not isinstance(value, (int, float, np.generic, np.ndarray)):
+        return None
+    array = np.asarray(value)
+    return array.astype(float) if array.dtype.kind in "iuf" and array.shape in ((), shape) else None

@@ -2,7 +2,8 @@
 
 A variant is *ill-conditioned* where rounding alone may cost a student an answer, and *murky* where a known
 mistake moves an answer too little to be told from a right one and too much to be let pass. A seed draws the
-same variant for everybody; who issues variants passes such seeds over.
+same variant for everybody; who issues variants passes such seeds over. Where a usual error would go *unseen*, a seed is
+passed over as well, as far as enough are left (:mod:`coursework.making.protection`).
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from coursework.course.exercise import CourseExercise
 from coursework.course.key_batch import keys_of
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
+from coursework.making.protection import protected
 from coursework.marking.judges import judged, judges_of
 from coursework.model import Part
 from coursework.solution import Judged
@@ -27,7 +29,7 @@ V = TypeVar("V", bound=Variant)
 SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
 HIDDEN = 0.25  #: half-widths within which nothing can tell it
 
-ILL, MURKY, UNSOLVED = "ill-conditioned", "murky", "unsolved"
+ILL, MURKY, UNSOLVED, UNSEEN = "ill-conditioned", "murky", "unsolved", "unseen"
 
 
 def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
@@ -131,6 +133,18 @@ def worthy(
 ) -> list[V]:
     """Those of the variants that are worth issuing; ``refused`` counts the others by their first flaw."""
     keys_of(exercise, variants)
+    refused = Counter() if refused is None else refused
+    found = []
+    for variant, unmet in protected(exercise, sound(variants, refused)):
+        if unmet is None:
+            found.append(variant)
+        else:
+            refused[f"{UNSEEN}: {unmet.error.kind} in {unmet.error.source}"] += 1
+    return found
+
+
+def sound(variants: Sequence[V], refused: Counter[str] | None = None) -> list[V]:
+    """Those of the variants, which have their keys, that have no flaw."""
     found = []
     for variant in variants:
         flaw = next(flaws(variant.key), None)

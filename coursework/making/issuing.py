@@ -47,7 +47,7 @@ def distinct_variants(
     found: dict[tuple, V] = {}
     refused = Counter() if refused is None else refused
     seed = first_seed
-    limit = first_seed + 30 * count + 300
+    limit = first_seed + 100 * count + 1000
     while len(found) < count and seed < limit:
         # As many as are missing, should as many of these be good as of those before.
         good = (len(found) + 1) / (seed - first_seed + 1)
@@ -77,7 +77,9 @@ def distinct_variants(
 
 
 SEEDS = 1_000_000  #: seeds that are drawn by student have six digits at most
-_ROUNDS = 60  #: draws for one student before variants are said to be used up
+_ROUNDS = 1000  #: draws for one student before variants are said to be used up
+_ALIKE = 60  #: the same where all that they draw has been dealt already
+_TOGETHER = 256  #: draws that are tried together
 
 
 def seed_for(stream: str, exercise: str, who: str, round_: int) -> int:
@@ -108,22 +110,25 @@ def drawn_by(
     spare: dict[str, V] = {}  # worth issuing, though somebody has the same
     refused: Counter[str] = Counter()
     waiting = list(people)
-    for round_ in range(_ROUNDS):
-        if not waiting:
-            break
-        seeds = {who: seed_for(stream, exercise.name, who, round_) for who in waiting}
+    round_, together = 0, 1
+    while waiting and round_ < (_ALIKE if spare.keys() >= set(waiting) else _ROUNDS):
+        rounds = range(round_, min(round_ + together, _ROUNDS))
+        seeds = {(r, who): seed_for(stream, exercise.name, who, r) for r in rounds for who in waiting}
         drawn = [v for v in exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts) if v.parts]
         good = worthy(exercise, drawn, refused) if exercise.folder.has_solutions else drawn
         by_seed = {v.seed: v for v in good}
-        # Who is first where two draw the same hangs on the draw, not on the roster.
-        for who in sorted(waiting, key=lambda who: (seeds[who], who)):
-            variant = by_seed.get(seeds[who])
-            if variant is not None and (given := tuple(variant.given.values())) not in taken:
-                taken.add(given)
-                found[who] = variant
-            elif variant is not None:
-                spare.setdefault(who, variant)
-        waiting = [who for who in waiting if who not in found]
+        for r in rounds:
+            # Who is first where two draw the same hangs on the draw, not on the roster.
+            for who in sorted(waiting, key=lambda who: (seeds[r, who], who)):
+                variant = by_seed.get(seeds[r, who])
+                if variant is not None and (given := tuple(variant.given.values())) not in taken:
+                    taken.add(given)
+                    found[who] = variant
+                elif variant is not None:
+                    spare.setdefault(who, variant)
+            waiting = [who for who in waiting if who not in found]
+        round_ = rounds.stop
+        together = max(1, min(2 * together, _TOGETHER // max(1, len(waiting))))
     shared = [who for who in waiting if who in spare]
     found |= {who: spare[who] for who in shared}
     if len(found) < len(people):

@@ -40,6 +40,9 @@ KINDS = (
     ANGLE_SIGN,
 )
 
+#: What a teacher looks for first: something of the relation is missing or turned round.
+WEIGHTY = frozenset((TERM, COUNT, SIGN, CONSTANT, SQUARE, ROOT, INVERSE, ALL_DEGREES))
+
 _NEIGHBOURS = {name: getattr(degrees, name) for name in ("sin", "cos", "atan")} | {"abs": abs}
 _HALF_TURN = 180.0
 _RADIAN = 57.29577951308232  #: degrees

@@ -139,7 +139,7 @@ def test_answers_are_judged_from_the_students_own_earlier_ones(variant):
     total = variant.given["sum"]
     answers = {"half": total, "x": total / 2, "y": 1.5 * total}
     assert verdicts(variant, **answers) == {
-        "half": "slip:input", "x": "follow_through", "y": "follow_through",
+        "half": "slip:constant", "x": "follow_through", "y": "follow_through",
     }  # fmt: skip
     # What is right needs no earlier error to explain it.
     assert verdicts(variant, half=total, x=0, y=total)["x"] == "correct"

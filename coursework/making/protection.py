@@ -1,0 +1,175 @@
+"""Which usual errors a variant must show, so that who makes one is not taken for right.
+
+A term that hardly matters on some variants may be left out there unseen. Such variants are passed over, as far
+as enough are left: the errors that weigh most are demanded first, and what would leave too few is let go. What is
+demanded is found once an exercise from its first variants, so that a seed is worth issuing to everybody or to nobody.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from coursework.course.error_values import TAKEN, ErrorValues, UsualError
+from coursework.course.exercise import CourseExercise
+from coursework.course.key_batch import keys_of
+from coursework.course.variant import Variant
+from coursework.errors import CourseworkError
+from coursework.model import Part
+from coursework.quantities.usual_errors import WEIGHTY
+
+V = TypeVar("V", bound=Variant)
+
+SHOWN = 2.0  #: half-widths beyond which an error must be recognised
+SAMPLE = 96  #: variants from which it is found what may be demanded
+LEFT = {
+    True: 0.125,
+    False: 0.25,
+}  #: share of the variants to be left by what is demanded: of weighty errors, of others
+_SAME = 1e-9  #: of a value: what two ways to compute it may differ by
+
+
+class Demand(NamedTuple):
+    """An error that is to show: in the answer to one part, or in some answer."""
+
+    error: UsualError
+    part: str = ""
+
+
+@dataclass(frozen=True)
+class Protection:
+    """What is demanded of the variants of an exercise, and what nothing protects, with its share of the sample."""
+
+    demanded: frozenset[Demand]
+    unprotected: dict[Demand, float]
+
+
+def seen(exercise: CourseExercise, variants: Sequence[Variant]) -> dict[Demand, np.ndarray]:
+    """By demand, on which variants it is met: shape ``(n,)``. Met, too, where the error changes nothing at all.
+
+    The variants have their keys, all of the same parts as the first.
+    """
+    parts = [p for p in variants[0].parts if p.sort.is_scalar and not p.judge]
+    quantities = tuple(dict.fromkeys(p.quantity for p in parts))
+    names = [n for n in exercise.spec.given if n in exercise.quantity_names]
+    given = {n: np.array([v.given[n] for v in variants]) for n in names}
+    table = ErrorValues(exercise, quantities, given, exercise.spec.effects, len(variants))
+    gaps: dict[Demand, np.ndarray] = {}
+    idle: dict[Demand, np.ndarray] = {}
+    for part in parts:
+        errors, values = table.of(part.quantity)
+        found, same = _gaps(part, variants, values)
+        for error, gap, is_same in zip(errors, found, same, strict=True):
+            is_here = error.source == part.quantity
+            if error.source in quantities and not is_here and error.kind not in TAKEN:
+                continue  # it shows where it is made
+            demand = Demand(error, part.id if error.kind in TAKEN else "")
+            gaps[demand] = np.maximum(gaps.get(demand, 0.0), gap)
+            idle[demand] = idle.get(demand, True) & is_same
+    return {demand: (gap > SHOWN) | idle[demand] for demand, gap in gaps.items()}
+
+
+def _gaps(part: Part, variants: Sequence[Variant], values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """How far wrong values are from the reference, in half-widths, and which are the same: shapes ``(errors, n)``."""
+    reference = np.array([float(v.key.reference[part.quantity]) for v in variants])
+    width = np.array([v.key.half_width(part) for v in variants])
+    with np.errstate(all="ignore"):
+        gap = np.abs(values - reference)
+        size = np.abs(reference)
+        if turn := part.sort.turn:
+            gap, size = np.abs(gap - turn * np.rint(gap / turn)), np.full_like(size, turn)
+        same = gap <= _SAME * size
+        far = np.where(gap > 0, np.inf, 0.0) if part.sort.is_exact else gap / width
+    return np.where(np.isnan(far), np.inf, far), same
+
+
+def protection(exercise: CourseExercise, parts: tuple[str, ...] | None) -> Protection:
+    """What is demanded where some parts are asked, the usual ones unless told."""
+    return _protection(exercise, parts)
+
+
+@lru_cache(maxsize=256)
+def _protection(exercise: CourseExercise, parts: tuple[str, ...] | None) -> Protection:
+    from coursework.making.flaws import sound
+
+    drawn: list[Variant] = []
+    for start in range(0, 10 * SAMPLE, SAMPLE):
+        some = [
+            v
+            for v in exercise.variants(range(start, start + SAMPLE), exercise.languages[0], parts)
+            if v.parts
+        ]
+        keys_of(exercise, some)
+        drawn += sound(some)
+        if len(drawn) >= SAMPLE:
+            break
+    drawn = _alike(drawn)[:SAMPLE]
+    if not drawn:
+        return Protection(frozenset(), {})
+    met = {d: shows for d, shows in seen(exercise, drawn).items() if not shows.all()}
+    left = np.ones(len(drawn), dtype=bool)
+    demanded: set[Demand] = set()
+    asked = {part.quantity for part in drawn[0].parts}
+    for demand in sorted(met, key=lambda d: _order(d, met[d], asked)):
+        less = left & met[demand]
+        if np.count_nonzero(less) >= LEFT[demand.error.kind in WEIGHTY] * len(drawn):
+            left = less
+            demanded.add(demand)
+    unprotected = {
+        d: 1 - float(met[d][left].mean()) for d in met if d not in demanded and not met[d][left].all()
+    }
+    return Protection(frozenset(demanded), unprotected)
+
+
+def _order(demand: Demand, met: np.ndarray, asked: Collection[str]) -> tuple[Any, ...]:
+    """What is demanded first: what weighs most, in what is asked itself, and then what most variants show."""
+    error = demand.error
+    return (
+        error.kind not in WEIGHTY,
+        error.source not in asked,
+        -int(np.count_nonzero(met)),
+        error,
+        demand.part,
+    )
+
+
+def _alike(variants: Sequence[V]) -> list[V]:
+    """Those that ask what most of them ask."""
+    groups: dict[tuple[str, ...], list[V]] = {}
+    for variant in variants:
+        groups.setdefault(variant.part_ids, []).append(variant)
+    return max(groups.values(), key=len, default=[])
+
+
+def protected(exercise: CourseExercise, variants: Sequence[V]) -> list[tuple[V, Demand | None]]:
+    """The variants, each with the first demand that it does not meet, if any."""
+    if not variants:
+        return []
+    chosen = variants[0].chosen
+    asked = None if chosen is None else tuple(p.id for p in chosen)
+    demanded = protection(exercise, asked).demanded
+    unmet: dict[int, Demand] = {}
+    for places in _by_parts(variants):
+        for demand, shows in _seen(exercise, [variants[i] for i in places]):
+            if demand in demanded:
+                for i in np.flatnonzero(~shows):
+                    unmet.setdefault(places[i], demand)
+    return [(variant, unmet.get(i)) for i, variant in enumerate(variants)]
+
+
+def _seen(exercise: CourseExercise, variants: Sequence[Variant]) -> Iterator[tuple[Demand, np.ndarray]]:
+    try:
+        yield from seen(exercise, variants).items()
+    except CourseworkError:
+        return  # its quantities say what is wrong where they are asked
+
+
+def _by_parts(variants: Sequence[Variant]) -> list[list[int]]:
+    places: dict[tuple[str, ...], list[int]] = {}
+    for i, variant in enumerate(variants):
+        places.setdefault(variant.part_ids, []).append(i)
+    return list(places.values())
