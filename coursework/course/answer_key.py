@@ -32,6 +32,21 @@ _LENGTH = re.compile(r"(?<![^\W\d_])m?m(?![^\W\d_])")
 _TURN_A_MINUTE = 60 / (2 * math.pi)
 
 
+class Slip(NamedTuple):
+    """A slip that multiplies the right value."""
+
+    kind: str
+    factor: float
+
+    def made(self, reference: float) -> float:
+        """What it makes of the right value."""
+        return reference * self.factor
+
+    def mended(self, answer: float) -> float:
+        """The answer without it."""
+        return answer / self.factor
+
+
 class KeyNumbers(NamedTuple):
     """The numbers of a key, by quantity, as another process is handed them."""
 
@@ -171,28 +186,27 @@ class Key:
             return False
         return bool(part.sort.distance(part, value, 0.0, None, self.half_width(part)) <= 1)
 
-    def slips(self, part: Part) -> Iterator[tuple[str, Any]]:
-        """Wrong values that need nobody to declare them, by kind of slip."""
-        reference = self.reference[part.quantity]
+    def slips(self, part: Part) -> Iterator[Slip]:
+        """Slips that need nobody to declare them: what each makes of a right value, and how a wrong one is mended."""
         if not part.sort.is_number or part.judge:
             return
-        if reference:
-            yield "sign", -reference
-        if part.unit == "deg":
-            yield "radians", math.radians(reference)
-            yield "radians", math.degrees(reference)
-        elif part.unit != "1":
-            if part.unit.startswith("rad/s"):
-                yield "radians", math.degrees(reference)
-                yield "radians", math.radians(reference)
-            if part.unit == "rad/s":
-                yield "turns_a_minute", reference * _TURN_A_MINUTE
-                yield "turns_a_minute", reference / _TURN_A_MINUTE
+        if self.reference[part.quantity]:
+            yield Slip("sign", -1.0)
+        if part.unit == "deg" or part.unit.startswith("rad/s"):
+            yield Slip("radians", math.radians(1.0))
+            yield Slip("radians", math.degrees(1.0))
+        if part.unit == "rad/s":
+            yield Slip("turns_a_minute", _TURN_A_MINUTE)
+            yield Slip("turns_a_minute", 1 / _TURN_A_MINUTE)
+        if part.unit not in ("deg", "1"):
             metres = _metres_for_millimetres(part.unit)
             for factor in dict.fromkeys((*_UNIT_FACTORS, metres, 1 / metres)):
-                yield "unit", reference * factor
-        for value in self._other_values(part.quantity):
-            yield "other_case", value
+                yield Slip("unit", factor)
+
+    def other_cases(self, part: Part) -> list[Any]:
+        """Values of a part when a given case of two is taken for the other one: the assembly mode, say."""
+        is_alone = part.sort.is_number and not part.judge
+        return self._other_values(part.quantity) if is_alone else []
 
     def _other_values(self, quantity: str) -> list[Any]:
         """Values of a quantity when a given case of two is taken for the other one: the assembly mode, say."""

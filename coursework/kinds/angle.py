@@ -31,8 +31,5 @@ class Angle(Number):
         gap = abs(math.remainder(value - reference, self.turn))
         return in_half_widths(gap, max(part.half_width(reference), envelope), self.turn)
 
-    def scaled(self, width: float, value: Any, reference: Any) -> float:
-        return width
-
     def on_edge(self, part: Stated, value: Any) -> float:
         return float(value + self.turn - part.half_width(value))

@@ -161,10 +161,6 @@ class Kind(ABC):
         """The room that a part states, or why it is none, as a :class:`WrongValue`."""
         return room
 
-    def scaled(self, width: float, value: Any, reference: Any) -> float:
-        """The width of what rounding may have moved, about a slip of the reference."""
-        return width
-
     def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:
         """Slips of this kind alone that explain a wrong value; ``numbers`` are the given ones that are no angles."""
         yield from ()

@@ -28,9 +28,6 @@ class Number(Kind):
     ) -> float:
         return in_half_widths(abs(value - reference), max(part.half_width(reference), envelope), reference)
 
-    def scaled(self, width: float, value: Any, reference: Any) -> float:
-        return width * abs(value / reference) if reference else width
-
     def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
         much = value + 11.0 if part.unit == "deg" else 1.13 * value
         return value + 1.3 * half_width, much

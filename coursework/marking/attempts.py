@@ -1,13 +1,14 @@
-"""From which wrong answers a right method may go on: from attempts, and from no number that is written everywhere.
+"""From which wrong answers a right method may go on: from attempts, and from nothing that is written without work.
 
-Whoever writes one number in every box, or numbers far from any that could be meant, follows no method, though such
-answers may agree with each other.
+Whoever writes one number in every box, the numbers of the questions, or what is given, follows no method, though such
+answers may agree with each other. Nor does who writes numbers far from any that could be meant.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,37 +18,58 @@ from coursework.model import Part
 from coursework.reading.reading import Reading
 
 FARTHEST = 100.0  #: factor between the size of an attempt and that of the reference, unless a known error explains it
-EVERYWHERE = 3  #: different things that one number is written for
+THINGS, COUNTS = (
+    2,
+    3,
+)  #: different things that one number is written for, measured or counted, before it means nothing
+FEW = 4  #: answers of which nothing can be told
+MOST = 0.75  #: of the answers
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """What the answers of a student show when they are looked at together."""
+
+    everywhere: frozenset[float] = frozenset()  #: numbers that are written for several different things
+    has_work: bool = (
+        True  #: most answers are no copies of one number, of questions' numbers, of what is given
+    )
+
+
+def sheet_of(parts: Mapping[str, Part], readings: Mapping[str, Reading], key: Key) -> Sheet:
+    """The numbers of a sheet, whatever they answer."""
+    answers: list[tuple[int, Part, float]] = []
+    for number, (i, part) in enumerate(parts.items(), start=1):
+        reading = readings.get(i)
+        if reading is not None and reading.status == "read" and part.sort.is_scalar and not part.sort.is_open:
+            answers.append((number, part, float(reading.values[0])))
+    things: dict[float, set[str]] = {}
+    for _, part, value in answers:
+        things.setdefault(value, set()).add(f"{key.reference[part.quantity]:.6g}")
+    counted = {value for _, part, value in answers if part.sort.is_exact}
+    everywhere = frozenset(
+        value for value, asked in things.items() if len(asked) >= (COUNTS if value in counted else THINGS)
+    )
+    if len(answers) < FEW:
+        return Sheet(everywhere)
+    given = {float(v) for v in key.variant.given.values() if isinstance(v, (int, float))}
+    wrong = [(n, p, v) for n, p, v in answers if p.sort.distance(p, v, key.reference[p.quantity]) > 1]
+    values = [value for *_, value in wrong]
+    copies = (
+        max((values.count(value) for value in set(values)), default=0),
+        sum(value == number for number, _, value in wrong),
+        sum(value in given for value in values),
+    )
+    return Sheet(everywhere, has_work=max(copies) < max(FEW - 1, MOST * len(wrong)))
 
 
 def is_attempt(part: Part, value: Any, reference: Any, *, is_explained: bool) -> bool:
     """Whether a wrong answer is of a size that somebody may have computed."""
-    if isinstance(value, str) or isinstance(reference, str) or is_explained or part.sort.turn:
-        return True
-    if isinstance(value, tuple):
+    if is_explained or part.sort.turn or isinstance(value, (str, tuple)) or isinstance(reference, str):
         return True
     size, expected = (float(np.max(np.abs(np.asarray(v)))) for v in (value, reference))
     if not math.isfinite(size):
         return False
     if part.sort.is_exact:
         return size <= FARTHEST * max(expected, 1.0)
-    if not expected:
-        return True
-    return expected / FARTHEST <= size <= FARTHEST * expected
-
-
-def written_everywhere(parts: Mapping[str, Part], readings: Mapping[str, Reading], key: Key) -> set[float]:
-    """The numbers that a student wrote for so many different things, or for all there were."""
-    asked: dict[float, set[str]] = {}
-    answered = 0
-    for i, reading in readings.items():
-        part = parts[i]
-        if reading.status == "read" and part.sort.is_scalar and not part.sort.is_open:
-            reference = key.reference.get(part.quantity)
-            answered += 1
-            asked.setdefault(float(reading.values[0]), set()).add(f"{reference:.6g}")
-    return {
-        number
-        for number, things in asked.items()
-        if len(things) >= EVERYWHERE or (len(asked) == 1 and answered > 1 and len(things) > 1)
-    }
+    return not expected or expected / FARTHEST <= size <= FARTHEST * expected

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from coursework.course.answer_key import Key
 from coursework.course.asked import Asked
 from coursework.course.error_values import UsualError
+from coursework.marking.attempts import Sheet, is_attempt
 from coursework.marking.usual import usual_errors_that_fit
 from coursework.model import Part
 from coursework.reading.reading import Reading
@@ -41,11 +42,32 @@ class Before:
     own: dict[str, Any] = field(default_factory=dict)
     wrong: set[str] = field(default_factory=set)  #: those from which one may go on
     mistaken: set[str] = field(default_factory=set)  #: all that are not right
-    everywhere: set[float] = field(default_factory=set)  #: numbers that are written for many different things
+    sheet: Sheet = field(default_factory=Sheet)
     right: set[str] = field(default_factory=set)  #: quantities, of any kind of answer
     shown: set[str] = field(default_factory=set)  #: verdicts that explain earlier answers
     read: list[tuple[Part, Reading]] = field(default_factory=list)  #: numbers, whole ones too, and choices
     in_other_case: bool = False  #: an answer was that of the other case than the stated one
+
+    def take(
+        self, key: Key, part: Part, reading: Reading, place: int, verdict: str, matches: Sequence[str]
+    ) -> None:
+        """Take in one more answer, as it was read and marked."""
+        self.shown.update(matches)
+        self.in_other_case |= verdict == "slip:other_case"
+        if verdict == "correct":
+            self.right.add(part.quantity)
+        if reading.status != "read" or not part.sort.is_followed:
+            return
+        self.read.append((part, reading))
+        value = reading.values[place]
+        if verdict != "correct":
+            self.mistaken.add(part.quantity)
+            is_explained = verdict != "wrong"
+            reference = key.reference[part.quantity]
+            if not (self.sheet.has_work and is_attempt(part, value, reference, is_explained=is_explained)):
+                return
+            self.wrong.add(part.quantity)
+        self.own[part.quantity] = value
 
     @property
     def answered(self) -> set[str]:
@@ -137,26 +159,32 @@ def _explanations(
     reference = key.reference[quantity]
     if part.sort.is_followed and before.wrong:
         expected = key.followed(judged_by, before.own, before.wrong)
-        fit = None if expected is None else _fitting(part, reading, expected, None, width)
+        fit = None if expected is None else _fitting(part, reading.values, expected, None, width)
         if fit is not None and not _is_constant(key, judged_by, reading.values[fit[0]], before):
             yield Explanation("follow_through", *fit)
     for name, value in key.wrong_ways(quantity):
         along = key.reference.get(judged_by.along)
         if judged_by.along:
             along = key.wrong[name].get(judged_by.along, along)
-        if (fit := _fitting(part, reading, value, along, width)) is not None:
+        if (fit := _fitting(part, reading.values, value, along, width)) is not None:
             is_here = quantity in key.solution.mistakes[name].targets
             is_likely = _is_likely(name, key, judged_by, before)
             yield Explanation(f"mistake:{name}", *fit, is_here, is_likely)
-    for slip in part.sort.slips(part, reading.values[0], reference, _lengths(key.variant)):
-        yield Explanation(f"slip:{slip}", 0, 0.0)
+    for kind in part.sort.slips(part, reading.values[0], reference, _lengths(key.variant)):
+        yield Explanation(f"slip:{kind}", 0, 0.0)
     seen = set()
-    for kind, value in key.slips(judged_by):
-        # A slip scales what rounding may have moved.
-        own = part.sort.scaled(width, value, reference)
-        if kind not in seen and (fit := _fitting(part, reading, value, None, own)) is not None:
-            seen.add(kind)
-            yield Explanation(f"slip:{kind}", *fit)
+    for slip in key.slips(judged_by):
+        mended = [slip.mended(value) for value in reading.values]
+        if slip.kind not in seen and (fit := _fitting(part, mended, reference, None, width)) is not None:
+            seen.add(slip.kind)
+            yield Explanation(f"slip:{slip.kind}", *fit)
+    for value in key.other_cases(judged_by):
+        if (
+            "other_case" not in seen
+            and (fit := _fitting(part, reading.values, value, None, width)) is not None
+        ):
+            seen.add("other_case")
+            yield Explanation("slip:other_case", *fit)
     for fits in usual_errors_that_fit(key, part, reading, judged_by, before.right, before.answered):
         yield Explanation(
             f"slip:{fits.error.kind}", fits.reading, fits.gap, fits.is_here, is_likely=True, error=fits.error
@@ -165,7 +193,7 @@ def _explanations(
 
 def _is_constant(key: Key, part: Part, value: Any, before: Before) -> bool:
     """Whether an answer only repeats a number that is written everywhere, as do those that it would follow from."""
-    if not part.sort.is_scalar or value not in before.everywhere:
+    if not part.sort.is_scalar or value not in before.sheet.everywhere:
         return False
     above = [q for q in before.wrong if part.quantity in key.solution.depending_on(q)]
     return all(before.own[q] == value for q in above)
@@ -178,12 +206,14 @@ def _lengths(variant: Asked) -> dict[str, float]:
 
 
 def _fits(part: Part, reading: Reading, value: Any, along: Any, width: float) -> bool:
-    return _fitting(part, reading, value, along, width) is not None
+    return _fitting(part, reading.values, value, along, width) is not None
 
 
-def _fitting(part: Part, reading: Reading, value: Any, along: Any, width: float) -> tuple[int, float] | None:
-    """The first reading that is this value, if any is, and how far from it in half-widths."""
-    for place, read in enumerate(reading.values):
+def _fitting(
+    part: Part, answers: Sequence[Any], value: Any, along: Any, width: float
+) -> tuple[int, float] | None:
+    """The first of an answer's readings that is this value, if any is, and how far from it in half-widths."""
+    for place, read in enumerate(answers):
         gap = part.sort.distance(part, read, value, along, width)
         if gap <= 1:
             return place, gap

@@ -17,7 +17,7 @@ from coursework.course.answer_key import Key
 from coursework.errors import WrongValue, unknown
 from coursework.language.words import words
 from coursework.marking.answers import read
-from coursework.marking.attempts import is_attempt, written_everywhere
+from coursework.marking.attempts import sheet_of
 from coursework.marking.explaining import Before, nearest_reading
 from coursework.marking.feedback import Said, echo, say, say_not_read
 from coursework.marking.judges import best_judged
@@ -57,7 +57,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
-    before = Before(everywhere=written_everywhere(asked, readings, key))
+    before = Before(sheet=sheet_of(asked, readings, key))
     marks, no_scale = {}, set()
     waiting: dict[str, dict[str, frozenset[str]]] = {}
     for i, part in asked.items():
@@ -73,7 +73,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             tellers = (p for j, p in asked.items() if j in marks and j not in no_scale)
             told = next((p for p in tellers if is_told_with(p, part, together)), None)
             missed = partial(waits_for, variant, part, readings, waiting)
-            marks[i] = mark_judged(variant, key, part, reading, together[i], told, missed)
+            marks[i] = mark_judged(variant, key, part, reading, together[i], told, missed, before.sheet)
             if is_scale(part) and reading.values[nearest[0]] <= 0:
                 no_scale.add(i)
                 read_as = echo(marks[i].read_as, variant.lang)
@@ -81,23 +81,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
         else:
             nearest = nearest_reading(part, reading, key, judged_by)
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
-            before.in_other_case |= marks[i].verdict == "slip:other_case"
-        before.shown.update(marks[i].matches)
-        if marks[i].verdict == "correct":
-            before.right.add(judged_by.quantity)
-        if reading.status == "read" and part.sort.is_followed:
-            before.read.append((judged_by, reading))
-            own, verdict = reading.values[nearest[0]], marks[i].verdict
-            if verdict != "correct":
-                before.mistaken.add(judged_by.quantity)
-                expected, is_explained = (
-                    key.reference[judged_by.quantity],
-                    verdict not in ("wrong", "wrong_unit"),
-                )
-                if not is_attempt(judged_by, own, expected, is_explained=is_explained):
-                    continue
-                before.wrong.add(judged_by.quantity)
-            before.own[judged_by.quantity] = own
+        before.take(key, judged_by, reading, nearest[0], marks[i].verdict, marks[i].matches)
     for i in marks:
         if target[i] != i and marks[i].verdict == "correct":
             note = Said(words(variant.lang)["marking"]["either_order"], {})

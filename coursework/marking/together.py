@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from coursework.course.answer_key import Key
 from coursework.errors import CourseworkError
 from coursework.language.words import words
+from coursework.marking.attempts import Sheet
 from coursework.marking.explaining import mistakes_that_fit
 from coursework.marking.feedback import Said, amount, echo, either_symbol, part_name, questions, say
 from coursework.marking.judges import Verdict, judged
@@ -35,6 +36,7 @@ def mark_judged(
     found: Verdict,
     told_with: Part | None,
     missed: Callable[[], str],
+    sheet: Sheet,
 ) -> Mark:
     """The mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
     read_as, verdict = reading.read_as[found.reading], found.said
@@ -55,8 +57,15 @@ def mark_judged(
         follows = words(variant.lang)["marking"]["found"].format(listed)
         return Said(f"{said.sentence} {follows}", {**said.pieces, **own})
 
+    is_followed = found.followed or verdict.follows
+    if (
+        share == 1.0
+        and is_followed
+        and part.sort.is_scalar
+        and not _has_work(part, key, reading, found, sheet)
+    ):
+        return made("wrong", 0.0, read_as, told(part.sort.wrong))
     if share == 1.0:
-        is_followed = found.followed or verdict.follows
         kind, share = ("follow_through", key.rules.follow_through) if is_followed else ("correct", 1.0)
         return made(kind, share, read_as, told(kind))
     shown = [verdict.mistake, *verdict.also] if verdict.mistake else mistakes_that_fit(key, part, reading)
@@ -75,6 +84,13 @@ def mark_judged(
             matches[0], key.rules.share(found.slip), read_as, told(f"slip_{found.slip}", about=about), matches
         )
     return made("wrong", share, read_as, told(part.sort.wrong))
+
+
+def _has_work(part: Part, key: Key, reading: Reading, found: Verdict, sheet: Sheet) -> bool:
+    """Whether a number that follows from others is more than one that is written everywhere."""
+    value, reference = reading.values[found.reading], key.reference.get(part.quantity)
+    is_right = reference is not None and part.sort.distance(part, value, reference) <= 1
+    return is_right or (sheet.has_work and value not in sheet.everywhere)
 
 
 def is_scale(part: Part) -> bool:

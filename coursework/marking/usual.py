@@ -80,11 +80,11 @@ def _gaps(part: Part, key: Key, judged_by: Part, values: np.ndarray, answer: flo
         gap = np.abs(values - answer)
         if turn := part.sort.turn:
             gap = np.abs(gap - turn * np.rint(gap / turn))
-        width = np.maximum(part.atol, part.rtol * np.abs(values)) if part.has_margin else np.zeros_like(gap)
-        envelope = key.envelope.get(judged_by.quantity, 0.0)
+        width = np.full_like(gap, key.half_width(judged_by))
         if not turn and reference:
-            envelope = envelope * np.minimum(np.abs(values / reference), 1.0)
-        width = np.maximum(width, envelope)
+            width = width * np.minimum(
+                np.abs(values / reference), 1.0
+            )  # rounding moves what is small as little
         # Where the reference is the same value, the answer is right or wrong for another reason.
         is_other = np.abs(values - reference) > _SAME * abs(reference)
         gaps = np.where(gap == 0, 0.0, gap / width)
