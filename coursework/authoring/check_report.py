@@ -9,6 +9,12 @@ from dataclasses import dataclass, field
 from typing import Any
 
 RESIDUAL = 1e-9  #: largest relative residual of the governing equations
+USUAL = (
+    "usual errors told",
+    "usual errors told otherwise",
+    "usual errors among many",
+    "usual errors not told",
+)
 KEPT_DIGITS = (3, 4, 5)  #: of simulated students who round at every step
 
 
@@ -29,6 +35,13 @@ class Report:
         default_factory=dict
     )  #: why a step's formula proves nothing, by quantity
     unproved_units: dict[str, str] = field(default_factory=dict)  #: why a unit is not proved, by quantity
+
+    unprotected: dict[str, dict[str, float]] = field(
+        default_factory=dict
+    )  #: by quantity and kind, the share of the variants on which a usual error in its formula may go unseen
+    unmade: set[str] = field(
+        default_factory=set
+    )  #: asked numbers whose formula is not one that errors are made of
 
     by_person: set[str] = field(default_factory=set)  #: parts that a person marks, and no check can try
 
@@ -59,6 +72,8 @@ class Report:
             "unproved": self.unproved,
             **({"by_person": sorted(self.by_person)} if self.by_person else {}),
             "unproved_units": self.unproved_units,
+            "unprotected": self.unprotected,
+            "unmade": sorted(self.unmade),
             "failures": self.failures,
         }
 
@@ -85,6 +100,7 @@ def _tried(report: Report) -> dict[str, int]:
         "right answers": counts["right answers"],
         "rounded": sum(counts[f"rounding to {d}"] for d in KEPT_DIGITS),
         "mistakes": counts["mistakes recognised"],
+        "usual errors": sum(counts[kind] for kind in USUAL),
         "slips": counts["slips recognised"],
         "loops": counts["loops told"],
         "followed": counts["follow-through"],
@@ -123,6 +139,14 @@ def notes(reports: Sequence[Report]) -> list[str]:
             told.append(f"units proved: {r.counts['units proved']}")
         if r.unproved_units:
             told.append(f"units not proved: {_by_reason(r.unproved_units)}")
+        if r.unprotected:
+            shares = (
+                f"{q} ({', '.join(f'{k} {100 * s:.0f} %' for k, s in kinds.items())})"
+                for q, kinds in r.unprotected.items()
+            )
+            told.append(f"unseen on some variants: {', '.join(shares)}")
+        if r.unmade:
+            told.append(f"no usual errors are made of: {', '.join(sorted(r.unmade))}")
         if r.refused:
             flaws = ", ".join(f"{flaw} ({n})" for flaw, n in r.refused.most_common(3))
             told.append(f"passed over most for {flaws}")

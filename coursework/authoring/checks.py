@@ -22,8 +22,10 @@ from coursework.authoring.check_answers import (
 )
 from coursework.authoring.check_formulas import check_formulas
 from coursework.authoring.check_loops import check_loops
+from coursework.authoring.check_prices import check_prices
 from coursework.authoring.check_report import RESIDUAL, Report
 from coursework.authoring.check_units import check_units
+from coursework.authoring.check_usual import check_usual_errors
 from coursework.course import draws
 from coursework.course.answer_key import Key, exists
 from coursework.course.course import Course, opened
@@ -147,6 +149,8 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
         check_follow_through(variant, key, report)
     for variant in drawn[:NONSENSICAL]:
         check_nonsense(variant, report)
+    check_usual_errors(drawn, report)
+    check_prices(drawn, report)
     check_loops(drawn[0], report)
     check_formulas(drawn, report)
     check_units(drawn, report)
