@@ -64,7 +64,9 @@ def _tell(variant: Variant, part: Part, error: UsualError, mark: Any, report: Re
     elif mark.matches:
         report.counts["usual errors among many"] += 1
     elif mark.read_as:
-        report.counts["usual errors not told"] += 1
+        report.fail(
+            f"seed {variant.seed}: {part.id} with an error of the kind {error.kind!r} is not recognised"
+        )
 
 
 def _list_unprotected(variant: Variant, report: Report) -> None:

@@ -13,6 +13,7 @@ from coursework.language.words import listed, words
 from coursework.marking.feedback import symbol
 from coursework.model import Part
 from coursework.quantities.formula_latex import Told, tree_latex
+from coursework.quantities.rounding import half_step
 from coursework.quantities.usual_errors import formula_errors
 from coursework.reading.reading import Reading
 
@@ -82,9 +83,10 @@ def _gaps(part: Part, key: Key, judged_by: Part, values: np.ndarray, answer: flo
             gap = np.abs(gap - turn * np.rint(gap / turn))
         width = np.full_like(gap, key.half_width(judged_by))
         if not turn and reference:
-            width = width * np.minimum(
-                np.abs(values / reference), 1.0
-            )  # rounding moves what is small as little
+            # Rounding moves what is small as little, and what is large by its own digits.
+            width = width * np.minimum(np.abs(values / reference), 1.0)
+            if part.has_margin:
+                width = np.maximum(width, half_step(values, key.rules.digits))
         # Where the reference is the same value, the answer is right or wrong for another reason.
         is_other = np.abs(values - reference) > _SAME * abs(reference)
         gaps = np.where(gap == 0, 0.0, gap / width)
