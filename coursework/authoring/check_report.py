@@ -13,7 +13,6 @@ USUAL = (
     "usual errors told",
     "usual errors told otherwise",
     "usual errors among many",
-    "usual errors not told",
 )
 KEPT_DIGITS = (3, 4, 5)  #: of simulated students who round at every step
 
