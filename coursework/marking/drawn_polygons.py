@@ -6,7 +6,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from coursework.polygons.hand_drawn import HUNG, SENSE, Drawing, Fault, ancestors, is_scale, judge_drawing
+from coursework.polygons.hand_drawn import HUNG, Drawing, Fault, ancestors, is_scale, judge_drawing
 from coursework.polygons.polygon import Polygon
 from coursework.solution import Judged
 
@@ -76,7 +76,7 @@ def verdicts(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judg
     scale = stated if stated is not None and is_scale(polygon, stated) else None
     if polygon.pole not in points or len(points) < 2:
         if scale is None:
-            return {}
+            return _right_reads(answers, polygon, asked)
         # Lengths alone: nothing is drawn, and they are what they should be or not.
         bare = judge_drawing(polygon, {polygon.pole: 0j}, scale)
         said = {asked.scale: Judged()} if bare.is_legible else {asked.scale: Judged(0.0, "too_small")}
@@ -106,25 +106,42 @@ def _of_scale(scale: float | None, upside_down: bool, drawing: Drawing) -> Judge
     if scale is None:
         return Judged(0.0)
     if upside_down:
-        return Judged(0.5, "scale_upside_down")
+        return Judged(0.0, "scale_upside_down")
     return Judged() if drawing.fits_stated_scale else Judged(0.0, "scale_not_drawn")
 
 
 def _of_point(point: str, drawing: Drawing, asked: Asked) -> Judged:
     if point == drawing.polygon.pole:
+        # Any pole is right from which something was drawn; what is wrong about that is another point's.
         others = [q for q in drawing.points if q != point]
-        # A pole is right where some vector is: any pole is. Otherwise it shares the fault of the first.
-        return Judged() if any(map(drawing.is_right, others)) else _of_fault(others[0], drawing, asked)
+        return (
+            Judged()
+            if any(_is_drawn_from(point, q, drawing) for q in others)
+            else _of_fault(others[0], drawing, asked)
+        )
     if drawing.is_right(point):
         return Judged(follows=drawing.follows(point))
     return _of_fault(point, drawing, asked)
+
+
+_ATTEMPT = (
+    3.0  #: factor between the length of a vector and that of the right one, which was drawn all the same
+)
+
+
+def _is_drawn_from(pole: str, point: str, drawing: Drawing) -> bool:
+    """Whether a point is right, or at least about as far from the pole as it should be."""
+    images = drawing.polygon.points
+    length = abs(drawing.points[point] - drawing.points[pole]) * drawing.scale
+    right = abs(images[point] - images[pole])
+    return drawing.is_right(point) or right / _ATTEMPT <= length <= _ATTEMPT * right
 
 
 def _of_fault(point: str, drawing: Drawing, asked: Asked) -> Judged:
     fault = drawing.faults[point]
     names = [_named(point, f, asked) for f in fault.explanations]
     known = [name for name in names if name]
-    return Judged(0.5 if fault.kind == SENSE else 0.0, known[0], also=tuple(known[1:]))
+    return Judged(0.0, known[0], also=tuple(known[1:]))
 
 
 def _named(point: str, fault: Fault, asked: Asked) -> str:
@@ -165,6 +182,13 @@ def _reads(answers: Answers, drawing: Drawing, asked: Asked) -> dict[str, Judged
     return said
 
 
+def _right_reads(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judged]:
+    """Without scale and drawing, the values that are right all the same; nothing can be said of the others."""
+    usual = float(scale_for(*(np.asarray(image, dtype=complex) for image in polygon.points.values())))
+    said = _reads(answers, judge_drawing(polygon, {polygon.pole: 0j}, usual), asked)
+    return {part: verdict for part, verdict in said.items() if verdict.share == 1.0}
+
+
 def _of_value(found: float, read: Read, drawing: Drawing, answers: Answers, asked: Asked) -> Judged:
     ends, scale, images = (read.start, read.end), drawing.scale, drawing.polygon.points
     right = read.value(images[read.end] - images[read.start])
@@ -189,7 +213,7 @@ def _of_value(found: float, read: Read, drawing: Drawing, answers: Answers, aske
         return Judged(follows=bool(at_fault) or wrong_length)
     names = list(_wrong_ways(found, read, [right, *own], drawing))
     first = names[0] if names else ""
-    return Judged(0.5 if first == read.sense else 0.0, first, also=tuple(names[1:]))
+    return Judged(0.0, first, also=tuple(names[1:]))
 
 
 def _wrong_ways(found: float, read: Read, values: Sequence[float], drawing: Drawing) -> Iterator[str]:

@@ -46,6 +46,7 @@ class Before:
     right: set[str] = field(default_factory=set)  #: quantities, of any kind of answer
     shown: set[str] = field(default_factory=set)  #: verdicts that explain earlier answers
     read: list[tuple[Part, Reading]] = field(default_factory=list)  #: numbers, whole ones too, and choices
+    paid: dict[str, str] = field(default_factory=dict)  #: by error, the part whose answer paid for it
     in_other_case: bool = False  #: an answer was that of the other case than the stated one
 
     def take(

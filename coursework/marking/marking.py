@@ -24,6 +24,7 @@ from coursework.marking.judges import best_judged
 from coursework.marking.loop_judge import loop_verdicts
 from coursework.marking.mark import Mark, Marking, made_mark
 from coursework.marking.mending import mark_wrong, shown_as
+from coursework.marking.once import signs_counted_once
 from coursework.marking.together import is_scale, is_told_with, mark_judged, waits_for
 from coursework.model import Part
 from coursework.reading.reading import Reading
@@ -73,7 +74,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             tellers = (p for j, p in asked.items() if j in marks and j not in no_scale)
             told = next((p for p in tellers if is_told_with(p, part, together)), None)
             missed = partial(waits_for, variant, part, readings, waiting)
-            marks[i] = mark_judged(variant, key, part, reading, together[i], told, missed, before.sheet)
+            marks[i] = mark_judged(variant, key, part, reading, together[i], told, missed, before)
             if is_scale(part) and reading.values[nearest[0]] <= 0:
                 no_scale.add(i)
                 read_as = echo(marks[i].read_as, variant.lang)
@@ -82,6 +83,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             nearest = nearest_reading(part, reading, key, judged_by)
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
         before.take(key, judged_by, reading, nearest[0], marks[i].verdict, marks[i].matches)
+    marks = signs_counted_once(variant, marks, key.rules.follow_through)
     for i in marks:
         if target[i] != i and marks[i].verdict == "correct":
             note = Said(words(variant.lang)["marking"]["either_order"], {})

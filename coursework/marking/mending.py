@@ -11,6 +11,7 @@ from coursework.language.words import listed, quoted, words
 from coursework.marking.explaining import Before, Explanation, alternatives, explained
 from coursework.marking.feedback import Said, echo, questions, say, symbol
 from coursework.marking.mark import Mark, made_mark
+from coursework.marking.once import identity
 from coursework.marking.usual import NAMED, whys
 from coursework.markup.markdown import plain_line
 from coursework.model import Part
@@ -37,12 +38,19 @@ def mark_wrong(
     """The mark of an answer that was read and is not right."""
     found = explained(key, part, reading, judged_by, before)
     matches = tuple(dict.fromkeys(e.verdict for e in found))
-    named = _named(found)
+    named = _named(found, before)
     # What is told is told of the reading that it explains, else of the text as it stands.
     index = named[0].reading if named else 0
     read_as, read = shown_as(variant, part, reading, index)
     made = partial(made_mark, variant, part, reading)
+    error = identity(named[0]) if named else ""
+    if error and error in before.paid:
+        first = questions(variant, [before.paid[error]], "and")
+        said = say(variant, part, "same_error", read=read, first=first)
+        return made("follow_through", key.rules.follow_through, read_as, said, matches)
     if named:
+        if error:
+            before.paid[error] = part.id
         shares = [_share(key, e, before) for e in named]
         said = _told(variant, part, judged_by, named, read, before)
         return made(named[0].verdict, max(shares), read_as, said, matches)
@@ -52,10 +60,17 @@ def mark_wrong(
     return made("wrong", 0.0, read_as, _told_wrong(variant, part, read, before), matches)
 
 
-def _named(found: Sequence[Explanation]) -> list[Explanation]:
-    """What is told as the explanation: one, or several of which nothing tells which it was; none of too many."""
+def _named(found: Sequence[Explanation], before: Before) -> list[Explanation]:
+    """What is told as the explanation: one, or several of which nothing tells which it was; none of too many.
+
+    What an earlier answer shows is what this one shows, where it explains it.
+    """
     if not found or not found[0].is_likely:
         return []
+    if found[0].verdict != "follow_through":
+        again = [e for e in found if e.is_likely and identity(e) in before.paid]
+        if again:
+            return again[:1]
     named = alternatives(found)
     return named if len(named) <= NAMED else []
 

@@ -11,7 +11,7 @@ from coursework.course.answer_key import Key
 from coursework.errors import CourseworkError
 from coursework.language.words import words
 from coursework.marking.attempts import Sheet
-from coursework.marking.explaining import mistakes_that_fit
+from coursework.marking.explaining import Before, mistakes_that_fit
 from coursework.marking.feedback import Said, amount, echo, either_symbol, part_name, questions, say
 from coursework.marking.judges import Verdict, judged
 from coursework.marking.mark import Mark, made_mark
@@ -36,7 +36,7 @@ def mark_judged(
     found: Verdict,
     told_with: Part | None,
     missed: Callable[[], str],
-    sheet: Sheet,
+    before: Before,
 ) -> Mark:
     """The mark of a part that is judged together with others; ``told_with`` bears the same remark already."""
     read_as, verdict = reading.read_as[found.reading], found.said
@@ -62,7 +62,7 @@ def mark_judged(
         share == 1.0
         and is_followed
         and part.sort.is_scalar
-        and not _has_work(part, key, reading, found, sheet)
+        and not _has_work(part, key, reading, found, before.sheet)
     ):
         return made("wrong", 0.0, read_as, told(part.sort.wrong))
     if share == 1.0:
@@ -79,10 +79,19 @@ def mark_judged(
             said = told("mistake", says=variant.told(shown[0]))
         return made(matches[0], share, read_as, said, matches)
     if found.slip:
+        error = f"{found.slip}/{'/'.join(found.about)}"
+        if found.about and error in before.paid:
+            return made(
+                "follow_through",
+                key.rules.follow_through,
+                read_as,
+                told("same_error", first=questions(variant, [before.paid[error]], "and")),
+                matches,
+            )
+        before.paid[error] = part.id
         about = either_symbol(variant, found.about, both=found.slip == "frame_missing")
-        return made(
-            matches[0], key.rules.share(found.slip), read_as, told(f"slip_{found.slip}", about=about), matches
-        )
+        said = told(f"slip_{found.slip}", about=about)
+        return made(matches[0], key.rules.share(found.slip), read_as, said, matches)
     return made("wrong", share, read_as, told(part.sort.wrong))
 
 

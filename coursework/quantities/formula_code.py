@@ -261,6 +261,8 @@ class _Coding(Evaluation):
                     return _Code(ast.Name(self.names[int(value) - _FIRST], ast.Load()))
                 value = -value if negative else value
                 return _Code(ast.Constant(int(value) if value.is_integer() else value))
+            case Symbol(text=text, kind="digits"):
+                return _Code(ast.Constant(float(text) if "." in text else int(text)))
             case Fraction(above=above, below=below):
                 return _Code(ast.BinOp(_code(self.of(above)), ast.Div(), _code(self.of(below))))
             case Root(body=body, index=None):

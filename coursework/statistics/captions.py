@@ -102,7 +102,8 @@ class Names:
         return [texts[section].text for texts in self._texts[one.exercise] if section in texts]
 
     def _slip(self, kind: str) -> str:
-        sentence = words(self._lang)["marking"].get(f"slip_{kind}", "")
+        table = words(self._lang)["marking"]
+        sentence = table.get(f"slip_{kind}") or table["usual"].get(kind, table["usual"]["taken"])
         told = sentence.removeprefix("{name}").lstrip(" :\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}")
         said = plain_line(_OPEN.sub("…", told), self._lang)
         return said[:1].upper() + said[1:]

@@ -139,8 +139,9 @@ def drawing(answers, d, r2, r3, b, theta1, omega1):
         scale = abs(right["v10"]) / abs(drawn["v10"])
     elif stated is not None and "v10" in drawn:
         scale = scale_for(*right.values())  # nothing tells it; that of the solution is as good as any
-    else:
-        return said
+    else:  # nothing is drawn: the values that are right are right all the same
+        values = _values(answers, pose, right, {}, {}, scale_for(*right.values()), r3)
+        return said | {name: verdict for name, verdict in values.items() if verdict.share == 1.0}
     if longest / scale < LEAST_MM:
         return dict.fromkeys(
             ("kv", *drawn) if stated is not None else drawn, Judged(0.0, "too_small")
@@ -190,7 +191,7 @@ def _judged(name, found, drawn, right, pose, said):
         return Judged(follows=bool(faults[-1]) and wrong_before)
     names = [*_special(name, found, drawn, pose), *(f"vector_{kind}" for kind in faults)]
     names = list(dict.fromkeys(names))
-    return Judged(0.5 if faults[0] == "sense" else 0.0, names[0], also=tuple(names[1:]))
+    return Judged(0.0, names[0], also=tuple(names[1:]))
 
 
 def _special(name, found, drawn, pose):
@@ -220,7 +221,7 @@ def _values(answers, pose, right, drawn, said, scale, r3):
         elif of in said and abs(value - own) <= scale / radius + 0.01 * abs(own):
             found[name] = Judged(follows=said[of].share != 1 or said[of].follows)
         elif min(abs(value + ideal), abs(value + own)) <= near:
-            found[name] = Judged(0.5, "value_sense")
+            found[name] = Judged(0.0, "value_sense")
         elif min(abs(value * scale - ideal), abs(value * scale - own)) <= near:
             found[name] = Judged(0.0, "scale_forgotten")
         else:

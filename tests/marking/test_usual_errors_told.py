@@ -1,0 +1,209 @@
+"""An error that nobody named is seen, told by its term, and paid for once."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import coursework
+from coursework.authoring.check_prices import check_prices
+from coursework.authoring.check_report import Report
+from coursework.authoring.check_usual import check_usual_errors
+from coursework.course.answer_key import Key
+from coursework.course.exercise import ALL
+from coursework.course.marking_rules import Rules
+from coursework.course.variant import Variant
+from coursework.errors import BadCourse
+from coursework.making.issuing import distinct_variants
+from coursework.quantities.error_kinds import PRICES
+
+COURSE = coursework.open_course()
+every_exercise = pytest.mark.parametrize("name", COURSE.names)
+NUMERIC = [n for n in COURSE.names if any(p.sort.is_scalar and not p.judge for p in COURSE[n].spec.parts)]
+
+
+@every_exercise
+def test_every_usual_error_that_shows_is_told_and_no_price_differs(name):
+    exercise, report = COURSE[name], Report(name)
+    drawn = distinct_variants(exercise, 0, 7, "en", parts=(ALL,))
+    check_usual_errors(drawn, report)
+    check_prices(drawn, report)
+    assert report.failures == []
+
+
+def test_an_acceleration_without_its_normal_part_is_right_on_no_variant():
+    told = set()
+    for variant in distinct_variants(COURSE["four_bar_motion"], 0, 60, "en", parts=("a_B",)):
+        tangential = abs(variant.given["r4"] * variant.quantities(["alpha4"])["alpha4"])
+        mark = variant.grade({"a_B": f"{tangential:.5g}"})["a_B"]
+        assert mark.verdict != "correct"
+        told.add(mark.verdict)
+    assert "slip:term" in told
+
+
+@pytest.mark.parametrize(
+    ("lang", "said"),
+    [("en", "the term ω₄⁴ is left out"), ("fr", "le terme ω₄⁴ manque")],
+)
+def test_the_sentence_names_the_term_and_not_the_value(lang, said):
+    (variant,) = distinct_variants(COURSE["four_bar_motion"], 0, 1, lang, parts=("a_B",))
+    right = variant.quantities(["alpha4", "a_B"])
+    mark = variant.grade({"a_B": abs(variant.given["r4"] * right["alpha4"])})["a_B"]
+    assert said in mark.feedback
+    assert str(round(right["a_B"])) not in mark.feedback
+
+
+def test_what_nothing_explains_is_told_what_it_is_computed_from():
+    variant = COURSE["slotted_mechanism"].variant(7, "en")
+    right = variant.solution()
+    answers = {"rA": right["rA"], "theta4": right["theta4"], "omega4": 7.123 * right["omega4"]}
+    mark = variant.grade(answers)["omega4"]
+    assert mark.verdict == "wrong"
+    assert "r_A (right)" in mark.feedback
+    assert "the relation between them" in mark.feedback
+    wrong = variant.grade({**answers, "rA": 1.23 * right["rA"]})["omega4"]
+    assert "not yet right" in wrong.feedback
+
+
+def test_one_wrong_sign_costs_the_same_in_every_exercise():
+    """Told by its author or by the engine, with all else blank."""
+    for name in NUMERIC:
+        for variant in distinct_variants(COURSE[name], 0, 2, "en", parts=(ALL,)):
+            for part in variant.parts:
+                value = variant.key.reference[part.quantity]
+                if not part.sort.is_number or part.judge or not value or part.sort.turn:
+                    continue
+                mark = variant.grade({part.id: -value})[part.id]
+                is_sign = mark.verdict == "slip:sign" or (
+                    mark.verdict.startswith("mistake:")
+                    and variant.exercise.solution.mistakes[mark.verdict[8:]].kind == "sign"
+                )
+                if is_sign:
+                    assert mark.points == PRICES["sign"] * mark.out_of, (name, part.id)
+
+
+def test_all_signs_of_an_equation_are_one_error():
+    variant = COURSE["slider_extras"].variant(3, "en")
+    right = variant.quantities(["a", "b", "c"])
+    marking = variant.grade({name: -value for name, value in right.items()})
+    assert [marking[i].points for i in "abc"] == [0.5, 1.0, 1.0]
+    assert "counted in question 7" in marking["b"].feedback
+    # One sign of three is an error of its own.
+    alone = variant.grade({**right, "b": -right["b"]})
+    assert [alone[i].points for i in "abc"] == [1.0, 0.5, 1.0]
+
+
+def test_the_same_error_on_the_way_to_two_answers_is_paid_once():
+    variant = COURSE["quick_return"].variant(2, "en")
+    wrong = variant.key.wrong["cosine_rule_sign"]
+    both = [i for i in variant.part_ids if i in wrong and i != "OB"][:2]
+    marking = variant.grade({i: wrong[i] for i in both})
+    first, second = (marking[i] for i in both)
+    assert first.verdict == "mistake:cosine_rule_sign"
+    assert (second.verdict, second.points) == ("follow_through", second.out_of)
+
+
+def test_metres_everywhere_are_one_error():
+    variant = COURSE["slider_crank"].variant(3, "en")
+    lengths = [p for p in variant.parts if p.unit == "mm" and p.sort.is_number and not p.judge]
+    marking = variant.grade({p.id: f"{variant.key.reference[p.quantity] / 1000:.6g}" for p in lengths})
+    points = [marking[p.id].points / marking[p.id].out_of for p in lengths]
+    assert points[0] == PRICES["unit"]
+    assert set(points[1:]) == {1.0}
+
+
+def test_a_right_value_needs_no_scale_and_a_wrong_first_point_leaves_the_pole():
+    variant = COURSE["velocity_polygon"].variant(3, "en")
+    right = variant.solution()
+    marking = variant.grade({i: right[i] for i in ("omega3", "omega4")})
+    assert {marking[i].verdict for i in ("omega3", "omega4")} == {"correct"}
+    x, y = right["a"]
+    written = {i: "; ".join(f"{c:.1f}" for c in right[i]) for i in ("p", "b")}
+    marking = variant.grade({"kv": right["kv"], **written, "a": f"{x + 20:.1f}; {y + 15:.1f}"})
+    assert marking["p"].verdict == "correct"
+    assert marking["a"].points == 0
+
+
+def marked(name, rules, **answers):
+    variant = COURSE[name].variant(3, "en")
+    variant.key = Key(variant, rules)
+    return variant.grade(answers)
+
+
+def test_a_course_sets_its_prices():
+    rules = Rules.of({"prices": {"sign": 0.25}}, "course.toml")
+    omega3 = COURSE["four_bar_motion"].variant(3).solution()["omega3"]
+    assert marked("four_bar_motion", rules, omega3=-omega3)["omega3"].points == 0.25
+    assert Rules.of({"slip": 0.1}, "course.toml").share("unit") == 0.1
+    assert Rules.of({"prices": {"unit": 0.2}}, "assignment", rules).share("sign") == 0.25
+    for table, said in (({"sing": 1}, "'sign'"), ({"sign": 2}, "share from 0 to 1"), (3, "is a table")):
+        with pytest.raises(BadCourse, match=said):
+            Rules.of({"prices": table}, "course.toml")
+
+
+def test_a_course_may_charge_for_the_other_case_wherever_it_shows():
+    exercise = COURSE["four_bar_motion"]
+    variant = exercise.variant(3, "en")
+    other = "crossed" if variant.given["mode"] == "open" else "open"
+    swapped = Variant(exercise, 3, {**variant.given, "mode": other}, "en").solution()
+    swapped = {i: value for i, value in swapped.items() if i in variant.part_ids}
+    for share in (1.0, 0.5):
+        marking = marked("four_bar_motion", Rules(other_case=share), **swapped)
+        followed = [m for m in marking.values() if m.verdict == "follow_through"]
+        assert len(followed) > 3
+        assert {m.points / m.out_of for m in followed} == {share}, [m.feedback for m in followed]
+
+
+# ---------------------------------------------------------------- nobody earns without knowing
+
+CONSTANTS = (
+    "0 1 -1 2 -2 3 4 5 6 7 8 9 10 12 20 45 50 90 100 180 -90 270 0.5 -0.5 0.1 1e-9 -1e-9 1e-6 1e-3 1e3 1e6 1e9 "
+    "-1e9 1e12 3.14159 1.5708 57.2958 9.81 0.01"
+).split()
+
+
+def without_work(variant):
+    """Sheets of students who know nothing: one number, what is given in turn, the numbers of the questions."""
+    for number in CONSTANTS:
+        yield number, dict.fromkeys(variant.part_ids, number)
+    data = [v for v in variant.given.values() if not isinstance(v, str)] or [1]
+    yield "data", {i: f"{data[n % len(data)]:g}" for n, i in enumerate(variant.part_ids)}
+    yield "numbers", {i: str(n) for n, i in enumerate(variant.part_ids, start=1)}
+
+
+@every_exercise
+def test_nothing_follows_for_who_writes_without_work(name):
+    for variant in distinct_variants(COURSE[name], 0, 3, "en"):
+        for who, answers in without_work(variant):
+            marking = variant.grade(answers)
+            scalars = [p.id for p in variant.parts if p.sort.is_scalar]
+            followed = [i for i in scalars if marking[i].verdict == "follow_through"]
+            paid = [
+                i for i in followed if not any(m.startswith(("slip", "mistake")) for m in marking[i].matches)
+            ]
+            assert paid == [], (variant.seed, who)
+
+
+def test_a_number_far_from_any_size_is_no_attempt_and_one_of_the_right_size_is():
+    variant = COURSE["slotted_mechanism"].variant(7, "en")
+    right = variant.solution()
+    for rA, follows in ((1.3 * right["rA"], True), (317.0 * right["rA"], False)):
+        omega4 = right["omega4"] * right["rA"] / rA
+        assert (variant.grade({"rA": rA, "omega4": omega4})["omega4"].verdict == "follow_through") is follows
+
+
+def test_values_by_the_column_are_those_of_each_alone():
+    from coursework.course.key_batch import keys_of
+
+    exercise = COURSE["quick_return"]
+    alone, together = (distinct_variants(exercise, 0, 5, "en") for _ in range(2))
+    keys_of(exercise, together)
+    for one, other in zip(alone, together, strict=True):
+        for part in one.parts:
+            if not part.sort.is_scalar or part.judge:
+                continue
+            own = dict(zip(*one.key.usual_ways(part.quantity), strict=True))
+            shared = dict(zip(*other.key.usual_ways(part.quantity), strict=True))
+            for error in own.keys() & shared.keys():
+                if np.isfinite(own[error]) and np.isfinite(shared[error]):
+                    assert own[error] == pytest.approx(shared[error], rel=1e-6, abs=1e-9), error
