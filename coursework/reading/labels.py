@@ -204,7 +204,8 @@ def in_words(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choices that a text may mean, whatever letters a sheet prints; a mark before a label counts where it is a number."""
     keys = by_label(text, choices)
     if not keys and (marked := _MARKED.fullmatch(text.strip())):  # b) crossed
-        keys = list(dict.fromkeys((*_called(marked["label"], choices), *_by_number(marked["mark"], choices))))
+        called = _called(marked["label"], choices)
+        keys = list(dict.fromkeys((*called, *_by_number(marked["mark"], choices)))) if called else []
     return keys or _called(text, choices)
 
 
