@@ -96,7 +96,7 @@ def _angles(value: float, digits: str, turns: bool) -> Iterator[str]:
     yield from (f"{value + 360:.4f}", f"{value - 360:.4f}") if turns else ()
     whole, rest = divmod(abs(value), 1)
     minutes, seconds = divmod(rest * 3600, 60)
-    yield f"{'-' if value < 0 else ''}{int(whole)}\u00b0{int(minutes)}'{seconds:.2f}\""
+    yield f"{'-' if value < 0 else ''}{int(whole)}\u00b0{int(minutes)}'{math.floor(100 * seconds) / 100:.2f}\""
     for start, name in ((180.0, "arctan"), (90.0, "atan"), (360.0, "Arctan"), (0.0, "arctan")):
         left = math.radians(turn - start)
         if abs(left) < 1.5:

@@ -217,6 +217,8 @@ def _called(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
         keys = keys or list(
             dict.fromkeys((*_by_number(words_said, choices), *_by_value(words_said, choices)))
         )
+        if keys and words_said != text:  # une deux: an article may be a label as well
+            keys = list(dict.fromkeys((*keys, *by_label(text.removesuffix(said), choices))))
         if keys:
             return keys
     return _by_beginning(said, choices) or _by_remark(text, choices)

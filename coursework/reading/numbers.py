@@ -282,12 +282,15 @@ def _calculated(text: str, target: Unit) -> list[Amount]:
         raise (words and _named_unit_unknown(text)) or error from None
 
 
-_LITERAL = r"[+-]?\s*[0-9]+(?:[.,][0-9]+)?"
+_LITERAL = r"[+-]?\s*[0-9]+(?:[.,][0-9]+)?(?:[eE][+-]?[0-9]+)?"
 _IN_BRACKETS = rf"[(\[{{]\s*{_LITERAL}\s*[)\]}}]"
 _SIDE_BY_SIDE = re.compile(
-    rf"{_LITERAL}(?:\s*{_IN_BRACKETS})+|{_IN_BRACKETS}\s*(?:{_IN_BRACKETS}\s*)*(?:{_IN_BRACKETS}|[0-9.,]+)"
+    rf"{_LITERAL}(?:\s*{_IN_BRACKETS})+|{_IN_BRACKETS}\s*(?:{_IN_BRACKETS}\s*)*(?:{_IN_BRACKETS}|[0-9][0-9.,]*(?:[eE][+-]?[0-9]+)?)"
 )
 _PER_ONE = re.compile(r"[^*/]+/\s*1")  #: ``3/1`` is a ratio as ``3:1`` is
+
+
+_FEW_NUMBERS = 3  #: of a formula; one of more, 3(0) - 2(1), is worked out by a rule
 
 
 def _refuse_several(text: str) -> None:
@@ -302,7 +305,7 @@ def _refuse_several(text: str) -> None:
         with suppress(Unreadable):
             root = plain_expression(formula).root
             numbers = sum(node.kind == "number" for node in root.walk())
-            if numbers > 1 and without_idle(root).kind == "number":
+            if 1 < numbers <= _FEW_NUMBERS and without_idle(root).kind == "number":
                 raise Stop("two_values", text)
 
 
@@ -394,7 +397,7 @@ def _agreeing(one: _Way, other: _Way, target: Unit) -> list[Amount]:
     return kept
 
 
-_ROUNDED = 0.05  #: the share of a number that its last digit may be of, for it to confirm another
+_ROUNDED = 0.015  #: the share of a number that its last digit may be of, for it to confirm another
 
 
 def _is_near(one: float, other: float, half: float) -> bool:
@@ -440,6 +443,11 @@ def target_unit(unit: str) -> Unit:
     return parse_unit(unit)
 
 
+_LINES = re.compile(
+    r"[0-9][^\n]*\n\s*(?![\s=≈])[^\n]*[0-9]"
+)  #: a number on each of two lines, none of them going on
+
+
 def read_number(text: Any, unit: str, *, thousands: bool = True, proportions: bool = True) -> Reading:
     """A number, with or without its unit, in the canonical ``unit``.
 
@@ -461,6 +469,8 @@ def read_number(text: Any, unit: str, *, thousands: bool = True, proportions: bo
     target, text = target_unit(unit), bare_value(text)
     if isinstance(text, Real) and not isinstance(text, bool):
         return _from_real(text)
+    if isinstance(text, str) and "\n" in text and _LINES.search(text.replace("\r", "")):
+        return Reading(text, "unreadable", code="two_values", found=shorten(" ".join(text.split())))
     return reading_of(
         text, lambda plain: _from_amounts(text, read_amounts(plain, target, thousands, proportions))
     )
