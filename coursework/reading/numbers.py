@@ -290,6 +290,7 @@ _SIDE_BY_SIDE = re.compile(
 _PER_ONE = re.compile(r"[^*/]+/\s*1")  #: ``3/1`` is a ratio as ``3:1`` is
 
 
+_IDLE = re.compile(r"(?<![0-9.,])0*[01](?:[.,]0*)?(?![0-9])")  #: a number that may do nothing
 _FEW_NUMBERS = 3  #: of a formula; one of more, 3(0) - 2(1), is worked out by a rule
 
 
@@ -302,6 +303,8 @@ def _refuse_several(text: str) -> None:
             continue
         if _SIDE_BY_SIDE.fullmatch(formula):
             raise Stop("two_values", text)
+        if _IDLE.search(formula) is None:
+            continue
         with suppress(Unreadable):
             root = plain_expression(formula).root
             numbers = sum(node.kind == "number" for node in root.walk())
