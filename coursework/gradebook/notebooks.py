@@ -18,6 +18,7 @@ from coursework.gradebook.rows import (
     object_once,
     sheet_rows,
     short_fault,
+    with_unread,
 )
 
 # --------------------------------------------------------------------- notebook
@@ -159,6 +160,11 @@ def literal_answers(code: str) -> dict[Any, Any] | str:
     if len(code) > 200_000:
         return "the answers cell is too long to be read"
     code = re.sub(r"\r\n?", "\n", code)
+    found = _literal_answers(code)
+    return found if isinstance(found, str) else _with_hidden(found, code)
+
+
+def _literal_answers(code: str) -> dict[Any, Any] | str:
     try:
         statements = ast.parse(code).body
     except _NO_PYTHON:
@@ -194,6 +200,67 @@ def _pairs(found: ast.Dict, code: str) -> list[tuple[Any, Any]]:
     if len(keys) < len(found.keys):
         raise ValueError("** is code")
     return [(value(key), value(item)) for key, item in zip(keys, found.values, strict=True)]
+
+
+# ----------------------------------------------------------------- behind a hash
+
+_HIDDEN = "an answer stands behind a #, where nothing is read"
+_QUOTED_NUMBER = re.compile(r'"[^"]*[0-9][^"]*"')
+_NUMBER_OF = re.compile(r"""[0-9]\s*["']?\s*,""")  #: as a line of the cell ends
+_ENDS_IN_TEXT = re.compile(r"""(?:^|[{,])\s*(["'])([^"']+)\1\s*$""")
+_ENDS_IN_KEY = re.compile(r"""(["'])([^"']+)\1\s*:\s*([^"'\s,{}][^"'{}]*)?$""")
+
+
+def _with_hidden(found: dict[Any, Any], code: str) -> dict[Any, Any]:
+    """The answers, and those that a # has cut off or hides, unless the same is answered elsewhere: ``"rA": 319#.8``,
+    ``"rA": "1",  # mm "b": "2",``."""
+    unread: list[tuple[Any, str, str]] = []
+    for line in code.split("\n"):
+        read, comment = _parted(line)
+        for key, text, is_cut in _behind(read, comment):
+            if is_cut or found.get(key) in (None, ""):
+                unread.append((key, text, _HIDDEN))
+    if not unread:
+        return found
+    gone = {key for key, _, _ in unread}
+    return with_unread(found, unread, gone)
+
+
+def _behind(read: str, comment: str) -> Iterator[tuple[str, str, bool]]:
+    """The answers in a comment, by key, and whether what stands before the # is a part of it."""
+    if (bare := _ENDS_IN_TEXT.search(read)) and re.search("[:0-9]", comment):
+        yield bare[2], comment.strip(" :,}"), False
+        return
+    open_key = _ENDS_IN_KEY.search(read)
+    if open_key and open_key[3] and not read[-1:].isspace() and comment:
+        yield open_key[2], f"{open_key[3]}#{comment}", True
+    elif open_key and not open_key[3] and re.search("[0-9\"']", comment):
+        yield open_key[2], comment.strip(), False
+    else:
+        keys = list(_KEY.finditer(comment))
+        ends = [*(key.start() for key in keys[1:]), len(comment)]
+        for key, end in zip(keys, ends, strict=False):
+            if (text := comment[key.end() : end].strip(" ,}")).strip("\"'"):
+                yield key[2], text, False
+        if not keys and (_QUOTED_NUMBER.search(comment) or (not read.strip() and _NUMBER_OF.search(comment))):
+            yield "", f"{read}#{comment}".strip(), True  # whose it is cannot be told
+
+
+def _parted(line: str) -> tuple[str, str]:
+    """What stands on a line of Python before a #, and what behind it; a # in quotation marks is none."""
+    quote, escaped = "", False
+    for at, char in enumerate(line):
+        if escaped:
+            escaped = False
+        elif char == "\\":
+            escaped = bool(quote)
+        elif quote:
+            quote = "" if char == quote else quote
+        elif char in "\"'":
+            quote = char
+        elif char == "#":
+            return line[:at], line[at + 1 :]
+    return line, ""
 
 
 _OPENS = re.compile(r"(?:\w+\s*=\s*)?\{\s*")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -44,9 +44,10 @@ def _whole(text: str) -> str:
 
 
 class _Repeated(dict):
-    """A JSON object and the pairs that repeat a key of it."""
+    """A JSON object, the pairs that repeat a key of it, and those that stand where nothing is read, with why."""
 
     repeats: tuple[tuple[Any, Any], ...] = ()
+    unread: tuple[tuple[Any, str, str], ...] = ()
 
 
 def load_json(text: str) -> Any:
@@ -73,12 +74,25 @@ def object_once(pairs: list[tuple[Any, Any]]) -> dict[Any, Any]:
     return found
 
 
+def with_unread(
+    pairs: dict[Any, Any], unread: list[tuple[Any, str, str]], instead: Collection[Any]
+) -> dict[Any, Any]:
+    """The same answers but those of some keys, ``instead`` of which there are others where nothing is read: key, text, why."""
+    found = _Repeated({key: value for key, value in pairs.items() if key not in instead})
+    found.repeats, found.unread = getattr(pairs, "repeats", ()), tuple(unread)
+    return found
+
+
 def sheet_rows(
     about: dict[str, Any], answers: dict[Any, Any], place: str, warning: str
 ) -> Iterator[Row | Rejected]:
     names = {c: name_in(about.get(c)) for c in ("student", "exercise", "seed")}
-    if not answers:
+    if not answers and not getattr(answers, "unread", ()):
         yield Rejected(place, "the sheet holds no answer", {**names, "part": "", "answer": ""})
+    for key, text, why in getattr(answers, "unread", ()):
+        row = {**names, "part": name_in(key), "answer": _whole(text)[:200]}
+        where = f"{place}, part {name_in(key)[:40]}" if key else place
+        yield Rejected(where, why, row)
     for key, value in [*answers.items(), *getattr(answers, "repeats", ())]:
         part, answer = name_in(key), as_answer(value)
         where = f"{place}, part {part[:40]}"

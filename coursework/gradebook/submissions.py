@@ -171,15 +171,31 @@ def _read_parquet(path: Path) -> Iterator[Row | Rejected]:
 def _csv_row(
     header: list[str], cells: list[str], delimiter: str, place: str, warning: str
 ) -> Iterator[Row | Rejected]:
+    if len(cells) > len(header) and delimiter == ",":
+        joined = _with_commas(header, cells)
+        if header[-1] == "answer" and cells[header.index("seed")].strip().isdigit():
+            note = (
+                f"{place}: an answer with a comma and no quotation marks was read up to the end of its line"
+            )
+            yield _row_of([joined[c] for c in COLUMNS], range(len(COLUMNS)), place, warning or note)
+            return
     row = dict(zip(header, cells, strict=False))
     if len(cells) != len(header):
         kept = {c: row.get(c, "") for c in COLUMNS}
         reason = f"{len(cells)} cells where the header has {len(header)}"
         if delimiter == "," and len(cells) > len(header):
+            kept["answer"] = joined["answer"]
             reason += "; put an answer with a comma between quotation marks, or semicolons between all cells"
         yield Rejected(place, reason, kept)
         return
     yield _row_of([row[c] for c in COLUMNS], range(len(COLUMNS)), place, warning)
+
+
+def _with_commas(header: list[str], cells: list[str]) -> dict[str, str]:
+    """A row of too many cells whose answer is all that may belong to it: ``12`` and ``5`` are ``12,5``."""
+    place, more = header.index("answer"), len(cells) - len(header)
+    answer = ",".join(cells[place : place + more + 1])
+    return dict(zip(header, [*cells[:place], answer, *cells[place + more + 1 :]], strict=True))
 
 
 # ------------------------------------------------------------------------- JSON

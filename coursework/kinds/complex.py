@@ -30,7 +30,8 @@ class Complex(Kind):
         self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
     ) -> float:
         size = abs(reference)
-        return in_half_widths(abs(value - reference), max(part.half_width(size), envelope), size)
+        gap = math.hypot(value.real - reference.real, value.imag - reference.imag)
+        return in_half_widths(gap, max(part.half_width(size), envelope), size)
 
     def size(self, reference: Any) -> float:
         return float(abs(reference))

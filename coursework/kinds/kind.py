@@ -139,6 +139,20 @@ class Kind(ABC):
         The half-width is the part's own, or the ``envelope`` where that is wider.
         """
 
+    def accepted(self, values: np.ndarray, references: np.ndarray, half_widths: np.ndarray) -> np.ndarray:
+        """Which values of a column in plain digits are right, as :meth:`distance` says of one, shapes ``(n,)``; NaN never
+        is, and nothing of a kind that does not mark columns."""
+        return np.zeros(np.shape(values), dtype=bool)
+
+    @classmethod
+    def marks_columns(cls) -> bool:
+        """Whether the column's rule is that of a kind which reads and measures as this one: who says otherwise of one
+        answer says nothing of a column."""
+        own = next(base for base in cls.__mro__ if "accepted" in vars(base))
+        return own is not Kind and all(
+            getattr(cls, rule) is getattr(own, rule) for rule in ("read", "distance")
+        )
+
     def apart(
         self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
     ) -> float:

@@ -8,6 +8,9 @@ from typing import Any
 import numpy as np
 
 SLACK = 1e-12  #: relative, so that an answer on the tolerance's edge is inside it
+TRUSTED = (
+    1e-3  #: share of a half-width that an answer's own last digit may be, for its distance to mean anything
+)
 _FAR = 1e100  #: a point so far off is not computed with
 
 
@@ -18,6 +21,11 @@ def in_half_widths(gap: float, half_width: float, scale: float) -> float:
     if gap <= half_width + SLACK * max(half_width, abs(scale)):
         return min(1.0, gap / half_width) if half_width else 0.0
     return gap / half_width if half_width else math.inf
+
+
+def is_fine(value: float, half_width: float) -> bool:
+    """Whether the spacing of floats about a value is far below a half-width. Where that is 0, nothing is said."""
+    return math.ulp(value) <= TRUSTED * half_width or half_width == 0
 
 
 def offset(point: Any, reference: Any) -> np.ndarray | None:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated
-from coursework.kinds.nearness import in_half_widths
+from coursework.kinds.nearness import SLACK, in_half_widths
 from coursework.language.numbers import plain, significant
 
 if TYPE_CHECKING:
@@ -27,6 +29,12 @@ class Number(Kind):
         self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
     ) -> float:
         return in_half_widths(abs(value - reference), max(part.half_width(reference), envelope), reference)
+
+    def accepted(self, values: np.ndarray, references: np.ndarray, half_widths: np.ndarray) -> np.ndarray:
+        with np.errstate(invalid="ignore", over="ignore"):
+            gap = np.abs(values - references)
+            slack = SLACK * np.maximum(half_widths, np.abs(references))
+            return np.isfinite(gap) & (gap <= half_widths + slack)
 
     def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
         much = value + 11.0 if part.unit == "deg" else 1.13 * value

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated
-from coursework.reading.reading import Reading
+from coursework.reading.reading import Reading, text_of
 
 
 class Open(Kind):
@@ -19,7 +19,7 @@ class Open(Kind):
     family = "text"
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
-        text = "" if answer is None else str(answer)
+        text = "" if answer is None else text_of(answer)
         return Reading(text, "read" if text.strip() else "missing", (text,), (" ".join(text.split()),))
 
     def kept(self, read_as: str) -> Any:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from coursework.kinds.kind import Stated
-from coursework.kinds.nearness import in_half_widths, offset
+from coursework.kinds.nearness import in_half_widths, is_fine, offset
 from coursework.kinds.vectors import Coordinates
 
 
@@ -25,6 +25,9 @@ class PointOnLine(Coordinates):
         gap, axis = offset(value, reference), np.asarray(along, dtype=float)
         if gap is None:
             return math.inf
-        off = float(np.linalg.norm(np.cross(gap, axis)) / np.linalg.norm(axis))
         size = self.size(reference)
-        return in_half_widths(off, max(part.half_width(size), envelope), size)
+        half_width = max(part.half_width(size), envelope)
+        if not is_fine(float(np.max(np.abs(value))), half_width):
+            return math.inf  # so far out that the line itself is lost
+        off = float(np.linalg.norm(np.cross(gap, axis)) / np.linalg.norm(axis))
+        return in_half_widths(off, half_width, size)

@@ -47,14 +47,12 @@ class Before:
     shown: set[str] = field(default_factory=set)  #: verdicts that explain earlier answers
     read: list[tuple[Part, Reading]] = field(default_factory=list)  #: numbers, whole ones too, and choices
     paid: dict[str, str] = field(default_factory=dict)  #: by error, the part whose answer paid for it
-    in_other_case: bool = False  #: an answer was that of the other case than the stated one
 
     def take(
         self, key: Key, part: Part, reading: Reading, place: int, verdict: str, matches: Sequence[str]
     ) -> None:
         """Take in one more answer, as it was read and marked."""
         self.shown.update(matches)
-        self.in_other_case |= verdict == "slip:other_case"
         if verdict == "correct":
             self.right.add(part.quantity)
         if reading.status != "read" or not part.sort.is_followed:

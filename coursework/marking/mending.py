@@ -51,7 +51,7 @@ def mark_wrong(
     if named:
         if error:
             before.paid[error] = part.id
-        shares = [_share(key, e, before) for e in named]
+        shares = [_share(key, e, in_other_case="slip:other_case" in matches) for e in named]
         said = _told(variant, part, judged_by, named, read, before)
         return made(named[0].verdict, max(shares), read_as, said, matches)
     share = part.sort.share(part, reading.values[index], key.reference[judged_by.quantity])
@@ -75,10 +75,10 @@ def _named(found: Sequence[Explanation], before: Before) -> list[Explanation]:
     return named if len(named) <= NAMED else []
 
 
-def _share(key: Key, explanation: Explanation, before: Before) -> float:
+def _share(key: Key, explanation: Explanation, *, in_other_case: bool) -> float:
     kind, _, name = explanation.verdict.partition(":")
     if kind == "follow_through":
-        return min(key.rules.follow_through, key.rules.other_case if before.in_other_case else 1.0)
+        return min(key.rules.follow_through, key.rules.other_case if in_other_case else 1.0)
     return key.rules.share(name) if kind == "slip" else key.price(name)
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from coursework.language.words import languages, words
 from coursework.reading.labels import by_label, counts, in_words, is_verbatim, names_any, numbers_of
-from coursework.reading.reading import Reading, Stop, bare_value, reading_of
+from coursework.reading.reading import Reading, Stop, bare_value, reading_of, text_of
 from coursework.reading.spelling import shorten, unwrapped
 
 Choices = Mapping[str, Sequence[str]]  #: labels by key
@@ -29,9 +29,10 @@ def read_choice(text: Any, choices: Choices, letters: Letters = MappingProxyType
     """
     text = bare_value(text)
     if isinstance(text, Real) and not isinstance(text, (bool, float)):
-        text = str(text)
+        text = text_of(text)
     if not (text is None or isinstance(text, str)):
-        return Reading(str(text), "unreadable", code="not_a_choice", found=shorten(str(text)))
+        said = text_of(text)
+        return Reading(said, "unreadable", code="not_a_choice", found=shorten(said))
     return reading_of(text, lambda _: _choice(str(text), choices, letters))
 
 
@@ -57,12 +58,33 @@ _BEHIND = re.compile(
     r"(?P<said>.*?\S)\s*(?:[(\[]\s*(?P<inner>[a-z])\s*[)\]]|[,:;\u2013\u2014-]\s*(?P<bare>[a-z])\s*\)?)\s*\.?",
     re.I | re.S,
 )
+_IN_BRACKETS_ANYWHERE = re.compile(r"[(\[]([^()\[\]]{1,80})[)\]]")
+_LETTER_IN_REMARK = re.compile(
+    r"([a-z])|[^<>=+*/]*[\s'’]([a-z])\W*|([a-z])\s+(?:is|was|est|était|n['’]est|non|not|aussi|too|also)\b.*",
+    re.I | re.S,
+)
 _IN_BRACKETS = re.compile(r"\(([^()]+)\)\s*\.?")
 
 
 def _on_lettered(text: str, choices: Choices, letters: Letters) -> list[str]:
     """The choices that a text may mean on a sheet that prints letters, all that it says taken together."""
     text = _without_answer(_ticked(text))
+    keys = _said_with_letters(text, choices, letters)
+    if not keys or is_verbatim(text, choices):
+        return keys
+    remarks = _IN_BRACKETS_ANYWHERE.findall(text)
+    return _together(
+        keys, *(_of_letter(letter, letters) for r in remarks for letter in _letters_of_remark(r))
+    )
+
+
+def _letters_of_remark(remark: str) -> list[str]:
+    """The letters that a remark in brackets speaks of: alone, at its end, ``not c``, or as its subject, ``c is wrong``."""
+    found = _LETTER_IN_REMARK.fullmatch(remark.strip())
+    return [letter for letter in found.groups() if letter] if found else []
+
+
+def _said_with_letters(text: str, choices: Choices, letters: Letters) -> list[str]:
     if alone := _ALONE.fullmatch(text):
         return _together(_of_letter(alone["letter"], letters), by_label(text, choices))
     if is_verbatim(text, choices):  # "A and B are at rest" begins with no letter of a choice

@@ -13,7 +13,7 @@ from coursework.language.numbers import MINUS
 from coursework.reading.digits import Amount, in_unit
 from coursework.reading.expressions import plain_expression
 from coursework.reading.numbers import read_amounts, target_unit, without_name
-from coursework.reading.reading import Reading, Stop, reading_of
+from coursework.reading.reading import MOST_TURNS, Reading, Stop, reading_of, text_of
 from coursework.reading.spelling import shorten
 from coursework.reading.units import Unit, plain_unit
 from coursework.reading.vocabulary import Unreadable
@@ -42,7 +42,8 @@ def read_complex(answer: Any, unit: str) -> Reading:
     if isinstance(answer, (int, float, complex)) and not isinstance(answer, bool):
         return _from_number(answer)
     if isinstance(answer, (list, tuple)):
-        return Reading(str(answer), "unreadable", code="two_values", found=shorten(str(answer)))
+        said = text_of(answer)
+        return Reading(said, "unreadable", code="two_values", found=shorten(said))
     target = target_unit(unit)
     return reading_of(answer, lambda plain: _read(plain, answer, target))
 
@@ -53,7 +54,8 @@ def _from_number(answer: complex) -> Reading:
     except OverflowError:
         value = complex(math.inf)
     if not cmath.isfinite(value):
-        return Reading(str(answer), "unreadable", code="not_finite", found=shorten(str(answer)))
+        said = text_of(answer)
+        return Reading(said, "unreadable", code="not_finite", found=shorten(said))
     return Reading(str(answer).strip("()"), "read", (value,), (spelled(value),))
 
 
@@ -96,6 +98,8 @@ def _polar(plain: str, target: Unit) -> tuple[complex, str, bool] | None:
     angle, unit = _angle_and_unit(angle.strip(), unit.strip(" *"))
     size = _one(read_amounts(f"{modulus.strip()} {unit}".strip(), target))
     turned = _one(read_amounts(angle, target_unit("deg"), thousands=False))
+    if abs(turned.value) > MOST_TURNS * 360.0:
+        raise Stop("too_many_turns", plain)
     value = cmath.rect(size.value, math.radians(turned.value))
     shown = turned.echo if turned.unit else f"{turned.echo} °"
     return value, f"{size.echo} ∠ {shown}", bool(size.unit)

@@ -37,13 +37,13 @@ _PLAIN = re.compile(r"\s*([+-]?[0-9]+(?:\.[0-9]+|,(?:[0-9]{1,2}|[0-9]{4,}))?(?:[
 match_plain = _PLAIN.fullmatch
 
 _GROUPED = r"""
-      [0-9]{1,3}(?:[ '][0-9]{3})+(?![0-9])(?:[.,][0-9]*)?     # 1 234,5   1'234.5
-    | [0-9]{1,3}(?:,[0-9]{3})+\.[0-9]+                        # 1,234.5
-    | [0-9]{1,3}(?:\.[0-9]{3})+,[0-9]+                        # 1.234,5
-    | [0-9]{1,3}(?:,[0-9]{3}){2,}(?![0-9,])                   # 1,234,567
-    | [0-9]{1,3}(?:\.[0-9]{3}){2,}(?![0-9.])                  # 1.234.567
+      [1-9][0-9]{0,2}(?:[ '][0-9]{3})+(?![0-9])(?:\.[0-9]*|,[0-9]+)?     # 1 234,5   1'234.5
+    | [1-9][0-9]{0,2}(?:,[0-9]{3})+\.[0-9]+                   # 1,234.5
+    | [1-9][0-9]{0,2}(?:\.[0-9]{3})+,[0-9]+                   # 1.234,5
+    | [1-9][0-9]{0,2}(?:,[0-9]{3}){2,}(?![0-9,])              # 1,234,567
+    | [1-9][0-9]{0,2}(?:\.[0-9]{3}){2,}(?![0-9.])             # 1.234.567
     | [0-9]+[.,][0-9]{3}(?:[ ][0-9]{3})+(?![0-9])             # 3,141 592
-    | [0-9]+(?:[.,][0-9]*)?
+    | [0-9]+(?:\.[0-9]*|,[0-9]+)?
     | [.,][0-9]+
 """
 _POWER_OF_TEN = r"""
@@ -53,7 +53,7 @@ _POWER_OF_TEN = r"""
 LITERAL = re.compile(
     rf"(?P<sign>[+-]?)\s*(?P<number>{_GROUPED})(?:{_POWER_OF_TEN})?\s*(?P<rest>.*)", re.VERBOSE | re.DOTALL
 )
-_LOST_POWER = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*(?:\.10\s*\^|[x*]\s*10(?=[+-][0-9]))")
+_LOST_POWER = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*(?:\.10\s*\^|[x*]\s*10(?=-[0-9]))")
 _FLAT_POWER = re.compile(r"([+-]?\s*[1-9](?:[.,][0-9]+)?)\s*[x*]\s*10(?=[1-9][0-9]?(?![0-9.,^]|\s*[*/^(]))")
 _TWO_WAYS = re.compile(r"[1-9][0-9]{0,2},[0-9]{3}")
 _SEXAGESIMAL = re.compile(
@@ -67,6 +67,7 @@ _MIXED = re.compile(
     r"\s*(?P<rest>.*)",
     re.DOTALL,
 )
+_SAYS_UNIT = re.compile(r"[^\W\d_]|[°%]")
 WORD = re.compile(r"[\[(]?(?:[^\W\d_]|[°%])")
 
 
@@ -82,8 +83,13 @@ def _decimal_texts(number: str) -> tuple[str, ...]:
     return ((whole or "0") + ("." + fraction if fraction else ""),)
 
 
+_ALONE = re.compile(r"(?:^|(?<=[\s*/.\[])|(?<=(?<!\^)\())1(?![0-9.,])(?!\s*/\s*[^\W\d_°%(\[])")
+
+
 def _rest_unit(rest: str) -> Unit | None:
-    """The unit after a number: ``mm``, ``*m/s``, ``/s``, ``[mm]``."""
+    """The unit after a number: ``mm``, ``*m/s``, ``/s``, ``[mm]``. A 1 is another number, but in ``1/s``."""
+    if _ALONE.search(rest) or not _SAYS_UNIT.search(rest):
+        return None
     if rest[0] == "*":
         rest = rest[1:]
     return plain_unit("1" + rest if rest[0:1] == "/" else rest.strip())

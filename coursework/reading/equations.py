@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from coursework.reading.expressions import plain_expression
-from coursework.reading.reading import Reading, bare_value, reading_of
+from coursework.reading.reading import Reading, bare_value, reading_of, text_of
 from coursework.reading.spelling import plain_spelling, shorten
 from coursework.reading.trees import Expression, Operation
 from coursework.reading.vocabulary import MAX_LENGTH, Unreadable, Value
@@ -146,7 +146,7 @@ def read_equation(text: Any, variables: Iterable[str]) -> Reading:
     """An equation over the given variables; the value is an :class:`~coursework.reading.equations.Equation`."""
     text = bare_value(text)
     if isinstance(text, Real) and not isinstance(text, bool):
-        text = str(text)
+        text = text_of(text)
 
     def read(plain: str) -> Reading:
         plain = plain.rstrip(" .;,")

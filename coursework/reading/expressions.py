@@ -31,13 +31,14 @@ MAX_DEPTH = 30
 # --- parser -----------------------------------------------------------------------------
 
 _NUMBER = re.compile(
-    r"(?:[0-9]{1,3}(?:[ '][0-9]{3})+(?![0-9])|[0-9]+)?(?:[.,][0-9]*)?"
+    r"(?:[1-9][0-9]{0,2}(?:[ '][0-9]{3})+(?![0-9])|[0-9]+)?(?:\.[0-9]*|,[0-9]+)?"
     r"(?:[eE][+-]?[0-9]+(?![A-Za-z0-9.,]))?"
 )
 _RUN = re.compile(r"[A-Za-z](?:[A-Za-z0-9]|_(?=[A-Za-z0-9]))*")
 _TIMES = re.compile(r"(?<=[0-9)])\s*[xX]\s*(?=[0-9(])|(?<=[0-9A-Za-z)])\s+[xX]\s+(?=[0-9A-Za-z(\\])")
 _FRACTION = re.compile(r"\\[dt]?frac\s*")
 _GROUPS = {"(": ")", "[": "]", "{": "}"}
+_PI = Operation("constant", "pi")
 
 
 class _Parser:
@@ -47,7 +48,7 @@ class _Parser:
         self.text = text
         self.vocabulary = vocabulary
         self.tight = tight
-        self.ambiguous = False
+        self.ambiguous: list[bool] = []  # a quotient of two readings each: whether it is all, and of pi: 1/2π
         self.at = 0
         self.depth = 0
         self.comma_separates = False
@@ -102,7 +103,8 @@ class _Parser:
         while True:
             chunk = self.chunk()
             if sign == "/" and len(chunk) > 1:
-                self.ambiguous = True
+                is_of_pi = len(chunk) == 2 and chunk[0].kind == "number" and chunk[1] == _PI
+                self.ambiguous.append(is_of_pi and self.depth == 1)
                 if self.tight:
                     chunk = [
                         Operation("product", "*" * len(chunk), tuple(chunk), any(f.angle for f in chunk))
@@ -287,7 +289,7 @@ class _Parser:
         return argument
 
 
-def _parse(text: str, vocabulary: Vocabulary, *, tight: bool) -> tuple[Operation, bool]:
+def _parse(text: str, vocabulary: Vocabulary, *, tight: bool) -> tuple[Operation, list[bool]]:
     parser = _Parser(text, vocabulary, tight=tight)
     return parser.whole(), parser.ambiguous
 
@@ -320,4 +322,4 @@ def plain_expression(plain: str, variables: Iterable[str] = (), text: str = "") 
         plain = _TIMES.sub("*", plain)
     root, ambiguous = _parse(plain, vocabulary, tight=False)
     other = Expression(text, _parse(plain, vocabulary, tight=True)[0]) if ambiguous else None
-    return Expression(text, root, other)
+    return Expression(text, root, other, ambiguous == [True] and root.kind != "sum")

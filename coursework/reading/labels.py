@@ -204,7 +204,8 @@ def in_words(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choices that a text may mean, whatever letters a sheet prints; a mark before a label counts where it is a number."""
     keys = by_label(text, choices)
     if not keys and (marked := _MARKED.fullmatch(text.strip())):  # b) crossed
-        keys = list(dict.fromkeys((*_called(marked["label"], choices), *_by_number(marked["mark"], choices))))
+        called = _called(marked["label"], choices)
+        keys = list(dict.fromkeys((*called, *_by_number(marked["mark"], choices)))) if called else []
     return keys or _called(text, choices)
 
 
@@ -216,6 +217,8 @@ def _called(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
         keys = keys or list(
             dict.fromkeys((*_by_number(words_said, choices), *_by_value(words_said, choices)))
         )
+        if keys and words_said != text:  # une deux: an article may be a label as well
+            keys = list(dict.fromkeys((*keys, *by_label(text.removesuffix(said), choices))))
         if keys:
             return keys
     return _by_beginning(said, choices) or _by_remark(text, choices)

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from coursework.reading.digits import in_unit
-from coursework.reading.numbers import target_unit
+from coursework.reading.numbers import says_value, target_unit
 from coursework.reading.points import read_point
-from coursework.reading.reading import Reading, Stop
+from coursework.reading.reading import Reading, Stop, text_of
 from coursework.reading.spelling import plain_spelling, shorten, unwrapped
 from coursework.reading.units import Unit, plain_unit
 from coursework.reading.vocabulary import MAX_LENGTH
@@ -39,8 +39,8 @@ def read_vector(answer: Any, unit: str, count: int) -> Reading:
     if _is_missing(answer):
         return Reading("" if answer is None else str(answer), "missing")
     text = _as_text(answer)
-    if len(text) > _MOST:
-        return Reading(text, "unreadable", code="too_long", found=shorten(text))
+    if refused := _refused(text):
+        return refused
     rows, behind = _rows(text)
     if _is_column(text) and len(rows) == count:
         reading = _read(text, rows, behind, unit, (count, 1))
@@ -68,8 +68,8 @@ def read_matrix(answer: Any, unit: str, shape: tuple[int, int]) -> Reading:
     if _is_missing(answer):
         return Reading("" if answer is None else str(answer), "missing")
     text = _as_text(answer)
-    if len(text) > _MOST:
-        return Reading(text, "unreadable", code="too_long", found=shorten(text))
+    if refused := _refused(text):
+        return refused
     rows, behind = _rows(text)
     if len(rows) == 1 != shape[0] and shape[1] == 1:  # a column, its entries on one line
         rows = re.split(r"\s*;\s*|,\s+|\s+", rows[0].strip())
@@ -86,7 +86,16 @@ def _as_text(answer: Any) -> str:
         answer = answer.tolist()
     if isinstance(answer, (list, tuple)):
         return "[" + " ; ".join(_as_text(item) for item in answer[:_MOST_ENTRIES]) + "]"
-    return answer if isinstance(answer, str) else repr(answer)
+    return answer if isinstance(answer, str) else text_of(answer)
+
+
+def _refused(text: str) -> Reading | None:
+    """Why a text is not looked into, if it is not."""
+    if len(text) > _MOST:
+        return Reading(text, "unreadable", code="too_long", found=shorten(text))
+    if (named := _NAMED.match(unwrapped(text).strip().strip("$").strip())) and says_value(named[0]):
+        return Reading(text, "unreadable", code="two_values", found=shorten(text))
+    return None
 
 
 def _rows(text: str) -> tuple[list[str], str]:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from decimal import Decimal
 from functools import lru_cache
@@ -19,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import WrongUnit
+from coursework.language.words import languages, words
 from coursework.reading.digits import (
     LITERAL,
     WORD,
@@ -34,9 +36,9 @@ from coursework.reading.digits import (
     written_amount,
 )
 from coursework.reading.expressions import plain_expression
-from coursework.reading.reading import Reading, Stop, bare_value, reading_of
+from coursework.reading.reading import Reading, Stop, bare_value, reading_of, text_of
 from coursework.reading.spelling import shorten
-from coursework.reading.trees import Expression
+from coursework.reading.trees import Expression, Operation, without_idle
 from coursework.reading.units import Unit, parse_unit, plain_unit
 from coursework.reading.vocabulary import MAX_LENGTH, Unreadable
 
@@ -57,16 +59,38 @@ _MAX_PIECES = 8  #: names in the unit behind a formula
 
 def without_name(text: str) -> str:
     """The text without ``rA =``, ``≈``, ``environ``, and without the full stop of a sentence."""
-    text = NAME.sub("", text, count=1) if NAME.match(text) else text
+    if named := NAME.match(text):
+        if says_value(named[0]):
+            raise Stop("two_values", text)
+        text = text[named.end() :]
     text = _ABOUT.sub("", text, count=1) if _ABOUT.match(text) else text
     return text.rstrip(" .;,!")
+
+
+_NO_NAME = re.compile(
+    r"(?<![^\W\d_])(?:not|no|non|ne|pas|or|ou|nor|ni|rather|plut[oô]t|instead|sinon|else|faux|wrong)(?![^\W\d_])"
+    r"|(?<![\w_^{(])[+-]?\s*(?:[0-9]+[.,][0-9]|[0-9]{3,}|[.,][0-9]|0(?![0-9]))|(?<![\w\s])\s*[+-]\s*[0-9]",
+    re.I,
+)  #: what is no name of a quantity: another number (an index is none), or what is said against one
+
+
+def says_value(name: str) -> bool:
+    """Whether what stands before an equals sign or a colon says a value itself: ``not 3 :``, ``x or 2 =``, ``two =``."""
+    said = name.rstrip(" =≈≃:").casefold()
+    return bool(_NO_NAME.search(said)) or said in _number_words()
+
+
+@lru_cache(maxsize=1)
+def _number_words() -> frozenset[str]:
+    """Numbers in words, of every language."""
+    names = (name for lang in languages() for name in words(lang)["study"]["reads"]["numbers"])
+    return frozenset(word.casefold() for name in names for word in name.split("|"))
 
 
 def _formula(text: str, target: Unit) -> list[Amount]:
     """A formula, with or without a unit behind it; the longest unit that leaves a formula is taken."""
     first: Unreadable | None = None
-    starts = [m.start() for m in _UNIT_START.finditer(text) if m.start() > 0 and len(text) - m.start() <= 60]
-    for start in [*starts[-_MAX_PIECES:], len(text)]:
+    for start in [*_unit_starts(text), len(text)]:
         unit_text = text[start:]
         unit = plain_unit(unit_text) if unit_text else None
         if unit_text and unit is None:
@@ -84,13 +108,16 @@ def _formula(text: str, target: Unit) -> list[Amount]:
 
 
 def _evaluated(expression: Expression, unit: Unit | None, unit_text: str, target: Unit) -> list[Amount]:
-    """The values of a formula: as written, or in radians where an angle's formula speaks of them."""
+    """The values of a formula: one, but for ``1/2π``, which is (1/2)π or 1/(2π)."""
+    if not expression.is_angle and (unit or target).is_angle:
+        if expression.other and not expression.is_plain_quotient:
+            raise Stop("two_values", expression.text)
+        return [_of_angle(expression, unit, unit_text, target)]
+    if expression.other and not expression.is_plain_quotient and not _alike(expression, expression.other):
+        raise Stop("two_values", expression.text)
     amounts = []
     for reading in (expression, expression.other):
         if reading is None:
-            continue
-        if (unit or target).is_angle and (in_degrees := reading.as_calculated_in_degrees):
-            amounts += _of_inverse(reading, in_degrees, unit, unit_text, target)
             continue
         value = reading.evaluate()
         digits = short_number(value)
@@ -101,44 +128,102 @@ def _evaluated(expression: Expression, unit: Unit | None, unit_text: str, target
             amounts.append(
                 written_amount(in_unit(degrees, parse_unit("deg"), target), short_number(degrees), "deg")
             )
-        elif target.is_angle and reading.speaks_radians and target.factor != 1:
-            radians = in_unit(value, parse_unit("rad"), target)
-            amounts.append(written_amount(radians, digits, assumed="rad"))
-            amounts.append(written_amount(value, digits, assumed=target.text))
         else:
             amounts.append(written_amount(value, digits))
     return amounts
 
 
-_TURNS = 2  #: of an angle in radians, beyond which its formula was meant in degrees
+def _alike(one: Expression, other: Expression) -> bool:
+    return math.isclose(one.evaluate(), other.evaluate(), rel_tol=1e-9)
 
 
-def _of_inverse(
-    reading: Expression, in_degrees: Expression, unit: Unit | None, unit_text: str, target: Unit
-) -> list[Amount]:
-    """The values of an angle's formula with an inverse function, by who works in degrees and who does in radians."""
-    degree, amounts = parse_unit("deg"), []
-    if unit is None or unit.ratio == degree.ratio:
-        degrees = in_degrees.evaluate()
-        amounts.append(
-            written_amount(in_unit(degrees, degree, target), short_number(degrees), unit_text, assumed="deg")
-        )
-    if unit is None or unit.ratio != degree.ratio:
-        value = reading.evaluate()
-        if unit or abs(value) <= _TURNS * math.tau:
-            own = unit or parse_unit("rad")
-            amounts.append(
-                written_amount(in_unit(value, own, target), short_number(value), unit_text, assumed="rad")
-            )
-    return amounts
+# ------------------------------------------------------------------ angles
+
+_FEW_TURNS = 2 * math.tau  #: rad, beyond which a number in a formula of an angle is in degrees
+_PART_OF_PI = math.pi / 12
+
+
+def _of_angle(expression: Expression, unit: Unit | None, unit_text: str, target: Unit) -> Amount:
+    """The one value of a formula of an angle, in the unit that the student chose: by writing it, or by what the formula holds.
+
+    A multiple of pi is in radians, what is divided by pi in degrees. A number that is added to an inverse function, or stands
+    in a sine, says which it is by its size: beyond two turns of radians it is in degrees, a part of pi is in radians.
+
+    Raises
+    ------
+    Stop
+        Nothing tells which: ``two_values``.
+    """
+    degree = parse_unit("deg")
+    root, in_degrees = expression.root, expression.as_calculated_in_degrees
+    if unit is not None:
+        calculated = in_degrees if in_degrees and unit.ratio == degree.ratio else expression
+        value = calculated.evaluate()
+        return written_amount(in_unit(value, unit, target), short_number(value), unit_text)
+    own = _unit_of(expression, in_degrees)
+    if own == "":
+        value = expression.evaluate()
+        return written_amount(value, short_number(value), assumed=target.text if root.speaks_of_pi else "")
+    value = (in_degrees if in_degrees and own == "deg" else expression).evaluate()
+    return written_amount(in_unit(value, parse_unit(own), target), short_number(value), assumed=own)
+
+
+def _unit_of(expression: Expression, in_degrees: Expression | None) -> str:
+    """``deg`` or ``rad`` where a formula without a unit says so, nothing where it leaves it to the sheet."""
+    root = expression.root
+    terms = root.args if root.kind == "sum" else (root,)
+    powers = root.powers_of_pi
+    if not root.speaks_of_pi and not root.has_inverse:
+        return ""
+    if 1 in powers or (root.speaks_of_pi and powers == {0} and root.has_inverse):
+        numbers = [abs(_value_of(t)) for t in terms if t.powers_of_pi == {0} and not t.has_inverse]
+        if powers - {0, 1} or any(number > _FEW_TURNS for number in numbers):
+            raise Stop("two_values", expression.text)
+        return "rad"
+    if root.speaks_of_pi:
+        if powers == {0, -1} and any(t.has_inverse and t.powers_of_pi == {0} for t in terms):
+            raise Stop("two_values", expression.text)
+        return "deg" if -1 in powers else ""
+    assert in_degrees is not None  # an inverse function, no pi, no degree sign
+    degrees, radians = in_degrees.evaluate(), expression.evaluate()
+    if math.isclose(degrees, math.degrees(radians), rel_tol=1e-9, abs_tol=1e-9):
+        return "deg"
+    told = [abs(number) for number in _told_of_angles(root)]
+    if abs(radians) > _FEW_TURNS or any(number > _FEW_TURNS for number in told):
+        return "deg"
+    if told and all(abs(n - _PART_OF_PI * round(n / _PART_OF_PI)) <= 1e-3 * n for n in told):
+        return "rad"
+    raise Stop("two_values", expression.text)
+
+
+def _told_of_angles(node: Operation) -> Iterator[float]:
+    """The numbers of a formula that are angles: added to an inverse function, or the argument of a sine."""
+    if node.kind == "sum" and node.has_inverse:
+        yield from (_value_of(arg) for arg in node.args if not arg.has_inverse)
+    if node.kind == "call" and node.name in ("sin", "cos", "tan") and not node.has_inverse:
+        yield _value_of(node.args[0])
+    for arg in node.args:
+        yield from _told_of_angles(arg)
+
+
+def _value_of(node: Operation) -> float:
+    return float(Expression("", node).evaluate())
+
+
+def _refuse_two_values(text: str) -> None:
+    """``5 ± 0.1`` and ``3 to 4`` are two values."""
+    if (
+        not _RANGE.match(text)
+        and _TWO_VALUES.search(text)
+        and "atan2" not in text.replace("arctan2", "atan2")
+    ):
+        raise Stop("two_values", text)
 
 
 def _refuse_ranges(text: str) -> None:
-    """``5 ± 0.1``, ``3 to 4`` and ``3 - 4`` are two values; ``180 - 75.4`` is a difference."""
+    """``3 - 4`` is two values; ``180 - 75.4`` is a difference, and so is ``3 - 4 = -1``."""
     pair = _RANGE.match(text)
     if pair and float(pair[1].replace(",", ".")) < float(pair[2].replace(",", ".")):
-        raise Stop("two_values", text)
-    if pair is None and _TWO_VALUES.search(text) and "atan2" not in text.replace("arctan2", "atan2"):
         raise Stop("two_values", text)
 
 
@@ -154,7 +239,7 @@ def _named_unit_unknown(text: str) -> Stop | None:
     return None
 
 
-def read_amounts(text: str, target: Unit, thousands: bool = True) -> list[Amount]:
+def read_amounts(text: str, target: Unit, thousands: bool = True, proportions: bool = True) -> list[Amount]:
     """All honest readings of one number, the likelier first."""
     text = without_name(text)
     text = _PRINTED.sub(r"\1", text) if "(" in text else text
@@ -163,21 +248,30 @@ def read_amounts(text: str, target: Unit, thousands: bool = True) -> list[Amount
         raise Stop("not_a_number", text)
     if _NOT_FINITE.match(text):
         raise Stop("not_finite", text)
-    if target.dimension == RATIO and (parts := _PROPORTION.fullmatch(text)):
+    is_ratio = proportions and target.dimension == RATIO
+    if is_ratio and (parts := _PROPORTION.fullmatch(text)):
         text = f"{parts[1]}/{parts[2]}"
     amounts = in_digits(text, target, thousands)
-    if amounts is None and ("(" in text or "=" in text or "≈" in text):
+    if amounts is None and any(sign in text for sign in "([{=≈"):
         amounts = _written_twice(text, target, thousands)
-    return _worked_out(text, target) if amounts is None else amounts
+    return _worked_out(text, target, per_one=is_ratio) if amounts is None else amounts
 
 
 _PROPORTION = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*:\s*([0-9]+(?:[.,][0-9]+)?)")  #: ``1.25:1``
 RATIO = parse_unit("1").dimension
 
 
-def _worked_out(text: str, target: Unit) -> list[Amount]:
-    """The readings of a formula."""
+def _worked_out(text: str, target: Unit, *, per_one: bool = False) -> list[Amount]:
+    """The readings of a formula that stands alone; ``per_one`` lets ``3/1`` be a ratio."""
     _refuse_ranges(text)
+    if not per_one or not _PER_ONE.fullmatch(text):
+        _refuse_several(text)
+    return _calculated(text, target)
+
+
+def _calculated(text: str, target: Unit) -> list[Amount]:
+    """The readings of a formula."""
+    _refuse_two_values(text)
     amounts = scientific(text, target)
     try:
         return [*amounts, *_formula(text, target), *flattened(text, target)]
@@ -186,6 +280,42 @@ def _worked_out(text: str, target: Unit) -> list[Amount]:
             return amounts
         words = error.code in ("unknown_symbol", "not_a_number")
         raise (words and _named_unit_unknown(text)) or error from None
+
+
+_LITERAL = r"[+-]?\s*[0-9]+(?:[.,][0-9]+)?(?:[eE][+-]?[0-9]+)?"
+_IN_BRACKETS = rf"[(\[{{]\s*{_LITERAL}\s*[)\]}}]"
+_SIDE_BY_SIDE = re.compile(
+    rf"{_LITERAL}(?:\s*{_IN_BRACKETS})+|{_IN_BRACKETS}\s*(?:{_IN_BRACKETS}\s*)*(?:{_IN_BRACKETS}|[0-9][0-9.,]*(?:[eE][+-]?[0-9]+)?)"
+)
+_PER_ONE = re.compile(r"[^*/]+/\s*1")  #: ``3/1`` is a ratio as ``3:1`` is
+
+
+_IDLE = re.compile(r"(?<![0-9.,])0*[01](?:[.,]0*)?(?![0-9])")  #: a number that may do nothing
+_FEW_NUMBERS = 3  #: of a formula; one of more, 3(0) - 2(1), is worked out by a rule
+
+
+def _refuse_several(text: str) -> None:
+    """Numbers side by side, ``(2) (1)``, ``1 [2]``, and those that a formula does nothing with, ``2 * 1``, ``2 + 0``, are
+    several; one of them is the value."""
+    for start in [*_unit_starts(text), len(text)]:
+        unit_text, formula = text[start:], text[:start].rstrip("* ")
+        if unit_text and plain_unit(unit_text) is None:
+            continue
+        if _SIDE_BY_SIDE.fullmatch(formula):
+            raise Stop("two_values", text)
+        if _IDLE.search(formula) is None:
+            continue
+        with suppress(Unreadable):
+            root = plain_expression(formula).root
+            numbers = sum(node.kind == "number" for node in root.walk())
+            if 1 < numbers <= _FEW_NUMBERS and without_idle(root).kind == "number":
+                raise Stop("two_values", text)
+
+
+def _unit_starts(text: str) -> list[int]:
+    """Where a unit behind a formula may begin."""
+    starts = [m.start() for m in _UNIT_START.finditer(text) if m.start() > 0 and len(text) - m.start() <= 60]
+    return starts[-_MAX_PIECES:]
 
 
 def _inside(text: str) -> str:
@@ -201,6 +331,7 @@ def _inside(text: str) -> str:
 
 
 _CHECKED = re.compile(r"([^(=≈]*[^\s(=≈+*/^-])\s+(\(.*\))\s*([^()=≈]*)", re.DOTALL)
+_ROUND = str.maketrans("[]{}", "()()")
 _EQUALS = re.compile(r"\s*[=≈]+\s*")
 
 
@@ -209,7 +340,7 @@ def _written_twice(text: str, target: Unit, thousands: bool) -> list[Amount] | N
 
     The number before the brackets is meant, or that behind the equals sign.
     """
-    if (checked := _CHECKED.fullmatch(text)) and (inside := _inside(checked[2])):
+    if (checked := _CHECKED.fullmatch(text.translate(_ROUND))) and (inside := _inside(checked[2])):
         unit = checked[3] and f" {checked[3]}"
         if unit and plain_unit(checked[3]) is None:
             return None
@@ -228,7 +359,7 @@ def _checked(number: str, inside: str, unit: str, target: Unit, thousands: bool)
     meant = in_digits(number, target, thousands)
     if meant is None or not any(c in "0123456789π" for c in inside):
         return None
-    says_more = bool(WORD.search(inside))  # a unit, or what only a formula has
+    says_more = bool(WORD.search(inside)) and not match_plain(inside)  # a unit, or what only a formula has
     try:
         other = _way(inside + unit, target, thousands)
     except (Stop, Unreadable):
@@ -246,13 +377,13 @@ _Way = tuple[list[Amount], str]  #: what was read, and in which text
 
 def _way(text: str, target: Unit, thousands: bool) -> _Way:
     amounts = in_digits(text, target, thousands)
-    return (_worked_out(text, target) if amounts is None else amounts), text
+    return (_calculated(text, target) if amounts is None else amounts), text
 
 
 def _agreeing(one: _Way, other: _Way, target: Unit) -> list[Amount]:
     """The readings of one way to write a number that the other confirms to the last digit of the shorter.
 
-    An angle that does not say its unit may be in radians; what it is in degrees then counts as well.
+    An angle that does not say its unit may be in radians, where the other says what it is in degrees: then that is meant.
     """
     kept, radian = [], 1 / target.factor
     for a in one[0]:
@@ -265,12 +396,15 @@ def _agreeing(one: _Way, other: _Way, target: Unit) -> list[Amount]:
             elif (
                 target.is_angle and not a.unit and _is_near(a.value * radian, b.value, max(own * radian, its))
             ):
-                kept += [a, b]
+                kept.append(b)
     return kept
 
 
+_ROUNDED = 0.015  #: the share of a number that its last digit may be of, for it to confirm another
+
+
 def _is_near(one: float, other: float, half: float) -> bool:
-    return abs(one - other) <= half + 1e-6 * abs(one)
+    return abs(one - other) <= min(half, _ROUNDED * abs(one)) + 1e-6 * abs(one)
 
 
 def _half_digit(amount: Amount, text: str, target: Unit) -> float:
@@ -297,7 +431,7 @@ def _from_amounts(text: str, amounts: Sequence[Amount]) -> Reading:
 
 
 def _from_real(answer: Real) -> Reading:
-    text = repr(float(answer)) if isinstance(answer, float) else str(answer)
+    text = repr(float(answer)) if isinstance(answer, float) else text_of(answer)
     try:
         value = float(answer)
     except OverflowError:
@@ -312,12 +446,18 @@ def target_unit(unit: str) -> Unit:
     return parse_unit(unit)
 
 
-def read_number(text: Any, unit: str, *, thousands: bool = True) -> Reading:
+_LINES = re.compile(
+    r"[0-9][^\n]*\n\s*(?![\s=≈])[^\n]*[0-9]"
+)  #: a number on each of two lines, none of them going on
+
+
+def read_number(text: Any, unit: str, *, thousands: bool = True, proportions: bool = True) -> Reading:
     """A number, with or without its unit, in the canonical ``unit``.
 
     Without a unit it is in ``unit``; where ``unit`` is ``deg`` and the formula speaks of radians (``π/3``),
     radians are tried first. An int or float is taken as it is. Unless ``thousands``, the comma of ``1,234`` is
-    decimal and nothing else: a direction has no thousands of degrees, and modulo a turn any number may be near.
+    decimal and nothing else: a direction has no thousands of degrees, and modulo a turn any number may be near. Unless
+    ``proportions``, ``2:1`` and ``2/1`` are two numbers: a count is no ratio.
 
     Raises
     ------
@@ -332,7 +472,11 @@ def read_number(text: Any, unit: str, *, thousands: bool = True) -> Reading:
     target, text = target_unit(unit), bare_value(text)
     if isinstance(text, Real) and not isinstance(text, bool):
         return _from_real(text)
-    return reading_of(text, lambda plain: _from_amounts(text, read_amounts(plain, target, thousands)))
+    if isinstance(text, str) and "\n" in text and _LINES.search(text.replace("\r", "")):
+        return Reading(text, "unreadable", code="two_values", found=shorten(" ".join(text.split())))
+    return reading_of(
+        text, lambda plain: _from_amounts(text, read_amounts(plain, target, thousands, proportions))
+    )
 
 
 def read_numbers(texts: Sequence[object], unit: str) -> tuple[np.ndarray, np.ndarray]:
@@ -363,12 +507,14 @@ def read_integer(text: Any) -> Reading:
     """A whole number, without unit: ``3``, ``3,0``, ``γ = 3``, ``1 ddl``; the values are ints."""
     text = bare_value(text)
     counted = _COUNTED.sub("", text) if isinstance(text, str) and len(text) < MAX_LENGTH else text
-    reading = read_number(counted, "1")
+    reading = read_number(counted, "1", proportions=False)
     if counted is not text:
         reading = replace(reading, text=text)
     if reading.status != "read":
         return reading
     pairs = [p for p in zip(reading.values, reading.read_as, strict=True) if p[0].is_integer()]
+    if len(pairs) > 1:  # 2*10+1 with or without its power of ten: which of the two was counted?
+        return Reading(reading.text, "unreadable", code="two_values", found=shorten(reading.text))
     if not pairs or abs(pairs[0][0]) > _MAX_INTEGER:
         return Reading(reading.text, "unreadable", code="not_an_integer", found=shorten(reading.text))
     values, echoes = zip(*pairs, strict=True)

@@ -8,8 +8,8 @@ from numbers import Real
 from typing import Any
 
 from coursework.reading.digits import in_unit, written_amount
-from coursework.reading.numbers import NAME, RATIO, read_amounts, target_unit, without_name
-from coursework.reading.reading import Reading, Stop, bare_value, reading_of
+from coursework.reading.numbers import NAME, RATIO, read_amounts, says_value, target_unit, without_name
+from coursework.reading.reading import Reading, Stop, bare_value, reading_of, text_of
 from coursework.reading.spelling import plain_spelling, shorten
 from coursework.reading.units import Unit, plain_unit
 from coursework.reading.vocabulary import Unreadable
@@ -52,10 +52,17 @@ def _coordinates(pieces: Sequence[str], unit: str, target: Unit) -> list[tuple[t
     return readings
 
 
+class _CutInTwo(Stop):
+    """A text that is cut into other coordinates at other places."""
+
+
 def _bare_point(text: str) -> tuple[str, str]:
     """The coordinates inside brackets, and the unit behind the brackets."""
-    if text.count("=") + text.count(":") == 1:  # A = (1 ; 2), but not x = 1 ; y = 2
-        text = NAME.sub("", text, count=1) if NAME.match(text) else text
+    named = NAME.match(text)
+    if named and text.count("=") + text.count(":") == 1:  # A = (1 ; 2), but not x = 1 ; y = 2
+        if says_value(named[0]):
+            raise Stop("two_values", text)
+        text = text[named.end() :]
     found = _POINT.fullmatch(text.rstrip(" .;,"))
     return (found["inside"], found["unit"].lstrip("*").strip()) if found else (text.rstrip(" .;,"), "")
 
@@ -96,10 +103,15 @@ def _point(text: str, original: str, target: Unit, count: int) -> Reading:
         if len(pieces) != count:
             continue
         try:
-            for values, echo, written in _coordinates(pieces, unit, source):
-                values = tuple(in_unit(v, source, target) for v in values)
+            found = _coordinates(pieces, unit, source)
+            ways = [tuple(in_unit(v, source, target) for v in values) for values, _, _ in found]
+            if readings and not readings.keys() & set(ways):  # 12,3 456: cut in two places
+                raise _CutInTwo("two_values", text)
+            for values, (_, echo, written) in zip(ways, found, strict=True):
                 readings.setdefault(values, written_amount(0.0, echo, unit).echo)
                 given = given or written
+        except _CutInTwo:
+            raise
         except (Stop, Unreadable) as error:
             stop = stop or error
     if not readings:
@@ -116,7 +128,8 @@ def read_point(text: Any, unit: str, count: int) -> Reading:
     """
     target, text = target_unit(unit), bare_value(text)
     if isinstance(text, (list, tuple)):
-        text = "[" + " ; ".join(str(item) for item in text[: count + 1]) + "]"
+        text = "[" + " ; ".join(map(text_of, text[: count + 1])) + "]"
     elif isinstance(text, Real) and not isinstance(text, bool):
-        return Reading(str(text), "unreadable", code="wrong_count", found=shorten(str(text)))
+        said = text_of(text)
+        return Reading(said, "unreadable", code="wrong_count", found=shorten(said))
     return reading_of(text, lambda plain: _point(plain, text, target, count))

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from numbers import Real
+from numbers import Rational, Real
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,19 @@ class Stop(Exception):
         self.code, self.found, self.status = code, found, status
 
 
+def text_of(answer: object) -> str:
+    """An answer as a text; a whole number too long to be written out, by its power of ten."""
+    try:
+        return str(answer)
+    except ValueError:  # Python writes no integer of thousands of digits
+        if not isinstance(answer, Rational):
+            return type(answer).__name__
+    if not isinstance(answer, int):
+        return f"{text_of(answer.numerator)}/{text_of(answer.denominator)}"
+    exponent = int(math.log10(abs(answer)))
+    return f"{'-' if answer < 0 else ''}{abs(answer) // 10 ** (exponent - 6) / 1e6:g}e{exponent}"
+
+
 def bare_value(answer: Any) -> Any:
     """What a cell's value holds: an array, or a list of one, is its number; a number of NumPy is Python's."""
     if answer.__class__ is str:
@@ -63,6 +77,9 @@ def bare_value(answer: Any) -> Any:
     return answer
 
 
+MOST_TURNS = (
+    100  #: of a direction, beyond which it is no answer: modulo a turn any huge number is near any other
+)
 _MAX_ITEMS, _MAX_NESTING = 100, 4  #: of an array that is looked into
 
 
@@ -71,7 +88,7 @@ def reading_of(answer: object, read: Callable[[str], Reading]) -> Reading:
     answer = bare_value(answer)
     if answer is None:
         return Reading("", "missing")
-    text = answer if isinstance(answer, str) else str(answer)
+    text = answer if isinstance(answer, str) else text_of(answer)
     if isinstance(answer, bool) or not isinstance(answer, (str, Real)):
         return Reading(text, "unreadable", code="not_a_number", found=shorten(text))
     if len(text) > MAX_LENGTH and len(text.strip()) > MAX_LENGTH:

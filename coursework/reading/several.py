@@ -9,7 +9,7 @@ from typing import Any
 
 from coursework.language.words import languages, words
 from coursework.reading.choices import read_choice
-from coursework.reading.reading import Reading
+from coursework.reading.reading import Reading, text_of
 from coursework.reading.spelling import shorten, unwrapped
 
 _MOST_PIECES = 40
@@ -25,11 +25,12 @@ def read_choices(answer: Any, choices: Mapping[str, Sequence[str]]) -> Reading:
     ``choices`` maps each key to its labels.
     """
     if isinstance(answer, (list, tuple, set, frozenset)):
-        items = sorted(map(str, answer)) if isinstance(answer, (set, frozenset)) else list(map(str, answer))
+        items = list(map(text_of, answer))
+        items = sorted(items) if isinstance(answer, (set, frozenset)) else items
         answer = "\n".join(items) if items else _none_words()[0]
-    if answer is None or not str(answer).strip():
-        return Reading("" if answer is None else str(answer), "missing")
-    text = str(answer)
+    text = "" if answer is None else text_of(answer)
+    if not text.strip():
+        return Reading(text, "missing")
     if len(text) > _MOST:
         return Reading(text, "unreadable", code="too_long", found=shorten(text))
     found = _keys(unwrapped(text), choices)

@@ -50,6 +50,23 @@ class Operation:
         return any(node.kind == "call" and node.name in INVERSE for node in self.walk())
 
     @property
+    def powers_of_pi(self) -> frozenset[int]:
+        """The powers of pi among its terms as factors stand: 1 of ``2π/3``, -1 of ``1.8*180/π``, 0 of what has none."""
+        if self.kind == "sum":
+            return frozenset().union(*(arg.powers_of_pi for arg in self.args))
+        if self.kind in ("neg", "degree"):
+            return self.args[0].powers_of_pi
+        if (self.kind, self.name) == ("constant", "pi"):
+            return frozenset({1})
+        if self.kind == "product":
+            found = frozenset({0})
+            for sign, arg in zip(self.name, self.args, strict=True):
+                own = arg.powers_of_pi
+                found = frozenset(p + (q if sign == "*" else -q) for p in found for q in own)
+            return found
+        return frozenset({0})
+
+    @property
     def turns(self) -> bool:
         """Whether it is an angle in radians by itself: ``acos(0.5)``, or so many times that."""
         if self.kind == "call":
@@ -104,6 +121,34 @@ def compute(node: Operation, values: Mapping[str, object]) -> Any:
     return total
 
 
+def without_idle(node: Operation) -> Operation:
+    """A tree without what does nothing: ``+ 0``, ``· 1``, ``/ 1``, ``^ 1``, signs and bars; what is times 0 is 0."""
+    args = tuple(map(without_idle, node.args))
+    if node.kind in ("neg", "degree") or (node.kind, node.name) == ("call", "abs"):
+        return args[0]
+    if node.kind == "power" and (_is_number(args[1], 1) or _is_number(args[0], 0) or _is_number(args[0], 1)):
+        return args[0]
+    if node.kind == "sum":
+        kept = [arg for arg in args if not _is_number(arg, 0)] or [args[0]]
+        return kept[0] if len(kept) == 1 else replace(node, args=args)
+    if node.kind == "product":
+        above = [
+            arg for sign, arg in zip(node.name, args, strict=True) if sign == "*" and not _is_number(arg, 1)
+        ]
+        below = [
+            arg for sign, arg in zip(node.name, args, strict=True) if sign == "/" and not _is_number(arg, 1)
+        ]
+        if not any(_is_number(arg, 0) for arg in below):
+            nought = [arg for arg in above if _is_number(arg, 0)]
+            if nought or (not below and len(above) < 2):
+                return (nought or above or list(args))[0]
+    return replace(node, args=args)
+
+
+def _is_number(node: Operation, value: float) -> bool:
+    return node.kind == "number" and float(node.name) == value
+
+
 _A_RADIAN = math.degrees(1.0)
 
 
@@ -138,14 +183,15 @@ def _is_conversion(node: Operation) -> bool:
 class Expression:
     """A formula that has been read.
 
-    ``is_angle``: a degree sign makes it an angle, in radians. ``speaks_radians``: pi or an
-    inverse trigonometric function says that an angle without unit may be in radians.
-    ``other`` is the second honest reading of ``1/2π``, where the product binds first.
+    ``is_angle``: a degree sign makes it an angle, in radians. ``other`` is the second honest reading of ``1/2π``,
+    where the product binds first; ``is_plain_quotient`` where there is nothing else, so that one number alone is chosen
+    freely.
     """
 
     text: str
     root: Operation
     other: Expression | None = None
+    is_plain_quotient: bool = False
 
     @property
     def variables(self) -> frozenset[str]:
@@ -155,10 +201,6 @@ class Expression:
     @property
     def is_angle(self) -> bool:
         return self.root.angle
-
-    @property
-    def speaks_radians(self) -> bool:
-        return self.root.speaks_of_pi or self.root.has_inverse
 
     @property
     def as_calculated_in_degrees(self) -> Expression | None:

@@ -143,9 +143,6 @@ def test_answers_that_other_graders_accept_are_read_alike(answer, reference):
         ("1,234", "mm", (1.234, 1234), ("1.234", "1234")),
         ("-1,234 mm", "mm", (-1.234, -1234), ("-1.234 mm", "-1234 mm")),
         ("12,345 m", "mm", (12345, 12345000), ("12.345 m", "12345 m")),
-        ("π/3", "deg", (60, math.pi / 3), ("1.047198 rad", "1.047198 deg")),
-        ("acos(cos(60))", "deg", (60, 162.253229215), ("60 deg", "2.831853 rad")),
-        ("3.14159 - atan(1.6)", "deg", (-54.85303, 122.005231), ("-54.85303 deg", "2.129393 rad")),
         ("1/2π", "1", (math.pi / 2, 0.5 / math.pi), ("1.570796", "0.1591549")),
         ("3.10^2", "mm", (300, 9.61), ("3e2", "9.61")),
         ("3,2×10-2", "mm", (0.032, 30), ("3.2e-2", "30")),
@@ -205,8 +202,23 @@ def test_a_number_written_twice_alike_is_that_number_and_no_product(text, unit, 
     assert read_number(text, unit).values == pytest.approx((value,), rel=1e-14)
 
 
+@pytest.mark.parametrize(
+    ("text", "value", "echo"),
+    [
+        ("π/3", 60, "1.047198 rad"),
+        ("acos(cos(60))", 60, "60 deg"),
+        ("3.14159 - atan(1.6)", 122.005231, "2.129393 rad"),
+        ("180 - atan(1.6)", 122.0053832, "122.0054 deg"),
+    ],
+)
+def test_a_formula_of_an_angle_has_the_unit_that_its_pieces_have(text, value, echo):
+    reading = read_number(text, "deg")
+    assert reading.values == pytest.approx((value,))
+    assert reading.read_as == (echo,)
+
+
 def test_an_angle_and_itself_in_radians_are_one_answer():
-    assert read_number("2.13 (122.1)", "deg").values == (2.13, 122.1)
+    assert read_number("2.13 (122.1)", "deg").values == (122.1,)
     assert read_number("2.131 = 122.1", "deg").values == (122.1,)
     assert read_number("2.10 (122.1)", "deg").code == "two_values"
 
