@@ -15,7 +15,8 @@ from coursework.course.answer_key import Key
 from coursework.course.error_values import TAKEN, UsualError
 from coursework.course.variant import Variant
 from coursework.language.numbers import significant
-from coursework.making.protection import SHOWN, protection
+from coursework.making.flaws import SHOWN
+from coursework.making.protection import protection
 from coursework.marking.marking import mark as grade
 from coursework.model import Part
 from coursework.quantities.formula_code import formula_of

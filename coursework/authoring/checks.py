@@ -33,8 +33,9 @@ from coursework.course.exercise import ALL, CourseExercise, refuse_complex
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starved, nearest
 from coursework.language.words import file_of, words
-from coursework.making.flaws import conditioning, worthy
+from coursework.making.flaws import conditioning
 from coursework.making.issuing import distinct_variants
+from coursework.making.protection import worthy
 from coursework.model import Part
 from coursework.motion.animation import Animation
 from coursework.quantities.graph import plain_scalar

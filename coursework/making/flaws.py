@@ -15,11 +15,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from coursework.course.answer_key import Key, exists, ill_limit
-from coursework.course.exercise import CourseExercise
-from coursework.course.key_batch import keys_of
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
-from coursework.making.protection import protected
 from coursework.marking.judges import judged, judges_of
 from coursework.model import Part
 from coursework.solution import Judged
@@ -29,7 +26,7 @@ V = TypeVar("V", bound=Variant)
 SHOWN = 2.0  #: half-widths beyond which a mistake must be recognised
 HIDDEN = 0.25  #: half-widths within which nothing can tell it
 
-ILL, MURKY, UNSOLVED, UNSEEN = "ill-conditioned", "murky", "unsolved", "unseen"
+ILL, MURKY, UNSOLVED = "ill-conditioned", "murky", "unsolved"
 
 
 def visibility(key: Key, mistake: str) -> Iterator[tuple[Part, str]]:
@@ -126,21 +123,6 @@ def try_judges(key: Key) -> None:
                 judged(key.variant, name, {i: value for i, value in answers.items() if i != missing})
     for mistake in key.solution.mistakes:
         dict(_judged_wrong(key, mistake))
-
-
-def worthy(
-    exercise: CourseExercise[V], variants: Sequence[V], refused: Counter[str] | None = None
-) -> list[V]:
-    """Those of the variants that are worth issuing; ``refused`` counts the others by their first flaw."""
-    keys_of(exercise, variants)
-    refused = Counter() if refused is None else refused
-    found = []
-    for variant, unmet in protected(exercise, sound(variants, refused)):
-        if unmet is None:
-            found.append(variant)
-        else:
-            refused[f"{UNSEEN}: {unmet.error.kind} in {unmet.error.source}"] += 1
-    return found
 
 
 def sound(variants: Sequence[V], refused: Counter[str] | None = None) -> list[V]:

@@ -16,7 +16,8 @@ from coursework.course.course import Course
 from coursework.course.exercise import ALL, USUAL, CourseExercise
 from coursework.course.variant import Variant
 from coursework.errors import BadInput, Starved, counted, unknown
-from coursework.making.flaws import try_judges, worthy
+from coursework.making.flaws import try_judges
+from coursework.making.protection import worthy
 from coursework.making.roster import Student
 from coursework.making.students import file_stems
 from coursework.sheets.sheet import AnswerSheet, Handout, StudySheet

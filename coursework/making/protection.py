@@ -7,6 +7,7 @@ demanded is found once an exercise from its first variants, so that a seed is wo
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -19,12 +20,13 @@ from coursework.course.exercise import CourseExercise
 from coursework.course.key_batch import keys_of
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
+from coursework.making.flaws import SHOWN, sound
 from coursework.model import Part
 from coursework.quantities.usual_errors import WEIGHTY
 
 V = TypeVar("V", bound=Variant)
 
-SHOWN = 2.0  #: half-widths beyond which an error must be recognised
+UNSEEN = "unseen"
 SAMPLE = 96  #: variants from which it is found what may be demanded
 LEFT = {
     True: 0.125,
@@ -94,8 +96,6 @@ def protection(exercise: CourseExercise, parts: tuple[str, ...] | None) -> Prote
 
 @lru_cache(maxsize=256)
 def _protection(exercise: CourseExercise, parts: tuple[str, ...] | None) -> Protection:
-    from coursework.making.flaws import sound
-
     drawn: list[Variant] = []
     for start in range(0, 10 * SAMPLE, SAMPLE):
         some = [
@@ -173,3 +173,18 @@ def _by_parts(variants: Sequence[Variant]) -> list[list[int]]:
     for i, variant in enumerate(variants):
         places.setdefault(variant.part_ids, []).append(i)
     return list(places.values())
+
+
+def worthy(
+    exercise: CourseExercise[V], variants: Sequence[V], refused: Counter[str] | None = None
+) -> list[V]:
+    """Those of the variants that are worth issuing; ``refused`` counts the others by their first flaw."""
+    keys_of(exercise, variants)
+    refused = Counter() if refused is None else refused
+    found = []
+    for variant, unmet in protected(exercise, sound(variants, refused)):
+        if unmet is None:
+            found.append(variant)
+        else:
+            refused[f"{UNSEEN}: {unmet.error.kind} in {unmet.error.source}"] += 1
+    return found

@@ -18,10 +18,9 @@ from coursework.model import Part
 from coursework.reading.reading import Reading
 
 FARTHEST = 100.0  #: factor between the size of an attempt and that of the reference, unless a known error explains it
-THINGS, COUNTS = (
-    2,
-    3,
-)  #: different things that one number is written for, measured or counted, before it means nothing
+THINGS = (
+    2  #: different things that one number is written for, before it means nothing; of counts many are alike
+)
 FEW = 4  #: answers of which nothing can be told
 MOST = 0.75  #: of the answers
 
@@ -44,12 +43,9 @@ def sheet_of(parts: Mapping[str, Part], readings: Mapping[str, Reading], key: Ke
         if reading is not None and reading.status == "read" and part.sort.is_scalar and not part.sort.is_open:
             answers.append((number, part, float(reading.values[0])))
     things: dict[float, set[str]] = {}
-    for _, part, value in answers:
+    for _, part, value in (answer for answer in answers if not answer[1].sort.is_exact):
         things.setdefault(value, set()).add(f"{key.reference[part.quantity]:.6g}")
-    counted = {value for _, part, value in answers if part.sort.is_exact}
-    everywhere = frozenset(
-        value for value, asked in things.items() if len(asked) >= (COUNTS if value in counted else THINGS)
-    )
+    everywhere = frozenset(value for value, asked in things.items() if len(asked) >= THINGS)
     if len(answers) < FEW:
         return Sheet(everywhere)
     given = {float(v) for v in key.variant.given.values() if isinstance(v, (int, float))}

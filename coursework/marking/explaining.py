@@ -192,7 +192,7 @@ def _explanations(
 
 def _is_constant(key: Key, part: Part, value: Any, before: Before) -> bool:
     """Whether an answer only repeats a number that is written everywhere, as do those that it would follow from."""
-    if not part.sort.is_scalar or value not in before.sheet.everywhere:
+    if not part.sort.is_scalar or part.sort.is_exact or value not in before.sheet.everywhere:
         return False
     above = [q for q in before.wrong if part.quantity in key.solution.depending_on(q)]
     return all(before.own[q] == value for q in above)

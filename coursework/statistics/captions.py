@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from coursework.course.course import Course
+from coursework.course.error_values import TAKEN
 from coursework.course.exercise import ALL, CourseExercise
 from coursework.errors import CourseworkError
 from coursework.language.words import words
@@ -103,7 +104,7 @@ class Names:
 
     def _slip(self, kind: str) -> str:
         table = words(self._lang)["marking"]
-        sentence = table.get(f"slip_{kind}") or table["usual"].get(kind, table["usual"]["taken"])
+        sentence = table.get(f"slip_{kind}") or table["usual"].get("taken" if kind in TAKEN else kind, "")
         told = sentence.removeprefix("{name}").lstrip(" :\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}")
         said = plain_line(_OPEN.sub("…", told), self._lang)
         return said[:1].upper() + said[1:]

@@ -204,7 +204,7 @@ def test_a_record_is_marked_by_the_values_it_holds_not_by_its_seed(course):
         ("solutions/crank_pin.py", "#: Values known", "UNITS = {'x': 'furlong'}\n#:", "solutions/crank_pin.py: UNITS of x: no unit 'furlong'"),
         ("exercises/crank_pin.py", "import polar", "import poler", "poler"),
         ("solutions/crank_pin.py", '@mistake("x", "y")', '@mistake("x", "z")', "no quantity 'z'"),
-        ("solutions/crank_pin.py", "share=0.5", "share=5", "between 0 and 1"),
+        ("solutions/crank_pin.py", 'kind="constant"', "share=5", "between 0 and 1"),
         ("exercises/crank_pin.py", "O, A = 0, polar", "O, A = zero, polar", "figure (crank_pin.py, line"),
         ("exercises/crank_pin.py", "return theta % 90", "return tetha % 90", "pin_off_the_axes (crank_pin.py, line"),
         ("solutions/crank_pin.py", "return r * omega\n", "return r * omegga\n", "v (crank_pin.py, line"),

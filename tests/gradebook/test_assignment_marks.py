@@ -198,7 +198,7 @@ def test_the_rules_of_the_assignment_override_those_of_the_course(course, tmp_pa
         graded = next(iter(marked(course, issued, placed(course, issued, read_file(file)))))
         return graded.lines["v"].points / graded.lines["v"].out_of
 
-    assert (points(plain), points(milder)) == (0, 0.25)
+    assert (points(plain), points(milder)) == (0.5, 0.25)
     from coursework.gradebook import class_marking
 
     monkeypatch.setattr(class_marking, "WORTH_PROCESSES", 1)

@@ -66,7 +66,7 @@ def test_a_mark_changed_by_hand_reaches_summary_changes_and_report(course, marks
     ada, bo, cy = table(marks / "summary.csv")
     assert (ada["points"], ada["mark"], bo["unreadable"], cy["missing"]) == ("3.5", "17.5", "3", "3")
     changes = table(marks / "changes.csv")
-    assert [(c["part"], c["points_before"], c["points_now"]) for c in changes] == [("v", "0", "1.5")]
+    assert [(c["part"], c["points_before"], c["points_now"]) for c in changes] == [("v", "1", "1.5")]
     assert sorted(measure(read(marks)).percents) == [0, 0, 87.5]
     assert (marks / "marks.csv").read_bytes() == stood
 

@@ -10,7 +10,7 @@ from study_words import BOTH, SAID, flat, start_of
 
 import coursework
 from coursework.errors import BadInput, CourseworkError, UnknownName
-from coursework.making.flaws import worthy
+from coursework.making.protection import worthy
 from coursework.rendering.renderer import renderer_of
 from coursework.selfstudy import predictions
 

@@ -66,7 +66,7 @@ def pulsation_for_frequency(f_0):
     return 2 * np.pi * f_0
 
 
-@mistake("Q")
+@mistake("Q", kind="inverse")
 def quality_turned_over(Q):
     return 1 / Q
 
