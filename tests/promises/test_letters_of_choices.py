@@ -75,8 +75,8 @@ def test_letters_stand_with_their_words_in_every_format(name, lang):
             continue
         assert [key for key, _ in question.choices] == list(variant.cases(part))
         assert question.letters == tuple("abcdefghijklmnopqrstuvwxyz"[: len(part.choices)])
-        assert f'"{part.id}": "",  # ' in code
-        assert re.search(rf'"{part.id}": "",  # .*{", ".join(question.letters)}', code)
+        assert f'"{question.key}": "",  # ' in code
+        assert re.search(rf'"{question.key}": "",  # .*{", ".join(question.letters)}', code)
         for letter, (_, label) in zip(question.letters, question.choices, strict=True):
             start = to_text(label, lang).split()[0]
             assert f"( ) {letter}) {start}" in terminal
