@@ -131,6 +131,7 @@ def skills(progress: Progress) -> tuple[Skill, ...]:
     """The skills that were tried, those of errors and those of kinds, the first tried first."""
     lost: dict[str, list[tuple[str, date]]] = {}
     shown: dict[str, dict[tuple[str, int], str]] = {}
+    lost_in: dict[str, tuple[str, int]] = {}  # where a skill was lost, other answers show nothing of it
     clean = {(o.exercise, o.seed, o.part): o.is_clean for o in outings(progress)}
     for one in progress:
         place, verdict = (one["exercise"], one["seed"]), str(one.get("verdict", ""))
@@ -145,10 +146,12 @@ def skills(progress: Progress) -> tuple[Skill, ...]:
         day = date_of(one).date()
         if verdict in RIGHT and clean[*place, one["part"]]:
             for name in (*_texts(one.get("shown")), *filter(None, (kind,))):
-                shown.setdefault(name, {})[place] = one["exercise"]
+                if lost_in.get(name) != place:
+                    shown.setdefault(name, {})[place] = one["exercise"]
         elif verdict not in RIGHT:
             for name in filter(None, (kind, verdict if ":" in verdict else "")):
                 lost.setdefault(name, []).append((one["exercise"], day))
+                lost_in[name] = place
                 shown.pop(name, None)
     names = dict.fromkeys((*lost, *shown))
     return tuple(_skill(name, lost.get(name, []), shown.get(name, {})) for name in names)

@@ -224,6 +224,8 @@ def test_a_skill_is_lost_by_its_error_and_held_by_two_variants_where_it_would_ha
         found = {s.id: s for s in skills(Progress(entries))}
         assert (found["mistake:m"].is_open, found["mistake:m"].shown) == (is_open, count)
         assert found["kind:mm"].is_open == is_open
+    beside = [answered(0, "b", "correct", kind="mm", shown=["mistake:m"])]
+    assert all(s.shown == 0 for s in skills(Progress(lost + beside)))
     again = [*lost, *shown, answered(9, "a", "mistake:m", seed=9)]
     assert {s.id: s.is_open for s in skills(Progress(again))}["mistake:m"]
     assert not [s for s in skills(Progress(shown)) if s.is_open]
