@@ -91,7 +91,7 @@ def _of_part(exercise: CourseExercise, part: Part) -> Prediction | None:
     if not exercise.folder.has_solutions:
         return None
     if part.sort.prediction == "guess":
-        differs = part.choices and _differs_among(exercise, part)
+        differs = part.choices and _differs_among(exercise, part.id, part.quantity)
         return Prediction(part.id, part.quantity, "guess", choices=part.choices) if differs else None
     if part.sort.prediction == "quadrant":
         return Prediction(part.id, part.quantity, "quadrant")
@@ -145,14 +145,15 @@ def _hangs_on(exercise: CourseExercise, part: Part, units: Collection[str], name
     return part.quantity in known or part.quantity in graph.descendants(tuple(known))
 
 
-def _differs_among(exercise: CourseExercise, part: Part) -> bool:
+@lru_cache(maxsize=256)
+def _differs_among(exercise: CourseExercise, part: str, quantity: str) -> bool:
     """Whether the case of a choice that every variant asks differs enough among some variants."""
     cases = []
     for variant in exercise.variants(_SAMPLE):
-        if part.id not in variant.part_ids:
+        if part not in variant.part_ids:
             return False
         with suppress(CourseworkError):
-            cases.append(str(variant.quantities([part.quantity])[part.quantity]))
+            cases.append(str(variant.quantities([quantity])[quantity]))
     return len(cases) - max(map(cases.count, cases), default=0) >= _FEW
 
 

@@ -17,7 +17,8 @@ from coursework.selfstudy.word_answers import unwrapped
 
 COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize(
-    "name", sampled(COURSE.names, {"slotted_mechanism", "planar_chain", "velocity_polygon"})
+    "name",
+    sampled(COURSE.names, {"slotted_mechanism", "slider_crank_torque", "ball_reducer", "velocity_polygon"}),
 )
 
 

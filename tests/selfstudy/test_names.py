@@ -13,6 +13,7 @@ from sweeps import HANDFUL, sampled
 import coursework
 from coursework.course.answer_keys import answer_keys, part_called, spells_a_symbol
 from coursework.language.words import words
+from coursework.model import Part
 from coursework.rendering.renderer import renderer_of
 from coursework.selfstudy.predictions import prediction_keys
 
@@ -86,6 +87,20 @@ def test_what_spells_a_symbol():
     assert all(map(spells_a_symbol, symbols))
     words_ = ("highest_group", "stroke", "t_return", "m_useful", "known_A", "mobility", "direction")
     assert not any(map(spells_a_symbol, words_))
+
+
+def test_a_choice_goes_by_its_number_whatever_it_is_called():
+    parts = (
+        Part("theta4", kind="angle"),
+        Part("n", kind="choice", choices=("n1", "n2")),
+        Part("q3", unit="mm"),
+        Part("stroke"),
+    )
+    assert list(answer_keys(parts).values()) == ["theta4", "q2", "q3", "q4"]
+    taken = (Part("stroke"), Part("q1", unit="mm"))
+    keys = answer_keys(taken)
+    assert list(keys.values()) == ["question_1", "q1"]
+    assert [part_called(key, ("stroke", "q1")) for key in keys.values()] == ["stroke", "q1"]
 
 
 def test_a_name_that_is_none_stays_what_it_is():
