@@ -11,13 +11,15 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from coursework.system.distribution import VERSION
+
 if TYPE_CHECKING:
     from coursework.api import Variant, open_course, show_motion, study
     from coursework.course.course import Course
     from coursework.errors import CannotAssemble, CourseworkError, NoSolution, Undefined, UnknownName
     from coursework.selfstudy.lessons import compare, plot
 
-__version__ = "0.1.0"
+__version__ = VERSION
 __all__ = [
     "CannotAssemble",
     "Course",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,8 @@ from coursework.course.course import Course, opened
 from coursework.course.folder import UNTOLD
 
 if TYPE_CHECKING:
+    from datetime import datetime
+
     from coursework.marking.mark import Marking
     from coursework.rendering.displayed import DisplayedAnimation, DisplayedConstruction
     from coursework.selfstudy.session import StudySession
@@ -36,6 +38,7 @@ def study(
     course: str | Path | None = None,
     version: int | None = None,
     folder: str | Path = ".",
+    clock: Callable[[], datetime] | None = None,
 ) -> StudySession:
     """A study session of an exercise.
 
@@ -53,7 +56,9 @@ def study(
     version
         The version that a notebook was written for.
     folder
-        Where answers are kept, in ``EXERCISE.study.json``.
+        Where what is done is kept, in ``progress.json``.
+    clock
+        What tells the time, with its zone; the machine's clock unless told.
 
     Raises
     ------
@@ -68,7 +73,10 @@ def study(
 
     chosen = open_course(course_folder(course, lang or UNTOLD))
     lang = chosen.folder.language if lang is None else lang
-    return open_session(chosen, exercise, seed=seed, lang=lang, named=course, version=version, folder=folder)
+    told = {} if clock is None else {"clock": clock}
+    return open_session(
+        chosen, exercise, seed=seed, lang=lang, named=course, version=version, folder=folder, **told
+    )
 
 
 class Variant(numbers.Variant):

@@ -16,6 +16,7 @@ from coursework.accuracy.ways import MOTION, Values, exactly, ways
 from coursework.course.exercise import CourseExercise
 from coursework.errors import BadCourse, BadInput
 from coursework.motion.scenes import INERTIA, Scene
+from coursework.system.distribution import DISTRIBUTION
 
 GENERIC, HARD = "generic", "hard"
 _DIGITS = 70  #: of the reference
@@ -68,7 +69,8 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Row]:
         import mpmath  # noqa: F401
     except ImportError:
         raise BadInput(
-            "accuracy is measured against mpmath, which is not installed: pip install 'coursework[accuracy]'"
+            "accuracy is measured against mpmath, which is not installed: "
+            f"pip install '{DISTRIBUTION}[accuracy]'"
         ) from None
     study = study_of(exercise)
     if study is None:

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from coursework.system.distribution import VERSION
+
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
@@ -23,6 +25,7 @@ COMMANDS = {
     "list": ("look", "list_exercises"),
     "new": ("author", "new"),
     "notebook": ("make", "notebook"),
+    "progress": ("study", "progress"),
     "report": ("mark", "report"),
     "show": ("look", "show"),
     "simulate": ("move", "simulate"),
@@ -56,7 +59,7 @@ class _Commands(click.Group):
 @click.option(
     "--course", "folder", type=click.Path(), help="Course folder; the built-in course unless given."
 )
-@click.version_option(package_name="coursework", prog_name="coursework")
+@click.version_option(VERSION, prog_name="coursework")
 @click.pass_context
 def commands(context: click.Context, folder: str | None) -> None:
     """Parameterised exercises in plane-mechanism kinematics: draw, solve, print and mark them."""

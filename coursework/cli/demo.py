@@ -18,6 +18,7 @@ import numpy as np
 
 from coursework.api import Variant, open_course
 from coursework.course.answer_key import Key
+from coursework.course.answer_keys import answer_keys
 from coursework.language.numbers import significant
 from coursework.language.words import languages
 from coursework.making.issued import COLUMNS, Issued
@@ -218,6 +219,7 @@ def _hand_in(course: Any, issued: Issued, folder: Path) -> list[str]:
 def _notebook(course: Any, variant: Variant, student: str, answers: Mapping[str, Any]) -> str:
     notebook = json.loads(renderer_of(course.folder).notebook(variant.handout(student)))
     cell = next(c for c in notebook["cells"] if "answers" in c["metadata"].get("tags", ()))
-    lines = [f"    {part!r}: {answer!r},\n" for part, answer in answers.items()]
+    keys = answer_keys(variant.parts)
+    lines = [f"    {keys.get(part, part)!r}: {answer!r},\n" for part, answer in answers.items()]
     cell["source"] = ["answers = {\n", *lines, "}"]
     return json.dumps(notebook, ensure_ascii=False)

@@ -120,6 +120,7 @@ def notebook(
     from coursework.system.writing import write_whole
 
     course = opened(context)
+    wheel = course.folder.wheel
     paths = {
         (name, lang): out / f"{name}.{lang}.ipynb"
         for name in exercise_names(course, exercises)
@@ -130,6 +131,9 @@ def notebook(
         (variant,) = distinct_variants(course[name], seed, 1, lang)
         write_whole(path, renderer_of(course.folder).study(variant.study_sheet()).encode("utf-8"))
         click.echo(str(path))
+    if wheel is not None:
+        write_whole(out / wheel.name, wheel.read_bytes())
+        click.echo(str(out / wheel.name))
 
 
 # ------------------------------------------------------------------------ build

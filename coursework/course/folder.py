@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 from coursework.course.builtin import builtin_root
 from coursework.errors import BadCourse, BadInput, CourseworkError
 from coursework.language.words import languages, no_language
+from coursework.system.distribution import pip_install
 
 if TYPE_CHECKING:
     from coursework.course.marking_rules import Rules
@@ -215,6 +216,72 @@ class Folder:
         from coursework.course.marking_rules import Rules
 
         return Rules.of(self.settings.get("marking", {}), str(self._settings_file))
+
+    @property
+    def study_order(self) -> tuple[str, ...]:
+        """The exercises in the order in which they are proposed to who studies alone: those that the course states (``[study]``,
+        ``order``), then the others.
+
+        Raises
+        ------
+        BadCourse
+            What it states is no list of its exercises.
+        """
+        told = self._study.get("order", [])
+        if not isinstance(told, list) or not set(map(str, told)) <= set(self.names):
+            raise BadCourse(
+                f'{self._settings_file}: [study]: order = ["…"] names exercises of the course; found {told!r}'
+            )
+        return tuple(dict.fromkeys([*map(str, told), *self.names]))
+
+    @property
+    def install(self) -> str:
+        """The command that installs what self-study runs: of the requirement that the course states (``[study]``,
+        ``install``: a wheel's file, a URL, a name and version), else of the package in this version.
+
+        Raises
+        ------
+        BadCourse
+            What it states is no requirement.
+        """
+        return pip_install(f"./{self.wheel.name}" if self.wheel else self._requirement)
+
+    @property
+    def wheel(self) -> Path | None:
+        """The wheel that the course brings for self-study and that stands beside the notebooks, where it names one.
+
+        Raises
+        ------
+        BadCourse
+            The file is not in the course's folder.
+        """
+        told = self._requirement
+        if not told.endswith(".whl") or "://" in told:
+            return None
+        path = self.root / told
+        if not path.is_file():
+            raise BadCourse(
+                f"{self._settings_file}: [study]: install = {told!r}: there is no such file in {self.root}"
+            )
+        return path
+
+    @property
+    def _requirement(self) -> str:
+        told = self._study.get("install", "")
+        if not isinstance(told, str) or told != told.strip() or set(told) & set("\"'`\n\r"):
+            raise BadCourse(
+                f'{self._settings_file}: [study]: install = "…" is what pip is to install; found {told!r}'
+            )
+        return told
+
+    @property
+    def _study(self) -> Mapping[str, Any]:
+        study = self.settings.get("study", {})
+        if not isinstance(study, dict):
+            raise BadCourse(
+                f"{self._settings_file}: write [study], then install = … or order = …; found {study!r}"
+            )
+        return study
 
     def title(self, lang: str) -> str:
         """The course's title in a language; the folder's name when it states none."""

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from coursework.gradebook.lost_tags import alone, answers_texts, joined, printed_identity, source_of
 from coursework.gradebook.rows import (
     Rejected,
     Row,
@@ -34,40 +35,103 @@ def read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
     about = notebook.get("metadata", {}) if isinstance(notebook, dict) else {}
     about = about.get("coursework") if isinstance(about, dict) else None
     cells = notebook.get("cells") if isinstance(notebook, dict) else None
-    if not isinstance(about, dict) or not isinstance(cells, list):
-        yield Rejected(source, "not a notebook of ours: its metadata names no exercise")
+    if not isinstance(cells, list):
+        yield Rejected(source, "not a notebook of ours: it has no cells")
         return
+    cells = [cell for cell in cells if isinstance(cell, dict)]
+    notes = [warning] if warning else []
+    if not isinstance(about, dict) or not (about.get("exercise") or isinstance(about.get("sheets"), list)):
+        about = printed_identity(cells)
+        if about is None:
+            yield Rejected(
+                source, "not a notebook of ours: it names no exercise, in its metadata or in print"
+            )
+            return
+        notes.append(f"{source}: its metadata is gone; whose it is, and of which variant, is as it prints it")
     if isinstance(about.get("sheets"), list):
-        yield from _read_paper(about, [c for c in cells if isinstance(c, dict)], source, warning)
+        yield from _read_paper(about, cells, source, notes)
         return
-    tagged = [c for c in cells if isinstance(c, dict) and "answers" in _tags(c)]
-    if len(tagged) != 1:
-        found = "\n".join(_code(c) for c in cells if isinstance(c, dict) and c.get("cell_type") == "code")
+    code, note = _answers_code(cells)
+    if code is None:
+        found = "\n".join(source_of(c) for c in cells if c.get("cell_type") == "code")
         row = _about(about, source) | {"answer": found.strip()[:200]}
-        yield Rejected(source, f"one cell must be tagged 'answers'; found {len(tagged)}", row)
+        yield Rejected(source, note, row)
         return
-    code = _code(tagged[0])
-    answers = literal_answers(code)
+    answers, more = _answers_in(code)
     if isinstance(answers, str):
         yield Rejected(source, answers, _about(about, source) | {"answer": code[:200]})
         return
-    about, warning = _with_name(about, answers, source, warning)
+    notes += [f"{source}: {told}" for told in (note, more) if told]
+    about, warning = _with_name(about, answers, source, "; ".join(notes))
     yield from sheet_rows(about, answers, source, warning)
+
+
+_NO_TAG = "no cell is tagged 'answers'; the one that says answers = { is read"
+_OTHER = "the cell tagged 'answers' is blank; the answers of another that says answers = { are read"
+_CUT = "the answers cell was cut in pieces; they are put together"
+
+
+def _answers_code(cells: list[dict[str, Any]]) -> tuple[str | None, str]:
+    """The code of the answers cell of one exercise and what is to be told of it; None and why where it cannot be told which it is."""
+    tagged = [place for place, cell in enumerate(cells) if "answers" in _tags(cell)]
+    named = dict(answers_texts(cells))
+    own = _filled(joined(cells, p) for p in tagged if len(tagged) == 1 or p in named)
+    others = _filled(text for place, text in named.items() if place not in tagged)
+    if len(own) == 1 and (_has_answer(own[0]) or not any(map(_has_answer, others))):
+        return own[0], "" if own[0] in map(source_of, cells) else _CUT
+    if len(others) == 1:
+        return others[0], _OTHER if tagged else _NO_TAG
+    count = len(tagged) if len(own) != 1 else len(tagged) + len(others)
+    return None, f"one cell must be tagged 'answers'; found {count}"
+
+
+def _filled(texts: Iterable[str]) -> list[str]:
+    """Different texts of answers: those that hold one, or all where none does."""
+    different = list(dict.fromkeys(texts))
+    return [text for text in different if _has_answer(text)] or different
+
+
+def _has_answer(code: str) -> bool:
+    answers, _ = _answers_in(code)
+    return isinstance(answers, str) or any(
+        not (value is None or (isinstance(value, str) and not value.strip()))
+        for name, value in answers.items()
+        if name != "student"
+    )
+
+
+def _answers_in(code: str) -> tuple[dict[Any, Any] | str, str]:
+    """The dict of an answers cell, or what is wrong with it; and what is to be told where the cell holds more."""
+    answers = literal_answers(code)
+    if isinstance(answers, str) and (own := alone(code)) != code:
+        found = literal_answers(own)
+        if not isinstance(found, str):
+            return found, "the answers cell holds more than the answers; that is neither read nor run"
+    return answers, ""
 
 
 # ------------------------------------------------------------------------ paper
 
 
 def _read_paper(
-    about: dict[str, Any], cells: list[dict[str, Any]], source: str, warning: str
+    about: dict[str, Any], cells: list[dict[str, Any]], source: str, notes: list[str]
 ) -> Iterator[Row | Rejected]:
     """A notebook of several exercises: an answers cell each, which says whose answers it holds."""
     sheets = [
         (name_in(s.get("exercise")), name_in(s.get("seed"))) for s in about["sheets"] if isinstance(s, dict)
     ]
     tagged = [cell for cell in cells if "answers" in _tags(cell)]
-    read = [(_sheet_of(cell, sheets), literal_answers(_code(cell)), _code(cell)) for cell in tagged]
-    name, warning = _name_in_paper(about, [found for _, found, _ in read], source, warning)
+    taken = {_sheet_of(cell, sheets) for cell in tagged}
+    codes = [(_sheet_of(cell, sheets), joined(cells, cells.index(cell))) for cell in tagged]
+    lost = [
+        (_sheet_of(cells[place], sheets), text)
+        for place, text in answers_texts(cells)
+        if cells[place] not in tagged
+    ]
+    lost = [(sheet, text) for sheet, text in lost if sheet[0] and sheet not in taken]
+    notes += [f"{source}, {exercise}: {_NO_TAG}" for (exercise, _), _ in lost]
+    read = [(sheet, _answers_in(code)[0], code) for sheet, code in (*codes, *lost)]
+    name, warning = _name_in_paper(about, [found for _, found, _ in read], source, "; ".join(notes))
     for (exercise, seed), found, code in read:
         own = {"student": name, "exercise": exercise, "seed": seed, "lang": about.get("lang")}
         place = f"{source}, {exercise}" if exercise else source
@@ -84,7 +148,7 @@ def _read_paper(
     for exercise, seed in sheets:
         if (exercise, seed) not in there:
             own = {"student": name, "exercise": exercise, "seed": seed}
-            code = "\n".join(_code(c) for c in cells if c.get("cell_type") == "code" and c not in tagged)
+            code = "\n".join(source_of(c) for c in cells if c.get("cell_type") == "code" and c not in tagged)
             reason = f"no cell tagged 'answers' is of {exercise}, seed {seed}"
             yield Rejected(
                 f"{source}, {exercise}", reason, _about(own, source) | {"answer": code.strip()[:200]}
@@ -102,7 +166,7 @@ def _sheet_of(cell: dict[str, Any], sheets: list[tuple[str, str]]) -> tuple[str,
     own = metadata.get("coursework") if isinstance(metadata, dict) else None
     if isinstance(own, dict) and name_in(own.get("exercise")):
         return name_in(own["exercise"]), name_in(own.get("seed"))
-    for told in _OF.findall(re.sub(r"\r\n?", "\n", _code(cell))):
+    for told in _OF.findall(re.sub(r"\r\n?", "\n", source_of(cell))):
         if told in sheets:
             return told
     return sheets[0] if len(sheets) == 1 else ("", "")
@@ -131,18 +195,13 @@ def _with_name(
     if written:
         return {**about, "student": written}, warning
     note = "a notebook holds no name; its file's name stands for it"
-    return {**about, "student": Path(source).stem}, warning or note
+    return {**about, "student": Path(source).stem}, "; ".join(filter(None, (warning, note)))
 
 
 def _about(about: dict[str, Any], source: str) -> dict[str, str]:
     """What a notebook says of itself; one that was nobody's is called as its file."""
     named = {c: name_in(about.get(c)) for c in ("student", "exercise", "seed")}
     return {**named, "student": named["student"] or Path(source).stem, "part": "", "answer": ""}
-
-
-def _code(cell: dict[str, Any]) -> str:
-    code = cell.get("source", "")
-    return "".join(map(str, code)) if isinstance(code, list) else str(code)
 
 
 def _tags(cell: dict[str, Any]) -> list[Any]:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
+from coursework.course.answer_keys import part_called
 from coursework.course.course import Course
 from coursework.errors import UnknownName, nearest
 from coursework.gradebook.rows import Rejected, Row
@@ -113,7 +114,7 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
             )
         _ = course[exercise].solution
         course[exercise].from_record(one)
-    asked: dict[tuple[str, int], frozenset[str]] = {}
+    asked: dict[tuple[str, int], tuple[str, ...]] = {}
     places: dict[tuple[str, str, str], tuple[str, str, int] | str] = {}
     unsaid: set[tuple[str, str, int]] = set()  #: sheets of several sittings, whose answers do not say which
     for row in rows:
@@ -143,8 +144,10 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected]) -> Sh
             unsaid.add(place)
             found.warnings.append(_latest(issued, place))
         if key not in asked:
-            asked[key] = frozenset(str(part["id"]) for part in issued.records[key]["parts"])
+            asked[key] = tuple(str(part["id"]) for part in issued.records[key]["parts"])
         sheet = found.sheets.setdefault(place, {})
+        if row.part not in asked[key]:
+            row = row._replace(part=part_called(row.part, asked[key]))
         if row.part not in asked[key]:
             near = nearest(row.part[:60], sorted(asked[key]))
             reason = f"{row.exercise} has no part {row.part[:60]!r}{near}"

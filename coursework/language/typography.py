@@ -12,8 +12,8 @@ _UNIT = re.compile(
     r"(?:[²³/·.,;:)\s]|$))"
 )
 _HIGH_MARKS = re.compile(
-    r"(?<!\s)[ \u00a0](?=[;:!?»](?:\W|$))"
-)  # also at the head, where a formula stands before
+    r"(?<!\s)(?<!^-)[ \u00a0](?=[;:!?»](?:\W|$))", re.MULTILINE
+)  # also at the head, where a formula stands before; never behind the dash of a list, which would be none
 _MISSING_SPACE = re.compile(r"(?<=[\w)\]])(?=[;!?»](?:\s|$))")
 _OPENING_QUOTE = re.compile(r"«[ \u00a0\u202f]?")
 

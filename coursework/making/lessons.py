@@ -34,4 +34,4 @@ def lesson(folder: Folder, name: str, lang: str) -> str:
     path = _place(folder) / f"{name}.{lang}.md"
     if not path.exists():
         raise BadCourse(f"the lesson {name} has no text in {lang!r}: {path.name} is missing")
-    return renderer_of(folder).lesson(name, path.read_text("utf-8"), lang)
+    return renderer_of(folder).lesson(name, path.read_text("utf-8"), lang, folder.install)

@@ -72,7 +72,7 @@ def environment(
         margin_words=lambda answer: views.margin_words(answer, lang),
         summary_row=lambda answer: views.summary_row(answer, lang),
         polygon_row=lambda row: views.polygon_row(row, lang),
-        answer_comment=lambda question: views.answer_comment(question, lang),
+        answer_comment=lambda question, prefix="": views.answer_comment(question, lang, prefix),
         offered=views.offered,
         columns=lambda question: views.columns(question, lang),
         column_share=lambda question: views.column_of(question, lang),

@@ -17,12 +17,14 @@ from typing import TYPE_CHECKING, Any
 
 from jinja2 import Environment
 
+from coursework.language.words import words
 from coursework.markup import markdown as markup
 from coursework.markup.formulas import number_text
 from coursework.rendering import papers, views
 from coursework.rendering.environment import environment, render
 from coursework.sheets.paper import Paper
 from coursework.sheets.sheet import Handout
+from coursework.system.distribution import DISTRIBUTION
 
 if TYPE_CHECKING:
     from coursework.sheets.sheet import StudySheet
@@ -96,9 +98,15 @@ def _cells(text: str, identity: str) -> Iterator[dict[str, Any]]:
         yield _cell(f"{identity} {number}", *piece)
 
 
-def lesson(name: str, text: str, lang: str) -> str:
-    """The notebook of a lesson: its Markdown as it is, its fences as code cells."""
-    return _json(list(_cells(text, f"{name} {lang}")), {"lesson": name, "lang": lang})
+def lesson(folders: Sequence[Path], name: str, text: str, lang: str, install: str) -> str:
+    """The notebook of a lesson: its Markdown as it is, its fences as code cells; before the first that imports the package, one that
+    says how to install it where it is missing."""
+    env = _environment(tuple(folders), lang)
+    names = {"words": words(lang), "package": DISTRIBUTION, "install": install}
+    guard = f"```python\n{render(env, '_import.md.j2', names)}\n```\n"
+    first = next((f.start() for f in _FENCE.finditer(text) if "import coursework" in f[2]), None)
+    whole = text if first is None else f"{text[:first]}{guard}\n{text[first:]}"
+    return _json(list(_cells(whole, f"{name} {lang}")), {"lesson": name, "lang": lang})
 
 
 def _json(cells: list[dict[str, object]], about: dict[str, object]) -> str:

@@ -170,11 +170,11 @@ class Renderer:
 
         return notebook.study(self.template_folders, sheet)
 
-    def lesson(self, name: str, text: str, lang: str) -> str:
-        """A lesson's Markdown as a notebook (JSON, nbformat 4.5)."""
+    def lesson(self, name: str, text: str, lang: str, install: str) -> str:
+        """A lesson's Markdown as a notebook (JSON, nbformat 4.5); ``install`` is the command that installs what it runs."""
         from coursework.rendering import notebook
 
-        return notebook.lesson(name, text, lang)
+        return notebook.lesson(self.template_folders, name, text, lang, install)
 
     def report_html(self, report: Report) -> str:
         """A report as one web page that fetches nothing and runs no script."""

@@ -455,8 +455,9 @@ def python_name(name: str) -> str:
     return name + "_" if keyword.iskeyword(name) else name
 
 
-def answer_comment(question: Question, lang: str) -> str:
-    """What a notebook says beside an answer: its unit, the letters of a choice, or the form it takes."""
+def answer_comment(question: Question, lang: str, prefix: str = "") -> str:
+    """What a notebook says beside an answer: the question's number where its key is another, its unit, the letters of a choice,
+    or the form it takes."""
     said = words(lang)
     if question.choices and question.box != "several":
         offered = question.letters or [to_text(label, lang, sys.maxsize) for _, label in question.choices]
@@ -464,4 +465,9 @@ def answer_comment(question: Question, lang: str) -> str:
     else:
         unit = said["sheet"]["with_unit"] if question.asks_unit else question.unit
         note = ", ".join(filter(None, (said["hints"].get(question.kind, question.hint), unit)))
+    key = question.key or question.id
+    number = (
+        "" if key == f"q{question.number}" else said["notebook"]["question"].format(prefix, question.number)
+    )
+    note = f"{said['sheet']['colon']} ".join(filter(None, (number, note)))
     return f"  # {note}" if note else ""

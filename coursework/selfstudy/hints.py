@@ -13,6 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from coursework.course.answer_keys import answer_keys
 from coursework.language.words import is_whole, words
 from coursework.markup.formula_tree import tokens
 from coursework.quantities.formula_latex import Told, formula_latex, kind_of, number_latex
@@ -46,7 +47,8 @@ def quantity_of(variant: Variant, name: str) -> str:
     """
     by_part = {p.id: p.quantity for p in variant.parts}
     names = {**{q: q for q in variant.walk if q not in variant.given}, **by_part}
-    expect(variant.lang, "question", name, names)
+    if not isinstance(name, str) or name not in names:
+        expect(variant.lang, "question", name, tuple(answer_keys(variant.parts).values()))
     return names[name]
 
 
@@ -67,7 +69,7 @@ def steps(
         return (_look_again(variant, asked),)
     all_steps = (
         _depends(variant, quantity, call),
-        _words(variant, quantity),
+        words_of(variant, quantity),
         _formula(variant, quantity, {}),
         _formula(variant, quantity, {n: v for n, v in {**found, **variant.given}.items() if n != quantity}),
     )
@@ -135,8 +137,8 @@ def _given(variant: Variant, name: str) -> str:
     return f"${given_formula(given)}$" if given.is_number else given_words(given, variant.lang)
 
 
-def _words(variant: Variant, quantity: str) -> str:
-    """The solution's words before its step, where they hold no computed number."""
+def words_of(variant: Variant, quantity: str) -> str:
+    """The solution's words before the step of a quantity, where they hold no computed number."""
     section = variant.solution_text.sections.get(quantity)
     if section is None or not section.text:
         return ""
@@ -229,6 +231,11 @@ def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
     if not formula or formula == symbol or _is_value(formula) or not _names_something(plain):
         return ""
     return f"$${symbol} = {formula}$$"
+
+
+def formula(variant: Variant, quantity: str) -> str:
+    """The formula of a quantity in symbols alone, as Markdown; empty where words say it."""
+    return _formula(variant, quantity, {})
 
 
 def _is_value(latex: str) -> bool:

@@ -31,12 +31,11 @@ class Curves(NamedTuple):
     @property
     def plain(self) -> str:
         """What it shows, for who does not see it."""
-        return f"{', '.join(p.id for p in self.parts)} / {self.driver}"
+        return f"{', '.join(a.label for a in self.plot.panels)} / {self.driver}"
 
 
-def usual_parts(variant: Variant) -> tuple[Part, ...]:
-    """The parts that are plotted unless some are named: first those of which something is predicted."""
-    parts = predictions.moving(variant)
+def usual_parts(variant: Variant, parts: Sequence[Part]) -> tuple[Part, ...]:
+    """Those of some parts that are plotted unless some are named: first those of which something is predicted."""
     first = [p.quantity for p in predictions.over_the_cycle(variant)]
     wanted = sorted(parts, key=lambda p: p.quantity not in first)[:PANELS]
     return tuple(p for p in parts if p in wanted)

@@ -8,13 +8,15 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coursework.course.answer_keys import answer_keys
 from coursework.errors import CourseworkError
 from coursework.language.numbers import plain, with_unit
 from coursework.language.words import words
@@ -35,17 +37,19 @@ OVER_THE_CYCLE = 3  #: predictions before the plots
 _SAMPLE = range(24)
 _FEW = 3  #: variants of the sample that must differ, for a question to be one
 _RATES = ("rad/s", "mm/s")
-_PEAKS = ("mm", "deg", "N", "N*m", "1")  #: units of what has a largest value worth knowing
+_PER_SECOND = (*_RATES, "rad/s^2", "mm/s^2")
+_PEAKS = ("mm", "deg", "N", "N*m")  #: units of what has a largest value worth knowing
+_OF_BODIES = (*_PEAKS, *_PER_SECOND)  #: units of what a body or a point has
 NEAR = 15.0  #: degrees of the driver, for where a curve is highest
 INSTANTS = 721
+_UNBOUNDED = 30.0  #: times the median size over a turn
 
 
 @dataclass(frozen=True)
 class Prediction:
     """Something to say beforehand about a quantity.
 
-    ``kind`` is ``sign``, ``quadrant``, ``compare`` (with the given quantity ``other``), ``guess`` (a whole
-    number or a case), or over the cycle ``zeros`` (how often it changes its sign) or ``highest`` (at which angle of the driver).
+    ``kind`` is ``sign``, ``quadrant``, ``compare`` (with the given quantity ``other``), ``guess`` (a case), or over the cycle ``zeros`` (how often it changes its sign) or ``highest`` (at which angle of the driver).
     """
 
     id: str
@@ -69,8 +73,14 @@ class Compared:
 
 
 def before_answers(variant: Variant) -> tuple[Prediction, ...]:
-    """What to predict before any computation, a part each, evenly over the parts."""
+    """What to predict before any computation, a part each, evenly over the parts.
+
+    Only of what a body or a point has (:func:`is_of_the_mechanism`). A question itself is asked beforehand where it is a choice
+    that differs among variants: one of them, the last, which says most of the whole.
+    """
     found = [p for part in variant.parts if (p := _of_part(variant.exercise, part)) is not None]
+    guesses = [p for p in found if p.kind == "guess"]
+    found = [p for p in found if p not in guesses[:-1]]
     if len(found) <= MOST:
         return tuple(found)
     step = (len(found) - 1) / (MOST - 1)
@@ -78,15 +88,20 @@ def before_answers(variant: Variant) -> tuple[Prediction, ...]:
 
 
 def _of_part(exercise: CourseExercise, part: Part) -> Prediction | None:
-    if part.sort.prediction in ("quadrant", "guess"):
-        return Prediction(part.id, part.quantity, part.sort.prediction, choices=part.choices)
-    if part.sort.prediction != "size" or not exercise.folder.has_solutions:
+    if not exercise.folder.has_solutions:
         return None
-    values = _sample(exercise).get(part.quantity)
-    if values is None:
+    if part.sort.prediction == "guess":
+        differs = part.choices and _differs_among(exercise, part.id, part.quantity)
+        return Prediction(part.id, part.quantity, "guess", choices=part.choices) if differs else None
+    if part.sort.prediction == "quadrant":
+        return Prediction(part.id, part.quantity, "quadrant")
+    if not is_of_the_mechanism(exercise, part):
         return None
+    values = _sample(exercise)[part.quantity]
     if _differ(values > 0, values):
         return Prediction(part.id, part.quantity, "sign")
+    if not is_seen(exercise, part):
+        return None
     others = {
         name: _sample(exercise)[name]
         for name, spec in exercise.spec.given.items()
@@ -95,6 +110,51 @@ def _of_part(exercise: CourseExercise, part: Part) -> Prediction | None:
     }
     fair = {n: abs(np.mean(values > v) - 0.5) for n, v in others.items() if _differ(values > v, values)}
     return Prediction(part.id, part.quantity, "compare", min(fair, key=fair.__getitem__)) if fair else None
+
+
+def is_of_the_mechanism(exercise: CourseExercise, part: Part) -> bool:
+    """Whether the number that a part asks is one that a body or a point has.
+
+    A length, an angle, a velocity, an acceleration or an effort: no ratio, no area, and no coefficient, which is a letter
+    without an index. Not a length on paper either: what is drawn to a scale of velocities hangs on them, a length does not.
+    """
+    if part.sort.prediction != "size" or part.unit not in _OF_BODIES or len(part.quantity) == 1:
+        return False
+    return not (part.unit == "mm" and _hangs_on(exercise, part, _PER_SECOND))
+
+
+def is_seen(exercise: CourseExercise, part: Part) -> bool:
+    """Whether the figure or the reason tells which of this number and another is larger: of a length that stands in the
+    figure, since it moves with the driver, and of an effort."""
+    driver = exercise.spec.driver
+    if part.unit != "mm":
+        return part.unit in ("N", "N*m")
+    return (
+        driver is not None
+        and exercise.spec.figure is not None
+        and _hangs_on(exercise, part, (), driver.angle)
+    )
+
+
+def _hangs_on(exercise: CourseExercise, part: Part, units: Collection[str], name: str = "") -> bool:
+    """Whether a quantity is computed from a given one of this name, or of these units."""
+    graph, given = exercise.solution.graph.textbook, exercise.spec.given
+    known = [
+        n for n, spec in given.items() if (spec.unit in units or n == name) and n in exercise.quantity_names
+    ]
+    return part.quantity in known or part.quantity in graph.descendants(tuple(known))
+
+
+@lru_cache(maxsize=256)
+def _differs_among(exercise: CourseExercise, part: str, quantity: str) -> bool:
+    """Whether the case of a choice that every variant asks differs enough among some variants."""
+    cases = []
+    for variant in exercise.variants(_SAMPLE):
+        if part not in variant.part_ids:
+            return False
+        with suppress(CourseworkError):
+            cases.append(str(variant.quantities([quantity])[quantity]))
+    return len(cases) - max(map(cases.count, cases), default=0) >= _FEW
 
 
 def _differ(holds: np.ndarray, values: np.ndarray) -> bool:
@@ -135,16 +195,40 @@ def over_the_cycle(variant: Variant) -> tuple[Prediction, ...]:
     """What to predict before the plots: how often a rate changes its sign, where a length or an effort is largest."""
     rates, others = [], []
     for part in moving(variant):
-        if part.sort.prediction == "size" and part.unit in _RATES:
+        if not is_of_the_mechanism(variant.exercise, part):
+            continue
+        if part.unit in _RATES:
             # The length of a vector never changes its sign: there is nothing to say of it.
             values = _sample(variant.exercise)[part.quantity]
             if not _differ(values > 0, values):
                 continue
             rates.append(Prediction(f"zeros_{part.id}", part.quantity, "zeros"))
-        elif part.sort.prediction == "size" and part.unit in _PEAKS:
+        elif part.unit in _PEAKS and _is_bounded(variant.exercise, part.quantity):
             others.append(Prediction(f"highest_{part.id}", part.quantity, "highest"))
     chosen = [*others[:1], *rates]
     return tuple(chosen[:OVER_THE_CYCLE])
+
+
+def prediction_keys(variant: Variant) -> dict[str, str]:
+    """What each prediction is written under, by its id: as the answer to the same question, or ``p1``, ``p2``… over the cycle."""
+    keys = answer_keys(variant.parts)
+    before = {p.id: keys[p.id] for p in before_answers(variant)}
+    return before | {p.id: f"p{k}" for k, p in enumerate(over_the_cycle(variant), start=1)}
+
+
+@lru_cache(maxsize=256)
+def _is_bounded(exercise: CourseExercise, quantity: str) -> bool:
+    """Whether a quantity stays finite over the turn, in a few variants: what grows beyond all bounds at a dead point is nowhere
+    largest."""
+    for variant in exercise.variants(range(_FEW)):
+        try:
+            sizes = np.abs(curve(variant, quantity)[1])
+        except CourseworkError:
+            return False
+        sizes = sizes[np.isfinite(sizes)]
+        if not sizes.size or sizes.max() > _UNBOUNDED * np.median(sizes):
+            return False
+    return True
 
 
 # ------------------------------------------------------------------------ asked
@@ -213,8 +297,6 @@ def compared(
 
 def _read_guess(variant: Variant, prediction: Prediction, text: Any) -> tuple[Any, ...] | None:
     part = next(p for p in variant.parts if p.id == prediction.id)
-    if part.sort.family == "integer" and (whole := wording.count(text)) is not None:
-        return (whole,)
     reading = read(variant, part, text)
     return reading.values if reading.status == "read" else None
 
@@ -252,10 +334,8 @@ def _compare(variant: Variant, prediction: Prediction, value: Any, said: Any) ->
 
 
 def _guess(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:
-    is_choice = bool(prediction.choices)
     part = next(p for p in variant.parts if p.id == prediction.id)
-    found = variant.called(part, str(value)) if is_choice else plain(int(value))
-    return found, value in (said or ())
+    return variant.called(part, str(value)), value in (said or ())
 
 
 def _zeros(variant: Variant, prediction: Prediction, value: Any, said: Any) -> Outcome:

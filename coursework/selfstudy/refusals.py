@@ -58,16 +58,16 @@ def by_name(lang: str, call: str, told: object) -> Mapping[str, Any]:
     return told
 
 
-def counted(lang: str, why: str, told: object) -> int:
-    """A whole number from 1 on.
+def counted(lang: str, why: str, told: object, most: int | None = None) -> int:
+    """A whole number from 1 on, up to ``most`` where that is told.
 
     Raises
     ------
     BadInput
         Anything else.
     """
-    if isinstance(told, bool) or not isinstance(told, Integral) or told < 1:
-        raise refused(lang, why, found=repr(told))
+    if isinstance(told, bool) or not isinstance(told, Integral) or told < 1 or (most and int(told) > most):
+        raise refused(lang, why, found=repr(told), most=most)
     return int(told)
 
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping
+from datetime import date
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
+from coursework.course.answer_keys import answer_keys
 from coursework.course.course import Course
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, NoSolution, Starved, WrongValue
@@ -20,12 +22,17 @@ from coursework.rendering.displayed import DisplayedAnimation
 from coursework.rendering.views import offered, points_number
 from coursework.selfstudy import hints, predictions, refusals
 from coursework.selfstudy import word_answers as wording
+from coursework.selfstudy.advice import next_step, told_advice, told_skills, told_standings
 from coursework.selfstudy.answers import is_open, judged_out_of, quoted, same_as_another, sentence_of, sign_of
+from coursework.selfstudy.examples import LEVELS, blanks, example_variant, has_example, told_steps
 from coursework.selfstudy.plotting import curves, usual_parts
 from coursework.selfstudy.predictions import Prediction
+from coursework.selfstudy.progress import EXAMPLE, HINT, REVEAL
+from coursework.selfstudy.recording import mark_what_came_unmarked, marked_answers
 from coursework.selfstudy.right_answers import Own, right_ones
 from coursework.selfstudy.sheet import fresh_variants
-from coursework.selfstudy.store import Kept, is_blank
+from coursework.selfstudy.store import Clock, Kept, ProgressFile, is_blank, now
+from coursework.selfstudy.theory import theory, without_theory
 from coursework.sheets.handout import handout
 
 if TYPE_CHECKING:
@@ -41,6 +48,7 @@ def open_session(
     named: str | Path | None,
     version: int | None,
     folder: str | Path,
+    clock: Clock = now,
 ) -> StudySession:
     """A study session of an exercise of an open course; ``named`` is how the course was asked for.
 
@@ -59,8 +67,7 @@ def open_session(
         again = f"coursework {own}notebook {exercise} --seed {seed} --lang {lang} --out DIR"
         told = {"exercise": exercise, "version": version, "installed": one.version, "command": again}
         raise refusals.refused(lang, "version", **told)
-    kept = Kept(Path(folder) / f"{exercise}.study.json", exercise)
-    return StudySession(one.variant(seed, lang), kept)
+    return StudySession(one.variant(seed, lang), Kept(ProgressFile(Path(folder), clock), exercise))
 
 
 def course_folder(course: str | Path | None, lang: str) -> Path | None:
@@ -87,9 +94,12 @@ def course_folder(course: str | Path | None, lang: str) -> Path | None:
 class StudySession:
     """One variant to be worked on: predictions, answers, feedback, hints, plots.
 
-    What is written is kept by variant in a file beside the notebook; nothing there is ever erased. Each method
-    gives what a notebook's cell shows; ``print`` gives it as plain text.
+    What is written and done is kept in a file beside the notebook, for all exercises; nothing there is ever erased. Each
+    method gives what a notebook's cell shows; ``print`` gives it as plain text.
     """
+
+    _called = ""  #: what the notebook calls this session, where it is neither the first nor another variant
+    _opening = ""  #: why it is proposed
 
     def __init__(self, variant: Variant, kept: Kept, base: int | None = None):
         self.variant = variant
@@ -117,15 +127,19 @@ class StudySession:
             unit = said["with_unit"] if q.asks_unit else q.unit
             prompt = " ".join(q.prompt.split())
             cases = "".join(f"\n   - `{letter}`{colon} {label}" for letter, label in offered(q))
-            questions.append(f"{q.number}. `{q.id}`{colon} {prompt}{f' ({unit})' if unit else ''}{cases}")
+            questions.append(f"{q.number}. `{q.key}`{colon} {prompt}{f' ({unit})' if unit else ''}{cases}")
         pieces.append("\n".join(questions))
         return self._shown(*pieces)
 
+    def _cover(self) -> Shown:
+        """What a session shows of itself: why it is proposed, where it is, else its statement."""
+        return self._shown(self._opening) if self._opening else self.statement()
+
     def _ipython_display_(self) -> None:
-        self.statement()._ipython_display_()
+        self._cover()._ipython_display_()
 
     def __str__(self) -> str:
-        return str(self.statement())
+        return str(self._cover())
 
     __repr__ = __str__
 
@@ -170,6 +184,11 @@ class StudySession:
         return {p.id: p for p in both}
 
     @property
+    def _asked_under(self) -> dict[str, str]:
+        """What each prediction is written under, by its id."""
+        return predictions.prediction_keys(self.variant)
+
+    @property
     def predictions(self) -> dict[str, Any]:
         """What was predicted for this variant."""
         return self._kept.of(self.variant.seed, "predictions")
@@ -189,18 +208,21 @@ class StudySession:
         asked = self._asked
         predicted = self._told("predict", "prediction", predicted, named, asked)
         if not predicted:
-            example = f'`{self._name}.predict({{"{next(iter(asked))}": "…"}})`' if asked else ""
-            return self._shown(self._said["which_predictions"].format(names=_names(asked), call=example))
+            under = tuple(self._asked_under.values())
+            example = f'`{self._name}.predict({{"{under[0]}": "…"}})`' if under else ""
+            return self._shown(self._said["which_predictions"].format(names=_names(under), call=example))
         self._kept.add(self.variant.seed, "predictions", predicted)
         now = self.predictions
         made = [n for n in predicted if not is_blank(now.get(n))]
         left = [n for n in predicted if is_blank(now.get(n))]
         lines = [self._said["kept_predictions"].format(made=len(made), of=len(predicted))]
-        lines += [self._left(left)] if left else []
+        lines += [self._left(self._asked_under[n] for n in left)] if left else []
         unread = [n for n in made if not predictions.is_understood(self.variant, asked[n], now[n])]
         lines += [
             self._said["not_understood"].format(
-                name=n, said=quoted(now[n]), options=predictions.options(self.variant, asked[n])
+                name=self._asked_under[n],
+                said=quoted(now[n]),
+                options=predictions.options(self.variant, asked[n]),
             )
             for n in unread
         ]
@@ -211,19 +233,36 @@ class StudySession:
     ) -> dict[str, Any]:
         """What a method is told, by the names that it knows: a dictionary, or names of its own."""
         found: dict[str, Any] = {}
+        under = self._asked_under if kind == "prediction" else self._keys
+        by_key = {key: name for name, key in under.items()}
         given = refusals.by_name(self.variant.lang, f"{self._name}.{method}", {} if told is None else told)
         for name, value in (*given.items(), *named.items()):
             if name == "student" and kind == "question":
                 continue
-            name = self._named(name)
-            refusals.expect(self.variant.lang, kind, name, known)
+            name = by_key.get(name, name) if isinstance(name, str) else name
+            name = name if isinstance(name, str) and name in known else self._named(name)
+            if self._is_passed_over(kind, name):
+                continue
+            if not isinstance(name, str) or name not in known:
+                refusals.expect(self.variant.lang, kind, name, tuple(by_key))
             if is_blank(found.get(name)):
                 found[name] = wording.unwrapped(value)
         return found
 
+    def _is_passed_over(self, kind: str, name: Any) -> bool:
+        """Whether a name is of this exercise and not asked here: theory in another variant, what an older notebook predicts."""
+        ids = {p.id for p in self.variant.exercise.spec.parts}
+        if kind == "question":
+            return name in theory(self.variant.exercise) and name not in self.variant.part_ids
+        return (
+            isinstance(name, str)
+            and name not in self._asked
+            and name.removeprefix("zeros_").removeprefix("highest_") in ids
+        )
+
     def _named(self, question: Any) -> Any:
         """A question's name, where its number is told: ``5``, ``"5"``, ``"question 5"``."""
-        ids = self.variant.part_ids
+        ids = self._numbered
         number = question if isinstance(question, int) and not isinstance(question, bool) else None
         if isinstance(question, str) and question not in ids:
             said = re.fullmatch(
@@ -231,6 +270,16 @@ class StudySession:
             )
             number = int(said[1]) if said else None
         return ids[number - 1] if number is not None and 1 <= number <= len(ids) else question
+
+    @property
+    def _keys(self) -> Mapping[str, str]:
+        """What each answer is written under, by the id of its question."""
+        return answer_keys(self.variant.parts)
+
+    @property
+    def _numbered(self) -> tuple[str, ...]:
+        """The questions in the order of their numbers."""
+        return self.variant.part_ids
 
     def _left(self, names: Iterable[str]) -> str:
         return self._said["left"].format(names=_names(names))
@@ -286,14 +335,15 @@ class StudySession:
             self._kept.add(self.variant.seed, "answers", given)  # nothing is lost by a fault of the course
             raise
         copied, theirs = same_as_another(self.variant, self._kept, given, marking)
-        self._kept.add(self.variant.seed, "answers", {n: a for n, a in given.items() if n not in theirs})
+        self._keep({n: a for n, a in now.items() if n not in theirs}, marking)
         lines, unanswered = [], []
-        for number, mark in enumerate(marking.values(), start=1):
+        for mark in marking.values():
+            number = self._numbered.index(mark.part) + 1
             if mark.verdict == "missing" or (mark.verdict == "to_mark" and is_blank(mark.answer)):
                 unanswered.append(mark.part)
             else:
                 said = sentence_of(self.variant, mark, self._call("reveal", mark.part))
-                lines.append(f"- {sign_of(mark)} **{number}.** `{mark.part}` — {said}")
+                lines.append(f"- {sign_of(mark)} **{number}.** `{self._keys[mark.part]}` — {said}")
         if copied is not None:
             lines.insert(0, self._said["copied"].format(seed=copied) + "\n")
         right = {m.part for m in marking.values() if m.verdict == "correct"}
@@ -302,8 +352,10 @@ class StudySession:
             out_of=points_number(judged_out_of(self.variant, marking), self.variant.lang),
         )
         before = [n for n in now if (named or answers is not None) and is_blank(given.get(n))]
-        after = [self._left(unanswered)] if unanswered else []
-        after += [self._said["from_before"].format(names=_names(before))] if before else []
+        after = [self._left(self._keys[n] for n in unanswered)] if unanswered else []
+        after += (
+            [self._said["from_before"].format(names=_names(self._keys[n] for n in before))] if before else []
+        )
         first = next(
             (n for n, m in marking.items() if m.verdict not in ("correct", "missing", "to_mark")), ""
         )
@@ -317,6 +369,11 @@ class StudySession:
             self._trouble,
         )
 
+    def _keep(self, answers: Mapping[str, Any], marking: Marking) -> None:
+        """Keep answers with what became of them."""
+        before = self._kept.happened(self.variant.seed)
+        self._kept.note(self.variant.seed, marked_answers(self.variant, answers, marking, before))
+
     @property
     def _own(self) -> dict[str, Own]:
         """What the student has right, by quantity."""
@@ -329,7 +386,7 @@ class StudySession:
     # -------------------------------------------------------------------- hints
 
     def _which(self, method: str, sentence: str) -> str:
-        names = _names(self.variant.part_ids)
+        names = _names(self._keys.values())
         return sentence.format(names=names, call=self._call(method, self.variant.part_ids[0]))
 
     def hint(self, question: str | int = "", step: int | None = None) -> Shown:
@@ -359,6 +416,7 @@ class StudySession:
         last = step if step is not None else self._hints.get(name, 0) + 1
         last = min(max(last, 1), len(texts))
         self._hints[name] = last
+        self._note(HINT, name, step=last)
         said = self._said["hint"]
         pieces = [
             f"**{said['step'].format(number=k, of=len(texts))}** {text}"
@@ -381,14 +439,24 @@ class StudySession:
             return self._shown(missing)
         if question == "":
             return self._shown(self._which("reveal", self._said["which_reveal"]))
-        return self._shown(hints.revealed_text(self.variant, self._named(question)))
+        name = self._named(question)
+        told = hints.revealed_text(self.variant, name)
+        self._note(REVEAL, name)
+        return self._shown(told, self._trouble)
+
+    def _note(self, what: str, part: Any, **more: Any) -> None:
+        """Keep that something was shown; once."""
+        told = {"part": str(part), "what": what, **more}
+        if not any(told.items() <= one.items() for one in self._kept.happened(self.variant.seed)):
+            self._kept.note(self.variant.seed, [told])
 
     # -------------------------------------------------------------------- plots
 
     def plot(self, *names: str | int) -> Shown:
         """Quantities over a turn of the driver, the student's own answers marked; then the predictions about them.
 
-        Without names, the first of those asked; any that moves may be named.
+        A curve tells the answer at the position of the statement: it is drawn once the question is answered right, or its solution was
+        shown. Without names, the first of those asked; any that moves may be named.
 
         Raises
         ------
@@ -402,9 +470,17 @@ class StudySession:
             return self._shown(self._said["no_plot"])
         called = [self._named(name) for name in names]
         for name in called:
-            refusals.expect(self.variant.lang, "curve", name, parts)
-        chosen = [parts[name] for name in called] or list(usual_parts(self.variant))
-        own, symbol = self._own, self.variant.exercise.symbol
+            if not isinstance(name, str) or name not in parts:
+                refusals.expect(self.variant.lang, "curve", name, [self._keys[n] for n in parts])
+        own = self._own
+        wanted = [parts[name] for name in called] or list(parts.values())
+        free = [p for p in wanted if p.quantity in own or self._is_revealed(p)]
+        held = [self._keys[p.id] for p in wanted if p not in free]
+        not_yet = self._said["not_yet"].format(names=_names(held)) if held else ""
+        if not free:
+            return self._shown(not_yet, self._trouble)
+        chosen = free if called else list(usual_parts(self.variant, free))
+        symbol = self.variant.exercise.symbol
         drawn = curves(self.variant, chosen, self.answers, own)
         said = self._said["plot"].format(list=_symbols(chosen, symbol), driver=f"${symbol(drawn.driver)}$")
         notes = [
@@ -412,16 +488,23 @@ class StudySession:
             for note, found in (("beside_curve", drawn.beside), ("outside", drawn.outside))
             if found
         ]
-        others = [n for n in parts if parts[n] not in chosen]
+        others = [] if called else [p.id for p in free if p not in chosen]
         more = (
-            self._said["more_plots"].format(names=_names(others), call=self._call("plot", others[0]))
+            self._said["more_plots"].format(
+                names=_names(self._keys[n] for n in others), call=self._call("plot", others[0])
+            )
             if others
             else ""
         )
-        asked = [p.id for p in predictions.over_the_cycle(self.variant)]
-        return self._shown(
-            said, Picture(drawn.plot.svg(), drawn.plain), *notes, more, self._compared(asked, own)
-        )
+        seen = {p.quantity for p in chosen}
+        asked = [p.id for p in predictions.over_the_cycle(self.variant) if p.quantity in seen]
+        picture = Picture(drawn.plot.svg(), drawn.plain)
+        return self._shown(said, picture, *notes, more, not_yet, self._compared(asked, own))
+
+    def _is_revealed(self, part: Part) -> bool:
+        """Whether the solution of a question has been shown."""
+        told = {e["part"] for e in self._kept.happened(self.variant.seed) if e["what"] == REVEAL}
+        return not told.isdisjoint((part.id, part.quantity))
 
     # ----------------------------------------------------------- other variants
 
@@ -441,7 +524,7 @@ class StudySession:
         """
         if number is not None:
             number = refusals.counted(self.variant.lang, "fresh", number)
-        begun = {seed for seed in self._kept.seeds if self._kept.of(seed, "answers")}
+        begun = {s for s in self._kept.seeds if self._kept.of(s, "answers") and not self._is_example(s)}
         # One of so many is not begun.
         count = number or len((begun | {self.variant.seed}) - {self._base}) + 1
         try:
@@ -453,18 +536,87 @@ class StudySession:
         variant = left[0] if number is None else variants[-1]
         return StudySession(variant, self._kept, self._base)
 
-    def progress(self) -> Shown:
-        """The variants begun, and what is right in each."""
+    def _is_example(self, seed: int) -> bool:
+        return any(e["what"] == EXAMPLE for e in self._kept.happened(seed))
+
+    def example(self, level: int | None = None) -> ExampleSession | Shown:
+        """The worked solution of another variant, with blanks to fill: at level 1 the last question, at level 4 all; without a
+        level, the one after the last that was seen.
+
+        Raises
+        ------
+        BadInput
+            No such level.
+        Starved
+            The exercise has no other variant.
+        """
+        seen = [
+            int(e.get("step", 0))
+            for e in self._kept.progress.of(self.variant.exercise.name)
+            if e["what"] == EXAMPLE
+        ]
+        last = min(max(seen, default=0) + 1, LEVELS)
+        level = last if level is None else refusals.counted(self.variant.lang, "level", level, LEVELS)
         if missing := self._missing():
             return self._shown(missing)
-        lines = []
+        if not has_example(self.variant.exercise.variant(self._base, self.variant.lang)):
+            return self._shown(self._said["example"]["none"])
+        try:
+            variant = example_variant(
+                self.variant.exercise.variant(self._base, self.variant.lang), self._base, level
+            )
+        except Starved as fault:
+            raise Starved(self._said["refused"]["starved"].format(number=1)) from fault
+        return ExampleSession(variant, self._kept, self._base, level)
+
+    def next(self) -> StudySession:
+        """What to do next, in this course: what was missed and comes again today, what cost answers before, or what is new; on a
+        variant not begun. It says why; its statement is asked for."""
+        course = self._course
+        self._kept.file.refresh()
+        mark_what_came_unmarked(self._course, self._kept.file)
+        advice = next_step(course, self._kept.progress, self._today)
+        assert advice is not None  # the course has this exercise
+        kept = self._kept.beside(advice.exercise)
+        one = StudySession(course[advice.exercise].variant(self._base, self.variant.lang), kept)
+        begun = any(e["what"] != EXAMPLE for e in kept.progress.of(advice.exercise))
+        found = one.fresh() if begun else one
+        found._called = "following"
+        begin = self._said["next"]["begin"].format(call=f"`{found._called}.statement()`")
+        found._opening = f"{told_advice(course, advice, self.variant.lang)} {begin}"
+        return found
+
+    @property
+    def _course(self) -> Course[Any]:
+        return cast("Course[Any]", self.variant.exercise.course)
+
+    @property
+    def _today(self) -> date:
+        return self._kept.file.clock().date()
+
+    def progress(self) -> Shown:
+        """The variants begun, and what is right in each; then the other exercises, what has cost answers, and what came out since."""
+        if missing := self._missing():
+            return self._shown(missing)
+        self._kept.file.refresh()
+        mark_what_came_unmarked(self._course, self._kept.file)
+        lines, lang = [], self.variant.lang
         for seed in dict.fromkeys((self._base, *self._kept.seeds)):
-            variant = self.variant.exercise.variant(seed, self.variant.lang)
+            if self._is_example(seed):
+                continue
+            variant = self.variant.exercise.variant(seed, lang)
+            variant = variant if seed == self._base else without_theory(variant)
             marking = grade(variant, self._asked_of(variant))
             right = sum(m.verdict == "correct" for m in marking.values())
             judged = sum(not is_open(variant, m) for m in marking.values())
-            lines.append("- " + self._said["progress"].format(seed=seed, right=right, of=judged))
-        return self._shown("\n".join(lines), self._trouble)
+            lines.append("- " + self._said["variant_line"].format(seed=seed, right=right, of=judged))
+        course, done = self._course, self._kept.progress
+        return self._shown(
+            "\n".join(lines),
+            told_standings(course, done, self._today, lang),
+            told_skills(course, done, lang),
+            self._trouble,
+        )
 
     # ------------------------------------------------------------------- common
 
@@ -477,12 +629,12 @@ class StudySession:
 
     def _call(self, method: str, name: str) -> str:
         """How the notebook calls a method, as code in Markdown."""
-        return f'`{self._name}.{method}("{name}")`'
+        return f'`{self._name}.{method}("{self._keys.get(name, name)}")`'
 
     @property
     def _name(self) -> str:
         """What the notebook calls this session."""
-        return "study" if self.variant.seed == self._base else "again"
+        return self._called or ("study" if self.variant.seed == self._base else "again")
 
     def _missing(self) -> str:
         """What to say where the course folder has no solution of this exercise; empty when it has one."""
@@ -496,10 +648,45 @@ class StudySession:
     def _trouble(self) -> str:
         """What to say of the file of answers, if anything."""
         texts = self._said["trouble"]
-        return texts[self._kept.trouble].format(file=self._kept.path.name) if self._kept.trouble else ""
+        return texts[self._kept.trouble].format(file=self._kept.file.troubled) if self._kept.trouble else ""
 
     def _shown(self, *pieces: str | Picture) -> Shown:
         return Shown(self.variant.lang, *pieces)
+
+
+class ExampleSession(StudySession):
+    """A worked solution with blanks; each is answered, hinted and revealed as a question is."""
+
+    _called = "example"
+
+    def __init__(self, variant: Variant, kept: Kept, base: int, level: int):
+        self._whole, self.level = variant, level
+        super().__init__(variant.asking(blanks(variant, level)), kept, base)
+        self._note(EXAMPLE, "", step=level)
+
+    @property
+    def _keys(self) -> Mapping[str, str]:
+        keys = answer_keys(self._whole.parts)
+        return {name: keys[name] for name in self.variant.part_ids}
+
+    @property
+    def _numbered(self) -> tuple[str, ...]:
+        return self._whole.part_ids
+
+    def statement(self) -> Shown:
+        """The data, then the solution with its blanks."""
+        said = self._said["example"]
+        head = said["head"].format(title=f"**{self._whole.text.title}**", level=self.level, of=LEVELS)
+        sheet = handout(self._whole)
+        given = [f"- {hints._given(self._whole, g.name)}" for g in sheet.given]
+        pieces: list[str | Picture] = [head]
+        if sheet.figure is not None:
+            pieces.append(Picture(sheet.figure.outlined_svg(), sheet.figure_alt))
+        pieces.append("\n".join(given))
+        pieces.append(told_steps(self._whole, self.level, self.variant.parts, self._keys, said))
+        fill = ", ".join(f'"{key}": ""' for key in self._keys.values())
+        pieces.append(said["fill"].format(call=f"`{self._name}.check({{{fill}}})`"))
+        return self._shown(*pieces, self._trouble)
 
 
 def _symbols(parts: Iterable[Part], symbol: Callable[[str], str]) -> str:

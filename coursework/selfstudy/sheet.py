@@ -8,9 +8,13 @@ from coursework.course.builtin import builtin_root
 from coursework.errors import Starved
 from coursework.making.issuing import distinct_variants
 from coursework.selfstudy import predictions
+from coursework.selfstudy.examples import has_example
 from coursework.selfstudy.predictions import Prediction
+from coursework.selfstudy.store import FILE
+from coursework.selfstudy.theory import theory, without_theory
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Ask, Question, StudySheet
+from coursework.system.distribution import DISTRIBUTION
 
 if TYPE_CHECKING:
     from coursework.course.exercise import CourseExercise
@@ -23,18 +27,23 @@ def study_sheet(variant: Variant, student: str = "") -> StudySheet:
     own = exercise.folder.root != builtin_root().resolve()
     return StudySheet(
         handout=handout(variant, student),
-        file=f"{exercise.name}.study.json",
+        file=FILE,
+        package=DISTRIBUTION,
+        install=exercise.folder.install,
         course=exercise.folder.root.name if own else "",
         before=tuple(_ask(variant, p) for p in predictions.before_answers(variant)),
         cycle=tuple(_ask(variant, p) for p in predictions.over_the_cycle(variant)),
         moves=bool(predictions.moving(variant)),
         animates=exercise.is_animated,
         questions=_fresh_questions(variant),
+        theory=theory(exercise),
+        has_example=has_example(variant),
     )
 
 
 def fresh_variants(exercise: CourseExercise, seed: int, count: int, lang: str) -> list[Variant]:
-    """The first variants after that of a seed that are worth issuing, all different from it and each other.
+    """The first variants after that of a seed that are worth issuing, all different from it and each other; they ask no
+    theory.
 
     Raises
     ------
@@ -43,7 +52,7 @@ def fresh_variants(exercise: CourseExercise, seed: int, count: int, lang: str) -
     """
     found = distinct_variants(exercise, seed + 1, count + 1, lang)
     base = exercise.variant(seed, lang)
-    return [v for v in found if v.given != base.given][:count]
+    return [without_theory(v) for v in found if v.given != base.given][:count]
 
 
 def _fresh_questions(variant: Variant) -> tuple[Question, ...]:
@@ -55,5 +64,7 @@ def _fresh_questions(variant: Variant) -> tuple[Question, ...]:
 
 def _ask(variant: Variant, prediction: Prediction) -> Ask:
     return Ask(
-        prediction.id, predictions.asked(variant, prediction), predictions.options(variant, prediction)
+        predictions.prediction_keys(variant)[prediction.id],
+        predictions.asked(variant, prediction),
+        predictions.options(variant, prediction),
     )

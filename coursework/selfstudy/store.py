@@ -1,85 +1,212 @@
-"""What a student wrote, kept by variant in a small file beside the notebook."""
+"""What a student wrote and did, kept in one small file beside the notebooks, for all exercises."""
 
 from __future__ import annotations
 
 import itertools
 import json
+import os
 import re
+import time
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
+from coursework.selfstudy.progress import (
+    ANSWER,
+    PREDICTION,
+    Entry,
+    LaterVersion,
+    NotProgress,
+    Progress,
+    date_of,
+    entry,
+)
 
-class Kept:
-    """Answers and predictions by seed, in ``EXERCISE.study.json``.
+FILE = "progress.json"  #: of all the exercises of a folder
+EARLIER = ".study.json"  #: ending of the files of one exercise that earlier versions kept
 
-    A blank never takes the place of what was written before. ``trouble`` says why nothing is written, or why an
-    older file was set aside; it is empty when all is well. What a file holds beyond what is asked stays in it.
+Clock = Callable[[], datetime]
+
+_KINDS = {"answers": ANSWER, "predictions": PREDICTION}
+_WAIT, _STALE = 5.0, 30.0  #: seconds for another notebook to finish; age of a lock whose owner is gone
+
+
+def now() -> datetime:
+    return datetime.now(UTC)
+
+
+class ProgressFile:
+    """The progress of a folder, read when it is opened and again before it is written: of two notebooks open at once neither
+    loses what the other wrote.
+
+    ``trouble`` says why nothing is written, or why an older file was set aside; it is empty when all is well, and ``troubled`` is the
+    name of that file.
     """
 
-    def __init__(self, path: Path, exercise: str):
-        self.path = path
-        self.trouble = ""
-        self._content: dict[str, Any] = {"exercise": exercise, "variants": {}}
-        if path.exists():
-            self._read()
+    def __init__(self, folder: Path, clock: Clock = now):
+        self.path = folder / FILE
+        self.clock = clock
+        self.trouble = self.troubled = ""
+        self._is_kept = True
+        self.progress = self._read()
 
-    def _read(self) -> None:
+    def _read(self) -> Progress:
+        """What the file holds; one that cannot be read is set aside."""
         try:
-            content = json.loads(self.path.read_text("utf-8"))
+            return Progress.read(self.path.read_text("utf-8"))
+        except FileNotFoundError:
+            return Progress()
+        except LaterVersion:
+            self._is_kept = False
+            self._tell("later", self.path)
+        except (OSError, NotProgress, UnicodeDecodeError):
+            self.set_aside("damaged", self.path)
+        return Progress()
+
+    def refresh(self) -> None:
+        """Take in what another notebook has written since."""
+        if self._is_kept:
+            self.progress = self._read() | self.progress
+
+    def set_aside(self, why: str, path: Path) -> None:
+        """A file under a name that no older one has."""
+        names = (path.with_suffix(f".damaged{n or ''}.json") for n in itertools.count())
+        self._tell(why, path)
+        try:
+            path.replace(next(name for name in names if not name.exists()))
+        except OSError:
+            self._is_kept = path != self.path
+            self._tell("unwritable", path)
+
+    def _tell(self, why: str, path: Path) -> None:
+        self.trouble, self.troubled = why, path.name
+
+    def add(self, entries: Iterable[Entry]) -> None:
+        """Keep what happened."""
+        new = Progress(entries)
+        if not len(new):
+            return
+        if not self._is_kept:
+            self.progress |= new
+            return
+        try:
+            with _alone(self.path):
+                self.progress = self._read() | self.progress | new
+                part = self.path.with_suffix(".part")
+                part.write_text(self.progress.text(), "utf-8")
+                part.replace(self.path)
+        except OSError:
+            self.progress |= new
+            self._tell("unwritable", self.path)
+
+
+@contextmanager
+def _alone(path: Path) -> Iterator[None]:
+    """While nobody else writes a file, as far as everybody asks; a lock that is left behind by somebody is passed by."""
+    lock = path.with_suffix(".lock")
+    until = time.monotonic() + _WAIT
+    while True:
+        try:
+            os.close(os.open(lock, os.O_CREAT | os.O_EXCL | os.O_WRONLY))
+            break
+        except FileExistsError:
+            with suppress(OSError):
+                if time.time() - lock.stat().st_mtime > _STALE:
+                    lock.unlink()
+                    continue
+            if time.monotonic() > until:
+                break
+            time.sleep(0.02)
+    try:
+        yield
+    finally:
+        lock.unlink(missing_ok=True)
+
+
+class Kept:
+    """What is kept of one exercise: answers and predictions by seed, and all that happened.
+
+    A blank never takes the place of what was written before. What ``EXERCISE.study.json``, the file of an earlier version,
+    holds beside it is taken over once, with that file's date, and the file itself is left as it is.
+    """
+
+    def __init__(self, file: ProgressFile, exercise: str):
+        self.exercise, self.file = exercise, file
+        earlier = file.path.parent / f"{exercise}{EARLIER}"
+        if earlier.exists():
+            self.file.add(self._of_earlier(earlier))
+
+    def _of_earlier(self, path: Path) -> list[Entry]:
+        """What an earlier version kept, of which nothing is kept here yet; a file that cannot be read is set aside."""
+        try:
+            content = json.loads(path.read_text("utf-8"))
             variants = {
                 _seed(seed): {kind: dict(texts) for kind, texts in kinds.items()}
                 for seed, kinds in content["variants"].items()
             }
         except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
-            self._set_aside("damaged")
-            return
-        if content.get("exercise", self._content["exercise"]) != self._content["exercise"]:
-            self._set_aside("other")
-            return
-        self._content["variants"] = variants
+            self.file.set_aside("damaged", path)
+            return []
+        if content.get("exercise", self.exercise) != self.exercise:
+            self.file.set_aside("other", path)
+            return []
+        at = datetime.fromtimestamp(path.stat().st_mtime, UTC)
+        return [
+            entry(at, self.exercise, seed, str(name), _KINDS[kind], answer=text)
+            for seed, kinds in variants.items()
+            for kind, texts in kinds.items()
+            if kind in _KINDS
+            for name, text in texts.items()
+            if not is_blank(text) and str(name) not in self.of(seed, kind)
+        ]
 
-    def _set_aside(self, why: str) -> None:
-        """The file under a name that no older one has."""
-        names = (self.path.with_suffix(f".damaged{n or ''}.json") for n in itertools.count())
-        self.trouble = why
-        try:
-            self.path.replace(next(name for name in names if not name.exists()))
-        except OSError:
-            self.trouble = "unwritable"
+    def beside(self, exercise: str) -> Kept:
+        """What is kept of another exercise in the same file."""
+        return Kept(self.file, exercise)
+
+    @property
+    def progress(self) -> Progress:
+        """All that happened, of every exercise."""
+        return self.file.progress
+
+    @property
+    def trouble(self) -> str:
+        return self.file.trouble
 
     @property
     def seeds(self) -> tuple[int, ...]:
-        """The variants of which something is kept, in order."""
-        return tuple(sorted(int(seed) for seed in self._content["variants"]))
+        """The variants of which something was written, in order."""
+        written = (e for e in self.progress.of(self.exercise) if e["what"] in _KINDS.values())
+        return tuple(sorted({int(e["seed"]) for e in written}))
 
     def of(self, seed: int, kind: str) -> dict[str, Any]:
-        """What is kept of a variant: its ``answers`` or its ``predictions``."""
-        return dict(self._content["variants"].get(str(seed), {}).get(kind, {}))
+        """What was written last for a variant: its ``answers`` or its ``predictions``."""
+        return {e["part"]: e.get("answer") for e in self.happened(seed) if e["what"] == _KINDS[kind]}
+
+    def happened(self, seed: int) -> tuple[Entry, ...]:
+        """What happened with a variant, in order."""
+        return tuple(e for e in self.progress.of(self.exercise) if e["seed"] == seed)
 
     def add(self, seed: int, kind: str, texts: dict[str, Any]) -> None:
-        """Keep what is not blank."""
-        written = {name: text for name, text in texts.items() if not is_blank(text)}
+        """Keep what is not blank, and not what was written last."""
         known = self.of(seed, kind)
-        if all(known.get(name) == text for name, text in written.items()):
-            return
-        self._content["variants"].setdefault(str(seed), {})[kind] = {**known, **written}
-        self._write()
+        new = {n: t for n, t in texts.items() if not is_blank(t) and (n not in known or known[n] != t)}
+        self.note(seed, [{"part": n, "what": _KINDS[kind], "answer": t} for n, t in new.items()])
 
-    def _write(self) -> None:
-        part = self.path.with_suffix(".part")
-        text = json.dumps(self._content, ensure_ascii=False, indent=1, sort_keys=True, default=str) + "\n"
-        try:
-            part.write_text(text, "utf-8")
-            part.replace(self.path)
-        except OSError:
-            self.trouble = "unwritable"
+    def note(self, seed: int, happened: Iterable[dict[str, Any]]) -> None:
+        """Keep what happens now with a variant: after all that happened with it, whatever the clock says."""
+        before = self.happened(seed)
+        at = max([self.file.clock(), *(date_of(e) + timedelta(microseconds=1) for e in before[-1:])])
+        self.file.add([entry(at, self.exercise, seed, **each) for each in happened])
 
 
-def _seed(text: str) -> str:
+def _seed(text: str) -> int:
     """A seed as it is written; anything else is none."""
     if not re.fullmatch(r"0|[1-9][0-9]{0,99}", text):
         raise ValueError(text)
-    return text
+    return int(text)
 
 
 def is_blank(text: Any) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from coursework.course.answer_keys import answer_keys
 from coursework.language.numbers import localise, plain, unit_text
 from coursework.language.words import words as engine_words
 from coursework.model import Part
@@ -114,6 +115,7 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
         tolerance=tolerance_words(part, variant.lang),
         asks_unit=part.asks_unit,
         judge=part.judge,
+        key=answer_keys(variant.parts)[part.id],
     )
 
 

@@ -53,6 +53,7 @@ class Question:
     )
     judge: str = ""  #: of the parts that are judged together with this one
     letters: tuple[str, ...] = ()  #: of the choices; none of a sheet that was issued without
+    key: str = ""  #: what a notebook calls its answer; its id unless told
 
 
 @dataclass(frozen=True)
@@ -150,7 +151,7 @@ class FeedbackSheet:
 
 @dataclass(frozen=True)
 class Ask:
-    """A prediction to make: its name, the question (Markdown), and what may be written (plain text)."""
+    """A prediction to make: what it is written under, the question (Markdown), and what may be written (plain text)."""
 
     id: str
     question: str
@@ -163,9 +164,13 @@ class StudySheet:
 
     handout: Handout
     file: str  #: where answers are kept, beside the notebook
+    package: str  #: the distribution that brings the package
+    install: str  #: the command that installs it
     course: str  #: name of the course's folder; empty for the course that the package brings
     before: tuple[Ask, ...]  #: predictions before any computation
     cycle: tuple[Ask, ...]  #: predictions before the curves
     moves: bool  #: whether there are curves over a cycle
     animates: bool  #: whether the mechanism can be shown in motion
     questions: tuple[Question, ...]  #: of the first fresh variant; none where there is no other variant
+    theory: frozenset[str] = frozenset()  #: ids of questions that no other variant asks anew
+    has_example: bool = False  #: whether the solution of another variant can be shown with blanks

@@ -6,6 +6,7 @@ from importlib import import_module
 from types import ModuleType
 
 from coursework.errors import BadInput
+from coursework.system.distribution import DISTRIBUTION
 
 
 class NotAtHand(BadInput):
@@ -26,7 +27,7 @@ def library(module: str, job: str, extra: str) -> ModuleType:
     except Exception as fault:  # whatever a library does that does not fit the others
         if isinstance(fault, ModuleNotFoundError) and fault.name == name:
             raise NotAtHand(
-                f"{job} {name}, which is not installed: pip install 'coursework[{extra}]'"
+                f"{job} {name}, which is not installed: pip install '{DISTRIBUTION}[{extra}]'"
             ) from fault
         said = " ".join(str(fault).split())[:120]
         raise NotAtHand(

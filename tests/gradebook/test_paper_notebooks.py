@@ -105,3 +105,22 @@ def test_a_damaged_notebook_is_told_and_no_traceback(tmp_path, sheets):
     rows = read(tmp_path, [], sheets=sheets)
     assert rows
     assert all(isinstance(r, Rejected) for r in rows)
+
+
+def test_a_paper_without_tags_or_metadata_is_known_by_what_it_prints(tmp_path):
+    cells = [
+        cell('answers = {  # crank_pin 5\n "x": "1,5"}', tags=()),
+        cell('answers = {  # grashof 12\n "class": "2"}', tags=()),
+    ]
+    rows = read(tmp_path, cells)
+    assert placed(rows) == BOTH
+    assert all("no cell is tagged" in r.warning for r in rows)
+    printed = "# Midterm\n\n**Name:** Ada — Group: 2\n\ncrank\\_pin · 5 · v1\n\ngrashof · 12 · v1\n\n## Your answers"
+    content = {
+        "cells": [{"cell_type": "markdown", "metadata": {}, "source": printed}, *cells],
+        "metadata": {},
+    }
+    (tmp_path / "ada.ipynb").write_text(json.dumps(content), "utf-8")
+    rows = list(read_file(tmp_path / "ada.ipynb"))
+    assert placed(rows) == BOTH
+    assert all("metadata is gone" in r.warning for r in rows)

@@ -75,8 +75,8 @@ def test_letters_stand_with_their_words_in_every_format(name, lang):
             continue
         assert [key for key, _ in question.choices] == list(variant.cases(part))
         assert question.letters == tuple("abcdefghijklmnopqrstuvwxyz"[: len(part.choices)])
-        assert f'"{part.id}": "",  # ' in code
-        assert re.search(rf'"{part.id}": "",  # .*{", ".join(question.letters)}', code)
+        assert f'"{question.key}": "",  # ' in code
+        assert re.search(rf'"{question.key}": "",  # .*{", ".join(question.letters)}', code)
         for letter, (_, label) in zip(question.letters, question.choices, strict=True):
             start = to_text(label, lang).split()[0]
             assert f"( ) {letter}) {start}" in terminal
@@ -97,3 +97,26 @@ def test_the_letter_of_every_right_answer_is_right_and_of_every_other_is_not(nam
                 mark = variant.grade({part.id: letter})[part.id]
                 assert (mark.verdict == "correct") == (case == right), (part.id, letter)
                 assert mark.read_as.startswith(f"{letter}) ")
+
+
+OLD_NAMES = {
+    "fr": {
+        "point_contact": "une ponctuelle", "annular": "linéaire annulaire", "spherical": "rotule",
+        "spherical_pin": "une rotule à doigt", "line_contact": "linéaire rectiligne",
+    },
+    "en": {
+        "point_contact": "a point contact", "annular": "annular linear joint", "spherical": "a ball joint",
+        "spherical_pin": "ball joint with pin", "line_contact": "line contact",
+    },
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("lang", OLD_NAMES)
+@pytest.mark.parametrize("name", ["parallel_joints", "serial_joints"])
+def test_a_joint_is_read_by_the_name_of_one_school_where_the_sheet_gives_both(name, lang):
+    variant = sheets(name, lang)[0]
+    (part,) = (p for p in variant.parts if p.id == "equivalent")
+    for case, text in OLD_NAMES[lang].items():
+        assert "(" in variant.label(part.id, case)
+        read = variant.grade({part.id: text})[part.id].read_as
+        assert read.startswith(f"{variant.letters(part)[case]}) ")

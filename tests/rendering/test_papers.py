@@ -269,7 +269,7 @@ def test_a_notebook_has_a_cell_of_answers_an_exercise_that_says_whose_it_is(lang
         assert source.startswith(f"answers = {{  # {handout.exercise} {handout.seed}\n")
         assert cell["metadata"]["coursework"] == sheets[place]
         (statement,) = ast.parse(source).body
-        asked = {question.id: "" for question in handout.questions}
+        asked = {question.key: "" for question in handout.questions}
         assert ast.literal_eval(statement.value) == ({} if student or place else {"student": ""}) | asked
     figures = [cell for cell in book["cells"] if cell.get("attachments")]
     assert len({json.dumps(cell["attachments"]) for cell in figures}) == len(handed.handouts)

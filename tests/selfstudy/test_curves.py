@@ -86,6 +86,7 @@ def test_a_point_far_off_its_curve_is_an_arrow_at_the_edge_with_its_number():
 def test_a_wrong_angle_is_not_drawn_as_if_it_were_nearly_right(lang, here):
     session = coursework.study("slotted_mechanism", seed=1, lang=lang)
     session.check({"theta4": "246,7"})
+    session.reveal("theta4")
     shown = session.plot("theta4")
     assert start_of(SAID[lang]["outside"]) in flat(shown)
     (svg,) = (piece.svg for piece in shown.pieces if hasattr(piece, "svg"))
@@ -114,3 +115,26 @@ def test_the_curves_of_a_session_pass_through_the_answers(here):
         assert "largest" in str(session.predict({})) or session.plot().pieces
         with pytest.raises(UnknownName):
             session.plot("nothing")
+
+
+@BOTH
+def test_a_curve_is_not_shown_before_its_answer(lang, here):
+    """It would tell the value at the position of the statement."""
+    session = coursework.study("slotted_mechanism", seed=1, lang=lang)
+    session.predict({"p1": "90"})
+    for shown in (session.plot(), session.plot("rA"), session.plot("omega4", "rA")):
+        assert not any(hasattr(piece, "svg") for piece in shown.pieces)
+        assert start_of(SAID[lang]["not_yet"]) in flat(shown)
+        assert start_of(SAID[lang]["compared"]) not in flat(shown)
+    right = session.variant.solution()
+    session.check({"rA": f"{right['rA']:.6g}", "omega4": "9999"})
+    shown = session.plot()
+    (plot,) = (piece for piece in shown.pieces if hasattr(piece, "svg"))
+    assert plot.said.startswith("r_A")
+    held = flat(shown).partition(flat(SAID[lang]["not_yet"]).partition("{")[0])[2]
+    assert "omega4" in held.partition(".")[0]
+    assert "rA," not in held.partition(".")[0]
+    assert start_of(SAID[lang]["compared"]) in flat(shown)  # where the length is largest can be told now
+    session.reveal("omega4")
+    assert any(hasattr(piece, "svg") for piece in session.plot("omega4").pieces)
+    assert not any(hasattr(piece, "svg") for piece in session.plot("theta4").pieces)

@@ -6,6 +6,10 @@ import ast
 import json
 import re
 import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
 
 import pytest
 from study_words import BOTH, SAID, flat
@@ -13,9 +17,11 @@ from sweeps import slow
 
 import coursework
 from coursework.cli import run
+from coursework.course.answer_keys import answer_keys
 from coursework.errors import BadCourse, BadInput, CourseworkError, Starved, UnknownName
 from coursework.language.words import words
 from coursework.rendering.renderer import renderer_of
+from coursework.system.distribution import DISTRIBUTION, pip_install
 
 COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize("name", COURSE.names)
@@ -82,7 +88,10 @@ def test_a_self_study_notebook_is_the_same_twice_and_has_one_cell_of_answers(nam
     book = json.loads(first)
     (answers,) = [c for c in book["cells"] if "answers" in c["metadata"].get("tags", ())]
     (line,) = ast.parse("".join(answers["source"])).body
-    assert ast.literal_eval(line.value).keys() == {"student", *COURSE[name].variant(3).part_ids}
+    assert ast.literal_eval(line.value).keys() == {
+        "student",
+        *answer_keys(COURSE[name].variant(3).parts).values(),
+    }
     assert len({c["id"] for c in book["cells"]}) == len(book["cells"])
     assert book["metadata"]["coursework"]["record"] == COURSE[name].variant(3).record
 
@@ -163,7 +172,7 @@ def test_a_notebook_of_another_version_is_refused(here):
 
 MISTYPED = {
     "question": (lambda s: s.check({"theta44": "1"}), UnknownName, "theta4"),
-    "no name": (lambda s: s.check({33: "1"}), UnknownName, "omega4"),
+    "no name": (lambda s: s.check({33: "1"}), UnknownName, "q3"),
     "no dictionary": (lambda s: s.check(["1"]), BadInput, "study.check"),
     "a text": (lambda s: s.predict("theta4"), BadInput, "study.predict"),
     "prediction": (lambda s: s.predict({"theta5": "1"}), UnknownName, "theta4"),
@@ -234,3 +243,84 @@ def test_the_answers_cell_of_a_self_study_notebook_is_run(lang, here):
         last = [flat(said.strip().rpartition("\n")[2])[:40] in text for said in helps]
         assert last == [k == 0, k == 1]
     assert '`"rA": rA`' in texts[0]
+
+
+#: A distribution of somebody else that is imported under our name.
+STRANGER = "def grades():\n    return []\n"
+
+
+@BOTH
+@pytest.mark.parametrize("installed", [None, STRANGER])
+def test_without_the_package_the_first_cell_says_in_a_sentence_what_to_install(lang, installed, tmp_path):
+    text = renderer_of(COURSE.folder).study(COURSE["grashof"].variant(1, lang).study_sheet())
+    first = code_cells(text)[0]
+    if installed:
+        (tmp_path / "coursework").mkdir()
+        (tmp_path / "coursework" / "__init__.py").write_text(installed, "utf-8")
+    hide = "" if installed else "sys.modules['coursework'] = None\n"
+    (tmp_path / "cell.py").write_text(
+        f"import sys\nsys.path.insert(0, {str(tmp_path)!r})\n{hide}{first}", "utf-8"
+    )
+    ran = subprocess.run([sys.executable, "-P", "cell.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert ran.returncode
+    last = ran.stderr.strip().splitlines()[-1]
+    said = SAID[lang]["not_installed"].format(package=DISTRIBUTION, install=pip_install())
+    assert last == f"ImportError: {said}"
+    assert "During handling" not in ran.stderr
+    assert f"%{pip_install()}" in "".join(json.loads(text)["cells"][0]["source"])
+
+
+def test_what_is_installed_is_not_called_as_a_strangers_package():
+    assert DISTRIBUTION != "coursework"
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text("utf-8"))["project"]
+    assert (project["name"], project["version"]) == (DISTRIBUTION, coursework.__version__)
+
+
+@pytest.mark.parametrize(
+    ("told", "install"),
+    [
+        ("mechanism-coursework>=0.2", 'pip install "mechanism-coursework>=0.2"'),
+        (
+            "https://example.org/coursework-1-py3-none-any.whl",
+            "pip install https://example.org/coursework-1-py3-none-any.whl",
+        ),
+        ("ours-1-py3-none-any.whl", "pip install ./ours-1-py3-none-any.whl"),
+    ],
+)
+def test_a_course_says_what_to_install_and_brings_its_wheel(told, install, small_course, capsys):
+    settings = small_course / "exercises" / "course.toml"
+    before = settings.read_text("utf-8")
+    settings.write_text(f'{before}\n[study]\ninstall = "{told}"\n', "utf-8")
+    if told.startswith("ours"):
+        assert run(["--course", str(small_course), "notebook", "--out", str(small_course / "out")]) == 2
+        assert "no such file" in capsys.readouterr().err
+        (small_course / told).write_bytes(b"wheel")
+    assert (
+        run(["--course", str(small_course), "notebook", "--lang", "en", "--out", str(small_course / "out")])
+        == 0
+    )
+    book = json.loads((small_course / "out" / "crank_pin.en.ipynb").read_text("utf-8"))
+    assert f"%{install}" in "".join(book["cells"][0]["source"])
+    assert ((small_course / "out" / told.rpartition("/")[2]).exists()) == told.startswith("ours")
+
+
+@pytest.mark.parametrize("wrong", ['install = "a\\nb"', "install = 3", 'order = ["nothing"]', "order = 3"])
+def test_settings_of_study_that_are_none_are_told(wrong, small_course, capsys):
+    settings = small_course / "exercises" / "course.toml"
+    settings.write_text(f"{settings.read_text('utf-8')}\n[study]\n{wrong}\n", "utf-8")
+    out = small_course / "out"
+    code = run(["--course", str(small_course), "notebook", "--out", str(out)])
+    code = code or run(["--course", str(small_course), "progress"])
+    assert code == 2
+    assert "[study]" in capsys.readouterr().err
+
+
+@BOTH
+def test_an_answer_that_cannot_be_read_is_an_item_of_its_own(lang, here):
+    """A space that does not break behind the dash would glue it to the line above."""
+    said = (
+        coursework.study("slotted_mechanism", seed=1, lang=lang)
+        .check({"rA": "1", "theta4": "?!", "omega4": "2"})
+        .markdown
+    )
+    assert re.findall(r"^- (\S)", said, re.M)[:3] == ["✗", "?", "✗"]

@@ -103,11 +103,11 @@ def test_the_place_of_a_peak_is_read_with_its_unit(text, lang):
 def test_a_prediction_that_cannot_be_read_is_told_at_once(lang, here):
     session = coursework.study("slotted_mechanism", seed=1, lang=lang)
     told = start_of(SAID[lang]["not_understood"])
-    said = flat(session.predict({"theta4": "eh?", "omega4": "+/-", "rA": ">"}))
+    said = flat(session.predict({"theta4": "eh?", "rA_dot": "+/-", "rA": ">"}))
     assert said.count(told) == 2
     assert "1 / 2 / 3 / 4" in said
     assert told not in flat(
-        session.predict({"theta4": "IV", "omega4": words(lang)["study"]["reads"]["negative"][0]})
+        session.predict({"theta4": "IV", "rA_dot": words(lang)["study"]["reads"]["negative"][0]})
     )
 
 
@@ -120,6 +120,68 @@ def test_the_choices_of_a_prediction_are_named_in_the_language_of_the_notebook(n
             label = variant.label(one.id, case)
             plain = re.sub(r"[$\\].*", "", label).replace("'", "’").split(":")[0].strip()
             assert plain in shown.replace("'", "’").replace("\u202f", " "), (label, shown)
+
+
+LENGTHS, EFFORTS = ("mm",), ("N", "N*m")
+RATES = ("rad/s", "mm/s", "rad/s^2", "mm/s^2")
+
+
+@every_exercise
+def test_only_what_a_body_or_a_point_has_is_predicted(name):
+    """No ratio, no coefficient, no count, no length on paper; a question itself only where it is a choice that the variants decide."""
+    exercise = COURSE[name]
+    for seed in range(1, 21):
+        variant = exercise.variant(seed, "en")
+        parts = {p.quantity: p for p in variant.parts}
+        found = (*predictions.before_answers(variant), *predictions.over_the_cycle(variant))
+        assert sum(one.kind == "guess" for one in found) <= 1
+        for one in found:
+            part = parts[one.quantity]
+            if one.kind == "guess":
+                assert part.choices
+            elif one.kind == "quadrant":
+                assert part.kind == "angle" or part.unit == "deg"
+            else:
+                assert part.unit in (*LENGTHS, *EFFORTS, *RATES, "deg")
+                assert len(one.quantity) > 1, "a letter alone is a coefficient"
+
+
+@every_exercise
+def test_a_length_that_is_predicted_does_not_hang_on_how_fast_the_mechanism_runs(name):
+    """A length on paper does: it stands for a velocity or an acceleration."""
+    exercise = COURSE[name]
+    variant = exercise.variant(3, "en")
+    parts = {p.quantity: p for p in variant.parts}
+    for one in (*predictions.before_answers(variant), *predictions.over_the_cycle(variant)):
+        if parts[one.quantity].unit != "mm":
+            continue
+        given = dict(variant.used)
+        here = exercise.solve(**given, only=one.quantity)[one.quantity]
+        for rate, spec in exercise.spec.given.items():
+            if rate in given and spec.unit in RATES:
+                given[rate] = 2 * given[rate]
+        assert exercise.solve(**given, only=one.quantity)[one.quantity] == here
+
+
+@every_exercise
+def test_what_is_compared_with_a_bar_stands_in_the_figure_beside_it(name):
+    """It moves with the driver, so the figure is of one instant and shows its length; efforts are compared by reason."""
+    exercise = COURSE[name]
+    variant = exercise.variant(3, "en")
+    for one in predictions.before_answers(variant):
+        if one.kind == "compare" and exercise.units[one.quantity] in LENGTHS:
+            assert variant.figure is not None
+            assert np.ptp(predictions.curve(variant, one.quantity)[1]) > 1
+
+
+@every_exercise
+def test_where_something_is_largest_is_asked_only_of_what_stays_finite(name):
+    for seed in range(1, 21):
+        variant = COURSE[name].variant(seed, "en")
+        for one in predictions.over_the_cycle(variant):
+            if one.kind == "highest":
+                sizes = np.abs(predictions.curve(variant, one.quantity)[1])
+                assert np.nanmax(sizes) < 100 * np.nanmedian(sizes)
 
 
 @every_exercise
@@ -160,11 +222,16 @@ def test_a_prediction_is_compared_only_when_its_answer_is_right(here):
     assert "You said" in str(session.check({"theta4": f"{right:.4f}"}))
 
 
+#: Counts alone, words alone, and bars that are to be found: nothing here is told by a figure or by reason before it is computed.
+NOTHING_TO_PREDICT = {"crank_rocker_design", "mobility", "quick_return_design", "vocabulary"}
+
+
 @every_exercise
-def test_every_exercise_has_something_to_predict(name):
+def test_every_exercise_that_computes_what_can_be_seen_has_something_to_predict(name):
     variant = COURSE[name].variant(4, "en")
     before = predictions.before_answers(variant)
-    assert 1 <= len(before) <= predictions.MOST
+    assert (name in NOTHING_TO_PREDICT) == (not before)
+    assert len(before) <= predictions.MOST
     for one in (*before, *predictions.over_the_cycle(variant)):
         assert predictions.asked(variant, one).endswith("?")
         assert predictions.options(variant, one)

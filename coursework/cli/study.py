@@ -1,0 +1,67 @@
+"""Commands for who studies alone: progress."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+import click
+
+from coursework.cli.options import json_option, lang_option, opened, tell
+from coursework.cli.printing import print_json
+from coursework.errors import BadInput
+
+
+@click.command()
+@click.argument("folder", type=click.Path(path_type=Path, file_okay=False), default=".")
+@click.option(
+    "--on", "day", type=click.DateTime(["%Y-%m-%d"]), help="What is due on a day; today unless told."
+)
+@lang_option
+@json_option
+@click.pass_context
+def progress(context: click.Context, folder: Path, day: datetime | None, lang: str, as_json: bool) -> None:
+    """Tell what was done in the self-study notebooks of a folder, and what comes next.
+
+    FOLDER holds their progress.json; the folder where we are unless told. What earlier versions kept beside it counts too.
+    """
+    from dataclasses import asdict
+
+    from coursework.language.words import words
+    from coursework.markup.shown import Shown
+    from coursework.selfstudy import advice
+    from coursework.selfstudy.mastery import skills, standings
+    from coursework.selfstudy.recording import mark_what_came_unmarked
+    from coursework.selfstudy.store import EARLIER, Kept, ProgressFile, now
+
+    course = opened(context)
+    if not folder.is_dir():
+        raise BadInput(f"no such folder: {folder}")
+    on = now() if day is None else day.replace(tzinfo=UTC)
+    file = ProgressFile(folder, lambda: on)
+    for path in sorted(folder.glob(f"*{EARLIER}")):
+        Kept(file, path.name.removesuffix(EARLIER))
+    mark_what_came_unmarked(course, file)
+    said = words(lang)["study"]
+    if file.trouble:
+        tell([said["trouble"][file.trouble].format(file=file.troubled)])
+    step = advice.next_step(course, file.progress, on.date())
+    if as_json:
+        print_json(
+            {
+                "exercises": [_plain(asdict(one)) for one in standings(file.progress)],
+                "skills": [_plain(asdict(one)) for one in skills(file.progress)],
+                "next": None if step is None else _plain(asdict(step)),
+            }
+        )
+        return
+    lines = advice.told_standings(course, file.progress, on.date(), lang)
+    pieces = [lines or said["progress"]["nothing"], advice.told_skills(course, file.progress, lang)]
+    if step is not None:
+        pieces.append(advice.told_advice(course, step, lang))
+    click.echo(str(Shown(lang, *pieces)))
+
+
+def _plain(told: dict[str, object]) -> dict[str, object]:
+    """The same with dates as texts."""
+    return {name: value.isoformat() if hasattr(value, "isoformat") else value for name, value in told.items()}

@@ -1,0 +1,103 @@
+"""Notebooks that came back without what a computer knows them by: some editors drop tags and metadata, some people cut cells and join them.
+
+What a notebook prints for its reader is left: the line with exercise, seed and version, the name, and cells that say ``answers = {``. Nothing is
+run here either.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from coursework.language.words import languages, words
+
+BEGINS = re.compile(r"^answers[ \t]*=[ \t]*\{", re.MULTILINE)
+_VARIANT = re.compile(r"(?<!\w)([A-Za-z]\w*) · ([0-9]{1,30}) · v[0-9]{1,6}(?!\w)")
+_ESCAPED = re.compile(r"\\([^A-Za-z0-9\s])")
+_SHOWN = re.compile(r"\([ \t]*answers[ \t]*\)")
+_PIECES = 6  #: cells that one may have been cut into
+
+
+def source_of(cell: dict[str, Any]) -> str:
+    code = cell.get("source", "")
+    return "".join(map(str, code)) if isinstance(code, list) else str(code)
+
+
+def printed_identity(cells: Sequence[dict[str, Any]]) -> dict[str, Any] | None:
+    """Whose a notebook is and of which variants, as its text says it to a reader; None where no variant is named.
+
+    In the form of the metadata that it lacks: ``exercise`` and ``seed``, or ``sheets`` for a paper.
+    """
+    text = _ESCAPED.sub(r"\1", "\n".join(source_of(c) for c in cells if c.get("cell_type") == "markdown"))
+    variants = list(dict.fromkeys(_VARIANT.findall(text)))
+    if not variants:
+        return None
+    lang = next((one for one in languages() if f"# {words(one)['notebook']['answers']}" in text), "")
+    name = _name_in(text)
+    commented = any(re.search(r"answers = \{[ \t]*#[ \t]*\w+[ \t]+[0-9]", source_of(c)) for c in cells)
+    if len(variants) > 1 or commented:
+        sheets = [{"exercise": exercise, "seed": seed} for exercise, seed in variants]
+        return {"student": name.partition(" — ")[0], "sheets": sheets, "lang": lang}
+    return {"student": name, "exercise": variants[0][0], "seed": variants[0][1], "lang": lang}
+
+
+def _name_in(text: str) -> str:
+    called = "|".join(re.escape(str(words(lang)["sheet"]["name"])) for lang in languages())
+    found = re.search(rf"\*\*(?:{called})\s*:\*\*[^\S\n]*(\S.*)", text)
+    return found[1].strip() if found else ""
+
+
+def answers_texts(cells: Sequence[dict[str, Any]]) -> Iterator[tuple[int, str]]:
+    """The cells that assign a dict to ``answers``, each with its place; one that was cut is put together again."""
+    for place, cell in enumerate(cells):
+        if cell.get("cell_type") == "code" and BEGINS.search(source_of(cell)):
+            yield place, joined(cells, place)
+
+
+def joined(cells: Sequence[dict[str, Any]], place: int) -> str:
+    """A cell of code, with as many of those behind it as close what it opens; alone where none does."""
+    text = source_of(cells[place])
+    whole = text
+    for behind in cells[place + 1 : place + _PIECES]:
+        if _closes(whole):
+            return whole
+        if behind.get("cell_type") != "code":
+            break
+        whole += "\n" + source_of(behind)
+    return whole if _closes(whole) else text
+
+
+def _closes(text: str) -> bool:
+    """Whether every brace that is opened outside quotation marks is closed."""
+    bare = re.sub(r"""("{3}|'{3})[\s\S]*?\1|"[^"\n]*"|'[^'\n]*'|#[^\n]*""", "", text)
+    return bare.count("{") <= bare.count("}")
+
+
+def alone(code: str) -> str:
+    """The ``answers = {…}`` of a cell that holds more, where nothing else in it touches the answers; else the whole text."""
+    start = BEGINS.search(code)
+    if start is None:
+        return code
+    try:
+        found = [
+            one
+            for one in ast.parse(code).body
+            if isinstance(one, ast.Assign) and isinstance(one.value, ast.Dict) and _is_answers(one.targets)
+        ]
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        end = re.compile(r"^\}[ \t]*(?:#[^\n]*)?$", re.MULTILINE).search(code, start.start())
+        own = (start.start(), end.end()) if end else (0, len(code))
+    else:
+        if len(found) != 1:
+            return code
+        lines = code.split("\n")
+        first, last = found[0].lineno - 1, found[0].end_lineno or len(lines)
+        own = (sum(len(line) + 1 for line in lines[:first]), sum(len(line) + 1 for line in lines[:last]) - 1)
+    rest = _SHOWN.sub("()", code[: own[0]] + code[own[1] :])
+    return code if re.search(r"\banswers\b", re.sub(r"#[^\n]*", "", rest)) else code[own[0] : own[1]]
+
+
+def _is_answers(targets: Sequence[ast.expr]) -> bool:
+    return len(targets) == 1 and isinstance(targets[0], ast.Name) and targets[0].id == "answers"

@@ -1,0 +1,129 @@
+"""Where a student is and what comes next, in words: for notebooks and for the command line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from datetime import date
+from typing import TYPE_CHECKING, Any
+
+from coursework.errors import CourseworkError
+from coursework.language.words import words
+from coursework.selfstudy.mastery import HELD, Advice, Skill, Standing, advised, skills, standings
+from coursework.selfstudy.progress import Progress
+
+if TYPE_CHECKING:
+    from coursework.course.course import Course
+    from coursework.course.exercise import CourseExercise
+
+_SKILLS = 6  #: that are told, the last lost first
+
+
+def next_step(course: Course[Any], progress: Progress, on: date) -> Advice | None:
+    """What to do next on a day; None for a course without exercises."""
+    return advised(progress, on, course.folder.study_order, _Errors(course))
+
+
+class _Errors(Mapping[str, Iterable[str]]):
+    """By exercise, the named errors that it tries; a solution is loaded when it is looked at."""
+
+    def __init__(self, course: Course[Any]):
+        self._course = course
+
+    def __getitem__(self, exercise: str) -> frozenset[str]:
+        try:
+            return frozenset(f"mistake:{name}" for name in self._course[exercise].solution.mistakes)
+        except CourseworkError:
+            return frozenset()
+
+    def __iter__(self) -> Any:
+        return iter(self._course.names)
+
+    def __len__(self) -> int:
+        return len(self._course.names)
+
+
+def told_standings(course: Course[Any], progress: Progress, on: date, lang: str) -> str:
+    """A line an exercise that was begun, as a Markdown list; empty where none was."""
+    said = words(lang)["study"]["progress"]
+    return "\n".join(
+        _line(course, s, on, lang, said) for s in standings(progress) if s.tried and s.exercise in course
+    )
+
+
+def _line(course: Course[Any], one: Standing, on: date, lang: str, said: Mapping[str, Any]) -> str:
+    line = said["line"].format(
+        title=title(course[one.exercise], lang),
+        variants=one.variants,
+        right=one.right,
+        of=one.tried,
+        clean=one.clean,
+    )
+    if one.due is None:
+        return f"- {line}"
+    again = said["due"] if one.due <= on else said["again"].format(day=told_date(one.due, lang))
+    return f"- {line} {again}"
+
+
+def told_skills(course: Course[Any], progress: Progress, lang: str) -> str:
+    """What has cost answers, as Markdown lists: what did not come out since, and what did."""
+    said = words(lang)["study"]["progress"]
+    lost = sorted(
+        (s for s in skills(progress) if s.last_lost), key=lambda s: s.last_lost or date.min, reverse=True
+    )
+    named = [(s, told) for s in lost if (told := told_skill(course, s.id, s.exercise, lang))]
+    pieces = []
+    for head, chosen in (
+        ("open", [(s, t) for s, t in named if s.is_open]),
+        ("held", [(s, t) for s, t in named if not s.is_open]),
+    ):
+        if chosen:
+            pieces.append(
+                f"**{said[head]}**\n\n" + "\n".join(_skill(course, s, t, lang) for s, t in chosen[:_SKILLS])
+            )
+    return "\n\n".join(pieces)
+
+
+def _skill(course: Course[Any], skill: Skill, told: str, lang: str) -> str:
+    said = words(lang)["study"]["progress"]
+    shown = said["shown"].format(count=skill.shown, of=HELD) if skill.shown and skill.is_open else ""
+    place = "" if skill.id.startswith("kind:") else title(course[skill.exercise], lang)
+    beside = said["separator"].join(filter(None, (place, shown)))
+    return f"- {' '.join(told.split())}{f' ({beside})' if beside else ''}"
+
+
+def told_skill(course: Course[Any], skill: str, exercise: str, lang: str) -> str:
+    """What to look at for a skill, in words; empty where nothing names it here."""
+    family, _, name = skill.partition(":")
+    said = words(lang)["study"]["skills"]
+    if family == "kind":
+        return said["kinds"].get(name, "")
+    if family == "slip":
+        return said["slips"].get(name, "")
+    if family != "mistake" or exercise not in course:
+        return ""
+    try:
+        return course[exercise].variant(0, lang).told(name)
+    except (CourseworkError, KeyError):
+        return ""
+
+
+def told_advice(course: Course[Any], advice: Advice, lang: str) -> str:
+    """Why this exercise now, in a sentence or two."""
+    said = words(lang)["study"]["next"]
+    skill = told_skill(course, advice.skill, advice.exercise, lang) if advice.skill else ""
+    why = "new" if advice.why == "skill" and not skill else advice.why
+    return said[why].format(
+        title=title(course[advice.exercise], lang),
+        day=told_date(advice.day, lang) if advice.day else "",
+        skill=" ".join(skill.split()),
+        count=len(advice.parts),
+    )
+
+
+def title(exercise: CourseExercise[Any], lang: str) -> str:
+    """An exercise as a student knows it: its title, and its name."""
+    return f"{exercise.title(lang)} (`{exercise.name}`)"
+
+
+def told_date(day: date, lang: str) -> str:
+    return str(words(lang)["study"]["progress"]["date"]).format(day=day.day, month=day.month, year=day.year)

@@ -1,0 +1,93 @@
+"""Faded examples: the worked solution of another variant with blanks, more of them at each level."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Container, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from coursework.errors import Starved
+from coursework.making.issuing import distinct_variants
+from coursework.rendering.views import chain_on_lines
+from coursework.selfstudy import hints
+from coursework.selfstudy.theory import unchanging
+from coursework.sheets.answer_sheet import answer_sheet
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+    from coursework.model import Part
+    from coursework.sheets.sheet import Step
+
+LEVELS = 4
+WITH_FORMULA = 2  #: levels up to which a blank still shows its formula
+_FAR = 100_000  #: seeds away from those of fresh variants, so that no example is one of them
+_APART = 1_000  #: seeds between levels
+
+
+def example_variant(variant: Variant, base: int, level: int) -> Variant:
+    """The variant of an example of a level: none of those that are asked, nor of another level.
+
+    Raises
+    ------
+    Starved
+        The exercise has no other variant.
+    """
+    first = base + _FAR + _APART * level
+    others = distinct_variants(variant.exercise, first, 2, variant.lang)
+    other = next((v for v in others if v.given != variant.given), None)
+    if other is None:
+        raise Starved(variant.exercise.name)
+    return other
+
+
+def has_example(variant: Variant) -> bool:
+    """Whether there is something to leave blank."""
+    return variant.exercise.folder.has_solutions and bool(blanks(variant, 1))
+
+
+def blanks(variant: Variant, level: int) -> tuple[Part, ...]:
+    """The questions that are left blank at a level: the last one, a third, two thirds, all; in the order of the solution.
+
+    Not what has one answer in every variant: it would be that of the variant that is asked.
+    """
+    places = {step.name: k for k, step in enumerate(_steps(variant))}
+    asked = sorted(
+        (p for p in variant.parts if _can_be_blank(variant, p, places)), key=lambda p: places[p.quantity]
+    )
+    count = (1, math.ceil(len(asked) / 3), math.ceil(2 * len(asked) / 3), len(asked))[level - 1]
+    return tuple(asked[max(0, len(asked) - count) :])
+
+
+def _can_be_blank(variant: Variant, part: Part, steps: Container[str]) -> bool:
+    if part.sort.is_open or part.judge or part.loop or part.quantity not in steps:
+        return False
+    return part.id not in unchanging(variant.exercise)
+
+
+def _steps(variant: Variant) -> Sequence[Step]:
+    return answer_sheet(variant, polygons=False).steps
+
+
+def told_steps(variant: Variant, level: int, left: Sequence[Part], keys: Mapping[str, str], said: Any) -> str:
+    """The steps of the solution as Markdown: whole up to the first blank; from there on no number stands in them.
+
+    What has one answer in every variant is left out: it is asked, and not told.
+    """
+    by_quantity = {p.quantity: p for p in left}
+    hidden = {p.quantity for p in variant.parts if p.id in unchanging(variant.exercise)}
+    lines: list[str] = []
+    is_whole = True
+    for step in _steps(variant):
+        if step.name in hidden:
+            continue
+        part = by_quantity.get(step.name)
+        is_whole = is_whole and part is None
+        if is_whole:
+            pieces = [step.words, f"$${chain_on_lines(step)}$$" if step.value else ""]
+        else:
+            formula = hints.formula(variant, step.name) if level <= WITH_FORMULA or part is None else ""
+            blank = said["blank"].format(symbol=f"${step.symbol}$", key=f"`{keys[part.id]}`") if part else ""
+            pieces = [hints.words_of(variant, step.name), formula, blank]
+        if any(pieces):
+            lines.append(f"**{len(lines) + 1}.** " + "\n\n".join(filter(None, pieces)))
+    return "\n\n".join(lines)

@@ -1,0 +1,236 @@
+"""What a student can do, read from what happened: outings, questions that come again, skills. Nothing here is kept.
+
+An *outing* is a question of one variant. It is clean where the first answer that can be read is right, without a hint and without
+the solution. A question that was not clean comes again after 1 day, and after each clean outing that was due, after 3, 7 and 16 days;
+then it is at rest, and one that is not clean begins anew. A *skill* is an error that has a name, or a kind of answer: an error is lost by making
+it, and shown not to be made by a right answer where it would have given another; what came out in two variants since it was last lost is held.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from datetime import date, timedelta
+from typing import Any
+
+from coursework.selfstudy.progress import ANSWER, EXAMPLE, HINT, REVEAL, Entry, Progress, date_of
+
+AFTER_DAYS = (1, 3, 7, 16)  #: when what was missed comes again
+HELD = 2  #: variants in which a skill is shown since it was last lost
+
+RIGHT = ("correct",)
+#: Verdicts that say nothing of who answers: what cannot be read, and what follows rightly from an earlier wrong answer.
+_NO_ATTEMPT = ("missing", "unreadable", "missing_unit", "wrong_unit", "to_mark", "follow_through")
+
+
+@dataclass
+class Outing:
+    """A question of one variant."""
+
+    exercise: str
+    seed: int
+    part: str
+    first: date
+    last: date
+    verdicts: list[str] = field(default_factory=list)  #: of the answers that could be read, in order
+    hints: int = 0  #: steps seen before it was right
+    was_revealed: bool = False  #: before it was right
+
+    @property
+    def is_right(self) -> bool:
+        return any(v in RIGHT for v in self.verdicts)
+
+    @property
+    def is_clean(self) -> bool:
+        """Right first time, alone."""
+        return bool(self.verdicts) and self.verdicts[0] in RIGHT and not self.hints and not self.was_revealed
+
+    @property
+    def counts(self) -> bool:
+        """Whether something can be said of it: it was answered, or its solution was asked for."""
+        return bool(self.verdicts) or self.was_revealed
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question over all its variants."""
+
+    exercise: str
+    part: str
+    outings: tuple[Outing, ...]
+    due: date | None  #: when it comes again; none where it is at rest
+    missed: date | None  #: when it last was not clean
+
+
+@dataclass(frozen=True)
+class Skill:
+    """An error that has a name, ``mistake:no_coriolis``, or a kind of answer, ``kind:rad/s``."""
+
+    id: str
+    exercise: str  #: where it was last lost, or else shown
+    lost: int  #: how often
+    last_lost: date | None
+    shown: int  #: in how many variants since then
+
+    @property
+    def is_open(self) -> bool:
+        """Lost, and not held since."""
+        return bool(self.lost) and self.shown < HELD
+
+
+def outings(progress: Progress) -> tuple[Outing, ...]:
+    """The outings of which something can be said, the earliest begun first; none of a variant that was an example before."""
+    found: dict[tuple[str, int, str], Outing] = {}
+    examples = set()
+    for one in progress:
+        variant, day = (one["exercise"], one["seed"]), date_of(one).date()
+        if one["what"] == EXAMPLE:
+            examples.add(variant)
+        if one["what"] not in (ANSWER, HINT, REVEAL) or variant in examples:
+            continue
+        key = (*variant, one["part"])
+        outing = found.setdefault(key, Outing(*key, first=day, last=day))
+        _follow(outing, one, day)
+    return tuple(o for o in found.values() if o.counts)
+
+
+def _follow(outing: Outing, one: Entry, day: date) -> None:
+    if outing.is_right:
+        return
+    outing.last = day
+    if one["what"] == HINT:
+        outing.hints = max(outing.hints, int(one.get("step", 1)))
+    elif one["what"] == REVEAL:
+        outing.was_revealed = True
+    elif (verdict := str(one.get("verdict", ""))) and verdict not in _NO_ATTEMPT:
+        outing.verdicts.append(verdict)
+
+
+def questions(progress: Progress) -> tuple[Question, ...]:
+    """The questions that were met, with the day on which each comes again."""
+    by_question: dict[tuple[str, str], list[Outing]] = {}
+    for outing in outings(progress):
+        by_question.setdefault((outing.exercise, outing.part), []).append(outing)
+    return tuple(_question(*key, tuple(met)) for key, met in by_question.items())
+
+
+def _question(exercise: str, part: str, met: tuple[Outing, ...]) -> Question:
+    box, due, missed = -1, None, None
+    for outing in met:
+        if not outing.is_clean:
+            box, missed = 0, outing.last
+        elif due is None or outing.first < due:
+            continue
+        else:
+            box += 1
+        due = outing.last + timedelta(days=AFTER_DAYS[box]) if box < len(AFTER_DAYS) else None
+    return Question(exercise, part, met, due, missed)
+
+
+def skills(progress: Progress) -> tuple[Skill, ...]:
+    """The skills that were tried, those of errors and those of kinds, the first tried first."""
+    lost: dict[str, list[tuple[str, date]]] = {}
+    shown: dict[str, dict[tuple[str, int], str]] = {}
+    lost_in: dict[str, tuple[str, int]] = {}  # where a skill was lost, other answers show nothing of it
+    clean = {(o.exercise, o.seed, o.part): o.is_clean for o in outings(progress)}
+    for one in progress:
+        place, verdict = (one["exercise"], one["seed"]), str(one.get("verdict", ""))
+        if (
+            one["what"] != ANSWER
+            or not verdict
+            or verdict in _NO_ATTEMPT
+            or (*place, one["part"]) not in clean
+        ):
+            continue
+        kind = f"kind:{one['kind']}" if one.get("kind") else ""
+        day = date_of(one).date()
+        if verdict in RIGHT and clean[*place, one["part"]]:
+            for name in (*_texts(one.get("shown")), *filter(None, (kind,))):
+                if lost_in.get(name) != place:
+                    shown.setdefault(name, {})[place] = one["exercise"]
+        elif verdict not in RIGHT:
+            for name in filter(None, (kind, verdict if ":" in verdict else "")):
+                lost.setdefault(name, []).append((one["exercise"], day))
+                lost_in[name] = place
+                shown.pop(name, None)
+    names = dict.fromkeys((*lost, *shown))
+    return tuple(_skill(name, lost.get(name, []), shown.get(name, {})) for name in names)
+
+
+def _skill(name: str, lost: list[tuple[str, date]], shown: Mapping[tuple[str, int], str]) -> Skill:
+    exercise, day = lost[-1] if lost else (next(iter(shown.values())), None)
+    return Skill(name, exercise, len(lost), day, len(shown))
+
+
+def _texts(told: Any) -> Iterable[str]:
+    return [str(name) for name in told] if isinstance(told, (list, tuple)) else ()
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Where a student is in one exercise."""
+
+    exercise: str
+    variants: int  #: begun
+    tried: int  #: questions, each of a variant
+    right: int
+    clean: int  #: right first time, alone
+    due: date | None  #: when the first of what was missed comes again
+
+
+def standings(progress: Progress) -> tuple[Standing, ...]:
+    """Where a student is, exercise by exercise, the earliest begun first."""
+    found = []
+    met, asked = outings(progress), questions(progress)
+    for exercise in progress.exercises:
+        mine = [o for o in met if o.exercise == exercise]
+        dates = [q.due for q in asked if q.exercise == exercise and q.due is not None]
+        seeds = {e["seed"] for e in progress if e["exercise"] == exercise and e["what"] != EXAMPLE}
+        counts = (len(mine), sum(o.is_right for o in mine), sum(o.is_clean for o in mine))
+        found.append(Standing(exercise, len(seeds), *counts, min(dates, default=None)))
+    return tuple(found)
+
+
+@dataclass(frozen=True)
+class Advice:
+    """What to do next, and why: ``due``, ``skill``, ``new`` or ``later``."""
+
+    exercise: str
+    why: str
+    parts: tuple[str, ...] = ()  #: the questions that come again
+    day: date | None = None  #: when they were missed, or come again
+    skill: str = ""
+
+
+def advised(
+    progress: Progress, on: date, exercises: Iterable[str], errors: Mapping[str, Iterable[str]]
+) -> Advice | None:
+    """What to do next on a day, among the exercises of a course; None where it has none.
+
+    What was missed and is due, the most of it first; then an exercise not begun that tries what was lost and not held since; then the next not
+    begun; then what comes again first. ``errors`` are the skills that each exercise tries, by exercise.
+    """
+    known = tuple(exercises)
+    waiting: dict[str, list[Question]] = {}
+    for question in questions(progress):
+        if question.due is not None and question.exercise in known:
+            waiting.setdefault(question.exercise, []).append(question)
+    due = {e: [q for q in met if q.due is not None and q.due <= on] for e, met in waiting.items()}
+    if any(due.values()):
+        exercise = max(
+            due, key=lambda e: (len(due[e]), -min((q.due.toordinal() for q in due[e] if q.due), default=0))
+        )
+        missed = [q.missed for q in due[exercise] if q.missed]
+        return Advice(exercise, "due", tuple(q.part for q in due[exercise]), max(missed, default=None))
+    begun = progress.exercises
+    new = [e for e in known if e not in begun]
+    for skill in sorted((s for s in skills(progress) if s.is_open), key=lambda s: -s.lost):
+        tries = next((e for e in new if skill.id in errors.get(e, ())), None)
+        if tries:
+            return Advice(tries, "skill", day=skill.last_lost, skill=skill.id)
+    if new:
+        return Advice(new[0], "new")
+    if waiting:
+        first = min((q for met in waiting.values() for q in met), key=lambda q: (q.due or on, q.exercise))
+        return Advice(first.exercise, "later", (first.part,), first.due)
+    return Advice(known[0], "again") if known else None

@@ -1,0 +1,138 @@
+"""What a student has done, over all exercises: the format of ``progress.json``.
+
+One JSON object::
+
+    {"format": "coursework progress", "version": 1, "entries": [ENTRY, …]}
+
+An entry is something that happened once and is never changed: ``at`` (UTC, ISO 8601), ``exercise``, ``seed``, ``part``
+(a part's id, or another quantity of the solution; empty where it is of the whole variant), and ``what``:
+
+``answer``
+    with ``answer`` (as it was written) and, where it was marked, ``verdict`` (as in ``marks.csv``), ``kind`` (the skill of its
+    kind), ``shown`` (the named errors that it shows were not made)
+``prediction``
+    with ``answer``
+``hint``
+    with ``step``, from 1 on
+``reveal``
+    the step of the solution was shown
+``example``
+    the variant was shown as a worked example, ``step`` being its level; it counts for nothing any more
+
+What a reader does not know it keeps. Two files are one when the entries of both stand in it once each: nothing is lost, whoever
+wrote last. This room reads and writes such texts; :mod:`coursework.selfstudy.store` keeps them in a file, and a site may keep
+them elsewhere.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from datetime import UTC, datetime
+from functools import cached_property
+from typing import Any
+
+FORMAT, VERSION = "coursework progress", 1
+ANSWER, PREDICTION, HINT, REVEAL, EXAMPLE = "answer", "prediction", "hint", "reveal", "example"
+
+Entry = Mapping[str, Any]
+
+
+class NotProgress(ValueError):
+    """A text that is no progress."""
+
+
+class LaterVersion(ValueError):
+    """The progress of a later version: it may say what this one would not keep."""
+
+
+class Progress:
+    """Entries, each once, in the order of their dates."""
+
+    def __init__(self, entries: Iterable[Entry] = ()):
+        self._entries = {_identity(entry): entry for entry in entries}
+
+    @cached_property
+    def _in_order(self) -> tuple[Entry, ...]:
+        return tuple(sorted(self._entries.values(), key=date_of))
+
+    def __iter__(self) -> Iterator[Entry]:
+        """From the earliest on; those of one instant as they came."""
+        return iter(self._in_order)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def __or__(self, other: Progress) -> Progress:
+        """The entries of both."""
+        return Progress((*self._entries.values(), *other._entries.values()))
+
+    def of(self, exercise: str) -> Progress:
+        """The entries of one exercise."""
+        return Progress(e for e in self if e["exercise"] == exercise)
+
+    @property
+    def exercises(self) -> tuple[str, ...]:
+        """Those of which there is something, the earliest begun first."""
+        return tuple(dict.fromkeys(str(e["exercise"]) for e in self))
+
+    def text(self) -> str:
+        """The JSON text, an entry a line."""
+        head = f'{{"format": {json.dumps(FORMAT)}, "version": {VERSION}, "entries": ['
+        return head + ",".join(f"\n{_identity(one)}" for one in self) + "\n]}\n"
+
+    @classmethod
+    def read(cls, text: str) -> Progress:
+        """The progress that a text holds.
+
+        Raises
+        ------
+        NotProgress
+            It holds none.
+        LaterVersion
+            It was written by a later version.
+        """
+        try:
+            content = json.loads(text)
+            entries = [_checked(entry) for entry in content["entries"]]
+            later = content["version"] > VERSION
+            known = content["format"] == FORMAT
+        except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as fault:
+            raise NotProgress(str(fault)) from fault
+        if not known:
+            raise NotProgress("no format of ours")
+        if later:
+            raise LaterVersion(str(content["version"]))
+        return cls(entries)
+
+
+def entry(at: datetime, exercise: str, seed: int, part: str, what: str, **more: Any) -> dict[str, Any]:
+    """Something that happens now, as it is kept."""
+    told = at.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
+    return {"at": told, "exercise": exercise, "seed": seed, "part": part, "what": what, **more}
+
+
+def date_of(one: Entry) -> datetime:
+    """When it happened."""
+    return datetime.fromisoformat(str(one["at"]).replace("Z", "+00:00"))
+
+
+def _checked(one: Any) -> Entry:
+    """An entry that can be used.
+
+    Raises
+    ------
+    ValueError, TypeError, KeyError
+        It lacks what every entry has.
+    """
+    if date_of(one).tzinfo is None:
+        raise ValueError(one["at"])
+    if isinstance(one["seed"], bool) or not isinstance(one["seed"], int) or one["seed"] < 0:
+        raise ValueError(one["seed"])
+    if not all(isinstance(one[name], str) for name in ("exercise", "part", "what")):
+        raise ValueError("an entry names its exercise, its part and what it is")
+    return one
+
+
+def _identity(one: Entry) -> str:
+    return json.dumps(one, ensure_ascii=False, sort_keys=True, default=str)

@@ -1,0 +1,79 @@
+"""What is kept of a marking: each answer with its verdict, and the named errors that it shows were not made."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from datetime import timedelta
+from typing import TYPE_CHECKING, Any
+
+from coursework.errors import CourseworkError
+from coursework.marking.marking import mark
+from coursework.selfstudy.mastery import RIGHT
+from coursework.selfstudy.progress import ANSWER, Entry, date_of, entry
+from coursework.selfstudy.store import ProgressFile, is_blank
+
+if TYPE_CHECKING:
+    from coursework.course.course import Course
+    from coursework.course.variant import Variant
+    from coursework.marking.mark import Marking
+    from coursework.model import Part
+
+
+def marked_answers(
+    variant: Variant, answers: Mapping[str, Any], marking: Marking, before: Sequence[Entry]
+) -> list[dict[str, Any]]:
+    """What there is to keep of a marking, of answers that are new or are marked otherwise than ``before``."""
+    last = {e["part"]: (e.get("answer"), e.get("verdict")) for e in before if e["what"] == ANSWER}
+    found = []
+    for part in variant.parts:
+        answer, mark = answers.get(part.id), marking[part.id]
+        if is_blank(answer) or last.get(part.id) == (answer, mark.verdict):
+            continue
+        told: dict[str, Any] = {"part": part.id, "what": ANSWER, "answer": answer, "verdict": mark.verdict}
+        told["kind"] = skill_of_kind(part)
+        if mark.verdict in RIGHT:
+            told["shown"] = sorted(set(errors_shown(variant, part)))
+        found.append(told)
+    return found
+
+
+def mark_what_came_unmarked(course: Course[Any], file: ProgressFile) -> None:
+    """Give their verdicts to answers that were kept without: by an earlier version, or while there were no solutions; with the date of
+    the answer."""
+    last = {(e["exercise"], e["seed"], e["part"]): e for e in file.progress if e["what"] == ANSWER}
+    unmarked: dict[tuple[str, int], list[Entry]] = {}
+    for (exercise, seed, _), one in last.items():
+        if "verdict" not in one and exercise in course:
+            unmarked.setdefault((exercise, seed), []).append(one)
+    for (exercise, seed), found in unmarked.items():
+        if not course.folder.has_solutions:
+            continue
+        variant = course[exercise].variant(seed)
+        answers = {e["part"]: e.get("answer") for e in found if e["part"] in variant.part_ids}
+        try:
+            marking = mark(variant, answers)
+        except CourseworkError:
+            continue
+        at = max(map(date_of, found)) + timedelta(microseconds=1)
+        told = marked_answers(variant, answers, marking, ())
+        file.add([entry(at, exercise, seed, **each) for each in told])
+
+
+def skill_of_kind(part: Part) -> str:
+    """What sort of answer it is: by its unit where it has one, else by its kind."""
+    return part.unit if part.unit != "1" else part.kind
+
+
+def errors_shown(variant: Variant, part: Part) -> Iterator[str]:
+    """The named errors that would have given another answer to a part of this variant."""
+    key, sort = variant.key, part.sort
+    if sort.is_open or not sort.disproves:
+        return
+    reference, width = key.reference[part.quantity], key.envelope.get(part.quantity, 0.0)
+    along = key.reference.get(part.along)
+    for name, value in key.wrong_ways(part.quantity):
+        if value is not None and sort.apart(part, value, reference, along, width) > 1:
+            yield f"mistake:{name}"
+    for kind, value in key.slips(part):
+        if sort.apart(part, value, reference, along, width) > 1:
+            yield f"slip:{kind}"

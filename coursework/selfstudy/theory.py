@@ -1,0 +1,67 @@
+"""Which questions are *theory*: they have one answer whatever the numbers, so that another variant asks nothing new."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from coursework.errors import CourseworkError
+
+if TYPE_CHECKING:
+    from coursework.course.exercise import CourseExercise
+    from coursework.course.variant import Variant
+
+_SAMPLE = range(16)
+
+
+@lru_cache(maxsize=64)
+def theory(exercise: CourseExercise[Any]) -> frozenset[str]:
+    """The ids of the parts that every variant asks and whose reference is the same in all.
+
+    Not those of an exercise where all are: there is nothing else to ask. A question that only some variants ask is drawn, and rotates; one
+    that is judged together with others is asked with them.
+    """
+    if not exercise.folder.has_solutions:
+        return frozenset()
+    asked = exercise.variants(_SAMPLE)
+    always = [p for p in asked[0].parts if all(p.id in v.part_ids for v in asked)]
+    same = frozenset(p.id for p in always if p.id in unchanging(exercise) and not p.judge)
+    return frozenset() if len(same) == len(asked[0].parts) else same
+
+
+@lru_cache(maxsize=64)
+def unchanging(exercise: CourseExercise[Any]) -> frozenset[str]:
+    """The ids of the parts whose reference is the same in every variant that asks them."""
+    variants = exercise.variants(_SAMPLE)
+    judged = (p for p in exercise.spec.parts if not p.sort.is_open)
+    return frozenset(
+        p.id for p in judged if _is_same([v for v in variants if p.id in v.part_ids], p.quantity)
+    )
+
+
+def _is_same(variants: list[Variant], quantity: str) -> bool:
+    values = []
+    for variant in variants:
+        try:
+            values.append(variant.quantities([quantity])[quantity])
+        except CourseworkError:
+            return False
+    return all(_agree(value, values[0]) for value in values)
+
+
+def _agree(one: Any, other: Any) -> bool:
+    """Whether two references are one, but for the last digits."""
+    if isinstance(one, (int, float, complex, np.ndarray, list, tuple)):
+        try:
+            return bool(np.allclose(one, other, rtol=1e-9, atol=1e-9))
+        except (TypeError, ValueError):
+            return False
+    return bool(one == other)
+
+
+def without_theory(variant: Variant) -> Variant:
+    """The variant without the questions that another one has answered already."""
+    known = theory(variant.exercise)
+    return variant.asking([p for p in variant.parts if p.id not in known]) if known else variant
