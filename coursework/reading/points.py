@@ -19,6 +19,9 @@ from coursework.reading.vocabulary import Unreadable
 _POINT = re.compile(r"(?:[^\W\d_]\w{0,9}\s*)?[(\[{<](?P<inside>.*)[)\]}>]\s*(?P<unit>.*)", re.DOTALL)
 
 
+_SIGNED_AFTER_SPACE = re.compile(r"\d\s+[-+\u2212]\d")
+
+
 def _splits(text: str) -> Iterable[list[str]]:
     """Ways to cut a text into coordinates, the likelier first."""
     if ";" in text or "|" in text:
@@ -28,7 +31,8 @@ def _splits(text: str) -> Iterable[list[str]]:
     yield re.split(r",\s+|\s+,\s*", text)
     pieces = text.replace(", ", " ").split()
     yield pieces
-    yield commas
+    if not any(map(_SIGNED_AFTER_SPACE.search, commas)):  # 21 -18,5: no difference, but two numbers
+        yield commas
     if len(commas) % 2 == 0:  # 12,3,4,5: each other comma is decimal
         yield [f"{a},{b}" for a, b in zip(commas[::2], commas[1::2], strict=True)]
 
