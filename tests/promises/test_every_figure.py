@@ -10,7 +10,7 @@ import pytest
 import sweeps
 
 import coursework
-from coursework.figures import Figure, link, pin
+from coursework.figures import Figure, contact, ground_pivot, link, pin, point, wheel
 from coursework.rendering import views
 from coursework.rendering.renderer import renderer_of
 from coursework.sheets.drawings import solution_figure
@@ -73,7 +73,31 @@ def faults(figure):
     apart |= abs(middle.real * d.imag - middle.imag * d.real) >= reach
     found += [f"{boxes[i].label} on a line" for i in np.flatnonzero((~apart).any(axis=1))]
     off = (low < -1e-9).any(axis=0) | (high > np.array(figure.size_mm)[:, None] + 1e-9).any(axis=0)
-    return found + [f"{boxes[i].label} off the paper" for i in np.flatnonzero(off)]
+    return found + [f"{boxes[i].label} off the paper" for i in np.flatnonzero(off)] + mistaken(figure)
+
+
+def mistaken(figure):
+    """Names of points whose box is not nearer to their own point than to any other point that has a name, and that
+    no leader ties to it."""
+    named = {
+        k: complex(it.p) * figure.scale
+        for k, it in enumerate(figure.elements)
+        if isinstance(it, (ground_pivot, pin, point, contact)) and it.label
+    }
+    layout, found = figure._layout, []
+    for label, k in zip(layout.labels, layout.named, strict=True):
+        if k in named and label.leader is None:
+            low, high = label.corners
+            gap = {z: from_box(z, low, high) for z in named.values()}
+            others = [far for z, far in gap.items() if abs(z - named[k]) > 0.2]
+            if gap[named[k]] >= min(others, default=math.inf):
+                found.append(f"{label.label} nearer to another point")
+    return found
+
+
+def from_box(z, low, high):
+    across = max(low.real - z.real, 0, z.real - high.real)
+    return math.hypot(across, max(low.imag - z.imag, 0, z.imag - high.imag))
 
 
 @sweeps.seeds(8, 200)
@@ -118,6 +142,25 @@ def test_letters_set_over_a_drawing_are_those_that_it_would_hold(name):
     bare = ET.fromstring(figure.bare_svg())
     assert not bare.findall(f".//{SVG}text")
     assert strokes(figure.bare_svg())[0] == pytest.approx(strokes(figure.svg())[0])
+
+
+@pytest.mark.parametrize("seed", [511, *range(40)])
+def test_no_number_of_a_body_lies_on_the_area_of_another(seed):
+    figure = COURSE["mobility"].variant(seed).figure
+    discs = {k: it for k, it in enumerate(figure.elements) if isinstance(it, wheel) and it.label}
+    layout = figure._layout
+    for label, k in zip(layout.labels, layout.named, strict=True):
+        for other, disc in discs.items():
+            inside = abs(label.center - disc.center * figure.scale) < disc.radius * figure.scale
+            assert not (inside and k != other and label.leader is None), f"{label.label} on {disc.label}"
+
+
+def test_the_measure_sees_a_name_nearer_to_another_point():
+    figure = Figure(pin(0, "O"), pin(30, "A"), scale=1)
+    assert faults(figure) == []
+    layout = figure._layout
+    figure.__dict__["_layout"] = replace(layout, named=layout.named[::-1])
+    assert "A nearer to another point" in faults(figure)
 
 
 def test_the_measure_sees_a_label_on_a_line_and_on_another_label():
