@@ -155,6 +155,15 @@ def test_no_number_of_a_body_lies_on_the_area_of_another(seed):
             assert not (inside and k != other and label.leader is None), f"{label.label} on {disc.label}"
 
 
+@pytest.mark.parametrize("name", WITH_FIGURE)
+def test_a_figure_tells_positions_no_finer_than_tenths_of_a_millimetre_of_paper(name):
+    figure = COURSE[name].variant(3).figure
+    joints = re.findall(r'<circle cx="([^"]*)" cy="([^"]*)" r="1.1"', figure.svg())
+    assert all(re.fullmatch(r"\d+(\.\d)?", number) for place in joints for number in place)
+    drawn = [it for it in figure.elements if isinstance(it, (pin, ground_pivot))]
+    assert len(joints) >= len({complex(it.p) for it in drawn}) - 1
+
+
 def test_the_measure_sees_a_name_nearer_to_another_point():
     figure = Figure(pin(0, "O"), pin(30, "A"), scale=1)
     assert faults(figure) == []
