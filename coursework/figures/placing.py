@@ -21,7 +21,9 @@ _AIRY = 0.8  #: the white a label prefers
 _APART = 0.5  #: least white between two labels, mm
 _LEADER = 4.5  #: a label farther than this from what it names gets a thin line to it, mm
 _AT_ARC = 3.0  #: the same for an angle, from the middle of its arc, mm
-_NEARER = 0.2  #: a label is nearer to its own line or point than to any other that has a label, by so much, mm
+_NEARER = (
+    0.2  #: a label is nearer to its own line or point than to any other that has a label, by so much, mm
+)
 _ALOOF = 2.0  #: least white between a label with a leader and another line that has a label, mm
 _SAME = 0.05  #: points so near each other are one, mm
 _BESIDE = 1.5  #: so near a leader of a label passes no other point that has one, mm
@@ -364,7 +366,9 @@ class _Rivals:
     def _of_a_point(
         self, source: complex, center: complex, half: complex, leader: tuple[complex, complex] | None
     ) -> int:
-        far = min(_from_box(z, center, half) for z in self.points) >= _from_box(source, center, half) + _NEARER
+        far = (
+            min(_from_box(z, center, half) for z in self.points) >= _from_box(source, center, half) + _NEARER
+        )
         if leader is None:
             return 0 if far else 3
         if any(distance(z, *leader) < _BESIDE for z in self.points):

@@ -117,17 +117,32 @@ def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(na
     assert not {seed: bad for seed, bad in found.items() if bad}
 
 
-@pytest.mark.parametrize("paper", ["a4", "letter"])
+def pages_of(sheet, paper):
+    return len(re.findall(rb"/Type ?/Page\b", renderer_of(COURSE.folder).on(paper).pdf(sheet)))
+
+
+@sweeps.seeds(2, 30)
+@pytest.mark.parametrize("lang", ["fr", "en"])
+@pytest.mark.parametrize("name", WITH_FIGURE)
+def test_the_height_that_questions_leave_to_a_figure_costs_no_page(name, lang, seeds, monkeypatch):
+    sheets = [v.in_language(lang).handout("Zoé Martin") for v in COURSE[name].variants(seeds) if v.figure]
+    for paper in ("a4", "letter"):
+        taken = [pages_of(sheet, paper) for sheet in sheets]
+        with monkeypatch.context() as usual:
+            usual.setattr(views, "_left", lambda questions, beside: 0.0)
+            usual.setattr(views, "_by_paper", lambda paper, letters: 48.0)
+            assert taken == [pages_of(sheet, paper) for sheet in sheets]
+
+
 @pytest.mark.parametrize(
-    "name", ["quick_return_shaper", "quick_return_whitworth", "mechanical_advantage", "coriolis"]
+    "name", ["quick_return_shaper", "mechanical_advantage", "coriolis", "three_loop_shaper"]
 )
-def test_a_slender_figure_has_more_height_on_a_sheet_that_stays_one_page(name, paper):
+def test_a_slender_figure_is_larger_where_few_or_many_questions_leave_it_height(name):
     variants = [v for v in COURSE[name].variants(range(40)) if v.figure.aspect < 1]
     for variant in variants[:2]:
         room = views.room(variant.handout())
-        assert variant.figure.fitted(*room).scale > 1.2 * variant.figure.fitted(*views.ROOM_BESIDE).scale
-        made = renderer_of(COURSE.folder).on(paper).pdf(variant.handout("Zoé Martin"))
-        assert len(re.findall(rb"/Type ?/Page\b", made)) == 1
+        usual = views.ROOM_BESIDE if room[0] == views.ROOM_BESIDE[0] else views.ROOM_ALONE
+        assert variant.figure.fitted(*room).scale > 1.2 * variant.figure.fitted(*usual).scale
     assert variants
 
 
