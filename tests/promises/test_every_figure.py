@@ -121,7 +121,7 @@ def pages_of(sheet, paper):
     return len(re.findall(rb"/Type ?/Page\b", renderer_of(COURSE.folder).on(paper).pdf(sheet)))
 
 
-@sweeps.seeds(2, 30)
+@sweeps.seeds(2, 8)
 @pytest.mark.parametrize("lang", ["fr", "en"])
 @pytest.mark.parametrize("name", WITH_FIGURE)
 def test_the_height_that_questions_leave_to_a_figure_costs_no_page(name, lang, seeds, monkeypatch):
