@@ -215,3 +215,9 @@ def test_a_file_of_anything_is_read_without_a_traceback(text, tmp_path):
 def test_a_page_ends_its_data_nowhere_else(lang):
     page = one("slotted_mechanism", lang, "</script><script>alert(1)</script>")
     assert page.data["student"] == "</script><script>alert(1)</script>"
+
+
+def test_what_a_french_page_tells_parts_no_high_mark_from_its_word():
+    told = words("fr")["page"]
+    assert not [text for text in told.values() if re.search(r"[ ][;:!?»]|« ", text) or "'" in text]
+    assert set(told) == set(words("en")["page"])
