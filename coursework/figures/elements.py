@@ -122,7 +122,8 @@ class bar(Element):
             from coursework.figures.text import read
 
             center = added(points) / len(points)
-            paper.toward(self.label, center, 1j, -read(self.label).box[1] / 2 if self.label else 0.0, SIDES)
+            start = -read(self.label).box[1] / 2 if self.label else 0.0
+            paper.toward(self.label, center, 1j, start, SIDES, area=(*points, points[0]))
         else:
             longest = max(pairwise(points), key=lambda pair: abs(pair[1] - pair[0]))
             paper.beside(self.label, *longest, AWAY)
@@ -291,8 +292,9 @@ class ball(Element):
 
     def draw(self, paper: Paper) -> None:
         center, radius = paper.at(self.center), paper.length(self.radius)
-        paper.draw(Disc(center, radius, EDGE, TINT, layer=GUIDES))
-        paper.around(self.label, center, 0.9)
+        disc = Disc(center, radius, EDGE, TINT, layer=GUIDES)
+        paper.draw(disc)
+        paper.around(self.label, center, 0.9, area=disc.outline())
 
 
 @dataclass(frozen=True)
@@ -308,5 +310,6 @@ class wheel(Element):
 
     def draw(self, paper: Paper) -> None:
         center, radius = paper.at(self.center), paper.length(self.radius)
-        paper.draw(Disc(center, radius, EDGE, TINT, layer=FILLS))
-        paper.around(self.label, center, 0.9)
+        disc = Disc(center, radius, EDGE, TINT, layer=FILLS)
+        paper.draw(disc)
+        paper.around(self.label, center, 0.9, area=disc.outline())

@@ -88,17 +88,26 @@ class Paper:
         start: float,
         taken: Sequence[complex] = (),
         toward: float | None = None,
+        area: tuple[complex, ...] = (),
     ) -> None:
         """Asks for a label round a point: toward an angle if one is given, else in the widest gap
-        between the bars that leave the point."""
+        between the bars that leave the point. ``area`` is the outline of the body that it names."""
         if label:
             gap = _widest_gap([*self.directions(p), *taken])
             way = gap if toward is None else turn(toward)
-            self.wishes.append(Wish(label, p, way, start, NAMES))
+            self.wishes.append(Wish(label, p, way, start, NAMES, area=area))
 
-    def toward(self, label: str | None, p: complex, way: complex, start: float, rank: int = ANGLES) -> None:
+    def toward(
+        self,
+        label: str | None,
+        p: complex,
+        way: complex,
+        start: float,
+        rank: int = ANGLES,
+        area: tuple[complex, ...] = (),
+    ) -> None:
         if label:
-            self.wishes.append(Wish(label, p, way / (abs(way) or 1.0), start, rank))
+            self.wishes.append(Wish(label, p, way / (abs(way) or 1.0), start, rank, area=area))
 
     def inside(self, label: str, center: complex, height: float) -> None:
         """Asks for a label centred on a point of a hatched area."""

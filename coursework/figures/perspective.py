@@ -1,61 +1,336 @@
-"""Joints in space drawn in perspective: their points, their directions, the bodies between them."""
+"""Joints in space: their symbols, their directions, the bodies between them, seen from where they are best told apart."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from itertools import pairwise
-from typing import Any, TypeAlias
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations, pairwise
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from coursework.figures import Element, Figure, line, point, vector
-from coursework.figures.ink import added
+from coursework.figures.base import Positive
+from coursework.figures.ink import BLOCKS, EDGE, TINT, WHITE, Disc, Path, added
+from coursework.figures.placing import distance
+
+if TYPE_CHECKING:
+    from coursework.figures.paper import Paper
 
 Place: TypeAlias = Sequence[float]  #: x, y and z, mm
+See: TypeAlias = Callable[[Place], complex]  #: where a point is seen; a mm across the line of sight is a mm
 
-#: Where a mm towards the reader, along x, is seen; y goes to the right and z up. Points whose coordinates are
-#: multiples of 20 mm up to 40 mm are seen 8 mm apart at least.
-_FORWARD = complex(-0.4, -0.21)
-_SEEN = {"x": _FORWARD, "y": 1 + 0j, "z": 1j}
-_SCALE = 0.75  #: at most
-_ARM = 4.5  #: of an axis to each side of its point, mm on paper
-_BASE, _CORNER = 9.0, complex(-20, 0)  #: the base, and where it stands from the lower left, mm on paper
+#: Degrees from which the joints may be seen: about z from x, and above the plane of x and y. The first that shows
+#: them well is taken; in all x comes towards the reader, y goes to the right and z up.
+_VIEWS = [(about, above) for above in (20, 30, 12, 40) for about in (30, 20, 40, 50, 60, -20, -30, -40)]
+_APART = 9.0  #: what is seen so far apart is told apart well, mm on paper
+_SCALE = 1.0  #: at most
+_WIDE = 110.0  #: what the points may take of the paper across, mm
+_ARM = 6.0  #: of an axis to each side of its point, mm on paper
+_BASE, _CORNER = (
+    9.0,
+    complex(-20, -4),
+)  #: the base, and where it stands from the middle of the left side, mm on paper
+_LONG, _RADIUS, _BALL, _PLATE = (
+    3.0,
+    1.5,
+    1.9,
+    3.2,
+)  #: half-length and radius of a tube, radius of a ball, half the side of a plate, mm on paper
+_ASIDE = 5.5  #: from a point to the symbol of one of several joints there, along its axis, mm on paper
+_FEW, _SMALLER = 2, 0.75  #: more joints than a few have smaller symbols
+_UNITS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
-def _seen(place: Place) -> complex:
-    return added(c * _SEEN[letter] for c, letter in zip(place, "xyz", strict=True))
+@dataclass(frozen=True)
+class _face(Element):
+    """A side of a symbol, or a line in front of it: it hides what is drawn before."""
+
+    points: tuple[complex, ...]
+
+    def draw(self, paper: Paper) -> None:
+        points = tuple(
+            complex(round(z.real, 2), round(z.imag, 2)) for z in (p * paper.scale for p in self.points)
+        )
+        paper.draw(Path(points, EDGE, WHITE, closed=len(points) > 2, layer=BLOCKS))
 
 
-def _steps(place: Place) -> list[tuple[complex, complex]]:
+@dataclass(frozen=True)
+class _ball(Element):
+    """A ball of a symbol."""
+
+    center: complex
+    radius: Positive
+
+    def draw(self, paper: Paper) -> None:
+        paper.draw(Disc(paper.at(self.center), paper.length(self.radius), EDGE, TINT, layer=BLOCKS))
+
+
+def _looking(about: float, above: float) -> tuple[See, Place]:
+    """How a point is seen from there, and the unit vector to the reader."""
+    phi, eps = math.radians(about), math.radians(above)
+    right = (-math.sin(phi), math.cos(phi), 0.0)
+    up = (-math.cos(phi) * math.sin(eps), -math.sin(phi) * math.sin(eps), math.cos(eps))
+    forward = (math.cos(phi) * math.cos(eps), math.sin(phi) * math.cos(eps), math.sin(eps))
+    return lambda place: complex(_dot(place, right), _dot(place, up)), forward
+
+
+def _dot(u: Place, v: Place) -> float:
+    return added(a * b for a, b in zip(u, v, strict=True)).real
+
+
+def _beyond(p: Place, u: Place, far: float) -> Place:
+    return tuple(a + far * b for a, b in zip(p, u, strict=True))
+
+
+def _steps(place: Place) -> list[tuple[Place, Place]]:
     """From the origin to a point along y, then x, then z: the lines that are not nothing."""
     x, y, z = place
-    corners = [_seen(p) for p in dict.fromkeys([(0, 0, 0), (0, y, 0), (x, y, 0), (x, y, z)])]
-    return list(pairwise(corners))
+    return list(pairwise(dict.fromkeys([(0, 0, 0), (0, y, 0), (x, y, 0), (x, y, z)])))
 
 
 def in_perspective(
     rows: Sequence[Mapping[str, Any]], bodies: Iterable[tuple[int, int, int]] = (), *, tall: float = 36.0
 ) -> Figure:
     """The joints of a statement's table (see ``table``). ``bodies`` are (number, first joint, second joint) of those
-    drawn as a line between two points; ``tall`` is what the points may take of the paper upwards, mm. A point of
-    several joints carries all their names."""
-    places = [tuple(row["point"]) for row in rows]
-    steps = list(dict.fromkeys(step for place in places for step in _steps(place)))
-    ends = [end for step in steps for end in step] or [0j]
-    left, low, high = min(z.real for z in ends), min(z.imag for z in ends), max(z.imag for z in ends)
-    scale = min(_SCALE, tall / (high - low or 1.0))
-    corner = complex(left, low) + _CORNER / scale
-    elements: list[Element] = [
-        vector(corner, _BASE / scale * way, rf"\vec{{{letter}}}") for letter, way in _SEEN.items()
+    drawn as a line between two points; ``tall`` is what the drawing may take of the paper upwards, mm. A point of
+    several joints carries all their names, and their symbols stand aside of it along their axes."""
+    places = [tuple(map(float, row["point"])) for row in rows]
+    chain = _Chain(rows, places, [(k, places[p - 1], places[q - 1]) for k, p, q in bodies])
+    view = max(_VIEWS, key=lambda view: (round(chain.apart(view, tall), 2), -_VIEWS.index(view)))
+    scale = chain.scale(view, tall)
+    elements = chain.elements(view, scale)
+    # What symbols take is known once they are drawn.
+    over = scale * _height(elements) - tall
+    if over > 0:
+        scale = max(scale / 3, scale - over / chain.size(view).imag)
+        elements = chain.elements(view, scale)
+    return Figure(*elements, scale=scale)
+
+
+def _height(elements: Sequence[Element]) -> float:
+    heights = [z.imag for element in elements for z in element.reach()]
+    return max(heights) - min(heights)
+
+
+@dataclass(frozen=True)
+class _Chain:
+    """Joints, the points where they are, and the bodies between them: number and both ends."""
+
+    rows: Sequence[Mapping[str, Any]]
+    places: Sequence[Place]
+    bodies: Sequence[tuple[int, Place, Place]]
+
+    @cached_property
+    def steps(self) -> list[tuple[Place, Place]]:
+        return list(dict.fromkeys(step for place in self.places for step in _steps(place)))
+
+    @cached_property
+    def corners(self) -> list[Place]:
+        return list(dict.fromkeys(end for step in self.steps for end in step)) or list(self.places[:1])
+
+    def size(self, view: tuple[float, float]) -> complex:
+        """Width and height of the points as seen."""
+        see, _ = _looking(*view)
+        across, up = ([see(c).real for c in self.corners], [see(c).imag for c in self.corners])
+        return complex(max(across) - min(across), max(up) - min(up))
+
+    def scale(self, view: tuple[float, float], tall: float) -> float:
+        size = self.size(view)
+        return min(_SCALE, _WIDE / (size.real or 1.0), tall / (size.imag or 1.0))
+
+    def apart(self, view: tuple[float, float], tall: float) -> float:
+        """The least distance on paper between two points, or a point and a body that ends at others."""
+        see, _ = _looking(*view)
+        return min(
+            _APART, self.scale(view, tall) * _least(see, list(dict.fromkeys(self.places)), self.bodies)
+        )
+
+    def elements(self, view: tuple[float, float], scale: float) -> list[Element]:
+        see, forward = _looking(*view)
+        mm = (1.0 if len(self.rows) <= _FEW else _SMALLER) / scale
+        left, up = min(see(c).real for c in self.corners), [see(c).imag for c in self.corners]
+        corner = complex(left, (min(up) + max(up)) / 2) + _CORNER / scale
+        found: list[Element] = [
+            vector(corner, _BASE / scale * see(u), rf"\vec{{{letter}}}") for letter, u in _UNITS.items()
+        ]
+        found += [line(see(p), see(q), dashed=True) for p, q in self.steps]
+        found += [line(see(p), see(q), thin=False, label=f"S_{k}") for k, p, q in self.bodies if p != q]
+        for k, (row, place) in enumerate(zip(self.rows, self.places, strict=True)):
+            before, there = self.places[:k].count(place), self.places.count(place)
+            aside = 0.0 if there == 1 else _ASIDE * mm * (1 if before % 2 else -1)
+            found += _symbol(row, place, aside, see, forward, mm)
+        for place in dict.fromkeys(self.places):
+            names = [f"A_{k}" for k, other in enumerate(self.places, start=1) if other == place]
+            found.append(point(see(place), "=".join(names)))
+        return list(dict.fromkeys(found))
+
+
+def _least(see: See, places: Sequence[Place], bodies: Sequence[tuple[int, Place, Place]]) -> float:
+    """The least distance, as seen, between two places, or between a place and a body that ends elsewhere."""
+    gaps = [abs(see(p) - see(q)) for p, q in combinations(places, 2)]
+    gaps += [
+        distance(see(r), see(p), see(q)) for _, p, q in bodies if p != q for r in places if r not in (p, q)
     ]
-    elements += [line(p, q, dashed=True) for p, q in steps]
-    for number, first, second in bodies:
-        p, q = _seen(places[first - 1]), _seen(places[second - 1])
-        elements += [line(p, q, label=f"S_{number}")] if p != q else []
-    for row, place in zip(rows, places, strict=True):
-        if row["joint"] != "spherical":
-            way = _SEEN[row["along"]]
-            arm = _ARM / scale * way / abs(way) ** 0.3  # seen shorter where it is foreshortened, yet seen
-            elements.append(line(_seen(place) - arm, _seen(place) + arm, thin=False))
-    for place in dict.fromkeys(places):
-        names = [f"A_{k}" for k, other in enumerate(places, start=1) if other == place]
-        elements.append(point(_seen(place), "=".join(names)))
-    return Figure(*dict.fromkeys(elements), scale=scale)
+    return min(gaps, default=math.inf)
+
+
+def _symbol(
+    row: Mapping[str, Any], place: Place, aside: float, see: See, forward: Place, mm: float
+) -> list[Element]:
+    """A joint's axis and its symbol, which hides what is behind it; ``mm`` is one of the symbol's."""
+    kind = row["joint"]
+    shape, depth = _DRAWN[kind]
+    if kind == "spherical":
+        return shape(place, _UNITS["z"], see, forward, mm)
+    u = _UNITS[row["along"]]
+    center = _beyond(place, u, aside) if kind in _ALONG else place
+    front = 1 if _dot(u, forward) >= 0 else -1
+    arm = _ARM * mm + abs(aside)
+    behind = line(see(_beyond(place, u, -front * arm)), see(place), thin=False)
+    before = _face((see(_beyond(center, u, front * depth * mm)), see(_beyond(place, u, front * arm))))
+    return [behind, *shape(center, u, see, forward, mm), before]
+
+
+def _tube(
+    center: Place, u: Place, see: See, forward: Place, mm: float, long: float = _LONG, radius: float = _RADIUS
+) -> list[Element]:
+    """A cylinder about an axis: its outline, then the end that is seen."""
+    e1, e2 = _across(u)
+
+    def rim(far: float) -> list[complex]:
+        turns = [math.tau * k / 24 for k in range(24)]
+        return [
+            see(_beyond(_beyond(_beyond(center, u, far), e1, radius * mm * math.cos(t)), e2, radius * mm * math.sin(t)))
+            for t in turns
+        ]  # fmt: skip
+
+    front = long * mm if _dot(u, forward) >= 0 else -long * mm
+    return [_face(_hull(rim(front) + rim(-front))), _face(tuple(rim(front)))]
+
+
+def _stopped(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
+    """A cylinder between two collars, which keep it from sliding."""
+    ends = [_beyond(center, u, far * (_LONG + 0.4) * mm) for far in (-1, 1)]
+    back, front = ends if _dot(u, forward) >= 0 else ends[::-1]
+    collar = {"long": 0.35, "radius": 1.6 * _RADIUS}
+    return [
+        *_tube(back, u, see, forward, mm, **collar),
+        *_tube(center, u, see, forward, mm),
+        *_tube(front, u, see, forward, mm, **collar),
+    ]
+
+
+def _threaded(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
+    """A cylinder with a thread across it."""
+    _, e2 = _across(u)
+    way = [_beyond(_beyond(center, u, far * 0.7 * _LONG * mm), e2, far * _RADIUS * mm) for far in (-1, 1)]
+    return [*_tube(center, u, see, forward, mm), line(see(way[0]), see(way[1]))]
+
+
+def _box(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
+    """A block along an axis: its three sides that are seen."""
+    e1, e2 = _across(u)
+    half = ((u, _LONG * mm), (e1, _RADIUS * mm), (e2, _RADIUS * mm))
+    faces: list[Element] = []
+    for k, (way, far) in enumerate(half):
+        (v, a), (w, b) = half[k - 2], half[k - 1]
+        middle = _beyond(center, way, far if _dot(way, forward) >= 0 else -far)
+        corners = [
+            _beyond(_beyond(middle, v, i * a), w, j * b) for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1))
+        ]
+        faces.append(_face(tuple(map(see, corners))))
+    return faces
+
+
+def _plate(center: Place, u: Place, see: See, mm: float) -> _face:
+    """A square across an axis."""
+    e1, e2 = _across(u)
+    corners = [
+        _beyond(_beyond(center, e1, i * _PLATE * mm), e2, j * _PLATE * mm)
+        for i, j in ((1, 1), (1, -1), (-1, -1), (-1, 1))
+    ]
+    return _face(tuple(map(see, corners)))
+
+
+def _plates(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
+    """Two plates that slide on each other, the one behind first."""
+    far = 0.9 * mm if _dot(u, forward) >= 0 else -0.9 * mm
+    return [_plate(_beyond(center, u, side * far), u, see, mm) for side in (-1, 1)]
+
+
+def _round(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
+    return [_ball(see(center), _BALL * mm)]
+
+
+def _pinned(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
+    """A ball with a pin across its axis."""
+    e1, _ = _across(u)
+    pin = _face(tuple(see(_beyond(center, e1, far * 1.9 * _BALL * mm)) for far in (-1, 1)))
+    return [pin, *_round(center, u, see, forward, mm)]
+
+
+def _grooved(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
+    """A ball in a groove along its axis."""
+    return [
+        *_tube(center, u, see, forward, mm, 1.2 * _LONG, 1.2 * _BALL),
+        *_round(center, u, see, forward, mm),
+    ]
+
+
+def _on_plate(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
+    """A ball on the side of a plate that is seen."""
+    side = _BALL * mm if _dot(u, forward) >= 0 else -_BALL * mm
+    return [_plate(center, u, see, mm), *_round(_beyond(center, u, side), u, see, forward, mm)]
+
+
+def _on_line(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
+    """A roller along its axis."""
+    return _tube(center, u, see, forward, mm, 1.2 * _LONG, 0.6 * _RADIUS)
+
+
+Shape: TypeAlias = Callable[[Place, Place, See, Place, float], list[Element]]
+
+#: What is drawn of each joint, and how far it comes along its axis towards the reader, mm on paper.
+_DRAWN: dict[str, tuple[Shape, float]] = {
+    "revolute": (_stopped, _LONG + 0.7),
+    "cylindrical": (_tube, _LONG),
+    "helical": (_threaded, _LONG),
+    "prismatic": (_box, _LONG),
+    "spherical": (_round, 0.0),
+    "spherical_pin": (_pinned, _BALL),
+    "planar": (_plates, 0.9),
+    "annular": (_grooved, 1.2 * _LONG),
+    "line_contact": (_on_line, 1.2 * _LONG),
+    "point_contact": (_on_plate, 2 * _BALL),
+}
+_ALONG = (
+    "revolute",
+    "cylindrical",
+    "helical",
+    "prismatic",
+)  #: those whose symbol may stand anywhere on the axis
+
+
+def _across(u: Place) -> tuple[Place, Place]:
+    """The two other axes, in order after this one."""
+    units: list[Place] = list(_UNITS.values())
+    k = units.index(u)
+    return units[k - 2], units[k - 1]
+
+
+def _hull(points: Sequence[complex]) -> tuple[complex, ...]:
+    """The convex hull, anticlockwise."""
+    ordered = sorted(
+        {complex(round(z.real, 6), round(z.imag, 6)) for z in points}, key=lambda z: (z.real, z.imag)
+    )
+
+    def half(way: Sequence[complex]) -> list[complex]:
+        found: list[complex] = []
+        for z in way:
+            while len(found) > 1 and ((found[-1] - found[-2]).conjugate() * (z - found[-2])).imag <= 0:
+                found.pop()
+            found.append(z)
+        return found[:-1]
+
+    return (*half(ordered), *half(ordered[::-1]))

@@ -1,4 +1,4 @@
-"""Where labels go: near what they name, on no line, on no other label, nearer to their own line than to another.
+"""Where labels go: near what they name, on no line, on no other label, nearer to what they name than to its like.
 
 Every label has a list of candidate places, cheapest first; it takes the first free one.
 Labels are placed in a fixed order, so the same figure always comes out the same.
@@ -13,7 +13,7 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import NamedTuple
 
-from coursework.figures.ink import ANGLES, BAR, THIN, Ink, turn
+from coursework.figures.ink import ANGLES, BAR, NAMES, THIN, Ink, turn
 from coursework.figures.text import Text, read
 
 _CLEAR = 0.45  #: least white between a label and a line, mm
@@ -21,12 +21,17 @@ _AIRY = 0.8  #: the white a label prefers
 _APART = 0.5  #: least white between two labels, mm
 _LEADER = 4.5  #: a label farther than this from what it names gets a thin line to it, mm
 _AT_ARC = 3.0  #: the same for an angle, from the middle of its arc, mm
-_NEARER = 0.2  #: a label is nearer to its own line than to any other that has a label, by so much, mm
+_NEARER = (
+    0.2  #: a label is nearer to its own line or point than to any other that has a label, by so much, mm
+)
 _ALOOF = 2.0  #: least white between a label with a leader and another line that has a label, mm
+_SAME = 0.05  #: points so near each other are one, mm
+_BESIDE = 1.5  #: so near a leader of a label passes no other point that has one, mm
 _FAR = 9.5  #: so far a label goes to be told apart better, mm
 _STEPS = (0.0, 0.5, 1.0, 1.7, 2.5, 3.5, 5.0, 7.0, 9.5, 12.5, 16.0, 20.0, 26.0, 34.0, 45.0, 60.0)
 _FRACTIONS = (0.5, 0.42, 0.58, 0.34, 0.66, 0.25, 0.75)
-_RAYS = 2 * len(_FRACTIONS) + 16  #: on which places lie, at most
+_ROUND = 32  #: rays round a point
+_RAYS = 2 * len(_FRACTIONS) + _ROUND  #: on which places lie, at most
 _MORE = 8.0  #: mm round a place in which lines are looked up with it
 
 
@@ -52,11 +57,11 @@ def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
                     cost = step + 4 * abs(fraction - 0.5) + 0.4 * (side < 0)
                     costed.append((cost, (complex(side), step, fraction)))
     late, turning = (3.0 if beside else 0.0), (1.6 if angle else 0.7)
-    for sixteenth in range(16):
-        away = math.radians(22.5 * min(sixteenth, 16 - sixteenth))
+    for ray in range(_ROUND):
+        away = math.tau * min(ray, _ROUND - ray) / _ROUND
         # Beside a line, those round its middle are for labels with a leader.
         for step in _STEPS[5:] if beside else _STEPS:
-            costed.append((late + step + turning * away, (turn(22.5 * sixteenth), step, None)))
+            costed.append((late + step + turning * away, (turn(360 * ray / _ROUND), step, None)))
     rays: dict[tuple[complex, float | None], int] = {}
     for _, (way, _, along) in costed:
         rays.setdefault((way, along), len(rays))
@@ -96,6 +101,7 @@ class Wish:
     rank: int  #: lower ranks choose first
     along: tuple[complex, complex] | None = None
     inside: bool = False  #: the label belongs inside a hatched area
+    area: tuple[complex, ...] = ()  #: outline of the body that it names, where that is drawn as an area
 
     @property
     def source(self) -> complex:
@@ -321,29 +327,53 @@ def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[tuple[Label, ...]
     order = sorted(range(len(wishes)), key=lambda k: wishes[k].rank)
     sides = {wish.along: _line(*wish.along, 0.0) for wish in wishes if wish.along}
     for k in order:
-        obstacles.put(_choose(wishes[k], obstacles, _Rivals(wishes[k], sides)))
+        obstacles.put(_choose(wishes[k], obstacles, _Rivals(wishes[k], wishes, sides)))
     return tuple(obstacles.labels), tuple(order)
 
 
 class _Rivals:
-    """The other lines that have a label: who reads a label takes it for that of the nearest."""
+    """What else of the same sort has a label, lines, points or angles: who reads a label takes it for that of the
+    nearest; and a number on an area for that of the area."""
 
-    def __init__(self, wish: Wish, sides: Mapping[tuple[complex, complex], Line]) -> None:
-        same = (wish.along, wish.along[::-1]) if wish.along else sides
+    def __init__(
+        self, wish: Wish, wishes: Sequence[Wish], sides: Mapping[tuple[complex, complex], Line]
+    ) -> None:
+        same = (wish.along, wish.along[::-1]) if wish.along else () if wish.area else sides
         self.own = sides[wish.along] if wish.along else None
         self.lines = [line for ends, line in sides.items() if ends not in same]
+        is_body = bool(wish.along or wish.area)
+        self.areas = [it.area for it in wishes if it.area and it is not wish] if is_body else []
+        self.source = None if is_body or wish.rank not in (NAMES, ANGLES) else wish.source
+        others = {it.source: None for it in wishes if it.rank == wish.rank and not it.area}
+        self.points = [z for z in others if self.source is not None and abs(z - self.source) > _SAME]
 
     def mistaken(self, center: complex, half: complex, leader: tuple[complex, complex] | None) -> int:
-        """How a label here may be taken for that of another line: 0 not at all, 1 for that it is near in spite of its
+        """How a label here may be taken for that of another: 0 not at all, 1 for that it is near in spite of its
         leader, 2 in spite of one that crosses, 3 for want of one."""
-        if self.own is None or not self.lines:
+        if self.source is not None:
+            return self._of_a_point(self.source, center, half, leader) if self.points else 0
+        if leader is None and any(within(center, area) for area in self.areas):
+            return 3
+        if not self.lines:
             return 0
         if leader is None:
-            gap = _gap(self.own, center.real, center.imag, half.real, half.imag) + _NEARER
-            return 3 if self._within(gap, center, half) else 0
+            own = 0.0 if self.own is None else _gap(self.own, center.real, center.imag, half.real, half.imag)
+            return 3 if self._within(own + _NEARER, center, half) else 0
         if any(_crosses(line, *leader) for line in self.lines):
             return 2
         return int(self._within(_ALOOF, center, half))
+
+    def _of_a_point(
+        self, source: complex, center: complex, half: complex, leader: tuple[complex, complex] | None
+    ) -> int:
+        far = (
+            min(_from_box(z, center, half) for z in self.points) >= _from_box(source, center, half) + _NEARER
+        )
+        if leader is None:
+            return 0 if far else 3
+        if any(distance(z, *leader) < _BESIDE for z in self.points):
+            return 2
+        return 0 if far else 1
 
     def _within(self, gap: float, center: complex, half: complex) -> bool:
         """Whether one of the lines is so near to a box."""
@@ -355,6 +385,12 @@ class _Rivals:
             if _meets(line, cx, cy, x, y) and _gap(line, cx, cy, half.real, half.imag) < gap:
                 return True
         return False
+
+
+def _from_box(z: complex, center: complex, half: complex) -> float:
+    """How far a point is from a box."""
+    away = z - center
+    return math.hypot(max(abs(away.real) - half.real, 0.0), max(abs(away.imag) - half.imag, 0.0))
 
 
 def _crosses(line: Line, a: complex, b: complex) -> bool:

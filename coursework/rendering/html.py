@@ -1,15 +1,18 @@
-"""Sheets as one self-contained HTML page: no script, nothing fetched."""
+"""Sheets as one self-contained HTML page: nothing fetched; one script in a handout, which keeps its answers, none elsewhere."""
 
 from __future__ import annotations
 
 import base64
+import hashlib
 from collections.abc import Callable, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from html import escape
 from pathlib import Path
 
 from jinja2 import Environment
+from markupsafe import Markup
 
+from coursework.errors import BadCourse
 from coursework.figures import Beginning, Figure, Picture
 from coursework.language.words import words
 from coursework.markup import markdown as markup
@@ -17,12 +20,17 @@ from coursework.markup.mathml import to_mathml
 from coursework.polygons.construction import Construction
 from coursework.rendering import views
 from coursework.rendering.environment import environment, render
+from coursework.rendering.keeping import keeping
 
 
 def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
     """The whole page."""
-    env = environment_of(tuple(folders), views.handout_of(sheet).lang)
-    return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", views.context(sheet) | {"paper": paper})
+    handout = views.handout_of(sheet)
+    env = environment_of(tuple(folders), handout.lang)
+    names = views.context(sheet) | {"paper": paper}
+    if sheet is handout:
+        names["keeping"] = keeping([handout], handout.student, handout.lang)
+    return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", names)
 
 
 @lru_cache(maxsize=32)
@@ -35,8 +43,23 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "formula_words": lambda text: escape(markup.formula_words(text, lang)),
         "drawing": _drawing,
         "css": _css_string,
+        "said": lambda text: escape(markup.plain_line(text, lang)),
     }
-    return environment(folders, lang, markup.html_text, filters)
+    env = environment(folders, lang, markup.html_text, filters)
+    env.globals.update(script=partial(_script, env), digest=partial(_digest, env))
+    return env
+
+
+def _script(env: Environment, name: str) -> Markup:
+    """A script among the templates, as it stands in a page."""
+    if env.loader is None:
+        raise BadCourse(f"no template {name!r}")
+    return Markup("\n" + env.loader.get_source(env, name)[0])
+
+
+def _digest(env: Environment, name: str) -> str:
+    """The one script that a page allows, told by its digest: a browser runs no other."""
+    return "sha256-" + base64.b64encode(hashlib.sha256(_script(env, name).encode()).digest()).decode()
 
 
 def construction(folders: Sequence[Path], drawn: Construction) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from html import escape
 from pathlib import Path
@@ -17,6 +16,7 @@ from coursework.language.words import words
 from coursework.motion.animation import Animation
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
+from coursework.rendering.keeping import in_script
 
 
 def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> str:
@@ -62,7 +62,7 @@ def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> st
         "swings": not animation.turns,
         "turns": localise(significant(float(np.ptp(animation.angles)) / 360.0, 3), lang) if film else "",
         "has_vectors": bool(animation.scales),
-        "data": Markup(json.dumps(data, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")),
+        "data": in_script(data),
     }
     return render(environment_of(tuple(folders), lang), "motion.html.j2", names)
 

@@ -18,6 +18,7 @@ from coursework.language.numbers import localise
 from coursework.language.words import words
 from coursework.rendering import html, latex, pdf, views
 from coursework.rendering.environment import render
+from coursework.rendering.keeping import keeping
 from coursework.sheets.paper import FeedbackPaper, Logo, Paper, SolutionPaper
 from coursework.sheets.sheet import AnswerSheet, FeedbackSheet
 
@@ -156,9 +157,12 @@ def _text(data: bytes) -> str:
 
 
 def page(folders: Sequence[Path], paper: AnyPaper, size: str = "a4") -> str:
-    """A paper as one web page that fetches nothing and runs no script."""
-    env = html.environment_of(tuple(folders), paper.heading.lang)
+    """A paper as one web page that fetches nothing; that of a student to fill in runs the one script that keeps answers."""
+    heading = paper.heading
+    env = html.environment_of(tuple(folders), heading.lang)
     names = context(paper, "html.j2", partial(render, env))
+    if isinstance(paper, Paper):
+        names["keeping"] = keeping(paper.handouts, heading.student, heading.lang, numbered=True)
     return render(env, f"{TEMPLATES[type(paper)]}.html.j2", names | {"paper": size, "image": _image})
 
 

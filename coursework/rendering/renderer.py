@@ -73,7 +73,8 @@ class Renderer:
         return pdf.undrawn(text, self.template_folders)
 
     def html(self, sheet: Handout | AnswerSheet | FeedbackSheet) -> str:
-        """A sheet as one web page that fetches nothing and runs no script."""
+        """A sheet as one web page that fetches nothing. A handout's runs one script, which keeps the answers typed in it
+        and hands them in as a file; any other runs none."""
         from coursework.rendering import html
 
         return html.page(self.template_folders, sheet, self.paper)
@@ -130,7 +131,8 @@ class Renderer:
         )
 
     def paper_html(self, paper: AnyPaper) -> str:
-        """A paper, its solutions or its feedback as one web page that fetches nothing and runs no script."""
+        """A paper, its solutions or its feedback as one web page that fetches nothing; the student's own runs the one
+        script that keeps answers."""
         from coursework.rendering import papers
 
         return papers.page(self.template_folders, paper, self.paper)

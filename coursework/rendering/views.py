@@ -34,15 +34,18 @@ if TYPE_CHECKING:
 
 Sheet: TypeAlias = Handout | AnswerSheet | FeedbackSheet
 
-#: Room that a figure has on paper, width and height in mm: beside the data, the same for one that would leave much of
-#: the width, and with the data below it.
-ROOM_BESIDE, ROOM_TALL, ROOM_ALONE = (112.0, 62.0), (112.0, 76.0), (165.0, 72.0)
-_SLENDER = 1.2  #: width over height of a mechanism that leaves about a third of the width beside the data
+#: Room that a figure has on paper, width and height in mm: beside the data, and with the data below it.
+ROOM_BESIDE, ROOM_ALONE = (112.0, 62.0), (165.0, 72.0)
 ROOM_DATA = 46.0  #: width of the data beside it, whose longer lines are broken
 ROOM_STEP = (53.0, 200.0)  #: of a step of a construction, three of which stand side by side
-_TALL_BY_PAPER = 48.0  #: height that a figure has where there is paper to draw on as well
+#: What a figure, the paper to draw on below it and the statement above it take of a page together; the least and the most
+#: of it that is the figure's, and a line of text, mm; letters in one.
+_PAGE, _BY_PAPER, _LINE_MM, _LETTERS = 229.0, (48.0, 66.0), 5.5, 95
 GUIDE_TOGETHER = 16  #: rows at most of a marking guide that no page's end may cut
-_FEW_QUESTIONS = 8  #: so many at most leave a page some height
+#: So many questions at most leave a page some height, and each that there are fewer some more, mm; so many at least
+#: go on to a second page, and leave the first some.
+_FEW, _LEFT, _EACH = 8, 14.0, 6.0
+_MANY, _LEFT_BY_MANY = 14, (14.0, 22.0)  #: with the data beside the figure, and below it
 _BESIDE = 9  #: data at most that stand beside the figure
 
 #: The template of each type of sheet.
@@ -100,20 +103,25 @@ def more_figures(sheet: Sheet) -> tuple[tuple[Figure | Picture, str], ...]:
 
 def room(sheet: Sheet) -> tuple[float, float]:
     """Width and height in mm that a sheet leaves its figure."""
-    wide, tall = ROOM_ALONE
-    if _data_beside(sheet):
-        wide, tall = ROOM_TALL if _is_slender(sheet) else ROOM_BESIDE
+    handout, beside = handout_of(sheet), _data_beside(sheet)
+    wide, tall = ROOM_BESIDE if beside else ROOM_ALONE
     # Paper to draw on stands below the figure, on the same page if it may.
-    return wide, min(tall, _TALL_BY_PAPER) if handout_of(sheet).drawing_mm and isinstance(
-        sheet, Handout
-    ) else tall
+    if handout.drawing_mm and isinstance(sheet, Handout):
+        return wide, _by_paper(handout.drawing_mm[1], len(handout.statement))
+    return wide, tall + _left(len(handout.questions), beside)
 
 
-def _is_slender(sheet: Sheet) -> bool:
-    """Whether a figure would leave much of its width, on a sheet whose questions leave some of its height."""
-    figure = _shown(sheet)
-    few = len(handout_of(sheet).questions) <= _FEW_QUESTIONS
-    return few and figure is not None and figure.aspect < _SLENDER
+def _by_paper(paper: int, letters: int) -> float:
+    """Height of a figure above so many mm of paper to draw on, below a statement of so many letters."""
+    least, most = _BY_PAPER
+    return float(round(min(most, max(least, _PAGE - paper - _LINE_MM * letters / _LETTERS))))
+
+
+def _left(questions: int, beside: bool) -> float:
+    """What the questions of a sheet leave of a page's height to its figure, mm."""
+    if questions >= _MANY:
+        return _LEFT_BY_MANY[0 if beside else 1]
+    return _LEFT + _EACH * (_FEW - questions) if beside and questions <= _FEW else 0.0
 
 
 def _shown(sheet: Sheet) -> Figure | Picture | None:

@@ -48,7 +48,7 @@ def figure(
         joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
         x2, y2, z2, x3, y3, z3, x4, y4, z4,
     )["rows"]  # fmt: skip
-    return in_perspective(rows, bodies=((1, 1, 2), (2, 2, 3), (3, 3, 4), (0, 4, 1)), tall=22)
+    return in_perspective(rows, bodies=((1, 1, 2), (2, 2, 3), (3, 3, 4), (0, 4, 1)), tall=26)
 
 
 EXERCISE = Exercise(

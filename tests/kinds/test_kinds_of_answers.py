@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import re
 import subprocess
 from shutil import which
 
@@ -17,6 +18,7 @@ from coursework.cli import run
 from coursework.cli.demo import HABITS
 from coursework.errors import BadCourse
 from coursework.model import Part
+from coursework.reading.several import read_choices
 
 GIVEN = {"R": 30.0, "X": 40.0, "U": 100.0}
 
@@ -223,7 +225,10 @@ def test_room_that_is_none_is_refused(stated, said):
 def test_sheets_leave_room_and_say_the_rule(built):
     page = next((built / "handouts" / "coil").glob("*.en.html")).read_text("utf-8")
     assert '<textarea id="answer-why" name="why" rows="3"' in page
-    assert page.count('type="checkbox"') == 4
+    assert page.count('type="checkbox"') == 4 + 1, "one says that none is right: nothing ticked is no answer"
+    assert read_choices(re.search(r'value="(none)"> none of them', page)[1], {"a": ("one",)}).values == (
+        frozenset(),
+    )
     assert "each wrong one takes as much away" in page
     notebook = next((built / "handouts" / "coil").glob("*.fr.ipynb")).read_text("utf-8")
     assert "Chaque juste cochée donne sa part des points" in notebook

@@ -10,7 +10,7 @@ import pytest
 import sweeps
 
 import coursework
-from coursework.figures import Figure, link, pin
+from coursework.figures import Figure, contact, ground_pivot, link, pin, point, wheel
 from coursework.rendering import views
 from coursework.rendering.renderer import renderer_of
 from coursework.sheets.drawings import solution_figure
@@ -73,7 +73,31 @@ def faults(figure):
     apart |= abs(middle.real * d.imag - middle.imag * d.real) >= reach
     found += [f"{boxes[i].label} on a line" for i in np.flatnonzero((~apart).any(axis=1))]
     off = (low < -1e-9).any(axis=0) | (high > np.array(figure.size_mm)[:, None] + 1e-9).any(axis=0)
-    return found + [f"{boxes[i].label} off the paper" for i in np.flatnonzero(off)]
+    return found + [f"{boxes[i].label} off the paper" for i in np.flatnonzero(off)] + mistaken(figure)
+
+
+def mistaken(figure):
+    """Names of points whose box is not nearer to their own point than to any other point that has a name, and that
+    no leader ties to it."""
+    named = {
+        k: complex(it.p) * figure.scale
+        for k, it in enumerate(figure.elements)
+        if isinstance(it, (ground_pivot, pin, point, contact)) and it.label
+    }
+    layout, found = figure._layout, []
+    for label, k in zip(layout.labels, layout.named, strict=True):
+        if k in named and label.leader is None:
+            low, high = label.corners
+            gap = {z: from_box(z, low, high) for z in named.values()}
+            others = [far for z, far in gap.items() if abs(z - named[k]) > 0.2]
+            if gap[named[k]] >= min(others, default=math.inf):
+                found.append(f"{label.label} nearer to another point")
+    return found
+
+
+def from_box(z, low, high):
+    across = max(low.real - z.real, 0, z.real - high.real)
+    return math.hypot(across, max(low.imag - z.imag, 0, z.imag - high.imag))
 
 
 @sweeps.seeds(8, 200)
@@ -93,17 +117,32 @@ def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(na
     assert not {seed: bad for seed, bad in found.items() if bad}
 
 
-@pytest.mark.parametrize("paper", ["a4", "letter"])
+def pages_of(sheet, paper):
+    return len(re.findall(rb"/Type ?/Page\b", renderer_of(COURSE.folder).on(paper).pdf(sheet)))
+
+
+@sweeps.seeds(2, 8)
+@pytest.mark.parametrize("lang", ["fr", "en"])
+@pytest.mark.parametrize("name", WITH_FIGURE)
+def test_the_height_that_questions_leave_to_a_figure_costs_no_page(name, lang, seeds, monkeypatch):
+    sheets = [v.in_language(lang).handout("Zoé Martin") for v in COURSE[name].variants(seeds) if v.figure]
+    for paper in ("a4", "letter"):
+        taken = [pages_of(sheet, paper) for sheet in sheets]
+        with monkeypatch.context() as usual:
+            usual.setattr(views, "_left", lambda questions, beside: 0.0)
+            usual.setattr(views, "_by_paper", lambda paper, letters: 48.0)
+            assert taken == [pages_of(sheet, paper) for sheet in sheets]
+
+
 @pytest.mark.parametrize(
-    "name", ["quick_return_shaper", "quick_return_whitworth", "mechanical_advantage", "coriolis"]
+    "name", ["quick_return_shaper", "mechanical_advantage", "coriolis", "three_loop_shaper"]
 )
-def test_a_slender_figure_has_more_height_on_a_sheet_that_stays_one_page(name, paper):
+def test_a_slender_figure_is_larger_where_few_or_many_questions_leave_it_height(name):
     variants = [v for v in COURSE[name].variants(range(40)) if v.figure.aspect < 1]
     for variant in variants[:2]:
         room = views.room(variant.handout())
-        assert variant.figure.fitted(*room).scale > 1.2 * variant.figure.fitted(*views.ROOM_BESIDE).scale
-        made = renderer_of(COURSE.folder).on(paper).pdf(variant.handout("Zoé Martin"))
-        assert len(re.findall(rb"/Type ?/Page\b", made)) == 1
+        usual = views.ROOM_BESIDE if room[0] == views.ROOM_BESIDE[0] else views.ROOM_ALONE
+        assert variant.figure.fitted(*room).scale > 1.2 * variant.figure.fitted(*usual).scale
     assert variants
 
 
@@ -118,6 +157,34 @@ def test_letters_set_over_a_drawing_are_those_that_it_would_hold(name):
     bare = ET.fromstring(figure.bare_svg())
     assert not bare.findall(f".//{SVG}text")
     assert strokes(figure.bare_svg())[0] == pytest.approx(strokes(figure.svg())[0])
+
+
+@pytest.mark.parametrize("seed", [511, *range(40)])
+def test_no_number_of_a_body_lies_on_the_area_of_another(seed):
+    figure = COURSE["mobility"].variant(seed).figure
+    discs = {k: it for k, it in enumerate(figure.elements) if isinstance(it, wheel) and it.label}
+    layout = figure._layout
+    for label, k in zip(layout.labels, layout.named, strict=True):
+        for other, disc in discs.items():
+            inside = abs(label.center - disc.center * figure.scale) < disc.radius * figure.scale
+            assert not (inside and k != other and label.leader is None), f"{label.label} on {disc.label}"
+
+
+@pytest.mark.parametrize("name", WITH_FIGURE)
+def test_a_figure_tells_positions_no_finer_than_tenths_of_a_millimetre_of_paper(name):
+    figure = COURSE[name].variant(3).figure
+    joints = re.findall(r'<circle cx="([^"]*)" cy="([^"]*)" r="1.1"', figure.svg())
+    assert all(re.fullmatch(r"\d+(\.\d)?", number) for place in joints for number in place)
+    drawn = [it for it in figure.elements if isinstance(it, (pin, ground_pivot))]
+    assert len(joints) >= len({complex(it.p) for it in drawn}) - 1
+
+
+def test_the_measure_sees_a_name_nearer_to_another_point():
+    figure = Figure(pin(0, "O"), pin(30, "A"), scale=1)
+    assert faults(figure) == []
+    layout = figure._layout
+    figure.__dict__["_layout"] = replace(layout, named=layout.named[::-1])
+    assert "A nearer to another point" in faults(figure)
 
 
 def test_the_measure_sees_a_label_on_a_line_and_on_another_label():

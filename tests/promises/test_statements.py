@@ -1,0 +1,42 @@
+"""What a student has of an exercise without its printed sheet says all that the drawing and the answers need."""
+
+import re
+
+import pytest
+
+import coursework
+from coursework.rendering.renderer import renderer_of
+
+COURSE = coursework.open_course()
+RENDERER = renderer_of(COURSE.folder)
+TO_DRAW = [name for name in COURSE.names if COURSE[name].spec.drawing_mm]
+every_language = pytest.mark.parametrize("lang", ["fr", "en"])
+SIDES = {"en": (r"on the (left|right)", "from {0} to {1}"), "fr": (r"à (gauche|droite)", "de {0} vers {1}")}
+
+
+@every_language
+@pytest.mark.parametrize("name", TO_DRAW)
+def test_the_paper_to_draw_on_is_told_by_its_size_and_drawn_on_the_page(name, lang):
+    handout = COURSE[name].variant(7, lang).handout()
+    wide, high = handout.drawing_mm
+    for shown in (handout.statement, RENDERER.notebook(handout), RENDERER.terminal(handout)):
+        assert re.search(rf"{wide}\s+mm\D+{high}\s+mm", shown.replace("\\n", "\n"))
+    page = RENDERER.html(handout)
+    grid = page[page.index('<figure class="paper">') :]
+    assert f'<svg width="{wide + 10}mm" height="{high + 6}mm" viewBox="-8 -1 {wide + 10} {high + 6}"' in grid
+    lines = re.findall(
+        r"M(\d+) 0v(\d+)", grid[: grid.index("</path>") if "</path>" in grid else grid.index("<path stroke")]
+    )
+    assert lines == [(str(x), str(high)) for x in range(wide + 1)]
+    assert not re.search(r"\.paper \{[^}]*display: none", page)
+
+
+@every_language
+@pytest.mark.parametrize("name", COURSE.names)
+def test_left_and_right_of_a_line_are_told_with_the_sense_in_which_it_runs(name, lang):
+    side, way = SIDES[lang]
+    handout = COURSE[name].variant(7, lang).handout()
+    for given in handout.given:
+        if not given.is_number and re.search(side, given.value):
+            ends = way.format(r"\$?([A-Z])\$?", r"\$?([A-Z])\$?")
+            assert re.search(ends, re.sub(r"\s+", " ", given.value + " " + handout.statement)), given.value
