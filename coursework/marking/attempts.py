@@ -21,7 +21,8 @@ FARTHEST = 100.0  #: factor between the size of an attempt and that of the refer
 THINGS = (
     2  #: different things that one number is written for, before it means nothing; of counts many are alike
 )
-FEW = 4  #: answers of which nothing can be told
+FEW = 4  #: answers at least of which something can be told
+DIFFERENT = 3  #: things at least that a copied number is written for
 MOST = 0.75  #: of the answers
 
 
@@ -44,19 +45,25 @@ def sheet_of(parts: Mapping[str, Part], readings: Mapping[str, Reading], key: Ke
             answers.append((number, part, float(reading.values[0])))
     things: dict[float, set[str]] = {}
     for _, part, value in (answer for answer in answers if not answer[1].sort.is_exact):
-        things.setdefault(value, set()).add(f"{key.reference[part.quantity]:.6g}")
+        things.setdefault(value, set()).add(_thing(key, part))
     everywhere = frozenset(value for value, asked in things.items() if len(asked) >= THINGS)
     if len(answers) < FEW:
         return Sheet(everywhere)
     given = {float(v) for v in key.variant.given.values() if isinstance(v, (int, float))}
     wrong = [(n, p, v) for n, p, v in answers if p.sort.distance(p, v, key.reference[p.quantity]) > 1]
     values = [value for *_, value in wrong]
+    ones = {value: {_thing(key, part) for _, part, v in wrong if v == value} for value in values}
     copies = (
-        max((values.count(value) for value in set(values)), default=0),
+        max((values.count(value) for value, things in ones.items() if len(things) >= DIFFERENT), default=0),
         sum(value == number for number, _, value in wrong),
         sum(value in given for value in values),
     )
-    return Sheet(everywhere, has_work=max(copies) < max(FEW - 1, MOST * len(wrong)))
+    return Sheet(everywhere, has_work=max(copies) < max(FEW, MOST * len(wrong)))
+
+
+def _thing(key: Key, part: Part) -> str:
+    """What a part asks for, by its value: two questions may ask for the same."""
+    return f"{key.reference[part.quantity]:.6g}"
 
 
 def is_attempt(part: Part, value: Any, reference: Any, *, is_explained: bool) -> bool:

@@ -203,7 +203,7 @@ def test_the_rules_of_the_assignment_override_those_of_the_course(course, tmp_pa
 
     monkeypatch.setattr(class_marking, "WORTH_PROCESSES", 1)
     monkeypatch.setattr(class_marking, "workers", lambda _: 2)
-    assert (points(plain), points(milder)) == (0, 0.25)
+    assert (points(plain), points(milder)) == (0.5, 0.25)
 
 
 def test_a_rule_that_there_is_not_is_told(course, tmp_path, capsys):

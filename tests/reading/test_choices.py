@@ -241,7 +241,7 @@ def test_no_piece_of_a_label_reads_as_another_choice():
                                 for w in s.replace("-", " ").split()
                             }
                             assert all(
-                                w.strip(",.:").casefold() in {o.strip(",.:") for o in own} for w in run
+                                w.strip(",.:()").casefold() in {o.strip(",.:()") for o in own} for w in run
                             ), (text, key, found)
     assert len(tried) > 40
 
