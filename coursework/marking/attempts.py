@@ -47,6 +47,8 @@ def sheet_of(parts: Mapping[str, Part], readings: Mapping[str, Reading], key: Ke
     for _, part, value in (answer for answer in answers if not answer[1].sort.is_exact):
         things.setdefault(value, set()).add(_thing(key, part))
     everywhere = frozenset(value for value, asked in things.items() if len(asked) >= THINGS)
+    if len({value for *_, value in answers}) == 1 and len({_thing(key, part) for _, part, _ in answers}) > 1:
+        return Sheet(everywhere, has_work=len(answers) < DIFFERENT)
     if len(answers) < FEW:
         return Sheet(everywhere)
     given = {float(v) for v in key.variant.given.values() if isinstance(v, (int, float))}
