@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Callable, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from html import escape
 from pathlib import Path
 
@@ -15,14 +15,20 @@ from coursework.language.words import words
 from coursework.markup import markdown as markup
 from coursework.markup.mathml import to_mathml
 from coursework.polygons.construction import Construction
-from coursework.rendering import views
+from coursework.rendering import feedback, views
 from coursework.rendering.environment import environment, render
+from coursework.sheets.sheet import FeedbackSheet
 
 
 def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
     """The whole page."""
     env = environment_of(tuple(folders), views.handout_of(sheet).lang)
-    return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", views.context(sheet) | {"paper": paper})
+    names = (
+        feedback.context(sheet, "html.j2", partial(render, env))
+        if isinstance(sheet, FeedbackSheet)
+        else views.context(sheet)
+    )
+    return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", names | {"paper": paper})
 
 
 @lru_cache(maxsize=32)
@@ -34,6 +40,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "display": lambda tex: to_mathml(tex, lang, True),
         "formula_words": lambda text: escape(markup.formula_words(text, lang)),
         "drawing": _drawing,
+        "typed": escape,
         "css": _css_string,
     }
     return environment(folders, lang, markup.html_text, filters)
