@@ -277,7 +277,9 @@ def write_feedback(
     renderer = renderer_of(course.folder)
     files = []
     for student, mine, name, waiting in places:
-        content = cache(partial(told, student, mine, waiting))
+        content = partial(told, student, mine, waiting)
+        if len(form.formats) > 1:
+            content = cache(content)
         for end in form.formats:
             files.append(
                 File(Path(f"{name}.{end}"), maker(student, partial(_printed, renderer, content, end)))
