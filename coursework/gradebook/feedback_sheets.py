@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 from typing import NamedTuple
@@ -57,6 +58,8 @@ def feedback_sheet(
         _line(variant, question, graded.lines[question.id], right.get(question.id, ""))
         for question in handout.questions
     ]
+    if not any(line.answer for line in lines):  # nothing was tried: the lesson and another variant say more
+        lines = [replace(line, hint="") for line in lines]
     lost = any(line.points < line.out_of and line.verdict not in _WAIT for line in lines)
     practice = (
         telling.practice.after(graded.exercise, graded.student, variant.lang)
@@ -277,7 +280,7 @@ def write_feedback(
     renderer = renderer_of(course.folder)
     files = []
     for student, mine, name, waiting in places:
-        content = partial(told, student, mine, waiting)
+        content: Callable[[], FeedbackSheet | FeedbackPaper] = partial(told, student, mine, waiting)
         if len(form.formats) > 1:
             content = cache(content)
         for end in form.formats:
