@@ -12,7 +12,8 @@ from coursework.errors import BadCourse, Starved, nearest
 from coursework.making.issued import Issued
 from coursework.making.issuing import distinct_variants
 from coursework.making.lessons import taught_by
-from coursework.sheets.sheet import Practice
+from coursework.sheets.handout import handout
+from coursework.sheets.sheet import Practice, Question
 
 _TRIES = 40  #: variants that are looked at for one that was not issued
 
@@ -30,18 +31,28 @@ class PracticeOf:
         self._course, self._issued = course, issued
         self._offers = offers_practice(course)
         self._fresh: dict[str, int | None] = {}
+        self._questions: dict[tuple[str, int, str], tuple[Question, ...]] = {}
 
     def after(self, exercise: str, student: str, lang: str) -> Practice:
         """What ``student`` may try after an exercise, told in a language."""
         own = self._course[exercise]
         root = own.folder.root
+        seed = self._seed(own, student) if self._offers else None
         return Practice(
             exercise,
             own.version,
             "" if root == builtin_root().resolve() else root.name,
-            self._seed(own, student) if self._offers else None,
+            seed,
             taught_by(own.folder, exercise, lang),
+            () if seed is None else self._asked(exercise, seed, lang),
         )
+
+    def _asked(self, exercise: str, seed: int, lang: str) -> tuple[Question, ...]:
+        """The questions of a variant, which may ask other parts than the student's own."""
+        place = exercise, seed, lang
+        if place not in self._questions:
+            self._questions[place] = handout(self._course[exercise].variant(seed, lang)).questions
+        return self._questions[place]
 
     def _seed(self, exercise: CourseExercise, student: str) -> int | None:
         name = exercise.name

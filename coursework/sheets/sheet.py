@@ -160,6 +160,7 @@ class Practice:
         int | None
     )  #: of a variant that was issued to nobody; none where there is no other, or none is offered
     lessons: tuple[Lesson, ...] = ()
+    questions: tuple[Question, ...] = ()  #: of that variant
 
 
 @dataclass(frozen=True)

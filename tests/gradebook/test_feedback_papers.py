@@ -18,7 +18,8 @@ from coursework.cli import run
 from coursework.errors import BadCourse, BadInput
 from coursework.gradebook.class_marking import marked
 from coursework.gradebook.feedback_form import Form, shows_solutions
-from coursework.gradebook.feedback_sheets import Telling, feedback_paper
+from coursework.gradebook.feedback_sheets import Telling, feedback_paper, feedback_sheet
+from coursework.gradebook.graded import Graded
 from coursework.gradebook.placing import placed
 from coursework.gradebook.submissions import read_file
 from coursework.language.typography import typeset
@@ -29,6 +30,8 @@ from coursework.making.issued import Issued
 from coursework.making.issuing import distinct_variants
 from coursework.making.lessons import taught_by
 from coursework.making.practice import PracticeOf, unissued_seed
+from coursework.marking.marking import mark
+from coursework.rendering.renderer import renderer_of
 from coursework.sheets.sheet import Lesson
 
 COURSE = coursework.open_course()
@@ -163,7 +166,9 @@ def test_what_is_told_to_look_at_is_what_the_quantity_follows_from(tmp_path, iss
     assert not any(f"{value:.4g}" in line.hint for value in solution.values() for line in sheet.lines)
     right, blank = marked_paper(tmp_path, issued_file(), answers("Ada", NAMES[0], 5)).sheets
     assert {line.hint for line in right.lines} == {""}
-    assert {line.hint for line in blank.lines} == {""}  # nothing was tried: the lesson and the variant say more
+    assert {line.hint for line in blank.lines} == {
+        ""
+    }  # nothing was tried: the lesson and the variant say more
     assert blank.practice is not None
 
 
@@ -193,6 +198,25 @@ def test_where_every_variant_is_issued_one_that_is_not_the_students_is_offered(
     assert offered.after("crank_pin", "Ada", "en").seed == two[1].seed
     assert offered.after("crank_pin", "Bo", "en").seed == two[0].seed
     assert offered.after("crank_pin", "Ada", "en").course == course.folder.root.name
+
+
+@pytest.mark.parametrize("name", COURSE.names)
+def test_the_cells_of_the_notebook_open_and_check_the_variant_to_try(tmp_path, monkeypatch, name):
+    """The variant may ask other parts than the student's own."""
+    monkeypatch.chdir(tmp_path)
+    issued = Issued.read(
+        issue(tmp_path, [{"student": "Ada", "record": COURSE[name].variant(9, "en").record}])
+    )
+    lines = dict(mark(COURSE[name].variant(9, "en"), {}))
+    graded = Graded("Ada", name, 9, lines, (), COURSE[name].variant(9, "en").record)
+    told = feedback_sheet(COURSE, graded, telling=Telling(PracticeOf(COURSE, issued)))
+    book = json.loads(renderer_of(COURSE.folder).feedback_notebook(told))
+    opens, checks = ("".join(cell["source"]) for cell in book["cells"] if cell["cell_type"] == "code")
+    names = {}
+    exec(opens, names)
+    exec(checks.replace("study.check", "shown = study.check"), names)
+    assert str(told.practice.seed) in opens
+    assert names["shown"] is not None
 
 
 def test_a_course_may_offer_no_other_variant_and_says_which_lesson_teaches_what(tmp_path, small_course):

@@ -284,8 +284,14 @@ def test_what_was_read_is_told_where_it_is_not_what_was_typed(typed, read, shown
 
 # -------------------------------------------------------------------------- next
 
+ASKED = tuple(q for q in feedback_sheet("en").handout.questions if q.id in ("rA", "theta4"))
 NEXT = Practice(
-    "slotted_mechanism", 1, "", 57, (Lesson("mechanisms", "One loop", ("7. A block", "8. Coriolis")),)
+    "slotted_mechanism",
+    1,
+    "",
+    57,
+    (Lesson("mechanisms", "One loop", ("7. A block", "8. Coriolis")),),
+    ASKED,
 )
 
 
@@ -306,7 +312,7 @@ def test_what_to_try_next_is_told_in_every_format(lang):
         assert "seed=57" in opens
         compile(opens, "cell", "exec")
         checks = cells[cells.index(opens) + 1]
-        assert all(f'"{question.id}": ""' in checks for question in sheet.handout.questions)
+        assert re.findall(r'"(\w+)": ""', checks) == ["rA", "theta4"]
         compile(checks, "cell", "exec")
     alone = replace(sheet, practice=replace(NEXT, seed=None))
     assert "--seed" not in RENDERER.html(alone)
