@@ -41,6 +41,7 @@ ROOM_DATA = 46.0  #: width of the data beside it, whose longer lines are broken
 ROOM_STEP = (53.0, 200.0)  #: of a step of a construction, three of which stand side by side
 _TALL_BY_PAPER = 48.0  #: height that a figure has where there is paper to draw on as well
 GUIDE_TOGETHER = 16  #: rows at most of a marking guide that no page's end may cut
+SHORT_SOLUTION = 3  #: steps at most to an answer that stands with its question on one page
 LAST_TOGETHER = 4  #: questions at least that a sheet's last page holds, where a page's end parts them
 _FEW_QUESTIONS = 8  #: so many at most leave a page some height
 _BESIDE = 9  #: data at most that stand beside the figure
@@ -72,6 +73,7 @@ def context(sheet: Sheet, place: int = 0, *, numbered: bool = True) -> dict[str,
         "summary_mm": SUMMARY_MM,
         "guide_together": GUIDE_TOGETHER,
         "together": LAST_TOGETHER,
+        "short_solution": SHORT_SOLUTION,
         "polygon_mm": POLYGON_MM,
         "more_figures": more_figures(sheet),
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,

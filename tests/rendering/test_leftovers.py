@@ -1,19 +1,22 @@
-"""No page of a handout holds a few questions that are left over: where a page's end parts them, four at least come after it."""
+"""No page of a handout holds a few questions that are left over: where a page's end parts them, four at least come after
+it. In a solution a question and its answer stand on one page."""
 
 from __future__ import annotations
 
 import json
 from dataclasses import replace
+from itertools import product
 
 import pytest
 import typst
-from paper_samples import COURSE, NAMES, heading, paper
+from paper_samples import COURSE, NAMES, bare, heading, paper, solution
 from rendering_samples import handout
+from sweeps import sampled
 
 from coursework.language.words import languages
 from coursework.rendering.papers import typst_source
 from coursework.rendering.renderer import PAPERS, renderer_of
-from coursework.rendering.views import LAST_TOGETHER
+from coursework.rendering.views import LAST_TOGETHER, SHORT_SOLUTION, worked
 
 RENDERER = renderer_of(COURSE.folder)
 every_language = pytest.mark.parametrize("lang", languages())
@@ -70,3 +73,36 @@ def test_questions_too_tall_to_stay_together_take_the_pages_that_they_need():
     pages = pages_of_questions(RENDERER.typst(replace(sheet, questions=tuple(tall))))
     assert pages == sorted(pages)
     assert max(pages.count(page) for page in pages) <= 2
+
+
+# ---------------------------------------------------------------------- solutions
+
+_ASKED, _ANSWERED = "strong(number), prompt, small(points),", 'text(weight: "bold", fill: ink, label)'
+_PLACE = "here().page(), here().position().y.mm()"
+
+
+def places_in_solution(source: str) -> list[tuple[float, float, float]]:
+    """For each question the page it stands on, that of its answer, and how far down that is, mm."""
+    assert source.count(_ASKED) == source.count(_ANSWERED) == 1
+    marked = source.replace(
+        _ASKED, f"[#strong(number)#context [#metadata(({_PLACE})) <asked>]], prompt, small(points),"
+    ).replace(_ANSWERED, f"[#{_ANSWERED}#context [#metadata(({_PLACE})) <answered>]]")
+    asked, answered = (
+        json.loads(typst.query(marked.encode(), f"<{name}>", field="value")) for name in ("asked", "answered")
+    )
+    return [(one[0], *two) for one, two in zip(asked, answered, strict=True)]
+
+
+@pytest.mark.parametrize("printed", sampled(product(PAPERS, languages()), [("letter", "fr")]), ids="-".join)
+def test_a_question_of_a_solution_stands_on_one_page_with_its_answer_where_that_takes_few_steps(printed):
+    size, lang = printed
+    high, short = {"a4": 297, "letter": 279}[size], 0
+    for name in COURSE.names:
+        made = solution(bare(lang), (name,), 2)
+        steps = [len(steps) for _, steps in worked(made.sheets[0], lang)]
+        found = places_in_solution(typst_source(RENDERER.template_folders, [made], size))
+        for count, (asked, answered, down) in zip(steps, found, strict=True):
+            assert down < high - 16, name
+            assert asked == answered or count > SHORT_SOLUTION, name
+            short += count <= SHORT_SOLUTION
+    assert short > 200
