@@ -64,9 +64,10 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
     stated = folder.settings.get("lessons", {})
     if not isinstance(stated, Mapping):
         raise BadCourse(f"{_SOURCE} is a table: {_FORM}")
+    known = folder.names if stated else ()
     for name in stated:
-        if name not in folder.names:
-            raise BadCourse(f"{_SOURCE} names no exercise {name!r}{nearest(name, folder.names)}")
+        if name not in known:
+            raise BadCourse(f"{_SOURCE} names no exercise {name!r}{nearest(name, known)}")
     return tuple(_taught(folder, exercise, stated.get(exercise, []), lang))
 
 

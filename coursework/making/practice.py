@@ -13,7 +13,7 @@ from coursework.making.issued import Issued
 from coursework.making.issuing import distinct_variants
 from coursework.making.lessons import taught_by
 from coursework.sheets.handout import handout
-from coursework.sheets.sheet import Practice, Question
+from coursework.sheets.sheet import Lesson, Practice, Question
 
 _TRIES = 40  #: variants that are looked at for one that was not issued
 
@@ -31,6 +31,7 @@ class PracticeOf:
         self._course, self._issued = course, issued
         self._offers = offers_practice(course)
         self._fresh: dict[str, int | None] = {}
+        self._lessons: dict[tuple[str, str], tuple[Lesson, ...]] = {}
         self._questions: dict[tuple[str, int, str], tuple[Question, ...]] = {}
 
     def after(self, exercise: str, student: str, lang: str) -> Practice:
@@ -43,9 +44,15 @@ class PracticeOf:
             own.version,
             "" if root == builtin_root().resolve() else root.name,
             seed,
-            taught_by(own.folder, exercise, lang),
+            self._taught(own, lang),
             () if seed is None else self._asked(exercise, seed, lang),
         )
+
+    def _taught(self, exercise: CourseExercise, lang: str) -> tuple[Lesson, ...]:
+        place = exercise.name, lang
+        if place not in self._lessons:
+            self._lessons[place] = taught_by(exercise.folder, exercise.name, lang)
+        return self._lessons[place]
 
     def _asked(self, exercise: str, seed: int, lang: str) -> tuple[Question, ...]:
         """The questions of a variant, which may ask other parts than the student's own."""
