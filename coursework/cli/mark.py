@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,7 @@ import click
 from coursework.cli.options import (
     DONE,
     FOUND,
+    Lists,
     decimal_option,
     json_option,
     lang_option,
@@ -24,6 +26,7 @@ from coursework.errors import BadInput, counted
 if TYPE_CHECKING:
     from coursework.course.course import Course
     from coursework.gradebook.book import Gradebook
+    from coursework.gradebook.feedback_form import Form
 
 
 # ------------------------------------------------------------------------ grade
@@ -40,7 +43,26 @@ if TYPE_CHECKING:
 @click.option(
     "--feedback/--no-feedback",
     default=None,
-    help="Feedback sheets, a PDF a student; unless told, for up to 1000 students.",
+    help="Feedback sheets, a file a student; unless told, for up to 1000 students.",
+)
+@click.option(
+    "--formats",
+    type=Lists(lambda: ("pdf", "html", "ipynb")),
+    default="pdf",
+    show_default=True,
+    help="Formats of the feedback sheets: pdf, html, ipynb.",
+)
+@click.option(
+    "--with-solutions",
+    is_flag=True,
+    help="Feedback sheets have the worked solution of the student's own variant; of an assignment that states "
+    "solutions_after they have it from that day on, and never before.",
+)
+@click.option(
+    "--today",
+    type=click.DateTime(["%Y-%m-%d"]),
+    metavar="DAY",
+    help="The day it is, for solutions_after; that of the machine unless told.",
 )
 @click.option(
     "--accepted",
@@ -61,6 +83,9 @@ def grade(
     issued: Path,
     out: Path | None,
     feedback: bool | None,
+    formats: Sequence[str],
+    with_solutions: bool,
+    today: datetime.datetime | None,
     accepted: Path | None,
     decimal: str,
     marks: Path | None,
@@ -74,14 +99,24 @@ def grade(
         would_do = f"did you mean {inside}?" if inside.exists() else "name the issued.json that build wrote"
         raise BadInput(f"--issued takes a file; {issued} is a folder: {would_do}")
     _check_source(submissions, marks, accepted)
+    from coursework.gradebook.feedback_form import Form
+
+    form = Form(formats, with_solutions, today.date() if today else None)
     if marks is not None:
         out = out or marks.parent
         return _told_standing(
-            _grade_standing(opened(context), marks, issued, out, feedback, decimal), marks, out
+            _grade_standing(opened(context), marks, issued, out, feedback, decimal, form), marks, out
         )
     out = out or issued.parent / "marks"
     book = grade_with_bar(
-        opened(context), submissions, issued, out, feedback=feedback, accepted=accepted, decimal=decimal
+        opened(context),
+        submissions,
+        issued,
+        out,
+        feedback=feedback,
+        accepted=accepted,
+        decimal=decimal,
+        form=form,
     )
     told = f"{counted(book.rows_in, 'row')}: {book.marked} marked, {len(book.rejected)} rejected"
     told += f", {book.blanks} blank beside another" if book.blanks else ""
@@ -126,14 +161,21 @@ def _check_source(submissions: Sequence[Path], marks: Path | None, accepted: Pat
 
 
 def _grade_standing(
-    course: Course, marks: Path, issued: Path, out: Path, feedback: bool | None, decimal: str
+    course: Course, marks: Path, issued: Path, out: Path, feedback: bool | None, decimal: str, form: Form
 ) -> Gradebook:
     from coursework.gradebook.grading import grade_standing
     from coursework.system.tables import SPREADSHEETS
 
     with progress_bar("marking", None) as advance:
         return grade_standing(
-            course, marks, issued, out, feedback=feedback, spreadsheet=SPREADSHEETS[decimal], progress=advance
+            course,
+            marks,
+            issued,
+            out,
+            feedback=feedback,
+            spreadsheet=SPREADSHEETS[decimal],
+            progress=advance,
+            form=form,
         )
 
 
@@ -156,8 +198,10 @@ def grade_with_bar(
     feedback: bool | None = True,
     accepted: Path | None = None,
     decimal: str = "point",
+    form: Form | None = None,
 ) -> Gradebook:
     """Mark files and write the tables, with a bar on a terminal."""
+    from coursework.gradebook.feedback_form import Form
     from coursework.gradebook.grading import grade_files
     from coursework.system.tables import SPREADSHEETS
 
@@ -171,6 +215,7 @@ def grade_with_bar(
             accepted=accepted,
             spreadsheet=SPREADSHEETS[decimal],
             progress=advance,
+            form=form or Form(),
         )
 
 

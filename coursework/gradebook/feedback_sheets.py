@@ -1,16 +1,20 @@
-"""Feedback, printed: a sheet a student and exercise; of an assignment one paper a student."""
+"""Feedback: what a student is told of an exercise, or of several under one total, as PDF, web page and notebook."""
 
 from __future__ import annotations
 
 import datetime
 from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
+from functools import cache, partial
 from pathlib import Path
+from typing import NamedTuple
 
 from coursework.course.course import Course
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook
 from coursework.gradebook.columns import own_columns
+from coursework.gradebook.feedback_form import FORMATS, USUAL, Form, shows_solutions
 from coursework.gradebook.graded import Graded
 from coursework.gradebook.scale import mark_of
 from coursework.language.numbers import localise, plain
@@ -18,28 +22,78 @@ from coursework.language.words import words
 from coursework.making.assignment import text_in
 from coursework.making.issued import Issued
 from coursework.making.papers import date_text
+from coursework.making.practice import PracticeOf
 from coursework.making.students import file_stems, folded
 from coursework.marking.feedback import localised
+from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
-from coursework.rendering.renderer import renderer_of
-from coursework.sheets.answer_sheet import answer_text
+from coursework.markup.markdown import plain_line
+from coursework.rendering.renderer import Renderer, renderer_of
+from coursework.sheets.answer_sheet import answer_sheet, answer_text
+from coursework.sheets.following import follows_from
 from coursework.sheets.handout import handout as handout_of
 from coursework.sheets.paper import FeedbackPaper, Heading
-from coursework.sheets.sheet import FeedbackLine, FeedbackSheet
+from coursework.sheets.sheet import FeedbackLine, FeedbackSheet, Question
 from coursework.system.writing import File, Progress, write
 
 
-def feedback_sheet(course: Course, graded: Graded, *, answers: bool = False) -> FeedbackSheet:
+class Telling(NamedTuple):
+    """How feedback is told: what a student may try next, and whether the worked solutions are shown."""
+
+    practice: PracticeOf | None = None
+    solutions: bool = False
+
+
+MARKS_ALONE = Telling()
+
+
+def feedback_sheet(
+    course: Course, graded: Graded, *, answers: bool = False, telling: Telling = MARKS_ALONE
+) -> FeedbackSheet:
     """A student's marks on one exercise, ready to print; with the right ``answers`` where they may be shown."""
     variant = course[graded.exercise].from_record(graded.record)
     handout = handout_of(variant, graded.student)
-    right = _right_answers(variant) if answers else {}
-    lines = []
-    for question in handout.questions:
-        line = graded.lines[question.id]
-        told = localised(line.read_as, variant.lang), line.verdict, line.points, line.out_of, line.says
-        lines.append(FeedbackLine(question, line.answer, *told, right=right.get(question.id, "")))
-    return FeedbackSheet(handout, tuple(lines), graded.points, graded.out_of)
+    right = _right_answers(variant) if answers or telling.solutions else {}
+    lines = [
+        _line(variant, question, graded.lines[question.id], right.get(question.id, ""))
+        for question in handout.questions
+    ]
+    if not any(line.answer for line in lines):  # nothing was tried: the lesson and another variant say more
+        lines = [replace(line, hint="") for line in lines]
+    lost = any(line.points < line.out_of and line.verdict not in _WAIT for line in lines)
+    practice = (
+        telling.practice.after(graded.exercise, graded.student, variant.lang)
+        if telling.practice and lost
+        else None
+    )
+    solution = answer_sheet(variant, graded.student) if telling.solutions else None
+    return FeedbackSheet(handout, tuple(lines), graded.points, graded.out_of, practice, solution)
+
+
+def _line(variant: Variant, question: Question, line: Mark, right: str) -> FeedbackLine:
+    """What became of one answer; what its quantity follows from where it has not all its points."""
+    told = localised(line.read_as, variant.lang), line.verdict, line.points, line.out_of, line.says
+    part = next(p for p in variant.parts if p.id == question.id)
+    lost = line.points < line.out_of and line.verdict not in _NOT_ABOUT_IT and not part.sort.is_open
+    return FeedbackLine(
+        question,
+        line.answer,
+        *told,
+        right=right,
+        hint=follows_from(variant, part.quantity) if lost else "",
+        read=_with_formulas(question, line.read_as, variant.lang),
+    )
+
+
+def _with_formulas(question: Question, read_as: str, lang: str) -> str:
+    """What was read of a choice as its sheet offers it, Markdown, where that has formulas; else nothing."""
+    form = words(lang)["choices"]["lettered"]
+    letters = question.letters or ("",) * len(question.choices)
+    for letter, (_, label) in zip(letters, question.choices, strict=True):
+        offered = form.format(letter, label) if letter else label
+        if "$" in offered and plain_line(offered, lang) == read_as:
+            return offered
+    return ""
 
 
 def _right_answers(variant: Variant) -> dict[str, str]:
@@ -52,6 +106,8 @@ def _right_answers(variant: Variant) -> dict[str, str]:
 
 _ADVISED = 3  #: places that are pointed at
 _WAIT = ("unreadable", "to_mark")  #: verdicts that are not the last word
+#: Verdicts of answers that do not show how their quantity was looked for.
+_NOT_ABOUT_IT = (*_WAIT, "wrong_unit", "missing_unit", "follow_through", "accepted")
 
 
 def feedback_paper(
@@ -61,6 +117,7 @@ def feedback_paper(
     graded: Sequence[Graded],
     lang: str,
     waiting: Collection[str] = (),
+    telling: Telling = MARKS_ALONE,
 ) -> FeedbackPaper:
     """A student's marks on an assignment, of one sitting: one total, the mark, and what to look at next.
 
@@ -77,7 +134,8 @@ def feedback_paper(
         if own is None:
             left_out += _worth(issued, exercise)
         else:
-            sheets.append(feedback_sheet(course, own, answers=stated.get("answers") != "never"))
+            shown = stated.get("answers") != "never"
+            sheets.append(feedback_sheet(course, own, answers=shown, telling=telling))
     points, out_of = sum(s.points for s in sheets), sum(s.out_of for s in sheets) + left_out
     return FeedbackPaper(
         _heading(course, issued, student, sitting, lang),
@@ -88,6 +146,21 @@ def feedback_paper(
         stated.get("answers") != "never",
         tuple(_advice(sheets, set(by_exercise), lang)),
     )
+
+
+def feedback_collection(
+    course: Course, student: str, graded: Sequence[Graded], telling: Telling = MARKS_ALONE
+) -> FeedbackPaper:
+    """A student's marks on exercises that were handed out one by one: under one total, their questions numbered as on
+    the sheet of each."""
+    lang = str(graded[0].record.get("lang", "fr"))
+    sheets = tuple(
+        feedback_sheet(course, one._replace(record={**one.record, "lang": lang}), telling=telling)
+        for one in graded
+    )
+    heading = Heading(lang=lang, title=course.folder.title(lang), course="", student=student)
+    points, out_of = sum(s.points for s in sheets), sum(s.out_of for s in sheets)
+    return FeedbackPaper(heading, sheets, points, out_of, answers=telling.solutions, numbered=False)
 
 
 def _blank(
@@ -163,42 +236,66 @@ def write_feedback(
     folder: Path,
     before: Sequence[str],
     progress: Progress,
+    form: Form = USUAL,
 ) -> None:
-    """One PDF a student, an exercise after another, called as the student's handouts are; of an assignment one a sitting.
+    """A file a student and format, called as the student's handouts are; of an assignment one a sitting.
 
-    Those of an earlier marking, whose stems are ``before``, make way; any other file stays. A sheet that cannot be printed is a warning, and costs no other.
+    Those of an earlier marking, whose
+    stems are ``before``, make way; any other file stays. A sheet that cannot be printed is a warning, and costs no other.
     """
     by_student: dict[str, dict[int, list[Graded]]] = {student: {} for student in book.issued.students}
     for graded in shown:
         by_student.setdefault(graded.student, {}).setdefault(graded.sitting, []).append(graded)
     unread = {place: {e for e, _ in own} for place, own in book.unread().items()}
+    telling = Telling(PracticeOf(course, book.issued), shows_solutions(book.issued, form))
+    stems = file_stems(by_student)
+    places = [
+        (student, mine, f"{stem}" if n == 1 else f"{stem}.sitting-{n}", unread.get((student, n), ()))
+        for stem, (student, sittings) in zip(stems, by_student.items(), strict=True)
+        for n, mine in sorted(sittings.items())
+    ]
 
-    def printed(student: str, sheets: list[Graded]) -> bytes:
-        renderer = renderer_of(course.folder)
-        if book.issued.assignment is None:
-            return renderer.booklet_pdf([feedback_sheet(course, g) for g in sheets])
-        lang = str(sheets[0].record.get("lang", "fr"))
-        waiting = unread.get((student, sheets[0].sitting), ())
-        return renderer.paper_pdf(feedback_paper(course, book.issued, student, sheets, lang, waiting))
+    def told(student: str, mine: Sequence[Graded], waiting: Collection[str]) -> FeedbackSheet | FeedbackPaper:
+        if book.issued.assignment is not None:
+            lang = str(mine[0].record.get("lang", "fr"))
+            return feedback_paper(course, book.issued, student, mine, lang, waiting, telling)
+        if len(mine) == 1:
+            return feedback_sheet(course, mine[0], telling=telling)
+        return feedback_collection(course, student, mine, telling)
 
-    def maker(student: str, sheets: list[Graded]) -> Callable[[], bytes | None]:
-        def make() -> bytes | None:
+    def maker(student: str, make: Callable[[], bytes]) -> Callable[[], bytes | None]:
+        def made() -> bytes | None:
             try:
-                return printed(student, sheets)
+                return make()
             except CourseworkError as fault:
                 book.warnings.append(f"no feedback sheet for {student}: {fault}")
                 return None
 
-        return make
+        return made
 
     for stem in before:
-        for path in (folder / f"{stem}.pdf", *folder.glob(f"{stem}.sitting-*.pdf")):
-            path.unlink(missing_ok=True)
-    stems = file_stems(by_student)
-    files = [
-        File(Path(f"{stem}.pdf" if n == 1 else f"{stem}.sitting-{n}.pdf"), maker(student, mine))
-        for stem, (student, sittings) in zip(stems, by_student.items(), strict=True)
-        for n, mine in sorted(sittings.items())
-    ]
+        for end in FORMATS:
+            for path in (folder / f"{stem}.{end}", *folder.glob(f"{stem}.sitting-*.{end}")):
+                path.unlink(missing_ok=True)
+    renderer = renderer_of(course.folder)
+    files = []
+    for student, mine, name, waiting in places:
+        content: Callable[[], FeedbackSheet | FeedbackPaper] = partial(told, student, mine, waiting)
+        if len(form.formats) > 1:
+            content = cache(content)
+        for end in form.formats:
+            files.append(
+                File(Path(f"{name}.{end}"), maker(student, partial(_printed, renderer, content, end)))
+            )
     done = iter(range(1, len(files) + 1))
     write(folder, files, lambda _: progress(next(done), len(files)))
+
+
+def _printed(renderer: Renderer, content: Callable[[], FeedbackSheet | FeedbackPaper], end: str) -> bytes:
+    """What a student is told, in a format."""
+    told = content()
+    if end == "ipynb":
+        return renderer.feedback_notebook(told).encode("utf-8")
+    if isinstance(told, FeedbackPaper):
+        return renderer.paper_pdf(told) if end == "pdf" else renderer.paper_html(told).encode("utf-8")
+    return renderer.pdf(told) if end == "pdf" else renderer.html(told).encode("utf-8")

@@ -17,6 +17,7 @@ from coursework.gradebook.book import Gradebook
 from coursework.gradebook.changes import CHANGES_COLUMNS, Before
 from coursework.gradebook.class_marking import marked
 from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns, summary_columns
+from coursework.gradebook.feedback_form import USUAL, Form, shows_solutions
 from coursework.gradebook.feedback_sheets import write_feedback
 from coursework.gradebook.graded import Graded
 from coursework.gradebook.placing import placed
@@ -45,20 +46,22 @@ def grade_files(
     accepted: Path | None = None,
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     progress: Progress = lambda done, of: None,
+    form: Form = USUAL,
 ) -> Gradebook:
     """Mark files and write ``marks.csv``, ``summary.csv``, ``rejected.csv`` and feedback sheets; ``to_mark.csv`` where
     answers are marked by a person, whose points in an earlier one count.
 
     Where marks were there before, ``changes.csv`` says what differs now. ``accepted`` names answers that
     a person accepts; unless told, those of ``accepted.csv`` in ``out``. ``feedback`` None prints sheets for a
-    class of usual size. ``spreadsheet`` is what the tables are written for.
+    class of usual size, in the ``form`` that is asked for. ``spreadsheet`` is what the tables are written for.
 
     Raises
     ------
     BadInput
-        A file that is not there, or nothing that can be marked: then nothing is written.
+        A file that is not there, or nothing that can be marked, or solutions before their day: then nothing is written.
     """
     issued = Issued.read(issued_path)
+    shows_solutions(issued, form)
     if feedback is None:
         feedback = max(len(issued.students), len(issued.records)) <= FEEDBACK_STUDENTS
     kept = out / "accepted.csv"
@@ -107,7 +110,7 @@ def grade_files(
     (out / BY_HAND).unlink(missing_ok=True)
     if feedback:
         made = file_stems(dict.fromkeys((*issued.students, *before.students)))
-        write_feedback(course, book, shown, out / "feedback", made, progress)
+        write_feedback(course, book, shown, out / "feedback", made, progress, form)
     return book
 
 
@@ -127,6 +130,7 @@ def grade_standing(
     feedback: bool | None,
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     progress: Progress = lambda done, of: None,
+    form: Form = USUAL,
 ) -> Gradebook:
     """Write ``summary.csv``, ``rejected.csv`` and feedback sheets of the marks as they stand in a file.
 
@@ -136,9 +140,10 @@ def grade_standing(
     Raises
     ------
     BadInput
-        A line that holds no mark of what was issued; then nothing is written.
+        A line that holds no mark of what was issued, or solutions before their day; then nothing is written.
     """
     issued = Issued.read(issued_path)
+    shows_solutions(issued, form)
     if feedback is None:
         feedback = max(len(issued.students), len(issued.records)) <= FEEDBACK_STUDENTS
     kept = marks.with_name("accepted.csv")
@@ -172,7 +177,7 @@ def grade_standing(
         write_whole(out / "marks.csv", marks.read_bytes())
     if feedback:
         made = file_stems(dict.fromkeys((*issued.students, *before)))
-        write_feedback(course, book, shown, out / "feedback", made, progress)
+        write_feedback(course, book, shown, out / "feedback", made, progress, form)
     return book
 
 

@@ -78,6 +78,7 @@ class Assignment:
     sort: str = ""  #: the column by which a booklet is sorted; none: as the roster
     sittings: str = "best"
     answers: str = "shown"
+    solutions_after: datetime.date | None = None  #: from this day on feedback has the worked solutions
     marking: Mapping[str, Any] = field(default_factory=dict)
     options: Mapping[str, Any] = field(default_factory=dict)
 
@@ -97,6 +98,7 @@ class Assignment:
             "identity": list(self.identity),
             "sittings": self.sittings,
             "answers": self.answers,
+            **({"solutions_after": self.solutions_after.isoformat()} if self.solutions_after else {}),
             "marking": dict(self.marking),
             "exercises": list(self.names),
         }
@@ -172,7 +174,7 @@ class _Reader:
         known: dict[str, Callable[[Any], Any]] = {
             "title": self._texts("title"),
             "course": self._texts("course"),
-            "date": self._date,
+            "date": self._date("date"),
             "duration": self._texts("duration"),
             "instructions": self._texts("instructions"),
             "logo": self._logo,
@@ -184,6 +186,7 @@ class _Reader:
             "sort": self._sort,
             "sittings": self._word("sittings", SITTINGS),
             "answers": self._word("answers", ANSWERS),
+            "solutions_after": self._date("solutions_after"),
             "marking": self._marking,
             "exercises": self._exercises,
         }
@@ -199,6 +202,11 @@ class _Reader:
         if "exercises" not in found:
             names = ", ".join(self.course.names[:4])
             raise BadInput(f"{self.path} names no exercise; write [[exercises]] and name = …: {names}, …")
+        if "solutions_after" in found and found.get("answers") == "never":
+            raise self.refused(
+                "solutions_after",
+                'answers = "never" keeps the solutions back for good; leave one of the two out',
+            )
         if "logo" in found and not found.get("logo_alt"):
             raise self.refused("logo", 'a logo needs words for who cannot see it: logo_alt = "…"')
         return Assignment(self.path.stem, options=options, **found)
@@ -238,15 +246,18 @@ class _Reader:
 
         return read
 
-    def _date(self, value: Any) -> datetime.date:
-        if isinstance(value, datetime.datetime):
-            return value.date()
-        if isinstance(value, datetime.date):
-            return value
-        try:
-            return datetime.date.fromisoformat(str(value))
-        except ValueError:
-            raise self.refused("date", f"date is a day such as 2026-12-04; found {value!r}") from None
+    def _date(self, key: str) -> Callable[[Any], datetime.date]:
+        def read(value: Any) -> datetime.date:
+            if isinstance(value, datetime.datetime):
+                return value.date()
+            if isinstance(value, datetime.date):
+                return value
+            try:
+                return datetime.date.fromisoformat(str(value))
+            except ValueError:
+                raise self.refused(key, f"{key} is a day such as 2026-12-04; found {value!r}") from None
+
+        return read
 
     def _logo(self, value: Any) -> Path:
         path = self.path.parent / str(value)

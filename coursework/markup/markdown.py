@@ -83,7 +83,7 @@ def typst_text(text: str, lang: str) -> str:
     """Plain text as Typst markup that prints exactly these characters."""
     pieces = _VECTOR.split(text)
     pieces[::2] = [_typst_plain(piece, lang) for piece in pieces[::2]]
-    pieces[1::2] = [f'#text(font: "{_VECTOR_FONT}", "{one[0]}\\u{{20d7}}");' for one in pieces[1::2]]
+    pieces[1::2] = [_vector(one) for one in pieces[1::2]]
     return "".join(pieces)
 
 
@@ -98,6 +98,19 @@ def typst_string(text: str) -> str:
     return (
         '"' + _ABOVE.sub(SUBSTITUTE, text).replace("\\", r"\\").replace('"', r"\"").replace("\n", r"\n") + '"'
     )
+
+
+def typst_typed(text: str) -> str:
+    """What somebody typed, as a Typst expression that prints these characters and no others: the typesetter puts no
+    hyphen, quotation mark or space of the language in their place."""
+    pieces = _VECTOR.split(text.replace("\r\n", "\n"))
+    shown = [f"#{typst_string(piece)}" for piece in pieces]
+    shown[1::2] = [_vector(piece) for piece in pieces[1::2]]
+    return f"[{''.join(shown)}]" if len(pieces) > 1 else typst_string(pieces[0])
+
+
+def _vector(piece: str) -> str:
+    return f'#text(font: "{_VECTOR_FONT}", "{piece[0]}\\u{{20d7}}");'
 
 
 _WHOLE = 24  #: characters of a formula written out that a line of text does not cut

@@ -15,8 +15,9 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, TemplateError
 from markupsafe import Markup
 
 from coursework.errors import BadCourse, BadStatement
+from coursework.language.words import words
 from coursework.markup.formulas import after_number
-from coursework.rendering import views
+from coursework.rendering import feedback, views
 
 Writer = Callable[[str, str], str]
 
@@ -56,12 +57,22 @@ def environment(
     env.filters.update(
         points=lambda points: views.points_text(points, lang),
         points_number=lambda points: views.points_number(points, lang),
-        verdict=lambda verdict: views.verdict_word(verdict, lang),
         given_formula=views.given_formula,
         given_words=lambda given: views.given_words(given, lang),
-        right=views.right_answer,
         worked=lambda solution, prefix: views.worked(solution, lang, prefix),
-        note=lambda line, prefix="": views.feedback_note(line, lang, prefix),
+        verdict=lambda verdict: feedback.verdict_word(verdict, lang),
+        sign=feedback.sign,
+        sign_mark=lambda one: words(lang)["feedback"]["sign_marks"][one],
+        tally=feedback.tally,
+        called=feedback.called,
+        right=feedback.right_answer,
+        read_otherwise=feedback.read_otherwise,
+        is_brief=lambda line, prefix="": feedback.is_brief(line, lang, prefix),
+        is_long=feedback.is_long,
+        note=lambda line, prefix="": feedback.note(line, lang, prefix),
+        hint=lambda line, prefix="": feedback.hint(line, lang, prefix),
+        command=feedback.command,
+        lesson=lambda lesson: feedback.lesson_words(lesson, lang),
         value_formula=views.value_formula,
         one_line=views.chain_on_one_line,
         many_lines=views.chain_on_lines,

@@ -18,19 +18,24 @@ from coursework.language.words import words
 from coursework.markup import markdown as markup
 from coursework.markup.mathml import to_mathml
 from coursework.polygons.construction import Construction
-from coursework.rendering import views
+from coursework.rendering import feedback, views
 from coursework.rendering.environment import environment, render
 from coursework.rendering.keeping import keeping
+from coursework.sheets.sheet import FeedbackSheet
 
 
 def page(folders: Sequence[Path], sheet: views.Sheet, paper: str = "a4") -> str:
     """The whole page."""
     handout = views.handout_of(sheet)
     env = environment_of(tuple(folders), handout.lang)
-    names = views.context(sheet) | {"paper": paper}
+    names = (
+        feedback.context(sheet, "html.j2", partial(render, env))
+        if isinstance(sheet, FeedbackSheet)
+        else views.context(sheet)
+    )
     if sheet is handout:
         names["keeping"] = keeping([handout], handout.student, handout.lang)
-    return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", names)
+    return render(env, views.TEMPLATES[type(sheet)] + ".html.j2", names | {"paper": paper})
 
 
 @lru_cache(maxsize=32)
@@ -42,6 +47,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "display": lambda tex: to_mathml(tex, lang, True),
         "formula_words": lambda text: escape(markup.formula_words(text, lang)),
         "drawing": _drawing,
+        "typed": escape,
         "css": _css_string,
         "said": lambda text: escape(markup.plain_line(text, lang)),
     }

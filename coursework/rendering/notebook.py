@@ -20,10 +20,11 @@ from jinja2 import Environment
 from coursework.language.words import words
 from coursework.markup import markdown as markup
 from coursework.markup.formulas import number_text
+from coursework.rendering import feedback as own
 from coursework.rendering import papers, views
 from coursework.rendering.environment import environment, render
-from coursework.sheets.paper import Paper
-from coursework.sheets.sheet import Handout
+from coursework.sheets.paper import FeedbackPaper, Paper
+from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout
 from coursework.system.distribution import DISTRIBUTION
 
 if TYPE_CHECKING:
@@ -81,6 +82,26 @@ def paper(folders: Sequence[Path], handed: Paper) -> str:
     cells += _cells(render(env, "_hand_in.md.j2", names), "hand in")
     about = [{"exercise": sheet.exercise, "seed": sheet.seed} for sheet in handed.handouts]
     return _json(cells, {"student": handed.heading.student, "sheets": about, "lang": handed.heading.lang})
+
+
+def feedback(folders: Sequence[Path], told: FeedbackSheet | FeedbackPaper) -> str:
+    """Feedback as a notebook to read, as JSON text, valid nbformat 4.5; where another variant is offered, cells that
+    open and check it."""
+    if isinstance(told, FeedbackPaper):
+        env = _environment(tuple(folders), told.heading.lang)
+        names = papers.context(told, "md.j2", partial(render, env))
+        sheets, template, student = told.sheets, "paper_feedback.md.j2", told.heading.student
+    else:
+        env = _environment(tuple(folders), told.handout.lang)
+        names = own.context(told, "md.j2", partial(render, env))
+        sheets, template, student = (told,), "feedback.md.j2", told.handout.student
+    seeds = " ".join(f"{sheet.handout.exercise} {sheet.handout.seed}" for sheet in sheets)
+    cells = list(_cells(render(env, template, names), f"feedback {student} {seeds}"))
+    for cell in cells:
+        for place, sheet in enumerate(sheets, start=1):
+            if sheet.solution is not None:
+                _attach_figure(cell, sheet.solution, f"{place}-" if isinstance(told, FeedbackPaper) else "")
+    return _json(cells, {"feedback": seeds, "student": student, "lang": names["lang"]})
 
 
 def _exercise(sheet: Handout, body: str, place: int) -> list[dict[str, Any]]:
@@ -155,9 +176,12 @@ def _cell(identity: str, kind: str, tags: tuple[str, ...], source: str) -> dict[
     return cell
 
 
-def _attach_figure(cell: dict[str, Any], handout: Handout) -> None:
-    figures = {FIGURE: views.figure_of(handout)}
-    figures |= {MORE.format(k): one for k, (one, _) in enumerate(views.more_figures(handout), start=2)}
+def _attach_figure(cell: dict[str, Any], sheet: Handout | AnswerSheet, before: str = "") -> None:
+    """The figures that a cell shows, by name: ``before`` it what tells those of several exercises apart."""
+    figures = {f"{before}{FIGURE}": views.figure_of(sheet)}
+    figures |= {
+        f"{before}{MORE.format(k)}": one for k, (one, _) in enumerate(views.more_figures(sheet), start=2)
+    }
     for name, figure in figures.items():
         shown = any(f"attachment:{name}" in line for line in cell["source"])
         if cell["cell_type"] == "markdown" and figure is not None and shown:
@@ -174,6 +198,17 @@ def _environment(folders: tuple[Path, ...], lang: str) -> Environment:
         "number": lambda text: number_text(text, lang),
         "literal": lambda value: json.dumps(value, ensure_ascii=False),
         "code": str,
+        "typed": _typed,
+        "display": lambda tex: markup.to_notebook_markdown(f"$${tex}$$", lang),
         "comment": lambda text: re.sub(r"[\r\n]+", " ", str(text)),
     }
     return environment(folders, lang, markup.notebook_text, filters)
+
+
+def _typed(text: str) -> str:
+    """What somebody typed, as a piece of code that shows these characters and is copied as they are."""
+    one_line = " ".join(text.split("\n"))
+    runs = re.findall("`+", one_line)
+    fence = "`" * (1 + max(map(len, runs), default=0))
+    pad = " " if one_line[:1] in "` " or one_line[-1:] in "` " else ""
+    return f"{fence}{pad}{one_line}{pad}{fence}"

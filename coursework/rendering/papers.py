@@ -16,7 +16,7 @@ from markupsafe import Markup
 from coursework.errors import BadInput
 from coursework.language.numbers import localise
 from coursework.language.words import words
-from coursework.rendering import html, latex, pdf, views
+from coursework.rendering import feedback, html, latex, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
 from coursework.sheets.paper import FeedbackPaper, Logo, Paper, SolutionPaper
@@ -26,7 +26,7 @@ AnyPaper: TypeAlias = Paper | SolutionPaper | FeedbackPaper
 
 #: The template of each type of paper, and that of an exercise in it.
 TEMPLATES = {Paper: "paper", SolutionPaper: "paper_solution", FeedbackPaper: "paper_feedback"}
-BODIES = {Paper: "_sheet_body", SolutionPaper: "_solution_body", FeedbackPaper: "_feedback_table"}
+BODIES = {Paper: "_sheet_body", SolutionPaper: "_solution_body", FeedbackPaper: "_feedback_body"}
 _KINDS = {Paper: "sheet", SolutionPaper: "solution", FeedbackPaper: "feedback"}
 _LINE = 75  #: characters of a footer that leave room for a student's name
 
@@ -77,9 +77,22 @@ def context(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] = ())
         "points": points_of(paper),
         "mark_of": _number(heading.mark_of, heading.lang),
         "mark": _number(getattr(paper, "mark", ""), heading.lang),
-        "feedback": paper,
         "summary_mm": views.SUMMARY_MM,
         "guide_together": views.GUIDE_TOGETHER,
+        **(_of_feedback(paper) if isinstance(paper, FeedbackPaper) else {}),
+    }
+
+
+def _of_feedback(paper: FeedbackPaper) -> dict[str, Any]:
+    """What the template of feedback sees besides: what all its sheets say together."""
+    met = {one for sheet in paper.sheets for one, _ in feedback.tally(sheet)}
+    practices = [sheet.practice for sheet in paper.sheets if sheet.practice]
+    return {
+        "feedback": paper,
+        "answer_mm": feedback.ANSWER_MM,
+        "legend": feedback.legend(paper.sheets, paper.heading.lang),
+        "tallied": [one for one in feedback.SIGNS if one in met],
+        "has_next": any(one.seed is not None or one.lessons for one in practices),
     }
 
 
@@ -87,13 +100,29 @@ def exercises_of(paper: AnyPaper, end: str, write: Body, files: Sequence[Names] 
     """What each exercise's sheet would show, its body, and of a solution its rows of the marking guide."""
     found = []
     for place, sheet in enumerate(sheets_of(paper), 1):
-        names: dict[str, Any] = views.context(sheet, place) | dict(files[place - 1] if files else {})
+        names: dict[str, Any]
+        if isinstance(sheet, FeedbackSheet):
+            names = feedback.context(sheet, end, write, place, numbered=_numbered(paper))
+        else:
+            names = views.context(sheet, place)
+        names |= dict(files[place - 1] if files else {})
+        handout = views.handout_of(sheet)
+        names["called"] = _called(paper, place, handout.title)
         names["start_mm"] = _start_mm(sheet)
         names["body"] = Markup(write(f"{BODIES[type(paper)]}.{end}", names))
         if isinstance(paper, SolutionPaper):
             names["guide"] = Markup(write(f"_guide_rows.{end}", names))
         found.append(names)
     return found
+
+
+def _numbered(paper: AnyPaper) -> bool:
+    return not isinstance(paper, FeedbackPaper) or paper.numbered
+
+
+def _called(paper: AnyPaper, place: int, title: str) -> str:
+    """What an exercise of a paper is called; by its title alone where it was no paper that was handed out."""
+    return words(paper.heading.lang)["paper"]["numbered"].format(place, title) if _numbered(paper) else title
 
 
 def _start_mm(sheet: views.Sheet) -> int:

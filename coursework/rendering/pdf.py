@@ -20,7 +20,7 @@ from coursework.figures.writing import Letters
 from coursework.markup import markdown as markup
 from coursework.markup.spoken import spoken
 from coursework.markup.typst import to_typst
-from coursework.rendering import views
+from coursework.rendering import feedback, views
 from coursework.rendering.environment import environment, render
 from coursework.sheets.sheet import FeedbackSheet
 
@@ -33,7 +33,7 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = 
 
     Feedback is read on a screen: its sheets follow one another without a blank page.
     """
-    contexts = [views.context(sheet) for sheet in sheets]
+    contexts = [_context(folders, sheet) for sheet in sheets]
     bodies = [
         Markup(
             render(
@@ -44,7 +44,17 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = 
     ]
     printed = not isinstance(sheets[0], FeedbackSheet)
     page = contexts[0] | {"bodies": bodies, "paper": paper, "printed": printed}
+    if any(isinstance(sheet, FeedbackSheet) for sheet in sheets):
+        page["answer_mm"] = feedback.ANSWER_MM
     return render(environment_of(tuple(folders), page["lang"]), "_page.typ.j2", page)
+
+
+def _context(folders: Sequence[Path], sheet: views.Sheet) -> dict[str, Any]:
+    """The names that a sheet's template sees."""
+    if not isinstance(sheet, FeedbackSheet):
+        return views.context(sheet)
+    env = environment_of(tuple(folders), sheet.handout.lang)
+    return feedback.context(sheet, "typ.j2", partial(render, env))
 
 
 # ------------------------------------------------------------------------ fonts
@@ -178,6 +188,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "raw_math": lambda tex: to_typst(tex, lang),
         "spoken_literal": lambda tex: markup.typst_string(spoken(tex, lang)),
         "literal": lambda text: markup.typst_string(str(text)),
+        "typed": markup.typst_typed,
         "drawing": _drawing,
     }
     return environment(folders, lang, markup.typst_text, filters)

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from coursework.motion.animation import Animation
     from coursework.polygons.construction import Construction
     from coursework.rendering.papers import AnyPaper
-    from coursework.sheets.paper import Paper, SolutionPaper
+    from coursework.sheets.paper import FeedbackPaper, Paper, SolutionPaper
     from coursework.sheets.report import Report
     from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout, StudySheet
 
@@ -153,6 +153,12 @@ class Renderer:
         from coursework.rendering import notebook
 
         return notebook.paper(self.template_folders, paper)
+
+    def feedback_notebook(self, told: FeedbackSheet | FeedbackPaper) -> str:
+        """Feedback as a notebook to read (JSON, nbformat 4.5), with cells to try another variant where one is offered."""
+        from coursework.rendering import notebook
+
+        return notebook.feedback(self.template_folders, told)
 
     def construction_html(self, construction: Construction) -> str:
         """A polygon, its equations, table and steps, as a piece of a web page."""

@@ -20,7 +20,6 @@ from coursework.markup.markdown import to_text
 from coursework.sheets.sheet import (
     Answer,
     AnswerSheet,
-    FeedbackLine,
     FeedbackSheet,
     Given,
     Handout,
@@ -46,6 +45,8 @@ GUIDE_TOGETHER = 16  #: rows at most of a marking guide that no page's end may c
 #: go on to a second page, and leave the first some.
 _FEW, _LEFT, _EACH = 8, 14.0, 6.0
 _MANY, _LEFT_BY_MANY = 14, (14.0, 22.0)  #: with the data beside the figure, and below it
+SHORT_SOLUTION = 3  #: steps at most to an answer that stands with its question on one page
+LAST_TOGETHER = 4  #: questions at least that a sheet's last page holds, where a page's end parts them
 _BESIDE = 9  #: data at most that stand beside the figure
 
 #: The template of each type of sheet.
@@ -56,10 +57,11 @@ def handout_of(sheet: Sheet) -> Handout:
     return sheet if isinstance(sheet, Handout) else sheet.handout
 
 
-def context(sheet: Sheet, place: int = 0) -> dict[str, object]:
-    """The names that a page's template sees; ``place`` is that of the exercise in a paper, 0 where it stands alone."""
+def context(sheet: Sheet, place: int = 0, *, numbered: bool = True) -> dict[str, object]:
+    """The names that a page's template sees; ``place`` is that of the exercise in a paper, 0 where it stands alone, and
+    its questions have it before their numbers where they are ``numbered``."""
     handout = handout_of(sheet)
-    prefix = f"{place}." if place else ""
+    prefix = f"{place}." if place and numbered else ""
     return {
         "sheet": handout,
         TEMPLATES[type(sheet)]: sheet,
@@ -73,6 +75,8 @@ def context(sheet: Sheet, place: int = 0) -> dict[str, object]:
         "step_room": ROOM_STEP,
         "summary_mm": SUMMARY_MM,
         "guide_together": GUIDE_TOGETHER,
+        "together": LAST_TOGETHER,
+        "short_solution": SHORT_SOLUTION,
         "polygon_mm": POLYGON_MM,
         "more_figures": more_figures(sheet),
         "figure_alt": (sheet.figure_alt if isinstance(sheet, AnswerSheet) else "") or handout.figure_alt,
@@ -167,26 +171,7 @@ def points_number(points: float, lang: str) -> str:
     return localise(plain(round(points, 3)), lang)
 
 
-def verdict_word(verdict: str, lang: str) -> str:
-    """A verdict in the sheet's language; what follows its colon names a mistake and is not shown."""
-    return words(lang)["verdicts"][verdict.partition(":")[0]]
-
-
-def feedback_note(line: FeedbackLine, lang: str, prefix: str = "") -> str:
-    """What a line of feedback says beyond its verdict; a right or a missing answer needs no sentence.
-
-    A question that it names is called as the paper does, ``prefix`` before its number.
-    """
-    if line.verdict == "missing":
-        return ""
-    if line.verdict != "correct":
-        return _renumbered(line.says, lang, prefix)
-    usual = words(lang)["marking"]["correct"].rpartition("}")[2]
-    said, mark, more = line.says.partition(usual)
-    return _renumbered(more.strip() if mark else said, lang, prefix)
-
-
-def _renumbered(said: str, lang: str, prefix: str) -> str:
+def renumbered(said: str, lang: str, prefix: str) -> str:
     """The questions that a sentence names by their numbers, with what stands before these in a paper."""
     if not prefix:
         return said
@@ -194,11 +179,6 @@ def _renumbered(said: str, lang: str, prefix: str) -> str:
     joins = "|".join(re.escape(word) for word in (", ", f" {marking['and']} ", f" {marking['or']} "))
     named = rf"\b(?:{noun['one']}|{noun['many']}) \d+(?:(?:{joins})\d+)*"
     return re.sub(named, lambda found: re.sub(r"\d+", rf"{prefix}\g<0>", found[0]), said, flags=re.IGNORECASE)
-
-
-def right_answer(line: FeedbackLine) -> str:
-    """The right answer as Markdown, beside one that has not all its points."""
-    return line.right if line.points < line.out_of else ""
 
 
 def given_formula(given: Given) -> str:
@@ -270,7 +250,7 @@ def _below(question: Question, step: Step, lang: str, prefix: str) -> Step:
     """A step as it stands below its question, whose number it need not say."""
     own = rf"\*{words(lang)['sheet']['question']['one']} {question.number}\.\*\s*"
     told = re.sub(rf"^{own}", "", step.words, flags=re.IGNORECASE)
-    return replace(step, words=_renumbered(told, lang, prefix))
+    return replace(step, words=renumbered(told, lang, prefix))
 
 
 def _parts(handout: Handout) -> Sequence[Mapping[str, str]]:

@@ -20,6 +20,7 @@ from coursework.quantities.formula_latex import Told, formula_latex, kind_of, nu
 from coursework.rendering.views import chain_on_lines, given_formula, given_words
 from coursework.selfstudy.refusals import expect
 from coursework.sheets.answer_sheet import answer_sheet
+from coursework.sheets.following import needs
 from coursework.sheets.handout import handout
 
 if TYPE_CHECKING:
@@ -82,25 +83,6 @@ def steps(
 def _asked(variant: Variant, quantity: str) -> Part | None:
     """The part that asks for a quantity."""
     return next((p for p in variant.parts if p.quantity == quantity), None)
-
-
-def needs(variant: Variant, quantity: str) -> tuple[str, ...]:
-    """The quantities that a quantity's textbook formula takes, hidden ones seen through."""
-    graph = variant.exercise.solution.graph
-    found: dict[str, None] = {}
-
-    def visit(name: str) -> None:
-        node = graph.node(name)
-        for argument in node.arguments:
-            if argument in node.defaults and argument not in variant.effects:
-                continue
-            if argument.startswith("_"):
-                visit(argument)
-            else:
-                found.setdefault(argument)
-
-    visit(quantity)
-    return tuple(found)
 
 
 def _symbol(variant: Variant, name: str) -> str:

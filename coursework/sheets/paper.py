@@ -58,7 +58,7 @@ class SolutionPaper:
 
 @dataclass(frozen=True)
 class FeedbackPaper:
-    """A student's marks on a paper."""
+    """A student's marks on a paper, or on several exercises that were handed out one by one."""
 
     heading: Heading
     sheets: tuple[FeedbackSheet, ...]
@@ -67,3 +67,4 @@ class FeedbackPaper:
     mark: str = ""  #: as printed, 14.5; empty where only points count
     answers: bool = True  #: whether the right answers are shown
     advice: tuple[str, ...] = ()  #: what to look at next, Markdown
+    numbered: bool = True  #: questions are 1.1, 1.2 as on a paper; else as on the sheet of each exercise

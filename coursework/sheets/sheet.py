@@ -137,6 +137,31 @@ class FeedbackLine:
     out_of: float
     says: str  #: Markdown, a sentence that helps and gives no reference value
     right: str = ""  #: the right answer, Markdown, where it may be shown
+    hint: str = ""  #: what to look at, Markdown, where points were lost
+    read: str = ""  #: ``read_as`` as Markdown, where what was read has formulas
+
+
+@dataclass(frozen=True)
+class Lesson:
+    """A lesson of the course that teaches what an exercise asks."""
+
+    name: str
+    title: str
+    sections: tuple[str, ...] = ()  #: their headings; none when the whole lesson does
+
+
+@dataclass(frozen=True)
+class Practice:
+    """What to try after an exercise in which points were lost."""
+
+    exercise: str
+    version: int
+    course: str  #: name of the course's folder; empty for the course that the package brings
+    seed: (
+        int | None
+    )  #: of a variant that was issued to nobody; none where there is no other, or none is offered
+    lessons: tuple[Lesson, ...] = ()
+    questions: tuple[Question, ...] = ()  #: of that variant
 
 
 @dataclass(frozen=True)
@@ -147,6 +172,8 @@ class FeedbackSheet:
     lines: tuple[FeedbackLine, ...]
     points: float
     out_of: float
+    practice: Practice | None = None
+    solution: AnswerSheet | None = None  #: of the student's own variant, once it may be shown
 
 
 @dataclass(frozen=True)

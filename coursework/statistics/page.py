@@ -292,13 +292,15 @@ class _Page:
         return f"{self._name(part)} ({note})"
 
     def _label(self, part: PartStatistics) -> str:
-        symbol, name = self.names.symbol(part), plain_label(_short(self.names.question(part), SHORT))
-        return self._numbered(part, formula_label(symbol, _short(part.part)) if symbol else name)
+        symbol, name = self.names.symbol(part), _charted(_short(self.names.question(part), SHORT))
+        return self._numbered(
+            part, formula_label(symbol, drawable_label(_short(part.part))) if symbol else name
+        )
 
     def _mistake_label(self, one: MistakeStatistics) -> str:
         several = len(self.statistics.exercises) > 1
         name = _short(self.names.mistake(one), SHORT)
-        return plain_label(f"{name} ({_short(self._heading(one.exercise), 24)})" if several else name)
+        return _charted(f"{name} ({_short(self._heading(one.exercise), 24)})" if several else name)
 
     # ------------------------------------------------------------------ pieces
 
@@ -319,7 +321,7 @@ class _Page:
         return self.said["percent"].format(self._hundredths(share))
 
     def _chart_text(self, text: str) -> str:
-        return plain_label(typeset(_short(text, _HEADED), self.lang))
+        return _charted(typeset(_short(text, _HEADED), self.lang))
 
     def _charts(self, draw: Callable[[], bytes], heading: str) -> tuple[Chart, ...]:
         """The chart, where charts can be drawn."""
@@ -334,9 +336,21 @@ def _shared_out(rows: Sequence[PartStatistics], most: int) -> list[Sequence[Part
 
 
 def _short(name: str, most: int = 40) -> str:
-    """A name from a file on one line of a chart, in characters that its font has."""
-    one_line = drawable_label(" ".join(name.split()))
+    """A name from a file on one line of a chart."""
+    one_line = " ".join(name.split())
     return one_line if len(one_line) <= most else one_line[: most - 1] + "…"
+
+
+#: A letter with an arrow above it.
+_VECTOR = re.compile("([^\\W\\d_])\N{COMBINING RIGHT ARROW ABOVE}")
+
+
+def _charted(text: str) -> str:
+    """A text as a label of a chart, in characters that its font has; an arrow over a letter is drawn as in a formula."""
+    pieces = _VECTOR.split(text)
+    pieces[::2] = [plain_label(drawable_label(piece)) for piece in pieces[::2]]
+    pieces[1::2] = [rf"$\vec{{{letter}}}$" for letter in pieces[1::2]]
+    return "".join(pieces)
 
 
 def _as_it_is(name: str) -> str:

@@ -2,19 +2,37 @@
 
 from __future__ import annotations
 
+import datetime
+import json
 import shutil
 import subprocess
+from collections import Counter
+from itertools import count
 
 import pytest
+from pdf_text import page_texts
 from small_assignment import issue, write
 
 import coursework
 from coursework.cli import run
+from coursework.errors import BadCourse, BadInput
 from coursework.gradebook.class_marking import marked
-from coursework.gradebook.feedback_sheets import feedback_paper
+from coursework.gradebook.feedback_form import Form, shows_solutions
+from coursework.gradebook.feedback_sheets import Telling, feedback_paper, feedback_sheet
+from coursework.gradebook.graded import Graded
 from coursework.gradebook.placing import placed
 from coursework.gradebook.submissions import read_file
+from coursework.language.typography import typeset
+from coursework.language.words import words
+from coursework.making import practice as practice_module
+from coursework.making.flaws import worthy
 from coursework.making.issued import Issued
+from coursework.making.issuing import distinct_variants
+from coursework.making.lessons import taught_by
+from coursework.making.practice import PracticeOf, unissued_seed
+from coursework.marking.marking import mark
+from coursework.rendering.renderer import renderer_of
+from coursework.sheets.sheet import Lesson
 
 COURSE = coursework.open_course()
 NAMES = ("slotted_mechanism", "grashof")
@@ -108,3 +126,217 @@ def test_grade_prints_a_paper_a_sitting(tmp_path, issued_file):
         text = subprocess.run(asked, capture_output=True, check=True, text=True).stdout
         assert "Midterm 2" in text
         assert "What to look at next" in text
+
+
+# ----------------------------------------------------------- what to try next, and solutions
+
+
+def marked_paper(tmp_path, issued_path, rows, lang="en", **telling):
+    issued = Issued.read(issued_path)
+    sheets = placed(COURSE, issued, read_file(write(tmp_path / "answers.csv", rows)))
+    graded = list(marked(COURSE, issued, sheets))
+    told = Telling(PracticeOf(COURSE, issued), **telling)
+    return feedback_paper(COURSE, issued, "Ada", graded, lang, telling=told)
+
+
+def test_who_lost_points_is_told_another_variant_and_the_lesson_and_who_lost_none_is_not(
+    tmp_path, issued_file
+):
+    rows = answers("Ada", NAMES[0], 5, rA="1 mm") + answers("Ada", NAMES[1], 6)
+    lost, whole = marked_paper(tmp_path, issued_file(), rows).sheets
+    assert whole.practice is None
+    assert lost.practice.seed not in (None, 5)
+    assert lost.practice.course == ""
+    variant = COURSE[NAMES[0]].variant(lost.practice.seed)
+    assert variant.given != COURSE[NAMES[0]].variant(5).given
+    (lesson,) = lost.practice.lessons
+    assert (lesson.name, lesson.title) == ("mechanisms", "One loop, and what it tells")
+    assert [section.split(".")[0] for section in lesson.sections] == ["7", "8"]
+    french = marked_paper(tmp_path, issued_file(), rows, "fr").sheets[0].practice
+    assert french.seed == lost.practice.seed
+    assert french.lessons[0].title == "Une boucle, et ce qu'elle dit"
+
+
+def test_what_is_told_to_look_at_is_what_the_quantity_follows_from(tmp_path, issued_file):
+    rows = answers("Ada", NAMES[0], 5, rA="1 mm", theta4="1 °")
+    sheet = marked_paper(tmp_path, issued_file(), rows).sheets[0]
+    lines = {line.question.id: line for line in sheet.lines}
+    assert r"$r_1$, $r_2$, $\theta_1$ and $\theta_2$ (given)" in lines["theta4"].hint
+    solution = COURSE[NAMES[0]].variant(5, "en", PARTS).solution()
+    assert not any(f"{value:.4g}" in line.hint for value in solution.values() for line in sheet.lines)
+    right, blank = marked_paper(tmp_path, issued_file(), answers("Ada", NAMES[0], 5)).sheets
+    assert {line.hint for line in right.lines} == {""}
+    assert {line.hint for line in blank.lines} == {
+        ""
+    }  # nothing was tried: the lesson and the variant say more
+    assert blank.practice is not None
+
+
+@pytest.mark.parametrize("name", COURSE.names)
+def test_the_variant_to_try_is_worth_issuing_and_was_issued_to_nobody(name):
+    exercise = COURSE[name]
+    issued = {seed: exercise.variant(seed).record for seed in range(1, 6)}
+    found = unissued_seed(exercise, issued)
+    assert found is not None
+    assert found not in issued
+    variant = exercise.variant(found)
+    assert variant.record["given"] not in [record["given"] for record in issued.values()]
+    assert worthy(exercise, [variant], Counter()) == [variant]
+    assert unissued_seed(exercise, issued) == found
+
+
+def test_where_every_variant_is_issued_one_that_is_not_the_students_is_offered(
+    tmp_path, small_course, monkeypatch
+):
+    monkeypatch.setattr(practice_module, "_TRIES", 2)
+    course = coursework.open_course(small_course)
+    two = distinct_variants(course["crank_pin"], 1, 3, "en")
+    items = [{"student": who, "record": v.record} for who, v in zip(("Ada", "Bo"), two[:2], strict=True)]
+    issued = Issued.read(issue(tmp_path, items))
+    offered = PracticeOf(course, issued)
+    offered._fresh["crank_pin"] = None  # as where no variant is left
+    assert offered.after("crank_pin", "Ada", "en").seed == two[1].seed
+    assert offered.after("crank_pin", "Bo", "en").seed == two[0].seed
+    assert offered.after("crank_pin", "Ada", "en").course == course.folder.root.name
+
+
+@pytest.mark.parametrize("name", COURSE.names)
+def test_the_cells_of_the_notebook_open_and_check_the_variant_to_try(tmp_path, monkeypatch, name):
+    """The variant may ask other parts than the student's own."""
+    monkeypatch.chdir(tmp_path)
+    issued = Issued.read(
+        issue(tmp_path, [{"student": "Ada", "record": COURSE[name].variant(9, "en").record}])
+    )
+    lines = dict(mark(COURSE[name].variant(9, "en"), {}))
+    graded = Graded("Ada", name, 9, lines, (), COURSE[name].variant(9, "en").record)
+    told = feedback_sheet(COURSE, graded, telling=Telling(PracticeOf(COURSE, issued)))
+    book = json.loads(renderer_of(COURSE.folder).feedback_notebook(told))
+    opens, checks = ("".join(cell["source"]) for cell in book["cells"] if cell["cell_type"] == "code")
+    names = {}
+    exec(opens, names)
+    exec(checks.replace("study.check", "shown = study.check"), names)
+    assert str(told.practice.seed) in opens
+    assert names["shown"] is not None
+
+
+def test_a_course_may_offer_no_other_variant_and_says_which_lesson_teaches_what(tmp_path, small_course):
+    settings = small_course / "exercises/course.toml"
+    stated = settings.read_text("utf-8") if settings.exists() else ""
+    lessons = small_course / "exercises/lessons"
+    lessons.mkdir()
+    (lessons / "rods.en.md").write_text("# Rods\n\n## 1. A rod\n\n## 2. Two rods\n", "utf-8")
+
+    numbers = count()
+
+    def after(text, lang="en"):
+        settings.write_text(f"{stated}\n{text}", "utf-8")
+        course = coursework.open_course(shutil.copytree(small_course, tmp_path / str(next(numbers))))
+        record = course["crank_pin"].variant(1, "en").record
+        issued = Issued.read(issue(tmp_path, [{"student": "Ada", "record": record}]))
+        return PracticeOf(course, issued).after("crank_pin", "Ada", lang)
+
+    assert after("[feedback]\npractice = false").seed is None
+    assert after("").lessons == ()
+    assert after('[lessons]\ncrank_pin = "rods"').lessons == (Lesson("rods", "Rods"),)
+    of_two = after('[lessons]\ncrank_pin = { lesson = "rods", sections = [2] }').lessons
+    assert of_two == (Lesson("rods", "Rods", ("2. Two rods",)),)
+    assert after('[lessons]\ncrank_pin = "rods"', "fr").lessons == ()
+    for wrong, told in (
+        ('[lessons]\ncrank_pim = "rods"', "'crank_pim'; did you mean 'crank_pin'"),
+        ('[lessons]\ncrank_pin = "rod"', "no lesson 'rod'; did you mean 'rods'"),
+        ('[lessons]\ncrank_pin = { lesson = "rods", sections = [3] }', "no section 3; there is 1, 2"),
+        ("[lessons]\ncrank_pin = 3", "found 3"),
+        ("[feedback]\npractise = false", "did you mean 'practice'"),
+        ("[feedback]\npractice = 1", "practice is true or false"),
+    ):
+        with pytest.raises(BadCourse, match=told):
+            after(wrong)
+
+
+def test_every_lesson_that_the_course_names_is_there_in_every_language():
+    stated = COURSE.folder.settings["lessons"]
+    for name in stated:
+        told = [taught_by(COURSE.folder, name, lang) for lang in ("fr", "en")]
+        assert all(told)
+        assert len({len(lesson.sections) for (lesson,) in told}) == 1
+
+
+DAY = datetime.date(2026, 12, 5)
+
+
+@pytest.mark.parametrize(
+    ("stated", "form", "shown"),
+    [
+        ({}, Form(), False),
+        ({}, Form(solutions=True), True),
+        ({"solutions_after": "2026-12-05"}, Form(today=DAY - datetime.timedelta(1)), False),
+        ({"solutions_after": "2026-12-05"}, Form(today=DAY), True),
+        ({"solutions_after": "2026-12-05"}, Form(solutions=True, today=DAY), True),
+        ({"answers": "never"}, Form(), False),
+    ],
+)
+def test_solutions_are_shown_from_their_day_on_or_when_wanted(issued_file, stated, form, shown):
+    assert shows_solutions(Issued.read(issued_file(**stated)), form) is shown
+
+
+@pytest.mark.parametrize(
+    ("stated", "told"),
+    [
+        ({"solutions_after": "2026-12-05"}, "until 2026-12-05"),
+        ({"answers": "never"}, "never"),
+        ({"solutions_after": "soon"}, "is a day such as"),
+    ],
+)
+def test_solutions_are_never_shown_before_their_day(tmp_path, issued_file, stated, told, capsys):
+    path = issued_file(**stated)
+    with pytest.raises(BadInput, match=told):
+        shows_solutions(Issued.read(path), Form(solutions=True, today=DAY - datetime.timedelta(1)))
+    file = write(tmp_path / "answers.csv", answers("Ada", NAMES[0], 5))
+    asked = ["grade", str(file), "--issued", str(path), "--with-solutions", "--today", "2026-12-04"]
+    assert run(asked) == 2
+    assert told in capsys.readouterr().err
+    assert not (tmp_path / "marks").exists()
+
+
+def test_grade_writes_the_solution_into_every_format_from_the_day_on(tmp_path, issued_file):
+    path = issued_file(solutions_after="2026-12-05")
+    file = write(
+        tmp_path / "answers.csv", answers("Ada", NAMES[0], 5, rA="1 mm") + answers("Ada", NAMES[1], 6)
+    )
+    said = words("en")["feedback"]["solution"]
+
+    def texts(day):
+        asked = ["grade", str(file), "--issued", str(path), "--formats", "pdf,html,ipynb", "--today", day]
+        assert run(asked) == 0
+        folder = tmp_path / "marks/feedback"
+        assert sorted(p.name for p in folder.iterdir()) == ["ada.html", "ada.ipynb", "ada.pdf"]
+        pdf = "".join(page_texts((folder / "ada.pdf").read_bytes()))
+        return [pdf, *((folder / f"ada.{end}").read_text("utf-8") for end in ("html", "ipynb"))]
+
+    assert all(said not in text for text in texts("2026-12-04"))
+    assert all(text.count(said) == 1 for text in texts("2026-12-05"))
+    # What an earlier marking wrote in other formats makes way.
+    assert run(["grade", str(file), "--issued", str(path), "--today", "2026-12-04"]) == 0
+    assert [p.name for p in (tmp_path / "marks/feedback").iterdir()] == ["ada.pdf"]
+
+
+def test_exercises_that_are_no_assignment_stand_under_one_total(tmp_path):
+    items = [{"student": "Ada", "record": COURSE[name].variant(5, "en").record} for name in NAMES]
+    content = {"format": 1, "roster": True, "issued": items}
+    (tmp_path / "issued.json").write_text(json.dumps(content), "utf-8")
+    rows = [
+        [student, name, seed, part, value]
+        for name in NAMES
+        for student, seed in [("Ada", 5)]
+        for part, value in {p.id: "1" for p in COURSE[name].variant(5, "en").parts}.items()
+    ]
+    file = write(tmp_path / "answers.csv", rows)
+    assert run(["grade", str(file), "--issued", str(tmp_path / "issued.json")]) in (0, 1)
+    (made,) = (tmp_path / "marks/feedback").iterdir()
+    first, *_ = page_texts(made.read_bytes())
+    most = sum(part.points for name in NAMES for part in COURSE[name].variant(5, "en").parts)
+    assert f"/ {most:g} points" in first
+    titles = [COURSE[name].variant(5, "en").handout().title for name in NAMES]
+    assert all(typeset(title, "en") in first for title in titles)
+    assert "Exercise 1." not in first
+    assert words("en")["feedback"]["right"] not in first

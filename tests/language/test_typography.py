@@ -20,7 +20,8 @@ from coursework.markup.markdown import (
     to_notebook_markdown,
     to_typst_markup,
 )
-from coursework.rendering.views import points_text, tolerances, verdict_word
+from coursework.rendering.feedback import verdict_word
+from coursework.rendering.views import points_text, tolerances
 
 every_language = pytest.mark.parametrize("lang", ["fr", "en"])
 

@@ -20,6 +20,7 @@ from pdf_text import page_texts
 from coursework.errors import BadInput
 from coursework.language.words import words
 from coursework.rendering import papers
+from coursework.rendering.feedback import tally
 from coursework.rendering.papers import variants
 from coursework.rendering.renderer import PAPERS, renderer_of
 from coursework.rendering.views import worked
@@ -197,7 +198,9 @@ def test_feedback_gives_one_total_the_mark_and_a_row_an_exercise(lang):
     assert f"14{comma}5 / 20" in first
     assert f"{made.points:g} / {full_points():g} points" in first
     for number, sheet in enumerate(made.sheets, 1):
-        assert plainly(f"{number}{sheet.handout.title}{sheet.points:g} / {sheet.out_of:g}") in first
+        counts = "".join(str(count) for _, count in tally(sheet))
+        row = f"{number}{sheet.handout.title}{counts}{sheet.points:g} / {sheet.out_of:g}"
+        assert plainly(row) in first
     assert words(lang)["paper"]["advice"] in pages[-1]
     assert "chapter 3" in pages[-1]
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
@@ -63,21 +62,6 @@ def test_feedback_sheets_follow_one_another_without_a_blank_page():
         source([TEMPLATES], [feedback_sheet("fr"), feedback_sheet("en")]).encode(), format="svg"
     )
     assert len(pages) == 2
-
-
-def test_a_long_number_stays_in_its_column_of_the_feedback():
-    from coursework.rendering.pdf import source
-
-    sheet = feedback_sheet("fr")
-    number = "8832.123456789012"
-    line = replace(sheet.lines[0], answer=number, read_as=number)
-    text = source([TEMPLATES], [replace(sheet, lines=(line,))])
-    assert text.count(f"written[{number}]") == 2
-    definitions = text.partition("\n//=\n")[0]
-    high = "measure(block(width: 25mm, written[{}])).height.pt()"
-    asked = f"#context [#metadata(({high.format(number)}, {high.format('8832.1')})) <high>]"
-    (found,) = json.loads(typst.query(f"{definitions}\n{asked}".encode(), "<high>", field="value"))
-    assert found[0] > 2 * found[1] > 0
 
 
 def test_words_of_a_margin_are_not_spread_over_their_narrow_column():

@@ -573,3 +573,19 @@ def test_an_answer_accepted_by_hand_is_right_in_the_report(small_course, tmp_pat
     (part,) = json.loads(capsys.readouterr().out)["parts"]
     assert (part["part"], part["right"], part["accepted"], part["mean"]) == ("y", 1, 1, 1)
     assert small("report", out / "marks") == 0
+
+
+@pytest.mark.parametrize("lang", ["fr", "en"])
+def test_a_letter_with_an_arrow_is_drawn_in_the_labels_of_charts(course, lang):
+    """Every question of the course as a chart names it: no square stands for a letter."""
+    from coursework.figures.charts import bars
+    from coursework.markup.markdown import plain_line
+    from coursework.statistics.page import _charted
+
+    asked = [q for name in course.names for q in course[name].variant(0, lang).handout().questions]
+    labels = [_charted(plain_line(q.prompt, lang)) for q in asked]
+    assert "□" not in "".join(labels)
+    arrows = [label for label in labels if r"$\vec{" in label]
+    assert len(arrows) > 5
+    shown = [(_charted("Ω\u20d7 and x\u20d7"), 1.0, "")]
+    assert bars(shown, _charted("v\u20d7, $5"), "x").startswith(b"<?xml")

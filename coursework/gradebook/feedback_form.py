@@ -1,0 +1,50 @@
+"""How feedback is asked for: in which formats, and whether with the worked solutions."""
+
+from __future__ import annotations
+
+import datetime
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from coursework.errors import BadInput
+from coursework.making.issued import Issued
+
+FORMATS = ("pdf", "html", "ipynb")
+
+
+class Form(NamedTuple):
+    """How feedback is asked for: its formats, whether the worked solutions are wanted, and the day it is."""
+
+    formats: Sequence[str] = ("pdf",)
+    solutions: bool = False
+    today: datetime.date | None = None  #: that of the machine unless told
+
+
+USUAL = Form()
+
+
+def shows_solutions(issued: Issued, form: Form) -> bool:
+    """Whether feedback has the worked solutions: where they are wanted, and of an assignment that states
+    ``solutions_after`` from that day on; never before it.
+
+    Raises
+    ------
+    BadInput
+        They are wanted, and the assignment keeps them back.
+    """
+    stated = issued.assignment or {}
+    if stated.get("answers") == "never":
+        if form.solutions:
+            raise BadInput('the assignment keeps its answers back (answers = "never"), and so its solutions')
+        return False
+    if not (after := str(stated.get("solutions_after") or "")):
+        return form.solutions
+    try:
+        is_time = (form.today or datetime.date.today()) >= datetime.date.fromisoformat(after)
+    except ValueError:
+        raise BadInput(
+            f"the assignment in issued.json: solutions_after is a day such as 2026-12-04; found {after!r}"
+        ) from None
+    if form.solutions and not is_time:
+        raise BadInput(f"the assignment keeps its solutions back until {after} (solutions_after)")
+    return is_time

@@ -1,0 +1,211 @@
+"""What feedback says to a student: a word and a sign for what became of an answer, and what these words mean."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+from markupsafe import Markup
+
+from coursework.figures.text import SIZE, Run
+from coursework.language.numbers import localise, plain
+from coursework.language.words import listed, quoted, words
+from coursework.rendering import views
+from coursework.rendering.views import renumbered
+from coursework.sheets.sheet import FeedbackLine, FeedbackSheet, Lesson, Practice
+
+WAITING = ("unreadable", "to_mark")  #: verdicts that are not the last word
+SIGNS = ("full", "part", "none", "wait")
+
+#: Width of the answer's column beside a question, mm, and of the sides of a cell.
+ANSWER_MM, _SIDES_MM = 38.0, 3.0
+_LONG = 700  #: characters of an answer that stands below what is said of it, where a page's end may cut it
+
+
+def context(
+    sheet: FeedbackSheet,
+    end: str,
+    write: Callable[[str, Mapping[str, object]], str],
+    place: int = 0,
+    *,
+    numbered: bool = True,
+) -> dict[str, object]:
+    """The names that the template of a feedback sheet sees, the body of its worked solution among them.
+
+    ``end`` is that of the templates' names, and ``write`` renders one; the rest is as for :func:`views.context`.
+    """
+    shown = sheet.solution
+    solution = shown and {
+        **views.context(shown, place, numbered=numbered),
+        "figures": f"{place}-" if place else "",
+    }
+    return {
+        **views.context(sheet, place, numbered=numbered),
+        "answer_mm": ANSWER_MM,
+        "legend": legend([sheet], sheet.handout.lang),
+        "solution_body": Markup(write(f"_solution_body.{end}", solution)) if solution else "",
+    }
+
+
+class Meaning(NamedTuple):
+    """A line of the legend."""
+
+    word: str
+    means: str
+    worth: str  #: which share of the points it has on this sheet
+
+
+def kind_of(verdict: str) -> str:
+    """A verdict without what names its mistake; ``otherwise`` for one that no words are known of."""
+    kind = verdict.partition(":")[0]
+    return kind if kind in words("en")["feedback"]["verdicts"] else "otherwise"
+
+
+def verdict_word(verdict: str, lang: str) -> str:
+    """A verdict in a student's words; what follows its colon names a mistake and is not shown."""
+    return str(words(lang)["feedback"]["verdicts"][kind_of(verdict)])
+
+
+def sign(line: FeedbackLine) -> str:
+    """``full``, ``part``, ``none`` or ``wait``: which share of its points an answer has."""
+    if line.verdict in WAITING:
+        return "wait"
+    if line.points >= line.out_of:
+        return "full"
+    return "part" if line.points > 0 else "none"
+
+
+def tally(sheet: FeedbackSheet) -> tuple[tuple[str, int], ...]:
+    """How many answers have each sign, those that some has."""
+    counts = [sign(line) for line in sheet.lines]
+    return tuple((one, counts.count(one)) for one in SIGNS if one in counts)
+
+
+def legend(sheets: Iterable[FeedbackSheet], lang: str) -> tuple[Meaning, ...]:
+    """What the verdicts of some sheets mean, in the order of the language's words, each with what it is worth there."""
+    said = words(lang)["feedback"]
+    met: dict[str, list[FeedbackLine]] = {}
+    for line in (line for sheet in sheets for line in sheet.lines):
+        met.setdefault(kind_of(line.verdict), []).append(line)
+    order = [kind for kind in _ORDER if kind in met] + [kind for kind in met if kind not in _ORDER]
+    return tuple(
+        Meaning(said["verdicts"][kind], said["means"][kind], _worth(kind, met[kind], lang)) for kind in order
+    )
+
+
+_ORDER = (
+    "correct", "accepted", "follow_through", "partial", "missing_unit", "slip", "mistake", "usual", "wrong_unit",
+    "wrong", "otherwise", "unreadable", "to_mark", "missing",
+)  # fmt: skip
+
+
+def _worth(kind: str, lines: Sequence[FeedbackLine], lang: str) -> str:
+    """Which share of its points a verdict has on a sheet, in words."""
+    said = words(lang)["feedback"]["worth"]
+    shares = {round(line.points / line.out_of, 6) for line in lines if line.out_of}
+    if kind in WAITING and shares <= {0.0}:
+        return str(said["later"])
+    if shares <= {1.0}:
+        return str(said["all"])
+    if shares == {0.0}:
+        return str(said["none"])
+    if len(shares) > 1:
+        return str(said["beside"])
+    percent = localise(plain(round(100 * shares.pop(), 1)), lang)
+    return str(said["share"]).format(words(lang)["statistics"]["percent"].format(percent))
+
+
+# ------------------------------------------------------------------------- lines
+
+
+def note(line: FeedbackLine, lang: str, prefix: str = "") -> str:
+    """What a line says beyond its verdict; a right or a missing answer needs no sentence.
+
+    A question that it names is called as the paper does, ``prefix`` before its number.
+    """
+    if line.verdict == "missing":
+        return ""
+    if line.verdict != "correct":
+        return renumbered(line.says, lang, prefix)
+    usual = words(lang)["marking"]["correct"].rpartition("}")[2]
+    said, mark, more = line.says.partition(usual)
+    return renumbered(more.strip() if mark else said, lang, prefix)
+
+
+def hint(line: FeedbackLine, lang: str, prefix: str = "") -> str:
+    """What to look at, where points were lost and the answer was read, or there was none."""
+    lost = line.points < line.out_of and line.verdict not in WAITING
+    return renumbered(line.hint, lang, prefix) if lost else ""
+
+
+def right_answer(line: FeedbackLine) -> str:
+    """The right answer as Markdown, beside one that has not all its points."""
+    return line.right if line.points < line.out_of else ""
+
+
+def read_otherwise(line: FeedbackLine) -> str:
+    """What was read in an answer, where it is written otherwise than the answer."""
+    return "" if _plainly(line.read_as) == _plainly(line.answer) else line.read_as
+
+
+_SPELLED_ALIKE = str.maketrans({",": ".", "\N{MINUS SIGN}": "-"})
+
+
+def _plainly(text: str) -> str:
+    """A text without what differs by habit alone: spaces, the decimal sign, the sign of minus, brackets round it."""
+    return "".join(text.split()).translate(_SPELLED_ALIKE).strip("()")
+
+
+def is_brief(line: FeedbackLine, lang: str, prefix: str = "") -> bool:
+    """Whether a line has nothing to say but the answer, and that is short."""
+    says = note(line, lang, prefix) or hint(line, lang, prefix) or right_answer(line)
+    return not says and all(_is_short(text) for text in (line.answer, read_otherwise(line)))
+
+
+def _is_short(text: str) -> bool:
+    fits = 1.2 * Run(text, italic=False).width * SIZE <= ANSWER_MM - _SIDES_MM
+    return "\n" not in text and "\t" not in text and fits
+
+
+def is_long(line: FeedbackLine) -> bool:
+    """Whether an answer may be longer than what a page holds."""
+    return len(line.answer) > _LONG or line.answer.count("\n") > _LONG / 60
+
+
+#: The end of a prompt's first sentence: what a question is called beside its answer.
+_PIECE = re.compile(r"\$\$?[^$]*\$\$?|`[^`]*`|(?P<end>[.?!…](?=\s|\Z)|\n\s*\n)|.", re.DOTALL)
+
+
+def called(line: FeedbackLine) -> str:
+    """The first sentence of a question, Markdown; with its symbol where that is not in it."""
+    prompt, symbol, end = line.question.prompt.strip(), line.question.symbol, 0
+    for piece in _PIECE.finditer(prompt):
+        end = piece.end()
+        if piece["end"]:
+            break
+    first = prompt[:end].strip()
+    return first if not symbol or _bare(symbol) in _bare(first) else f"{first} (${symbol}$)"
+
+
+def _bare(latex: str) -> str:
+    """LaTeX without braces and blanks, which may stand or not."""
+    return re.sub(r"[{}\s]", "", latex)
+
+
+# -------------------------------------------------------------------------- next
+
+
+def command(practice: Practice, lang: str) -> str:
+    """What opens the variant to try, as a command."""
+    course = f"--course {practice.course} " if practice.course else ""
+    return f"coursework {course}notebook {practice.exercise} --seed {practice.seed} --lang {lang}"
+
+
+def lesson_words(lesson: Lesson, lang: str) -> str:
+    """Where a lesson is to be read again, as Markdown."""
+    said = words(lang)["feedback"]["next"]
+    if not lesson.sections:
+        return str(said["lesson"]).format(lesson.title)
+    named = [quoted(section, lang) for section in lesson.sections]
+    return str(said["section" if len(named) == 1 else "sections"]).format(lesson.title, listed(named, lang))
