@@ -14,6 +14,7 @@ import csv
 import json
 import random
 import resource
+import shutil
 import subprocess
 import sys
 import time
@@ -97,6 +98,7 @@ def main(count=1_000_000, folder="build/marking"):
         rows = write(home, count, mixed=name == "mixed")
         start = time.perf_counter()
         run = "import sys; from coursework.cli import main; sys.exit(main())"
+        shutil.rmtree(home / "marks", ignore_errors=True)
         command = [sys.executable, "-P", "-c", run, "grade", str(home / "answers.csv")]
         options = ["--issued", str(home / "issued.json"), "--out", str(home / "marks"), "--no-feedback"]
         done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)

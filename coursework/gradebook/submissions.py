@@ -6,6 +6,7 @@ Every row of every file comes out, as a :class:`Row` or as a :class:`Rejected` w
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -87,7 +88,9 @@ def read_file(path: Path) -> Iterator[Row | Rejected]:
     except OSError as fault:
         yield Rejected(str(path), f"cannot be read: {fault.strerror}")
         return
-    yield from reader(data, str(path))
+    rows = reader(data, str(path))
+    del data  # a reader lets go of it, too
+    yield from rows
 
 
 # ------------------------------------------------------------------------- text
@@ -102,7 +105,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
         yield Rejected(source, "the file holds NUL bytes: it is not a CSV of answers")
         return
     lines = re.split(r"\r\n|\n|\r", text)
-    del text
+    del text, data
     delimiter = delimiter_of(lines[0])
     header: list[str] = []
     columns: list[int] = []
@@ -120,6 +123,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
                 cells = lines[number].split(delimiter)
                 if len(cells) != len(header):
                     break
+                lines[number] = ""  # read: a million of them take room
                 number += 1
                 if any(map(str.strip, cells)):
                     yield _row_of(cells, columns, f"{source}, line {number}", warning)
@@ -138,7 +142,12 @@ def _row_of(cells: Sequence[str], columns: Sequence[int], place: str, warning: s
     student, exercise, seed, part, answer = (cells[i] for i in columns)
     if "'" in (student[:1], answer[:1]):
         student, answer = as_written(student), as_written(answer)
-    return Row(student.strip(), exercise.strip(), seed.strip(), part.strip(), answer, place, warning)
+    # Of a class they are a few texts, over and over: kept once.
+    names = (_kept(name.strip()) for name in (student, exercise, seed, part))
+    return Row(*names, answer, place, warning)
+
+
+_kept = sys.intern
 
 
 def _read_parquet(path: Path) -> Iterator[Row | Rejected]:

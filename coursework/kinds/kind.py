@@ -126,7 +126,7 @@ class Kind(ABC):
 
     def kept(self, read_as: str) -> Any:
         """The value of an answer that is known to be right, from its echo."""
-        return float(read_as)
+        return float(read_as.partition(" ")[0])
 
     # ------------------------------------------------------------------ judging
 

@@ -36,13 +36,18 @@ class Sheet:
     )
 
 
-def sheet_of(parts: Mapping[str, Part], readings: Mapping[str, Reading], key: Key) -> Sheet:
-    """The numbers of a sheet, whatever they answer."""
+def sheet_of(
+    parts: Mapping[str, Part], readings: Mapping[str, Reading], known: Mapping[str, str], key: Key
+) -> Sheet:
+    """What the numbers of a sheet show, those ``known`` to be right among them."""
     answers: list[tuple[int, Part, float]] = []
     for number, (i, part) in enumerate(parts.items(), start=1):
-        reading = readings.get(i)
-        if reading is not None and reading.status == "read" and part.sort.is_scalar and not part.sort.is_open:
-            answers.append((number, part, float(reading.values[0])))
+        if not part.sort.is_scalar or part.sort.is_open:
+            continue
+        if i in known:
+            answers.append((number, part, float(part.sort.kept(known[i]))))
+        elif readings[i].status == "read":
+            answers.append((number, part, float(readings[i].values[0])))
     things: dict[float, set[str]] = {}
     for _, part, value in (answer for answer in answers if not answer[1].sort.is_exact):
         things.setdefault(value, set()).add(_thing(key, part))
@@ -51,8 +56,10 @@ def sheet_of(parts: Mapping[str, Part], readings: Mapping[str, Reading], key: Ke
         return Sheet(everywhere, has_work=len(answers) < DIFFERENT)
     if len(answers) < FEW:
         return Sheet(everywhere)
-    given = {float(v) for v in key.variant.given.values() if isinstance(v, (int, float))}
     wrong = [(n, p, v) for n, p, v in answers if p.sort.distance(p, v, key.reference[p.quantity]) > 1]
+    if len(wrong) < FEW:
+        return Sheet(everywhere)
+    given = {float(v) for v in key.variant.given.values() if isinstance(v, (int, float))}
     values = [value for *_, value in wrong]
     ones = {value: {_thing(key, part) for _, part, v in wrong if v == value} for value in values}
     copies = (

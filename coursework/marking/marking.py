@@ -58,7 +58,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     readings = {i: read(variant, p, answers.get(i)) for i, p in asked.items() if i not in known}
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
-    before = Before(sheet=sheet_of(asked, readings, key))
+    before = Before(sheet=sheet_of(asked, readings, known, key))
     marks, no_scale = {}, set()
     waiting: dict[str, dict[str, frozenset[str]]] = {}
     for i, part in asked.items():

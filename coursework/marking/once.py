@@ -33,8 +33,10 @@ def identity(explanation: Explanation) -> str:
 def signs_counted_once(variant: Variant, marks: Mapping[str, Mark], share: float) -> dict[str, Mark]:
     """Marks where turning every sign of an equation is one error: of quantities that a formula takes together, all
     with the opposite sign, the first alone pays."""
-    parts = {part.id: part for part in variant.parts}
     turned = {i for i, mark in marks.items() if _is_turned(variant, mark)}
+    if len(turned) < 2:
+        return dict(marks)
+    parts = {part.id: part for part in variant.parts}
     told: dict[str, Mark] = {}
     for group in _taken_together(variant, parts):
         first, *others = group

@@ -1,6 +1,6 @@
 """Plain right answers, a column at a time: most of what comes back, and the cheapest to mark.
 
-An answer of digits alone that lies within its part's own margin is right whatever else the student wrote.
+An answer of digits alone, or with the unit as it is printed, that lies within its part's own margin is right whatever else the student wrote.
 Everything else is left to :mod:`coursework.marking.marking`, whose marks these are.
 """
 
@@ -15,6 +15,8 @@ from coursework.course.exercise import CourseExercise
 from coursework.course.key_batch import Batch
 from coursework.reading.numbers import read_numbers
 
+_SHOWN_OTHERWISE = {"*"}  #: what the echo of a unit has another sign for
+
 
 def plainly_right(
     exercise: CourseExercise, batch: Batch, answers: Sequence[Mapping[str, Any]]
@@ -25,14 +27,17 @@ def plainly_right(
     for part in exercise.spec.parts:
         column = batch.reference.get(part.quantity)
         by_value = part.sort.marks_columns() and not part.judge
-        if not by_value or part.asks_unit or part.id in exchangeable or not column:
+        if not by_value or part.id in exchangeable or not column:
             continue
-        texts = [sheet.get(part.id) for sheet in answers]
+        unit = f" {part.unit}" if part.unit.isascii() and not _SHOWN_OTHERWISE & {*part.unit} else " 1"
+        written = [sheet.get(part.id) for sheet in answers]
+        texts = [t.removesuffix(unit) if isinstance(t, str) else t for t in written]
         values, _ = read_numbers(texts, part.unit)
         reference = np.asarray(column, dtype=float)
         half_width = np.maximum(part.atol, part.rtol * np.abs(reference))
         for i in np.flatnonzero(part.sort.accepted(values, reference, half_width)):
             text = texts[i]
-            if isinstance(text, str):
-                found[i][part.id] = text.strip().replace(",", ".")
+            if isinstance(text, str) and (text is not written[i] or not part.asks_unit):
+                told = unit if text is not written[i] else ""
+                found[i][part.id] = text.strip().replace(",", ".") + told
     return found

@@ -25,7 +25,7 @@ from coursework.gradebook.submissions import read_file
 from coursework.language.typography import typeset
 from coursework.language.words import words
 from coursework.making import practice as practice_module
-from coursework.making.flaws import worthy
+from coursework.making.protection import worthy
 from coursework.making.issued import Issued
 from coursework.making.issuing import distinct_variants
 from coursework.making.lessons import taught_by
