@@ -139,12 +139,20 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
 
 
 def _row_of(cells: Sequence[str], columns: Sequence[int], place: str, warning: str) -> Row:
-    student, exercise, seed, part, answer = (cells[i] for i in columns)
+    one, two, three, four, five = columns
+    student, exercise, seed, part, answer = cells[one], cells[two], cells[three], cells[four], cells[five]
     if "'" in (student[:1], answer[:1]):
         student, answer = as_written(student), as_written(answer)
     # Of a class they are a few texts, over and over: kept once.
-    names = (_kept(name.strip()) for name in (student, exercise, seed, part))
-    return Row(*names, answer, place, warning)
+    return Row(
+        _kept(student.strip()),
+        _kept(exercise.strip()),
+        _kept(seed.strip()),
+        _kept(part.strip()),
+        answer,
+        place,
+        warning,
+    )
 
 
 _kept = sys.intern

@@ -138,7 +138,10 @@ def _shows(key: Key, mistake: str, quantity: str) -> bool:
 
 def explained(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> list[Explanation]:
     """Every explanation of a wrong answer, the one to name first."""
-    return sorted(_explanations(key, part, reading, judged_by, before), key=lambda e: e.rank)
+    found = list(_explanations(key, part, reading, judged_by, before))
+    if not any(e.is_likely and e.gap <= CLOSE for e in found):  # else none of these would be named
+        found += _usual(key, part, reading, judged_by, before)
+    return sorted(found, key=lambda e: e.rank)
 
 
 def alternatives(found: Sequence[Explanation]) -> list[Explanation]:
@@ -184,6 +187,9 @@ def _explanations(
         ):
             seen.add("other_case")
             yield Explanation("slip:other_case", *fit)
+
+
+def _usual(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> Iterator[Explanation]:
     for fits in usual_errors_that_fit(key, part, reading, judged_by, before.right, before.answered):
         yield Explanation(
             f"slip:{fits.error.kind}", fits.reading, fits.gap, fits.is_here, is_likely=True, error=fits.error

@@ -187,8 +187,13 @@ def questions(variant: Variant, parts: Sequence[str], joint: str) -> str:
 _LOOSE_UNDERSCORE = re.compile(r"(?<![^\W_])_|_(?![^\W_])")
 
 
+_HARMLESS = re.compile(r"[A-Za-z0-9 .,;:()=/°%²³−…+^-]*")  #: nearly all that is read
+
+
 def _harmless(text: str) -> str:
     """A quotation that no Markdown reader takes for markup; an underscore within a name is none, a star is a factor's."""
+    if _HARMLESS.fullmatch(text):
+        return text
     text = _LOOSE_UNDERSCORE.sub("", text)
     return "".join(c for c in text if c.isprintable() and c not in "$`\\<>[]#|").replace("*", r"\*")
 

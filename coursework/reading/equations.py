@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from numbers import Real
 from typing import Any
 
@@ -139,6 +140,10 @@ def value_or_nan(expression: Expression, values: Mapping[str, np.ndarray]) -> Va
         return math.nan
 
 
+#: Of a class many write the same: each is parsed once.
+_parsed_once = lru_cache(maxsize=1024)(plain_equation)
+
+
 # --- equations --------------------------------------------------------------------------
 
 
@@ -150,6 +155,6 @@ def read_equation(text: Any, variables: Iterable[str]) -> Reading:
 
     def read(plain: str) -> Reading:
         plain = plain.rstrip(" .;,")
-        return Reading(text, "read", (plain_equation(plain, tuple(variables)),), (plain,))
+        return Reading(text, "read", (_parsed_once(plain, tuple(variables)),), (plain,))
 
     return reading_of(text, read)

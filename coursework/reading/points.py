@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from numbers import Real
 from typing import Any
 
@@ -136,4 +137,8 @@ def read_point(text: Any, unit: str, count: int) -> Reading:
     elif isinstance(text, Real) and not isinstance(text, bool):
         said = text_of(text)
         return Reading(said, "unreadable", code="wrong_count", found=shorten(said))
-    return reading_of(text, lambda plain: _point(plain, text, target, count))
+    return reading_of(text, lambda plain: _point_once(plain, text, target, count))
+
+
+#: Of a class many write the same: each is read once.
+_point_once = lru_cache(maxsize=4096)(_point)

@@ -95,7 +95,9 @@ def open_csv(path: Path) -> Iterator[TextIO]:
 
 def inert(cell: Any) -> Any:
     """The cell, or its text kept from being run: a formula that calls, pipes or reaches elsewhere."""
-    runs = isinstance(cell, str) and cell.lstrip()[:1] in ("=", "+", "-", "@") and set(cell) & set("(|!")
+    if not isinstance(cell, str) or cell[:1].isalnum():
+        return cell  # nearly all of them
+    runs = cell.lstrip()[:1] in ("=", "+", "-", "@") and set(cell) & set("(|!")
     return f"'{cell}" if runs else cell
 
 

@@ -146,7 +146,8 @@ class Table:
 
     def __init__(self, path: Path, columns: Sequence[str], spreadsheet: Spreadsheet) -> None:
         self.path, self.part = path, path.with_name(path.name + ".part")
-        self.file = self.part.open("w", encoding="utf-8-sig", newline="")
+        self.file = self.part.open("w", encoding="utf-8", newline="")
+        self.file.write("\ufeff")
         self._writer = csv.writer(self.file, delimiter=spreadsheet.delimiter)
         self._cells = spreadsheet.cells
         self._columns = tuple(columns)
