@@ -241,6 +241,7 @@ def report(
     from coursework.language.words import words
     from coursework.statistics import measures as statistics
     from coursework.statistics import page as statistics_page
+    from coursework.statistics.alike import alike
     from coursework.statistics.marks import read, unlike_summary
 
     words(lang)  # an unknown language stops here
@@ -255,18 +256,38 @@ def report(
                 "makes summary and feedback agree with it"
             ]
         )
+    copied = alike(folder)
     told = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
     if as_json:
         print_json(told.as_json())
     place = out or folder / "report"
     if out is not None or not as_json:
         _write_report(course, told, lang, place, decimal)
+        _tell_alike(copied, place, decimal)
         tell_lack_of_charts()
     if not as_json:
         click.echo(
             f"{counted(told.students, 'student')}, {counted(told.answers, 'answer')}, {told.needs_a_look} to be looked at; "
             f"see {place / 'report'}.html, .pdf, parts.csv, mistakes.csv"
         )
+
+
+def _tell_alike(copied: Sequence[Any], out: Path, decimal: str) -> None:
+    """Say whose wrong answers are right on another variant; the table of an earlier report goes where there are none."""
+    from coursework.statistics.alike import COLUMNS
+    from coursework.system.tables import SPREADSHEETS, csv_file
+    from coursework.system.writing import write_whole
+
+    path = out / "alike.csv"
+    if not copied:
+        path.unlink(missing_ok=True)
+        return
+    write_whole(path, csv_file((one.row() for one in copied), COLUMNS, SPREADSHEETS[decimal]))
+    tell(
+        [
+            f"{counted(len(copied), 'sheet')} of answers that are right on another student's variant, see {path}"
+        ]
+    )
 
 
 def _write_report(course: Course, told: Any, lang: str, out: Path, decimal: str) -> None:

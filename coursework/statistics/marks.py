@@ -190,6 +190,17 @@ def family_of(verdict: str) -> str:
     return verdict.partition(":")[0]
 
 
+def columns_of(path: Path, columns: Sequence[str]) -> Iterator[tuple[str, ...]]:
+    """Named columns of a table of marks, line by line, as texts.
+
+    Raises
+    ------
+    BadInput
+        A column that is missing, or a line that lacks cells.
+    """
+    return _lines(path, columns)
+
+
 def _lines(
     path: Path, columns: Sequence[str], decimals: _Decimals | None = None
 ) -> Iterator[tuple[Any, ...]]:

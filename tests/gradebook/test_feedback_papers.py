@@ -25,11 +25,11 @@ from coursework.gradebook.submissions import read_file
 from coursework.language.typography import typeset
 from coursework.language.words import words
 from coursework.making import practice as practice_module
-from coursework.making.protection import worthy
 from coursework.making.issued import Issued
 from coursework.making.issuing import distinct_variants
 from coursework.making.lessons import taught_by
 from coursework.making.practice import PracticeOf, unissued_seed
+from coursework.making.protection import worthy
 from coursework.marking.marking import mark
 from coursework.rendering.renderer import renderer_of
 from coursework.sheets.sheet import Lesson
