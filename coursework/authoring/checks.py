@@ -21,6 +21,7 @@ from coursework.authoring.check_answers import (
     check_slips,
 )
 from coursework.authoring.check_formulas import check_formulas
+from coursework.authoring.check_knowledge import check_knowledge
 from coursework.authoring.check_loops import check_loops
 from coursework.authoring.check_prices import check_prices
 from coursework.authoring.check_report import RESIDUAL, Report
@@ -151,6 +152,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
     for variant in drawn[:NONSENSICAL]:
         check_nonsense(variant, report)
     check_usual_errors(drawn, report)
+    check_knowledge(drawn, report)
     check_prices(drawn, report)
     check_loops(drawn[0], report)
     check_formulas(drawn, report)
