@@ -43,7 +43,7 @@ def wrong(variant, part, rng):
     right = variant.key.reference[part.quantity]
     kind = rng.random()
     if kind < 0.25:
-        errors, values = variant.key.usual_ways(part.quantity)
+        _, values = variant.key.usual_ways(part.quantity)
         made = [float(v) for v in values if v == v and abs(v) < 1e9]
         if made:
             return significant(rng.choice(made), 5)

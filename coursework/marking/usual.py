@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
 NAMED = 3  #: errors that fit one answer; of more than these none is named
+NEAR = 0.35  #: half-widths from the value that a usual error gives, for an answer of more digits than a few
+_FEW = 3  #: digits of an answer that was rounded
 _SAME = 1e-9  #: of a value: what two ways to compute it may differ by
 
 
@@ -52,7 +54,7 @@ def usual_errors_that_fit(
         if part.sort.is_trivial(answer):
             continue  # whatever is left out of a product leads there
         gaps = _gaps(part, key, judged_by, values, answer)
-        for index in np.flatnonzero(gaps <= 1):
+        for index in np.flatnonzero(gaps <= _nearness(part, key, judged_by, answer)):
             error, value = errors[index], float(values[index])
             is_here = error.source == quantity or error.kind in TAKEN
             if part.sort.is_exact and error.source != quantity:
@@ -68,6 +70,17 @@ def usual_errors_that_fit(
             given_by.add(same)
             found.append(Fit(error, place, float(gaps[index]), is_here))
     return found
+
+
+def _nearness(part: Part, key: Key, judged_by: Part, answer: float) -> float:
+    """How near to an error's value an answer must be, in half-widths: among so many errors some are near to anything.
+
+    An answer of few digits may be off by half of the last.
+    """
+    width = key.half_width(judged_by)
+    if not width or float(f"{answer:.{_FEW}g}") != answer:
+        return NEAR
+    return min(1.0, max(NEAR, float(half_step(answer, _FEW)) / width))
 
 
 def _rounded(value: float) -> float:
