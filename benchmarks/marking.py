@@ -104,7 +104,9 @@ def main(count=1_000_000, folder="build/marking"):
         done = subprocess.run([*command, *options], capture_output=True, text=True, check=False)
         seconds = time.perf_counter() - start
         largest = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
-        print(f"{name}: {rows} answers in {seconds:.1f} s, largest process {largest:.0f} MB; exit {done.returncode}")
+        print(
+            f"{name}: {rows} answers in {seconds:.1f} s, largest process {largest:.0f} MB; exit {done.returncode}"
+        )
         print(done.stdout.strip()[-400:], done.stderr.strip()[-400:])
 
 
