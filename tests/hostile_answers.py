@@ -255,6 +255,8 @@ def holds_two(part: Part, both: Both, reading: Reading) -> bool:
     if both.form not in FORMULAS or not part.sort.is_scalar:
         return True
     one, other = (float(said.replace(",", ".")) for said in (both.one, both.other))
+    if other and math.isclose(one / other, other):
+        return False  # 100 / 10 is 10
     if part.sort.is_number and part.unit == "1" and other == 1:
         return False
     return any(math.isclose(value, each) for value in reading.values for each in (one, other)) and not (

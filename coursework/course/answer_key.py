@@ -149,6 +149,16 @@ class Key:
         errors, values = self._error_values.of(quantity)
         return errors, values[:, 0]
 
+    def usual_ways_from(
+        self, quantity: str, own: Mapping[str, Any]
+    ) -> tuple[tuple[UsualError, ...], np.ndarray]:
+        """The errors in a quantity's own formula, and what they give from a student's own earlier answers."""
+        variant = self.variant
+        given = {**variant.used, **{q: v for q, v in own.items() if q != quantity and np.ndim(v) == 0}}
+        values = ErrorValues(variant.exercise, (quantity,), given, variant.effects, 1)
+        errors, columns = values.in_own_formula(quantity)
+        return errors, columns[:, 0] if len(errors) else np.array([])
+
     @cached_property
     def _error_values(self) -> ErrorValues:
         variant = self.variant
@@ -180,9 +190,11 @@ class Key:
 
     def _is_nothing(self, part: Part, value: Any) -> bool:
         """Whether a value cannot be told from 0, which follows from whatever is small enough; a count of 0 can."""
+        if not part.sort.is_scalar:
+            return not isinstance(value, str) and not np.any(value)
         if part.sort.is_trivial(value):
             return True
-        if not part.sort.is_scalar or not part.has_margin:
+        if not part.has_margin:
             return False
         return bool(part.sort.distance(part, value, 0.0, None, self.half_width(part)) <= 1)
 

@@ -58,6 +58,13 @@ class ErrorValues:
             self._rows[quantity] = errors, np.array(values).reshape(len(found), self.count)
         return self._rows[quantity]
 
+    def in_own_formula(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
+        """The errors in a quantity's own formula, and their values: shape ``(errors, n)``."""
+        if quantity not in self.exercise.solution.graph.textbook.names or quantity not in self.quantities:
+            return (), np.empty((0, self.count))
+        errors, columns = self._errors_of(quantity)
+        return (errors, columns[quantity]) if quantity in columns else ((), np.empty((0, self.count)))
+
     @cached_property
     def right(self) -> Mapping[str, Any]:
         """Every quantity met on the textbook way, and what is given."""

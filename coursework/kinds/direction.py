@@ -18,6 +18,7 @@ class Direction(Coordinates):
     rounds = False  # its margin is the sine of an angle
     box = "wide"
     wrong = "wrong_place"
+    goes_on_only = True
 
     def distance(
         self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0

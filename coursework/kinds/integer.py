@@ -19,6 +19,7 @@ _DIGITS = 9  #: with which a count is written
 class Integer(Kind):
     name = "integer"
     is_exact = is_scalar = is_followed = True
+    wrong = "wrong_count"
     prediction = "guess"
     family = "integer"
     unitless = "wrong_unit_integer"

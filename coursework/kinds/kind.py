@@ -80,6 +80,9 @@ class Kind(ABC):
     is_followed: ClassVar[bool] = (
         False  #: a student goes on from it, and it follows from what was answered before
     )
+    goes_on_only: ClassVar[bool] = (
+        False  #: it follows from what was answered before, and nobody goes on from it
+    )
     has_few_values: ClassVar[bool] = False  #: so few that many mistakes lead to the same one
     disproves: ClassVar[bool] = True  #: a right answer shows that a mistake was not made that would change it
     rounds: ClassVar[bool] = True  #: rounding on the way widens its margin, which has the part's unit
@@ -117,6 +120,11 @@ class Kind(ABC):
         super().__init_subclass__(**more)
         if cls.name:
             _known[cls.name] = cls()
+
+    @property
+    def follows(self) -> bool:
+        """Whether a value may follow from what a student answered before."""
+        return self.is_followed or self.goes_on_only
 
     # ------------------------------------------------------------------ reading
 

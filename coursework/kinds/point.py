@@ -14,6 +14,7 @@ from coursework.kinds.vectors import Coordinates
 
 class Point(Coordinates):
     name = "point"
+    goes_on_only = True
 
     def distance(
         self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0

@@ -7,12 +7,19 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from coursework.course.answer_key import Key
+from coursework.course.answer_key import Key, Slip
 from coursework.course.asked import Asked
-from coursework.course.error_values import UsualError
+from coursework.course.error_values import TAKEN, UsualError
 from coursework.marking.attempts import Sheet, is_attempt
-from coursework.marking.usual import usual_errors_that_fit
+from coursework.marking.usual import (
+    Fit,
+    last_digit,
+    nearness,
+    own_errors_that_fit,
+    usual_errors_that_fit,
+)
 from coursework.model import Part
+from coursework.quantities.usual_errors import ALL_DEGREES, DEGREES, PARTS_OF_TERMS, TERM
 from coursework.reading.reading import Reading
 
 CLOSE = (
@@ -68,6 +75,11 @@ class Before:
             self.wrong.add(part.quantity)
         self.own[part.quantity] = value
 
+    def is_work(self, part: Part, value: Any) -> bool:
+        """Whether an answer is more than a number that is written everywhere, on a sheet that shows work."""
+        copied = part.sort.is_scalar and not part.sort.is_exact and value in self.sheet.everywhere
+        return self.sheet.has_work and not copied
+
     @property
     def answered(self) -> set[str]:
         """The quantities that were answered, rightly or not."""
@@ -83,18 +95,19 @@ class Explanation(NamedTuple):
     is_here: bool = True  #: it is about this very quantity
     is_likely: bool = True
     error: UsualError | None = None
+    is_close: bool = False  #: the answer is the value that it gives, as far as its digits tell
+    traces: tuple[str, ...] = ()  #: what another answer has in common with it that shows the same error
 
     @property
     def rank(self) -> tuple[bool, bool, bool, int]:
         """The lowest is named: what is likely, what follows, what is close; the author's before the engine's; from afar
         the author's only where it is close."""
         kind, far = self.verdict.partition(":")[0], not self.is_here
-        is_close = self.gap <= CLOSE
         if kind == "mistake":
-            order = 0 if self.is_here else 1 if is_close else 4
+            order = 0 if self.is_here else 1 if self.is_close else 4
         else:
             order = (3 if self.error else 2) + 2 * far
-        return not self.is_likely, kind != "follow_through", not is_close, order
+        return not self.is_likely, kind != "follow_through", not self.is_close, order
 
 
 def mistakes_that_fit(key: Key, part: Part, reading: Reading) -> list[str]:
@@ -138,9 +151,16 @@ def _shows(key: Key, mistake: str, quantity: str) -> bool:
 
 def explained(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> list[Explanation]:
     """Every explanation of a wrong answer, the one to name first."""
-    found = list(_explanations(key, part, reading, judged_by, before))
-    if not any(e.is_likely and e.gap <= CLOSE for e in found):  # else none of these would be named
-        found += _usual(key, part, reading, judged_by, before)
+    close = [nearness(part, key, judged_by, value, CLOSE) for value in reading.values]
+    found = [
+        e._replace(is_close=e.gap <= close[e.reading])
+        for e in _explanations(key, part, reading, judged_by, before)
+    ]
+    if not any(e.is_likely and e.is_close for e in found):  # else none of these would be named
+        usual = _usual(key, part, reading, judged_by, before)
+        found += [e._replace(is_close=e.gap <= close[e.reading]) for e in usual]
+    if not found and any(judged_by.quantity in key.solution.depending_on(q) for q in before.wrong):
+        found = [_of_usual(fit) for fit in own_errors_that_fit(key, part, reading, judged_by, before.own)]
     return sorted(found, key=lambda e: e.rank)
 
 
@@ -150,7 +170,13 @@ def alternatives(found: Sequence[Explanation]) -> list[Explanation]:
     if first.is_here and first.error is None:
         return [first]
     same = [e for e in found if e.rank == first.rank and e.reading == first.reading]
-    return list({(e.verdict, e.error): e for e in same}.values())
+    whole = {e.error.source for e in same if e.error is not None and e.error.kind == TERM}
+    # What is missing of a term that is missing is one thing.
+    return [
+        e
+        for e in same
+        if e.error is None or e.error.kind not in PARTS_OF_TERMS or e.error.source not in whole
+    ]
 
 
 def _explanations(
@@ -159,19 +185,25 @@ def _explanations(
     quantity = judged_by.quantity
     width = key.envelope.get(quantity, 0.0)
     reference = key.reference[quantity]
-    if part.sort.is_followed and before.wrong:
+    if part.sort.follows and before.wrong:
         expected = key.followed(judged_by, before.own, before.wrong)
-        fit = None if expected is None else _fitting(part, reading.values, expected, None, width)
+        room = width
+        if part.sort.is_number:  # rounding on the way, and that of the answer itself
+            room = max(width, key.half_width(judged_by)) + max(last_digit(part, v) for v in reading.values)
+        fit = None if expected is None else _fitting(part, reading.values, expected, None, room)
         if fit is not None and not _is_constant(key, judged_by, reading.values[fit[0]], before):
             yield Explanation("follow_through", *fit)
     for name, value in key.wrong_ways(quantity):
         along = key.reference.get(judged_by.along)
         if judged_by.along:
             along = key.wrong[name].get(judged_by.along, along)
+        if part.sort.is_number and any(map(part.sort.is_trivial, reading.values)) and value:
+            continue  # a nought is near to whatever is small, and shows nothing
         if (fit := _fitting(part, reading.values, value, along, width)) is not None:
+            traces = () if part.sort.has_few_values else (f"mistake:{name}",)
             is_here = quantity in key.solution.mistakes[name].targets
             is_likely = _is_likely(name, key, judged_by, before)
-            yield Explanation(f"mistake:{name}", *fit, is_here, is_likely)
+            yield Explanation(f"mistake:{name}", *fit, is_here, is_likely, traces=traces)
     for kind in part.sort.slips(part, reading.values[0], reference, _lengths(key.variant)):
         yield Explanation(f"slip:{kind}", 0, 0.0)
     seen = set()
@@ -179,7 +211,7 @@ def _explanations(
         mended = [slip.mended(value) for value in reading.values]
         if slip.kind not in seen and (fit := _fitting(part, mended, reference, None, width)) is not None:
             seen.add(slip.kind)
-            yield Explanation(f"slip:{slip.kind}", *fit)
+            yield Explanation(f"slip:{slip.kind}", *fit, traces=_of_unit(slip, part.unit))
     for value in key.other_cases(judged_by):
         if (
             "other_case" not in seen
@@ -190,10 +222,31 @@ def _explanations(
 
 
 def _usual(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> Iterator[Explanation]:
-    for fits in usual_errors_that_fit(key, part, reading, judged_by, before.right, before.answered):
-        yield Explanation(
-            f"slip:{fits.error.kind}", fits.reading, fits.gap, fits.is_here, is_likely=True, error=fits.error
-        )
+    fits = usual_errors_that_fit(key, part, reading, judged_by, before.right, before.answered)
+    yield from map(_of_usual, fits)
+
+
+def _of_usual(fit: Fit) -> Explanation:
+    traces = tuple(filter(None, map(_trace, fit.alike)))
+    return Explanation(
+        f"slip:{fit.error.kind}", fit.reading, fit.gap, fit.is_here, error=fit.error, traces=traces
+    )
+
+
+def _trace(error: UsualError) -> str:
+    """What shows an error in a formula in every answer that it reaches; nothing of a value taken for another."""
+    if error.kind in TAKEN:
+        return ""
+    # The calculator is set to radians for all formulas.
+    return ALL_DEGREES if error.kind in (DEGREES, ALL_DEGREES) else "/".join(map(str, error))
+
+
+def _of_unit(slip: Slip, unit: str) -> tuple[str, ...]:
+    """What shows that a unit was mistaken everywhere in the same way: metres for millimetres, say."""
+    if slip.kind == "sign":
+        return ()
+    what = "mm" if "mm" in unit else unit
+    return (f"{slip.kind}/{slip.factor:.6g}/{what}",)
 
 
 def _is_constant(key: Key, part: Part, value: Any, before: Before) -> bool:

@@ -11,7 +11,6 @@ from coursework.language.words import listed, quoted, words
 from coursework.marking.explaining import Before, Explanation, alternatives, explained
 from coursework.marking.feedback import Said, echo, questions, say, symbol
 from coursework.marking.mark import Mark, made_mark
-from coursework.marking.once import identity
 from coursework.marking.usual import NAMED, whys
 from coursework.markup.markdown import plain_line
 from coursework.model import Part
@@ -43,17 +42,17 @@ def mark_wrong(
     index = named[0].reading if named else 0
     read_as, read = shown_as(variant, part, reading, index)
     made = partial(made_mark, variant, part, reading)
-    error = identity(named[0]) if named else ""
-    if error and error in before.paid:
-        first = questions(variant, [before.paid[error]], "and")
-        said = say(variant, part, "same_error", read=read, first=first)
+    paid = next((before.paid[t] for e in named for t in e.traces if t in before.paid), "")
+    if paid and before.is_work(part, reading.values[index]):
+        said = say(variant, part, "same_error", read=read, first=questions(variant, [paid], "and"))
         return made("follow_through", key.rules.follow_through, read_as, said, matches)
     if named:
-        if error:
-            before.paid[error] = part.id
-        shares = [_share(key, e, in_other_case="slip:other_case" in matches) for e in named]
+        for trace in (trace for e in named for trace in e.traces):
+            before.paid.setdefault(trace, part.id)
+        shares = {e.verdict: _share(key, e, in_other_case="slip:other_case" in matches) for e in named}
+        verdict = max(shares, key=shares.__getitem__)  # where nothing tells which, the one that costs least
         said = _told(variant, part, judged_by, named, read, before)
-        return made(named[0].verdict, max(shares), read_as, said, matches)
+        return made(verdict, shares[verdict], read_as, said, matches)
     share = part.sort.share(part, reading.values[index], key.reference[judged_by.quantity])
     if share > 0:
         return made("partial", share, read_as, say(variant, part, "partial", read=read), matches)
@@ -68,7 +67,7 @@ def _named(found: Sequence[Explanation], before: Before) -> list[Explanation]:
     if not found or not found[0].is_likely:
         return []
     if found[0].verdict != "follow_through":
-        again = [e for e in found if e.is_likely and identity(e) in before.paid]
+        again = [e for e in found if e.is_likely and any(trace in before.paid for trace in e.traces)]
         if again:
             return again[:1]
     named = alternatives(found)
@@ -105,17 +104,21 @@ def _told(
         return tell("mistake", says=variant.told(name))
     errors = [e.error for e in named if e.error is not None]
     if errors:
-        return tell("usual_error", why=whys(variant, errors, judged_by.quantity))
+        why, is_one = whys(variant, errors, judged_by.quantity)
+        return tell("usual_error" if is_one else "usual_errors", why=why)
     return tell(f"slip_{name}")
 
 
 def _told_wrong(variant: Variant, part: Part, read: str, before: Before) -> Said:
     """What an answer that nothing explains is computed from, of what was asked, and which of that is right."""
     table = words(variant.lang)["marking"]
-    asked = _asked_above(variant, part.quantity, {p.quantity for p in variant.parts})
-    asked = [p for p in asked if p.sort.is_called_by_symbol and not p.judge]
-    if part.sort.wrong != "wrong" or not asked:
+    earlier = variant.parts[: variant.parts.index(part)]
+    asked = _asked_above(variant, part.quantity, {p.quantity for p in earlier})
+    asked = [p for p in asked if p in earlier and p.sort.is_called_by_symbol and not p.judge]
+    if part.sort.wrong not in ("wrong", "wrong_place", "wrong_count") or not asked:
         return say(variant, part, part.sort.wrong, read=read)
+    if not all(p.quantity in before.right for p in asked):
+        asked = [p for p in asked if p.quantity not in before.right]
     told = []
     for other in asked:
         state = (

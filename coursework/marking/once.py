@@ -3,31 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import combinations
 from typing import TYPE_CHECKING
 
 from coursework.language.words import words
-from coursework.marking.explaining import Explanation
 from coursework.marking.feedback import Said, questions
 from coursework.marking.mark import Mark
 from coursework.model import Part
-from coursework.quantities.usual_errors import ALL_DEGREES, DEGREES
+from coursework.quantities.graph import Graph
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
-_OF_UNIT = ("unit", "radians", "turns_a_minute")  #: made alike wherever a unit is written
-
-
-def identity(explanation: Explanation) -> str:
-    """What two answers have in common that show one error; empty where each is an error of its own."""
-    kind, _, name = explanation.verdict.partition(":")
-    if kind == "mistake":
-        return explanation.verdict
-    if explanation.error is not None:
-        if explanation.error.kind in (DEGREES, ALL_DEGREES):
-            return ALL_DEGREES  # the calculator is set so for all formulas
-        return "/".join(map(str, explanation.error))
-    return name if name in _OF_UNIT else ""
+_SEVERAL = 4  #: quantities at least that formulas of one equation take
 
 
 def signs_counted_once(variant: Variant, marks: Mapping[str, Mark], share: float) -> dict[str, Mark]:
@@ -59,9 +47,11 @@ def _is_turned(variant: Variant, mark: Mark) -> bool:
 
 
 def _taken_together(variant: Variant, parts: Mapping[str, Part]) -> Iterator[list[str]]:
-    """Asked numbers of one unit that a formula takes, all that it takes: ids of two parts at least."""
+    """Asked numbers of one unit that a formula takes, all that it takes, or that are computed from nearly the same: ids of
+    two parts at least. No angles: one of the opposite sign is another direction."""
     graph = variant.exercise.solution.graph.textbook
-    asked = {p.quantity: p for p in parts.values() if p.sort.is_number and not p.judge}
+    asked = {p.quantity: p for p in parts.values() if p.sort.is_number and not p.sort.turn and not p.judge}
+    yield from _computed_alike(graph, asked, parts)
     seen: set[tuple[str, ...]] = set()
     for name in graph.quantities:
         by_unit: dict[str, list[str]] = {}
@@ -73,3 +63,13 @@ def _taken_together(variant: Variant, parts: Mapping[str, Part]) -> Iterator[lis
             if len(ids) > 1 and tuple(ids) not in seen:
                 seen.add(tuple(ids))
                 yield ids
+
+
+def _computed_alike(
+    graph: Graph, asked: Mapping[str, Part], parts: Mapping[str, Part]
+) -> Iterator[list[str]]:
+    """Pairs of one unit whose formulas take the same but for a quantity each: the two rates of a loop."""
+    needs = {q: frozenset(graph.node(q).arguments) for q in asked if q in graph.names}
+    for (one, first), (other, second) in combinations(needs.items(), 2):
+        if len(first) >= _SEVERAL and len(first ^ second) <= 2 and asked[one].unit == asked[other].unit:
+            yield sorted((asked[one].id, asked[other].id), key=list(parts).index)

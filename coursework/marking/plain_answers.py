@@ -29,9 +29,10 @@ def plainly_right(
         by_value = part.sort.marks_columns() and not part.judge
         if not by_value or part.id in exchangeable or not column:
             continue
-        unit = f" {part.unit}" if part.unit.isascii() and not _SHOWN_OTHERWISE & {*part.unit} else " 1"
+        has_printed = part.unit != "1" and not _SHOWN_OTHERWISE & {*part.unit}
+        unit = f" {part.unit}" if has_printed else ""
         written = [sheet.get(part.id) for sheet in answers]
-        texts = [t.removesuffix(unit) if isinstance(t, str) else t for t in written]
+        texts = [t.removesuffix(unit) if unit and isinstance(t, str) else t for t in written]
         values, _ = read_numbers(texts, part.unit)
         reference = np.asarray(column, dtype=float)
         half_width = np.maximum(part.atol, part.rtol * np.abs(reference))

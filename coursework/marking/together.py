@@ -80,7 +80,7 @@ def mark_judged(
         return made(matches[0], share, read_as, said, matches)
     if found.slip:
         error = f"{found.slip}/{'/'.join(found.about)}"
-        if found.about and error in before.paid:
+        if found.about and error in before.paid and before.sheet.has_work:
             return made(
                 "follow_through",
                 key.rules.follow_through,

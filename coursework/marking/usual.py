@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
 
 NAMED = 3  #: errors that fit one answer; of more than these none is named
-NEAR = 0.35  #: half-widths from the value that a usual error gives, for an answer of more digits than a few
+NEAR = 0.35  #: half-widths from the value that a usual error gives: among so many errors some are near to anything
+NEAR_DEGREES = 0.1  #: the same of a direction, of which fewer are far apart
 _FEW = 3  #: digits of an answer that was rounded
 _SAME = 1e-9  #: of a value: what two ways to compute it may differ by
 
@@ -33,6 +34,7 @@ class Fit(NamedTuple):
     reading: int  #: which honest reading it gives
     gap: float  #: in half-widths
     is_here: bool  #: made in this very quantity
+    alike: tuple[UsualError, ...]  #: all the errors that give the same value, itself among them
 
 
 def usual_errors_that_fit(
@@ -49,12 +51,13 @@ def usual_errors_that_fit(
     errors, values = key.usual_ways(quantity)
     asked = {p.quantity for p in key.variant.parts}
     found: list[Fit] = []
-    given_by: set[tuple[int, float]] = set()
+    given_by: dict[tuple[int, float], int] = {}  #: places among what is found
     for place, answer in enumerate(reading.values):
         if part.sort.is_trivial(answer):
             continue  # whatever is left out of a product leads there
         gaps = _gaps(part, key, judged_by, values, answer)
-        for index in np.flatnonzero(gaps <= _nearness(part, key, judged_by, answer)):
+        near = nearness(part, key, judged_by, answer, NEAR_DEGREES if part.sort.turn else NEAR)
+        for index in np.flatnonzero(gaps <= near):
             error, value = errors[index], float(values[index])
             is_here = error.source == quantity or error.kind in TAKEN
             if part.sort.is_exact and error.source != quantity:
@@ -63,24 +66,48 @@ def usual_errors_that_fit(
                 continue
             if error.kind == NEIGHBOUR and error.source not in asked:
                 continue
-            if (same := (place, _rounded(value))) in given_by:
-                continue
             if error.kind not in TAKEN and any(_contradicts(key, error, q) for q in right if q != quantity):
                 continue
-            given_by.add(same)
-            found.append(Fit(error, place, float(gaps[index]), is_here))
+            if (same := (place, _rounded(value))) in given_by:
+                first = found[given_by[same]]
+                found[given_by[same]] = first._replace(alike=(*first.alike, error))
+                continue
+            given_by[same] = len(found)
+            found.append(Fit(error, place, float(gaps[index]), is_here, (error,)))
     return found
 
 
-def _nearness(part: Part, key: Key, judged_by: Part, answer: float) -> float:
-    """How near to an error's value an answer must be, in half-widths: among so many errors some are near to anything.
+def own_errors_that_fit(
+    key: Key, part: Part, reading: Reading, judged_by: Part, own: Mapping[str, Any]
+) -> list[Fit]:
+    """The usual errors in a quantity's own formula that give an answer from a student's ``own`` earlier ones."""
+    if not part.sort.is_scalar or part.judge:
+        return []
+    errors, values = key.usual_ways_from(judged_by.quantity, own)
+    found: dict[tuple[int, float], Fit] = {}
+    for place, answer in enumerate(reading.values):
+        if part.sort.is_trivial(answer):
+            continue
+        near = nearness(part, key, judged_by, answer, NEAR_DEGREES if part.sort.turn else NEAR)
+        gaps = _gaps(part, key, judged_by, values, answer)
+        for index in np.flatnonzero(gaps <= near):
+            error, same = errors[index], (place, _rounded(float(values[index])))
+            first = found.get(same, Fit(error, place, float(gaps[index]), True, ()))
+            found[same] = first._replace(alike=(*first.alike, error))
+    return list(found.values())
 
-    An answer of few digits may be off by half of the last.
-    """
+
+def last_digit(part: Part, answer: Any) -> float:
+    """Half of the last digit of an answer of few digits, in its unit: by so much it may be off; 0 for one of more."""
+    if not part.sort.is_number or float(f"{answer:.{_FEW}g}") != answer:
+        return 0.0
+    return float(half_step(answer, _FEW))
+
+
+def nearness(part: Part, key: Key, judged_by: Part, answer: Any, usual: float) -> float:
+    """How near to a value an answer must be to be taken for it, in half-widths: as usual, or as its last digit lets it be."""
     width = key.half_width(judged_by)
-    if not width or float(f"{answer:.{_FEW}g}") != answer:
-        return NEAR
-    return min(1.0, max(NEAR, float(half_step(answer, _FEW)) / width))
+    return min(1.0, max(usual, last_digit(part, answer) / width)) if width else usual
 
 
 def _rounded(value: float) -> float:
@@ -146,9 +173,7 @@ def why(variant: Variant, error: UsualError, quantity: str) -> str:
     return str(table["elsewhere"].format(where=f"${symbol(variant, error.source)}$", why=told))
 
 
-def whys(variant: Variant, errors: Collection[UsualError], quantity: str) -> str:
-    """How one error is told, or one of several."""
+def whys(variant: Variant, errors: Collection[UsualError], quantity: str) -> tuple[str, bool]:
+    """How errors are told of which nothing tells which it was, and whether there is but one."""
     told = list(dict.fromkeys(why(variant, error, quantity) for error in errors))
-    if len(told) == 1:
-        return told[0]
-    return str(words(variant.lang)["marking"]["usual"]["several"].format(listed(told, variant.lang, "or")))
+    return listed(told, variant.lang, "or"), len(told) == 1

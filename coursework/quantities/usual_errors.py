@@ -40,11 +40,14 @@ KINDS = (
     ANGLE_SIGN,
 )
 
+#: What is missing of a term that is left out whole, or is turned in it.
+PARTS_OF_TERMS = frozenset((FACTOR, SQUARE, FUNCTION, DEGREES, ANGLE, ANGLE_SIGN))
 #: What a teacher looks for first: something of the relation is missing or turned round.
 WEIGHTY = frozenset((TERM, COUNT, SIGN, CONSTANT, SQUARE, ROOT, INVERSE, ALL_DEGREES))
 
 _NEIGHBOURS = {name: getattr(degrees, name) for name in ("sin", "cos", "atan")} | {"abs": abs}
 _HALF_TURN = 180.0
+_FEW = 3  #: things that are forgotten in a count
 _RADIAN = 57.29577951308232  #: degrees
 
 
@@ -128,7 +131,7 @@ class _Changes:
         terms = _terms(node)
         for place, (minus, term) in enumerate(terms):
             others = terms[:place] + terms[place + 1 :]
-            yield (COUNT if isinstance(term, ast.Constant) else TERM), term, _sum(others)
+            yield (COUNT if _is_small(term) else TERM), term, _sum(others)
             yield SIGN, term, _sum([*terms[:place], (not minus, term), *terms[place + 1 :]])
         signs = [minus for minus, _ in terms]
         yield from self._inside(
@@ -235,6 +238,11 @@ def _changed(node: ast.expr, field: str, value: Any) -> ast.expr:
     other = copy(node)
     setattr(other, field, value)
     return other
+
+
+def _is_small(node: ast.expr) -> bool:
+    """Whether a term is one thing more or less, as where something is counted."""
+    return isinstance(node, ast.Constant) and isinstance(node.value, int) and abs(node.value) <= _FEW
 
 
 def _of_factor(factor: ast.expr) -> str:

@@ -184,7 +184,8 @@ def _unit_of(expression: Expression, in_degrees: Expression | None) -> str:
         if powers == {0, -1} and any(t.has_inverse and t.powers_of_pi == {0} for t in terms):
             raise Stop("two_values", expression.text)
         return "deg" if -1 in powers else ""
-    assert in_degrees is not None  # an inverse function, no pi, no degree sign
+    if in_degrees is None:  # an inverse function of what holds a degree sign
+        raise Stop("two_values", expression.text)
     degrees, radians = in_degrees.evaluate(), expression.evaluate()
     if math.isclose(degrees, math.degrees(radians), rel_tol=1e-9, abs_tol=1e-9):
         return "deg"

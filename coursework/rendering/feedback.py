@@ -11,6 +11,7 @@ from markupsafe import Markup
 from coursework.figures.text import SIZE, Run
 from coursework.language.numbers import localise, plain
 from coursework.language.words import listed, quoted, words
+from coursework.quantities.error_kinds import OF_FORMULAS
 from coursework.rendering import views
 from coursework.rendering.views import renumbered
 from coursework.sheets.sheet import FeedbackLine, FeedbackSheet, Lesson, Practice
@@ -58,7 +59,9 @@ class Meaning(NamedTuple):
 
 def kind_of(verdict: str) -> str:
     """A verdict without what names its mistake; ``otherwise`` for one that no words are known of."""
-    kind = verdict.partition(":")[0]
+    kind, _, name = verdict.partition(":")
+    if kind == "slip" and name in OF_FORMULAS:
+        kind = "usual"
     return kind if kind in words("en")["feedback"]["verdicts"] else "otherwise"
 
 

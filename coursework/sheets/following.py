@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import TYPE_CHECKING
 
 from coursework.language.words import listed, words
@@ -29,6 +30,23 @@ def needs(variant: Variant, quantity: str) -> tuple[str, ...]:
     return tuple(found)
 
 
+def _on_the_sheet(variant: Variant, quantity: str, asked: Collection[str]) -> list[str]:
+    """What a quantity is computed from, of what is given or asked: what the solution finds on the way stands on no sheet."""
+    found: dict[str, None] = {}
+    met: set[str] = set()
+
+    def visit(name: str) -> None:
+        for needed in needs(variant, name):
+            if needed in variant.given or (needed in asked and needed != quantity):
+                found.setdefault(needed)
+            elif needed not in met and needed in variant.exercise.solution.graph.names:
+                met.add(needed)
+                visit(needed)
+
+    visit(quantity)
+    return list(found)
+
+
 _MOST = 7  #: names that a sentence lists
 
 
@@ -38,23 +56,15 @@ def follows_from(variant: Variant, quantity: str) -> str:
     Nothing where it takes none of these, or so many that a list of them says nothing.
     """
     asked = {part.quantity: number for number, part in enumerate(variant.parts, start=1)}
-    needed = [name for name in needs(variant, quantity) if name != quantity]
+    needed = _on_the_sheet(variant, quantity, asked)
     given = [_symbol(variant, name) for name in needed if name in variant.given]
     before = [(name, asked[name]) for name in needed if name in asked and name not in variant.given]
-    between = [
-        _symbol(variant, name)
-        for name in needed
-        if name not in asked
-        and name not in variant.given
-        and isinstance(variant.walk.get(name), (int, float, complex))
-    ]
-    if not 0 < len(given) + len(before) + len(between) <= _MOST:
+    if not 0 < len(given) + len(before) <= _MOST:
         return ""
     said, lang = words(variant.lang)["feedback"]["follows"], variant.lang
     noun = words(lang)["sheet"]["question"]["one"]
     pieces = [said["many_given" if len(given) > 1 else "given"].format(listed(given, lang))] if given else []
     pieces += [_asked(variant, name, f"{noun} {number}") for name, number in before]
-    pieces += [said["between"].format(listed(between, lang))] if between else []
     return str(said["from"]).format(f"{words(lang)['sheet']['separator']} ".join(pieces))
 
 

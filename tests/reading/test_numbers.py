@@ -445,3 +445,8 @@ def test_a_value_that_is_read_is_finite(text):
 
 def test_an_array_of_many_numbers_is_no_whole_number():
     assert read_integer(np.zeros(200)).status == "unreadable"
+
+
+def test_an_inverse_function_of_degrees_has_no_unit_that_one_could_tell():
+    reading = read_number("cos(atan2(-2; atan2(1; 3/(45°))))", "deg")
+    assert (reading.status, reading.code) == ("unreadable", "two_values")

@@ -84,5 +84,4 @@ def test_a_choice_is_explained_by_a_mistake_only_where_another_answer_shows_it()
     alone = variant.grade({**right, "statics": "hyperstatique"})["statics"]
     assert alone.verdict == "wrong"
     shown = variant.grade({**right, "Nc": "15", "statics": "hyperstatique"})["statics"]
-    assert shown.verdict == "follow_through"  # it is paid for where N_c shows it
-    assert shown.mistakes == ("unknowns_exchanged",)
+    assert shown.verdict == "mistake:unknowns_exchanged"
