@@ -157,10 +157,11 @@ def explained(key: Key, part: Part, reading: Reading, judged_by: Part, before: B
         for e in _explanations(key, part, reading, judged_by, before)
     ]
     if not any(e.is_likely and e.is_close for e in found):  # else none of these would be named
-        usual = _usual(key, part, reading, judged_by, before)
+        usual = [
+            *_from_own(key, part, reading, judged_by, before),
+            *_usual(key, part, reading, judged_by, before),
+        ]
         found += [e._replace(is_close=e.gap <= close[e.reading]) for e in usual]
-    if not found and any(judged_by.quantity in key.solution.depending_on(q) for q in before.wrong):
-        found = [_of_usual(fit) for fit in own_errors_that_fit(key, part, reading, judged_by, before.own)]
     return sorted(found, key=lambda e: e.rank)
 
 
@@ -169,7 +170,8 @@ def alternatives(found: Sequence[Explanation]) -> list[Explanation]:
     first = found[0]
     if first.is_here and first.error is None:
         return [first]
-    same = [e for e in found if e.rank == first.rank and e.reading == first.reading]
+    alike = (e for e in found if e.rank == first.rank and e.reading == first.reading)
+    same = list({(e.verdict, e.error): e for e in alike}.values())
     whole = {e.error.source for e in same if e.error is not None and e.error.kind == TERM}
     # What is missing of a term that is missing is one thing.
     return [
@@ -219,6 +221,17 @@ def _explanations(
         ):
             seen.add("other_case")
             yield Explanation("slip:other_case", *fit)
+
+
+def _from_own(
+    key: Key, part: Part, reading: Reading, judged_by: Part, before: Before
+) -> Iterator[Explanation]:
+    """The usual errors in a quantity's formula that give an answer from what the student had wrong before."""
+    if any(judged_by.quantity in key.solution.depending_on(q) for q in before.wrong):
+        own = {
+            q: before.own[q] for q in before.wrong
+        }  # what is right was computed with more digits than written
+        yield from map(_of_usual, own_errors_that_fit(key, part, reading, judged_by, own))
 
 
 def _usual(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> Iterator[Explanation]:

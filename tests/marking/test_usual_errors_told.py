@@ -17,6 +17,7 @@ from coursework.course.variant import Variant
 from coursework.errors import BadCourse
 from coursework.making.issuing import distinct_variants
 from coursework.quantities.error_kinds import PRICES
+from coursework.quantities.usual_errors import formula_errors
 
 COURSE = coursework.open_course()
 every_exercise = pytest.mark.parametrize("name", COURSE.names)
@@ -102,6 +103,21 @@ def test_the_same_error_on_the_way_to_two_answers_is_paid_once():
     first, second = (marking[i] for i in both)
     assert first.verdict == "mistake:cosine_rule_sign"
     assert (second.verdict, second.points) == ("follow_through", second.out_of)
+
+
+def test_a_calculator_set_to_radians_is_one_error_though_angles_are_right():
+    """Each formula is worked out in radians, from the rates that came out of the ones before."""
+    for variant in distinct_variants(COURSE["four_bar_motion"], 0, 6, "en"):
+        graph = variant.exercise.solution.graph.textbook
+        values = {**variant.used, **variant.quantities(["theta3", "theta4"])}
+        answers = {"theta3": f"{values['theta3']:.1f}", "theta4": f"{values['theta4']:.1f}"}
+        for name in ("omega3", "omega4", "alpha3", "alpha4"):
+            errors = formula_errors(graph.node(name).function)
+            values[name] = next(e for e in errors if e.kind == "all_degrees").formula(values)
+            answers[name] = f"{values[name]:.4g}"
+        marking = variant.grade(answers)
+        assert marking["omega3"].verdict == "slip:all_degrees"
+        assert {marking[i].verdict for i in ("omega4", "alpha3", "alpha4")} == {"follow_through"}
 
 
 def test_metres_everywhere_are_one_error():
