@@ -223,10 +223,15 @@ def _explanations(
             yield Explanation("slip:other_case", *fit)
 
 
+_FEW_WRONG = 2  #: earlier answers that are wrong, from which one more error is looked for
+
+
 def _from_own(
     key: Key, part: Part, reading: Reading, judged_by: Part, before: Before
 ) -> Iterator[Explanation]:
     """The usual errors in a quantity's formula that give an answer from what the student had wrong before."""
+    if len(before.wrong) > _FEW_WRONG and ALL_DEGREES not in before.paid:
+        return  # of so many errors nobody can tell
     if any(judged_by.quantity in key.solution.depending_on(q) for q in before.wrong):
         own = {
             q: before.own[q] for q in before.wrong
