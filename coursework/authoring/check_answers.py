@@ -141,8 +141,7 @@ def check_slips(variant: Variant, key: Key, report: Report) -> None:
     shown: list[dict[str, tuple[str, Any]]] = []
     for part in (part for part in variant.parts if not part.sort.is_open):
         reference, width = key.reference[part.quantity], key.envelope.get(part.quantity, 0.0)
-        made = [(slip.kind, slip.made(reference)) for slip in key.slips(part)]
-        made += [("other_case", value) for value in key.other_cases(part)]
+        made = key.slip_values(part)
         slips = [s for s in made if part.sort.distance(part, s[1], reference, None, width) > SHOWN]
         for place, slip in enumerate(slips):
             shown += [{}] * (place + 1 - len(shown))

@@ -220,6 +220,13 @@ class Key:
         is_alone = part.sort.is_number and not part.judge
         return self._other_values(part.quantity) if is_alone else []
 
+    def slip_values(self, part: Part) -> Iterator[tuple[str, Any]]:
+        """The wrong values that slips, and the other case, give of a part, each with its kind."""
+        for slip in self.slips(part):
+            yield slip.kind, slip.made(self.reference[part.quantity])
+        for value in self.other_cases(part):
+            yield "other_case", value
+
     def _other_values(self, quantity: str) -> list[Any]:
         """Values of a quantity when a given case of two is taken for the other one: the assembly mode, say."""
         return self._other_cases.get(quantity, [])

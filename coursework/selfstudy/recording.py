@@ -74,6 +74,6 @@ def errors_shown(variant: Variant, part: Part) -> Iterator[str]:
     for name, value in key.wrong_ways(part.quantity):
         if value is not None and sort.apart(part, value, reference, along, width) > 1:
             yield f"mistake:{name}"
-    for kind, value in key.slips(part):
+    for kind, value in key.slip_values(part):
         if sort.apart(part, value, reference, along, width) > 1:
             yield f"slip:{kind}"

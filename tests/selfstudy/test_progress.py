@@ -12,8 +12,10 @@ from study_words import BOTH, SAID, flat, start_of
 
 import coursework
 from coursework.cli import run
+from coursework.course.variant import Variant
 from coursework.selfstudy.mastery import AFTER_DAYS, advised, outings, questions, skills, standings
 from coursework.selfstudy.progress import LaterVersion, NotProgress, Progress, entry
+from coursework.selfstudy.recording import errors_shown
 from coursework.selfstudy.store import FILE, Kept, ProgressFile
 
 COURSE = coursework.open_course()
@@ -348,3 +350,25 @@ def test_a_site_may_keep_what_a_notebook_keeps(tmp_path):
     (tmp_path / "a" / FILE).write_text(served.text(), "utf-8")
     kept.add(1, "answers", {"direction": "4"})
     assert len(Progress.read((tmp_path / "a" / FILE).read_text("utf-8"))) == 3
+
+
+def test_a_right_answer_shows_of_each_slip_that_it_was_not_made():
+    """Angular velocities of a linkage whose triangle has sides 3, 4 and 5: -1 rad/s, of which a slip of the sign gives 1."""
+    exercise = COURSE["four_bar_motion"]
+    given = {
+        "r1": 80,
+        "r2": 30,
+        "r3": 40,
+        "r4": 30,
+        "theta2": 0,
+        "omega2": 5 / 3,
+        "alpha2": 10,
+        "mode": "open",
+    }
+    variant = Variant(exercise, 0, {name: float(v) if v != "open" else v for name, v in given.items()}, "en")
+    part = next(p for p in variant.parts if p.id == "omega3")
+    assert variant.key.reference["omega3"] == pytest.approx(-1)
+    assert {"slip:sign", "slip:unit", "slip:radians", "slip:turns_a_minute"} <= set(
+        errors_shown(variant, part)
+    )
+    assert dict(variant.key.slip_values(part))["sign"] == pytest.approx(1)
