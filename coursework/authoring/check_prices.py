@@ -10,8 +10,10 @@ import numpy as np
 from coursework.authoring.check_report import Report
 from coursework.course.error_values import TAKEN, ErrorValues
 from coursework.course.exercise import CourseExercise
+from coursework.course.key_batch import given_columns
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
+from coursework.kinds.nearness import gaps
 from coursework.quantities.error_kinds import PRICES
 
 _SAME = 1e-6  #: of a value, by which two ways to compute it may differ
@@ -38,8 +40,7 @@ def usual_kinds(exercise: CourseExercise, mistake: str, drawn: Sequence[Variant]
     """The kinds of usual errors that give what a named mistake gives, of the first quantity that it is about."""
     solution = exercise.solution
     target = solution.mistakes[mistake].targets[0]
-    names = [n for n in exercise.spec.given if n in exercise.quantity_names]
-    given = {n: np.array([v.given[n] for v in drawn]) for n in names}
+    given = given_columns(exercise, drawn)
     effects = exercise.spec.effects
     with suppress(CourseworkError, ValueError):
         right = np.asarray(solution.graph.evaluate((target,), given, effects)[target])
@@ -68,9 +69,7 @@ def usual_kinds(exercise: CourseExercise, mistake: str, drawn: Sequence[Variant]
 def _same(one: np.ndarray, other: np.ndarray, right: np.ndarray, turn: float) -> bool:
     """Whether two columns are the same, and are anything at all."""
     there = np.isfinite(one) & np.isfinite(other)
-    gap = np.abs(one - other)
-    if turn:
-        gap = np.abs(gap - turn * np.rint(gap / turn))
+    gap = gaps(one, other, turn)
     moves = np.abs(one - right) > _SAME * np.maximum(np.abs(right), 1e-300)
     return bool(
         there.any()

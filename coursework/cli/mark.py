@@ -241,7 +241,6 @@ def report(
     from coursework.language.words import words
     from coursework.statistics import measures as statistics
     from coursework.statistics import page as statistics_page
-    from coursework.statistics.alike import alike
     from coursework.statistics.marks import read, unlike_summary
 
     words(lang)  # an unknown language stops here
@@ -256,14 +255,13 @@ def report(
                 "makes summary and feedback agree with it"
             ]
         )
-    copied = alike(folder)
     told = statistics.measure(marks, statistics_page.sheet_order(course, marks.exercises))
     if as_json:
         print_json(told.as_json())
     place = out or folder / "report"
     if out is not None or not as_json:
         _write_report(course, told, lang, place, decimal)
-        _tell_alike(copied, place, decimal)
+        _tell_alike(folder, place, decimal)
         tell_lack_of_charts()
     if not as_json:
         click.echo(
@@ -272,14 +270,14 @@ def report(
         )
 
 
-def _tell_alike(copied: Sequence[Any], out: Path, decimal: str) -> None:
+def _tell_alike(folder: Path, out: Path, decimal: str) -> None:
     """Say whose wrong answers are right on another variant; the table of an earlier report goes where there are none."""
-    from coursework.statistics.alike import COLUMNS
+    from coursework.statistics.alike import COLUMNS, alike
     from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole
 
     path = out / "alike.csv"
-    if not copied:
+    if not (copied := alike(folder)):
         path.unlink(missing_ok=True)
         return
     write_whole(path, csv_file((one.row() for one in copied), COLUMNS, SPREADSHEETS[decimal]))

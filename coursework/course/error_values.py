@@ -44,6 +44,7 @@ class ErrorValues:
         self.given = given
         self.effects = effects
         self.count = count
+        self._by_source: dict[str, dict[str, np.ndarray]] = {}
         self._rows: dict[str, tuple[tuple[UsualError, ...], np.ndarray]] = {}
 
     def of(self, quantity: str) -> tuple[tuple[UsualError, ...], np.ndarray]:
@@ -72,10 +73,6 @@ class ErrorValues:
         with suppress(CourseworkError):
             return {**self.given, **graph.everything(self.quantities, self.given, self.effects)}
         return self.given
-
-    @cached_property
-    def _by_source(self) -> dict[str, dict[str, np.ndarray]]:
-        return {}
 
     def _in_formulas(self, quantity: str) -> Iterator[tuple[UsualError, np.ndarray]]:
         textbook = self.exercise.solution.graph.textbook

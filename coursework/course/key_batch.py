@@ -41,6 +41,12 @@ def keys_of(exercise: CourseExercise[Any], variants: Sequence[Keyed], rules: Rul
     return batch
 
 
+def given_columns(exercise: CourseExercise[Any], variants: Sequence[Asked]) -> dict[str, np.ndarray]:
+    """The given quantities that the solution knows, each of shape ``(n,)``: a value a variant."""
+    names = (n for n in exercise.spec.given if n in exercise.quantity_names)
+    return {n: np.array([v.given[n] for v in variants]) for n in names}
+
+
 class Batch:
     """What the answers to many variants of one exercise are marked by, a column a quantity.
 
@@ -53,8 +59,7 @@ class Batch:
         self.exercise = exercise
         self.rules = exercise.folder.rules if rules is None else rules
         self.count = len(variants)
-        names = (n for n in exercise.spec.given if n in exercise.quantity_names)
-        self.given = {n: np.array([v.given[n] for v in variants]) for n in names}
+        self.given = given_columns(exercise, variants)
         self.quantities = tuple(dict.fromkeys(p.quantity for p in exercise.judged_parts))
         self.ranks = {p.quantity: p.sort.rank for p in exercise.judged_parts}
         self.along = tuple(dict.fromkeys(p.along for p in exercise.spec.parts if p.along))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 from coursework.errors import BadCourse, nearest
@@ -61,7 +61,7 @@ class Rules:
             elif name != "digits":
                 _check_share(name, value, source)
             stated[name] = value
-        return Rules(**{**{name: getattr(usual, name) for name in names}, **stated})
+        return replace(usual, **stated)
 
 
 def _prices(table: Any, source: str) -> Mapping[str, float]:

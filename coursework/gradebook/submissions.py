@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -108,7 +109,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
     del text, data
     delimiter = delimiter_of(lines[0])
     header: list[str] = []
-    columns: list[int] = []
+    named: Callable[[list[str]], Sequence[str]] = tuple
     number = 0
     while number < len(lines):
         place = f"{source}, line {number + 1}"
@@ -126,7 +127,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
                 lines[number] = ""  # read: a million of them take room
                 number += 1
                 if any(map(str.strip, cells)):
-                    yield _row_of(cells, columns, f"{source}, line {number}", warning)
+                    yield _row_of(named(cells), f"{source}, line {number}", warning)
             continue
         header = [c.strip().casefold() for c in cells]
         missing = [c for c in COLUMNS if c not in header]
@@ -135,12 +136,12 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
             wanted = f"the header must name {', '.join(COLUMNS)}; {', '.join(missing)} missing, found {found}"
             yield Rejected(place, wanted)
             return
-        columns = [header.index(c) for c in COLUMNS]
+        named = itemgetter(*(header.index(c) for c in COLUMNS))
 
 
-def _row_of(cells: Sequence[str], columns: Sequence[int], place: str, warning: str) -> Row:
-    one, two, three, four, five = columns
-    student, exercise, seed, part, answer = cells[one], cells[two], cells[three], cells[four], cells[five]
+def _row_of(cells: Sequence[str], place: str, warning: str) -> Row:
+    """The row of the cells of :data:`COLUMNS`, in their order."""
+    student, exercise, seed, part, answer = cells
     if "'" in (student[:1], answer[:1]):
         student, answer = as_written(student), as_written(answer)
     # Of a class they are a few texts, over and over: kept once.
@@ -194,7 +195,7 @@ def _csv_row(
             note = (
                 f"{place}: an answer with a comma and no quotation marks was read up to the end of its line"
             )
-            yield _row_of([joined[c] for c in COLUMNS], range(len(COLUMNS)), place, warning or note)
+            yield _row_of([joined[c] for c in COLUMNS], place, warning or note)
             return
     row = dict(zip(header, cells, strict=False))
     if len(cells) != len(header):
@@ -205,7 +206,7 @@ def _csv_row(
             reason += "; put an answer with a comma between quotation marks, or semicolons between all cells"
         yield Rejected(place, reason, kept)
         return
-    yield _row_of([row[c] for c in COLUMNS], range(len(COLUMNS)), place, warning)
+    yield _row_of([row[c] for c in COLUMNS], place, warning)
 
 
 def _with_commas(header: list[str], cells: list[str]) -> dict[str, str]:

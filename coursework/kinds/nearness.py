@@ -8,9 +8,7 @@ from typing import Any
 import numpy as np
 
 SLACK = 1e-12  #: relative, so that an answer on the tolerance's edge is inside it
-TRUSTED = (
-    1e-3  #: share of a half-width that an answer's own last digit may be, for its distance to mean anything
-)
+TRUSTED = 1e-3  #: share of a half-width that an answer's last digit may be, for its distance to mean anything
 _FAR = 1e100  #: a point so far off is not computed with
 
 
@@ -21,6 +19,12 @@ def in_half_widths(gap: float, half_width: float, scale: float) -> float:
     if gap <= half_width + SLACK * max(half_width, abs(scale)):
         return min(1.0, gap / half_width) if half_width else 0.0
     return gap / half_width if half_width else math.inf
+
+
+def gaps(values: np.ndarray, others: Any, turn: float) -> np.ndarray:
+    """How far values are from others, each at its place; modulo a ``turn`` where that is not 0."""
+    gap = np.abs(values - others)
+    return np.abs(gap - turn * np.rint(gap / turn)) if turn else gap
 
 
 def is_fine(value: float, half_width: float) -> bool:

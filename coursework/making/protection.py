@@ -17,9 +17,10 @@ import numpy as np
 
 from coursework.course.error_values import TAKEN, ErrorValues, UsualError
 from coursework.course.exercise import CourseExercise
-from coursework.course.key_batch import keys_of
+from coursework.course.key_batch import given_columns, keys_of
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
+from coursework.kinds.nearness import gaps
 from coursework.making.flaws import SHOWN, sound
 from coursework.model import Part
 from coursework.quantities.usual_errors import WEIGHTY
@@ -28,10 +29,8 @@ V = TypeVar("V", bound=Variant)
 
 UNSEEN = "unseen"
 SAMPLE = 96  #: variants from which it is found what may be demanded
-LEFT = {
-    True: 0.125,
-    False: 0.25,
-}  #: share of the variants to be left by what is demanded: of weighty errors, of others
+#: Share of the variants to be left by what is demanded: of weighty errors, of others.
+LEFT = {True: 0.125, False: 0.25}
 _SAME = 1e-9  #: of a value: what two ways to compute it may differ by
 
 
@@ -57,10 +56,9 @@ def seen(exercise: CourseExercise, variants: Sequence[Variant]) -> dict[Demand, 
     """
     parts = [p for p in variants[0].parts if p.sort.is_scalar and not p.judge]
     quantities = tuple(dict.fromkeys(p.quantity for p in parts))
-    names = [n for n in exercise.spec.given if n in exercise.quantity_names]
-    given = {n: np.array([v.given[n] for v in variants]) for n in names}
+    given = given_columns(exercise, variants)
     table = ErrorValues(exercise, quantities, given, exercise.spec.effects, len(variants))
-    gaps: dict[Demand, np.ndarray] = {}
+    farthest: dict[Demand, np.ndarray] = {}
     idle: dict[Demand, np.ndarray] = {}
     for part in parts:
         errors, values = table.of(part.quantity)
@@ -70,9 +68,9 @@ def seen(exercise: CourseExercise, variants: Sequence[Variant]) -> dict[Demand, 
             if error.source in quantities and not is_here and error.kind not in TAKEN:
                 continue  # it shows where it is made
             demand = Demand(error, part.id if error.kind in TAKEN else "")
-            gaps[demand] = np.maximum(gaps.get(demand, 0.0), gap)
+            farthest[demand] = np.maximum(farthest.get(demand, 0.0), gap)
             idle[demand] = idle.get(demand, True) & is_same
-    return {demand: (gap > SHOWN) | idle[demand] for demand, gap in gaps.items()}
+    return {demand: (gap > SHOWN) | idle[demand] for demand, gap in farthest.items()}
 
 
 def _gaps(part: Part, variants: Sequence[Variant], values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -80,22 +78,15 @@ def _gaps(part: Part, variants: Sequence[Variant], values: np.ndarray) -> tuple[
     reference = np.array([float(v.key.reference[part.quantity]) for v in variants])
     width = np.array([v.key.half_width(part) for v in variants])
     with np.errstate(all="ignore"):
-        gap = np.abs(values - reference)
-        size = np.abs(reference)
-        if turn := part.sort.turn:
-            gap, size = np.abs(gap - turn * np.rint(gap / turn)), np.full_like(size, turn)
-        same = gap <= _SAME * size
+        gap = gaps(values, reference, part.sort.turn)
+        same = gap <= _SAME * (part.sort.turn or np.abs(reference))
         far = np.where(gap > 0, np.inf, 0.0) if part.sort.is_exact else gap / width
     return np.where(np.isnan(far), np.inf, far), same
 
 
+@lru_cache(maxsize=256)
 def protection(exercise: CourseExercise, parts: tuple[str, ...] | None) -> Protection:
     """What is demanded where some parts are asked, the usual ones unless told."""
-    return _protection(exercise, parts)
-
-
-@lru_cache(maxsize=256)
-def _protection(exercise: CourseExercise, parts: tuple[str, ...] | None) -> Protection:
     drawn: list[Variant] = []
     for start in range(0, 10 * SAMPLE, SAMPLE):
         some = [
@@ -107,9 +98,10 @@ def _protection(exercise: CourseExercise, parts: tuple[str, ...] | None) -> Prot
         drawn += sound(some)
         if len(drawn) >= SAMPLE:
             break
-    drawn = _alike(drawn)[:SAMPLE]
     if not drawn:
         return Protection(frozenset(), {})
+    # Those that ask what most of them ask.
+    drawn = [drawn[i] for i in max(_by_parts(drawn), key=len)[:SAMPLE]]
     met = {d: shows for d, shows in seen(exercise, drawn).items() if not shows.all()}
     left = np.ones(len(drawn), dtype=bool)
     demanded: set[Demand] = set()
@@ -137,14 +129,6 @@ def _order(demand: Demand, met: np.ndarray, asked: Collection[str]) -> tuple[Any
     )
 
 
-def _alike(variants: Sequence[V]) -> list[V]:
-    """Those that ask what most of them ask."""
-    groups: dict[tuple[str, ...], list[V]] = {}
-    for variant in variants:
-        groups.setdefault(variant.part_ids, []).append(variant)
-    return max(groups.values(), key=len, default=[])
-
-
 def protected(exercise: CourseExercise, variants: Sequence[V]) -> list[tuple[V, Demand | None]]:
     """The variants, each with the first demand that it does not meet, if any."""
     if not variants:
@@ -153,7 +137,7 @@ def protected(exercise: CourseExercise, variants: Sequence[V]) -> list[tuple[V, 
     asked = None if chosen is None else tuple(p.id for p in chosen)
     demanded = protection(exercise, asked).demanded
     unmet: dict[int, Demand] = {}
-    for places in _by_parts(variants):
+    for places in _by_parts(variants) if demanded else ():
         for demand, shows in _seen(exercise, [variants[i] for i in places]):
             if demand in demanded:
                 for i in np.flatnonzero(~shows):
@@ -169,6 +153,7 @@ def _seen(exercise: CourseExercise, variants: Sequence[Variant]) -> Iterator[tup
 
 
 def _by_parts(variants: Sequence[Variant]) -> list[list[int]]:
+    """The places of the variants that ask the same parts, together."""
     places: dict[tuple[str, ...], list[int]] = {}
     for i, variant in enumerate(variants):
         places.setdefault(variant.part_ids, []).append(i)

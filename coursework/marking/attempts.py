@@ -18,9 +18,7 @@ from coursework.model import Part
 from coursework.reading.reading import Reading
 
 FARTHEST = 100.0  #: factor between the size of an attempt and that of the reference, unless a known error explains it
-THINGS = (
-    2  #: different things that one number is written for, before it means nothing; of counts many are alike
-)
+THINGS = 2  #: different things that a measured number is written for, before it means nothing
 FEW = 4  #: answers at least of which something can be told
 DIFFERENT = 3  #: things at least that a copied number is written for
 MOST = 0.75  #: of the answers
@@ -31,9 +29,7 @@ class Sheet:
     """What the answers of a student show when they are looked at together."""
 
     everywhere: frozenset[float] = frozenset()  #: numbers that are written for several different things
-    has_work: bool = (
-        True  #: most answers are no copies of one number, of questions' numbers, of what is given
-    )
+    has_work: bool = True  #: most answers copy no one number, no questions' numbers, nothing given
 
 
 def sheet_of(

@@ -22,9 +22,7 @@ from coursework.model import Part
 from coursework.quantities.usual_errors import ALL_DEGREES, DEGREES, PARTS_OF_TERMS, TERM
 from coursework.reading.reading import Reading
 
-CLOSE = (
-    0.2  #: half-widths within which an answer is the value that an error gives; up to one it may be another
-)
+CLOSE = 0.2  #: half-widths within which an answer is what an error gives; up to one it may be another
 
 
 def nearest_reading(part: Part, reading: Reading, key: Key, judged_by: Part) -> tuple[int, float]:
@@ -77,8 +75,17 @@ class Before:
 
     def is_work(self, part: Part, value: Any) -> bool:
         """Whether an answer is more than a number that is written everywhere, on a sheet that shows work."""
-        copied = part.sort.is_scalar and not part.sort.is_exact and value in self.sheet.everywhere
-        return self.sheet.has_work and not copied
+        return self.sheet.has_work and not self.is_copied(part, value)
+
+    def is_copied(self, part: Part, value: Any) -> bool:
+        """Whether an answer is a measured number that is written for several different things."""
+        return part.sort.is_scalar and not part.sort.is_exact and value in self.sheet.everywhere
+
+    def state(self, part: Part) -> str:
+        """What became of the answer to a part: ``right``, ``wrong``, or ``open`` where there is none that was read."""
+        if part.quantity in self.right:
+            return "right"
+        return "wrong" if part.quantity in self.mistaken else "open"
 
     @property
     def answered(self) -> set[str]:
@@ -233,9 +240,8 @@ def _from_own(
     if len(before.wrong) > _FEW_WRONG and ALL_DEGREES not in before.paid:
         return  # of so many errors nobody can tell
     if any(judged_by.quantity in key.solution.depending_on(q) for q in before.wrong):
-        own = {
-            q: before.own[q] for q in before.wrong
-        }  # what is right was computed with more digits than written
+        # What is right was computed with more digits than were written.
+        own = {q: before.own[q] for q in before.wrong}
         yield from map(_of_usual, own_errors_that_fit(key, part, reading, judged_by, own))
 
 
@@ -269,7 +275,7 @@ def _of_unit(slip: Slip, unit: str) -> tuple[str, ...]:
 
 def _is_constant(key: Key, part: Part, value: Any, before: Before) -> bool:
     """Whether an answer only repeats a number that is written everywhere, as do those that it would follow from."""
-    if not part.sort.is_scalar or part.sort.is_exact or value not in before.sheet.everywhere:
+    if not before.is_copied(part, value):
         return False
     above = [q for q in before.wrong if part.quantity in key.solution.depending_on(q)]
     return all(before.own[q] == value for q in above)

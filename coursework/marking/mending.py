@@ -117,19 +117,12 @@ def _told_wrong(variant: Variant, part: Part, read: str, before: Before) -> Said
     asked = [p for p in asked if p in earlier and p.sort.is_called_by_symbol and not p.judge]
     if part.sort.wrong not in ("wrong", "wrong_place", "wrong_count") or not asked:
         return say(variant, part, part.sort.wrong, read=read)
-    if not all(p.quantity in before.right for p in asked):
-        asked = [p for p in asked if p.quantity not in before.right]
-    told = []
-    for other in asked:
-        state = (
-            "right"
-            if other.quantity in before.right
-            else "wrong"
-            if other.quantity in before.mistaken
-            else "open"
-        )
-        told.append(table["depends_on"][state].format(f"${symbol(variant, other.quantity)}$"))
-    sentence = "wrong_from_right" if all(p.quantity in before.right for p in asked) else "wrong_from"
+    to_mend = [p for p in asked if p.quantity not in before.right]
+    told = [
+        table["depends_on"][before.state(p)].format(f"${symbol(variant, p.quantity)}$")
+        for p in to_mend or asked
+    ]
+    sentence = "wrong_from" if to_mend else "wrong_from_right"
     return say(variant, part, sentence, read=read, list=listed(told, variant.lang))
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from coursework.course.answer_key import Key
 from coursework.errors import CourseworkError
 from coursework.language.words import words
-from coursework.marking.attempts import Sheet
 from coursework.marking.explaining import Before, mistakes_that_fit
 from coursework.marking.feedback import Said, amount, echo, either_symbol, part_name, questions, say
 from coursework.marking.judges import Verdict, judged
@@ -62,7 +61,7 @@ def mark_judged(
         share == 1.0
         and is_followed
         and part.sort.is_scalar
-        and not _has_work(part, key, reading, found, before.sheet)
+        and not _has_work(part, key, reading.values[found.reading], before)
     ):
         return made("wrong", 0.0, read_as, told(part.sort.wrong))
     if share == 1.0:
@@ -95,11 +94,11 @@ def mark_judged(
     return made("wrong", share, read_as, told(part.sort.wrong))
 
 
-def _has_work(part: Part, key: Key, reading: Reading, found: Verdict, sheet: Sheet) -> bool:
+def _has_work(part: Part, key: Key, value: Any, before: Before) -> bool:
     """Whether a number that follows from others is more than one that is written everywhere."""
-    value, reference = reading.values[found.reading], key.reference.get(part.quantity)
+    reference = key.reference.get(part.quantity)
     is_right = reference is not None and part.sort.distance(part, value, reference) <= 1
-    return is_right or (sheet.has_work and value not in sheet.everywhere)
+    return is_right or before.is_work(part, value)
 
 
 def is_scale(part: Part) -> bool:

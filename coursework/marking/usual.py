@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from coursework.course.answer_key import Key
 from coursework.course.error_values import NEIGHBOUR, TAKEN, UsualError
+from coursework.kinds.nearness import gaps
 from coursework.language.words import listed, words
 from coursework.marking.feedback import symbol
 from coursework.model import Part
@@ -50,31 +51,20 @@ def usual_errors_that_fit(
         return []
     errors, values = key.usual_ways(quantity)
     asked = {p.quantity for p in key.variant.parts}
-    found: list[Fit] = []
-    given_by: dict[tuple[int, float], int] = {}  #: places among what is found
-    for place, answer in enumerate(reading.values):
-        if part.sort.is_trivial(answer):
-            continue  # whatever is left out of a product leads there
-        gaps = _gaps(part, key, judged_by, values, answer)
-        near = nearness(part, key, judged_by, answer, NEAR_DEGREES if part.sort.turn else NEAR)
-        for index in np.flatnonzero(gaps <= near):
-            error, value = errors[index], float(values[index])
-            is_here = error.source == quantity or error.kind in TAKEN
-            if part.sort.is_exact and error.source != quantity:
-                continue  # of whole numbers too many are alike
-            if not is_here and error.source in answered:
-                continue
-            if error.kind == NEIGHBOUR and error.source not in asked:
-                continue
-            if error.kind not in TAKEN and any(_contradicts(key, error, q) for q in right if q != quantity):
-                continue
-            if (same := (place, _rounded(value))) in given_by:
-                first = found[given_by[same]]
-                found[given_by[same]] = first._replace(alike=(*first.alike, error))
-                continue
-            given_by[same] = len(found)
-            found.append(Fit(error, place, float(gaps[index]), is_here, (error,)))
-    return found
+
+    def may_be(error: UsualError) -> bool:
+        if part.sort.is_exact and error.source != quantity:
+            return False  # of whole numbers too many are alike
+        if error.kind == NEIGHBOUR:
+            return error.source in asked
+        if error.kind in TAKEN:
+            return True
+        is_elsewhere = error.source != quantity
+        return not (is_elsewhere and error.source in answered) and not any(
+            _contradicts(key, error, q) for q in right if q != quantity
+        )
+
+    return _near(key, part, reading, judged_by, errors, values, may_be)
 
 
 def own_errors_that_fit(
@@ -84,16 +74,31 @@ def own_errors_that_fit(
     if not part.sort.is_scalar or part.judge:
         return []
     errors, values = key.usual_ways_from(judged_by.quantity, own)
+    return _near(key, part, reading, judged_by, errors, values, lambda _: True)
+
+
+def _near(
+    key: Key,
+    part: Part,
+    reading: Reading,
+    judged_by: Part,
+    errors: tuple[UsualError, ...],
+    values: np.ndarray,
+    may_be: Callable[[UsualError], bool],
+) -> list[Fit]:
+    """The errors near whose values an answer is, of those that may be; of several that give one value the first."""
     found: dict[tuple[int, float], Fit] = {}
     for place, answer in enumerate(reading.values):
         if part.sort.is_trivial(answer):
-            continue
+            continue  # whatever is left out of a product leads there
+        away = _gaps(part, key, judged_by, values, answer)
         near = nearness(part, key, judged_by, answer, NEAR_DEGREES if part.sort.turn else NEAR)
-        gaps = _gaps(part, key, judged_by, values, answer)
-        for index in np.flatnonzero(gaps <= near):
+        for index in np.flatnonzero(away <= near):
             error, same = errors[index], (place, _rounded(float(values[index])))
-            first = found.get(same, Fit(error, place, float(gaps[index]), True, ()))
-            found[same] = first._replace(alike=(*first.alike, error))
+            if may_be(error):
+                is_here = error.source == judged_by.quantity or error.kind in TAKEN
+                first = found.get(same, Fit(error, place, float(away[index]), is_here, ()))
+                found[same] = first._replace(alike=(*first.alike, error))
     return list(found.values())
 
 
@@ -118,19 +123,17 @@ def _gaps(part: Part, key: Key, judged_by: Part, values: np.ndarray, answer: flo
     """How far an answer is from each value, in the half-widths that such a value would have."""
     reference = key.reference[judged_by.quantity]
     with np.errstate(all="ignore"):
-        gap = np.abs(values - answer)
-        if turn := part.sort.turn:
-            gap = np.abs(gap - turn * np.rint(gap / turn))
+        gap = gaps(values, answer, part.sort.turn)
         width = np.full_like(gap, key.half_width(judged_by))
-        if not turn and reference:
+        if not part.sort.turn and reference:
             # Rounding moves what is small as little, and what is large by its own digits.
             width = width * np.minimum(np.abs(values / reference), 1.0)
             if part.has_margin:
                 width = np.maximum(width, half_step(values, key.rules.digits))
         # Where the reference is the same value, the answer is right or wrong for another reason.
         is_other = np.abs(values - reference) > _SAME * abs(reference)
-        gaps = np.where(gap == 0, 0.0, gap / width)
-    return np.where(is_other & np.isfinite(gaps), gaps, np.inf)
+        found = np.where(gap == 0, 0.0, gap / width)
+    return np.where(is_other & np.isfinite(found), found, np.inf)
 
 
 def _contradicts(key: Key, error: UsualError, quantity: str) -> bool:

@@ -5,12 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
-#: Errors in a formula, and values taken for what is asked: more than a slip of sign or unit.
-OF_FORMULAS = frozenset(
-    "term term_sign angle angle_sign constant factor square root inverse function arguments quadrant branch degrees "
-    "all_degrees count input neighbour".split()
-)
-
 #: The share of a question's points that one error leaves, by its kind: the same in every exercise, whoever names it.
 #: The size is right, or nearly all of the way; or something of the relation is missing.
 PRICES: Mapping[str, float] = MappingProxyType({

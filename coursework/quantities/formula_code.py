@@ -128,7 +128,7 @@ class Formula:
     @cached_property
     def _function(self) -> Callable[..., Any]:
         parameters = ast.arguments([], [ast.arg(name) for name in self.names], None, [], [], None, [])
-        whole = ast.fix_missing_locations(ast.Expression(ast.Lambda(parameters, copy.deepcopy(self.tree))))
+        whole = ast.fix_missing_locations(ast.Expression(ast.Lambda(parameters, self.tree)))
         made: Callable[..., Any] = eval(
             compile(whole, "<formula>", "eval"), dict(self.space)
         )  # of the course's own code

@@ -8,10 +8,11 @@ from typing import NamedTuple
 
 from markupsafe import Markup
 
+from coursework.course.error_values import TAKEN
 from coursework.figures.text import SIZE, Run
 from coursework.language.numbers import localise, plain
 from coursework.language.words import listed, quoted, words
-from coursework.quantities.error_kinds import OF_FORMULAS
+from coursework.quantities.usual_errors import KINDS
 from coursework.rendering import views
 from coursework.rendering.views import renumbered
 from coursework.sheets.sheet import FeedbackLine, FeedbackSheet, Lesson, Practice
@@ -60,7 +61,7 @@ class Meaning(NamedTuple):
 def kind_of(verdict: str) -> str:
     """A verdict without what names its mistake; ``otherwise`` for one that no words are known of."""
     kind, _, name = verdict.partition(":")
-    if kind == "slip" and name in OF_FORMULAS:
+    if kind == "slip" and name in (*KINDS, *TAKEN):
         kind = "usual"
     return kind if kind in words("en")["feedback"]["verdicts"] else "otherwise"
 
