@@ -162,9 +162,15 @@ class Linkage:
         found = []
         for gear in self.mechanism.gears:
             first, second = (float(self.number(r)) * MM for r in gear.radii)
-            bodies = (self.index[n] for n in (gear.first, gear.second, gear.carrier))
+            one, other, carrier = (self.index[n] for n in (gear.first, gear.second, gear.carrier))
             found.append(
-                GearJoint(f"{gear.first}/{gear.second}", *bodies, (first, -second if gear.inner else second))
+                GearJoint(
+                    f"{gear.first}/{gear.second}",
+                    one,
+                    other,
+                    carrier,
+                    (first, -second if gear.inner else second),
+                )
             )
         return tuple(found)
 

@@ -13,7 +13,6 @@ from collections.abc import Mapping
 from coursework.course.exercise import CourseExercise
 from coursework.errors import WrongValue, unknown
 from coursework.model import Driver
-from coursework.solution import Film
 
 KINEMATIC = ("position", "velocity", "acceleration", "coriolis")
 ADVANTAGE = "advantage"
@@ -44,7 +43,7 @@ def check_effect(effect: str, exercise: CourseExercise) -> None:
         raise unknown("effect", effect, known, exercise.name)
 
 
-def of_exercise(exercise: CourseExercise, driver: Driver | Film) -> Mapping[str, tuple[str, ...]]:
+def of_exercise(exercise: CourseExercise, driver: Driver) -> Mapping[str, tuple[str, ...]]:
     """The quantities of each effect, in order."""
     stated = exercise.solution.effects
     usual = _of_loops(exercise) if exercise.solution.loops else _of_parts(exercise, driver)
@@ -68,10 +67,10 @@ def _of_loops(exercise: CourseExercise) -> dict[str, tuple[str, ...]]:
     return {"position": unknowns, "velocity": first, "acceleration": second}
 
 
-def _of_parts(exercise: CourseExercise, driver: Driver | Film) -> dict[str, tuple[str, ...]]:
+def _of_parts(exercise: CourseExercise, driver: Driver) -> dict[str, tuple[str, ...]]:
     graph = exercise.solution.graph
     asked = [p.quantity for p in exercise.spec.parts if p.sort.is_number]
-    speed, acceleration = driver.speed, getattr(driver, "acceleration", "")
+    speed, acceleration = driver.speed, driver.acceleration
     moving, fast, faster = (graph.descendants((n,) if n else ()) for n in (driver.angle, speed, acceleration))
     return {
         "position": tuple(n for n in asked if n in moving and n not in fast | faster),
