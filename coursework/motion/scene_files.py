@@ -126,7 +126,10 @@ class _Reader:
             self._known(("bodies", name), "body", name, mechanism.names)
         known = (*mechanism.points, *mechanism.names)
         for number, load in enumerate(self._loads_listed):
-            self._known(("loads", number, "on"), "point or body", str(load.get("on", "")), known)
+            on = str(load.get("on", ""))
+            self._known(("loads", number, "on"), "point or body", on, known)
+            if "body" in load:
+                self._known(("loads", number, "body"), "body", str(load["body"]), mechanism.holders(on))
         slides = [slide.at for slide in mechanism.slides]
         for name in self._table(("slides",)):
             self._known(("slides", name), "slide", name, slides)
@@ -273,7 +276,7 @@ class _Reader:
     def _load(self, number: int, exercise: CourseExercise) -> Load:
         at: Path_ = ("loads", number)
         own = self._loads_listed[number]
-        self._only(own, ("on", "force", "moment", "angle", "against", "during", "by", "table"), at)
+        self._only(own, ("on", "body", "force", "moment", "angle", "against", "during", "by", "table"), at)
         if "on" not in own:
             raise self.refused(at, 'a load acts on something: on = "C"')
         kind = "moment" if "moment" in own else "force"
@@ -289,13 +292,10 @@ class _Reader:
         if "angle" in own:
             values["angle"] = self._amount((*at, "angle"), "deg")
         by = str(own.get("by", ""))
+        body = str(own.get("body", ""))
+        pairs = self._pairs(at, kind, by, exercise)
         return Load(
-            str(own["on"]),
-            against="against" in own,
-            during=during,
-            by=by,
-            table=self._pairs(at, kind, by, exercise),
-            **values,
+            str(own["on"]), against="against" in own, during=during, by=by, table=pairs, body=body, **values
         )
 
     def _size(self, at: Path_, kind: str, exercise: CourseExercise) -> Place:
