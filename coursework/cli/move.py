@@ -175,7 +175,7 @@ def _tell_budget(told: SceneFile, tolerance: float, out: Path | None, decimal: s
             {"exercise": told.scene.exercise.name, "seconds": found.seconds, "effects": rows, "said": said}
         )
     else:
-        print_table([{h: _short_number(v, 3) for h, v in row.items()} for row in rows])
+        print_table(list(_each_effect_once(rows)))
         click.echo(f"the whole scene: {1e3 * found.seconds:.3g} ms")
         for sentence in said:
             click.echo(sentence)
@@ -188,8 +188,19 @@ def _tell_budget(told: SceneFile, tolerance: float, out: Path | None, decimal: s
             click.echo(f"table: {stem}.csv" if bare else f"table and plot: {stem}.csv, .svg")
 
 
+def _each_effect_once(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, str]]:
+    """Rows to be read: an effect and its time stand in its first row alone."""
+    last = None
+    for row in rows:
+        shown = {h: _short_number(v, 3) for h, v in row.items()}
+        if row["effect"] == last:
+            shown |= dict.fromkeys(("effect", "time [ms]", "spread [ms]"), "")
+        last = row["effect"]
+        yield shown
+
+
 def _budget_rows(found: Budget) -> Iterator[dict[str, Any]]:
-    """A row an effect and output; the effect's time stands in its first row."""
+    """A row an effect and output."""
     for worth in found.worths:
         time = {"effect": worth.effect, "time [ms]": 1e3 * worth.seconds, "spread [ms]": 1e3 * worth.spread}
         if worth.needed or not worth.changes:
@@ -203,10 +214,9 @@ def _budget_rows(found: Budget) -> Iterator[dict[str, Any]]:
                 "largest [%]": "",
                 "rms [%]": "",
             }
-        for number, change in enumerate(worth.changes):
-            first = time if not number else dict.fromkeys(time, "")
+        for change in worth.changes:
             yield {
-                **first, "output": change.output, "largest": change.largest, "rms": change.rms, "unit": change.unit,
+                **time, "output": change.output, "largest": change.largest, "rms": change.rms, "unit": change.unit,
                 "largest [%]": 100 * change.largest_part, "rms [%]": 100 * change.rms_part,
             }  # fmt: skip
 

@@ -124,6 +124,8 @@ class _Reader:
             return
         for name in self._table(("bodies",)):
             self._known(("bodies", name), "body", name, mechanism.names)
+            if isinstance(centre := self._at(("bodies", name, "centre")), str):
+                self._known(("bodies", name, "centre"), "point", centre, tuple(mechanism.body(name).places))
         known = (*mechanism.points, *mechanism.names)
         for number, load in enumerate(self._loads_listed):
             on = str(load.get("on", ""))
