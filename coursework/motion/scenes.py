@@ -19,7 +19,7 @@ from coursework.course.exercise import CourseExercise
 from coursework.errors import BadCourse, CourseworkError, WrongValue, counted
 from coursework.mechanics.forces import Borne, Forces
 from coursework.mechanics.friction import contacts
-from coursework.mechanics.linkage import Linkage
+from coursework.mechanics.linkage import MM, Linkage, SlideJoint
 from coursework.mechanics.loads import Acting
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.running import Motion, Running
@@ -28,6 +28,7 @@ from coursework.model import Driver
 from coursework.motion import shown
 from coursework.motion.added import Added, Motor
 from coursework.motion.effects import ADVANTAGE, FORCES, KINEMATIC, OF_FORCES, check_effect, of_exercise
+from coursework.solution import Moving
 
 INERTIA, FRICTION = "inertia", "friction"
 _JUDGED = 720  #: steps of the cycle over which a flywheel is sized
@@ -324,6 +325,27 @@ class Scene:
             contacts(linkage, mechanism.friction) if FRICTION in called else (),
             self._position,
         )
+
+    def moving_points(self, angle: np.ndarray) -> dict[str, Moving]:
+        """The points of the bodies at driver's angles, degrees: mm, mm/s, mm/s^2; rates where the driver has a speed."""
+        stance, linkage = self.pose(np.radians(angle)), self.linkage
+        points = [p for p in linkage.mechanism.points if p not in linkage.mechanism.ground]
+        sliding = {s.name.removesuffix(" slide"): s for s in shown.turning_slides(linkage)}
+        return {point: self._moving(point, stance, sliding.get(point)) for point in points}
+
+    def _moving(self, point: str, stance: Stance, slide: SlideJoint | None) -> Moving:
+        held = stance.linkage.owner(point)
+        place = stance.place(held) / MM
+        if not self.driver.speed:
+            return Moving(place)
+        speed, acceleration = self._speed, self._acceleration
+        with np.errstate(all="ignore"):
+            velocity = stance.rate(held) * speed / MM
+            bent = (stance.bend(held) * speed**2 + stance.rate(held) * acceleration) / MM
+            if slide is None:
+                return Moving(place, velocity, bent)
+            turning = 2j * stance.rates[slide.on] * speed**2 / MM
+            return Moving(place, velocity, bent, turning * stance.sliding(slide) * stance.direction(slide))
 
     def _position(self, name: str, stance: Stance) -> np.ndarray:
         """A position of the exercise over the instants of a stance."""

@@ -19,7 +19,7 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 from ._four_bar import *
 
@@ -130,17 +130,6 @@ def v_BA_scalar(r2, omega2, v_B):
 @mistake("mode")
 def other_mode(mode):
     return np.where(side_of(mode) > 0, "crossed", "open")
-
-
-def motion(r1, r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4):
-    """The two moving joints, and the middle of the coupler."""
-    crank, half, rocker = polar(r2, theta2), polar(r3 / 2, theta3), polar(r4, theta4)
-    v_A, a_A = 1j * omega2 * crank, (1j * alpha2 - omega2**2) * crank
-    return {
-        "A": Moving(crank, v_A, a_A),
-        "B": Moving(r1 + rocker, 1j * omega4 * rocker, (1j * alpha4 - omega4**2) * rocker),
-        "M": Moving(crank + half, v_A + 1j * omega3 * half, a_A + (1j * alpha3 - omega3**2) * half),
-    }
 
 
 def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4):

@@ -28,7 +28,7 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 from ._strokes import *
 
@@ -392,16 +392,6 @@ def polygons(
             slider_a("C", "B", BC, omega5, alpha5, "r_5", a_C),
         ),
     )
-
-
-def motion(r1, theta1, r2, theta2, omega2, r4, theta4, omega4, alpha4, xC, h, v_C, a_C):
-    """Crank pin, rocker pin and piston."""
-    crank, rocker = polar(r2, theta2), polar(r4, theta4)
-    return {
-        "A": Moving(crank, 1j * omega2 * crank, -(omega2**2) * crank),
-        "B": Moving(polar(r1, theta1) + rocker, 1j * omega4 * rocker, (1j * alpha4 - omega4**2) * rocker),
-        "C": Moving(xC + 1j * h, v_C, a_C),
-    }
 
 
 def residual(

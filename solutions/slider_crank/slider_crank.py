@@ -22,7 +22,7 @@ from coursework.polygons import (
     slider_a,
     slider_v,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"p": "mm", "q": "mm"}
 LOOPS = {
@@ -180,15 +180,6 @@ def multiplied_by_the_scale(kv, ka):
 @mistake("kv", "ka")
 def scale_left_out(kv, ka):
     return 1, 1
-
-
-def motion(r2, e, theta2, omega2, alpha2, r1, r1_dot, r1_ddot):
-    """The crank pin and the piston."""
-    A = polar(r2, theta2)
-    return {
-        "A": Moving(A, 1j * omega2 * A, (1j * alpha2 - omega2**2) * A),
-        "B": Moving(r1 + 1j * e, r1_dot, r1_ddot),
-    }
 
 
 def polygons(r2, theta2, omega2, alpha2, p, q, omega3, r1_dot, alpha3, r1_ddot, kv, ka):

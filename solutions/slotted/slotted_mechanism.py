@@ -22,7 +22,7 @@ from coursework.polygons import (
     polygon_of_accelerations,
     polygon_of_velocities,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
 SYMBOLS = {"delta": r"\delta"}
@@ -167,19 +167,6 @@ def coriolis_no_2(omega4, rA_dot):
 @mistake("rA_ddot")
 def no_centripetal(r2, alpha2, omega2, theta2, theta4):
     return -r2 * alpha2 * sin(theta2 - theta4) - r2 * omega2**2 * cos(theta2 - theta4)
-
-
-def motion(r1, theta1, r2, theta2, omega2, alpha2, rA_dot, theta4, omega4):
-    """The crank pin, which slides on the turning guide."""
-    crank = polar(r2, theta2)
-    return {
-        "A": Moving(
-            polar(r1, theta1) + crank,
-            1j * omega2 * crank,
-            (1j * alpha2 - omega2**2) * crank,
-            coriolis=2j * omega4 * rA_dot * polar(1, theta4),
-        )
-    }
 
 
 def polygons(r2, theta2, omega2, alpha2, rA, theta4, rA_dot, omega4, rA_ddot, alpha4):
