@@ -140,6 +140,11 @@ def omega3(r2, omega2, r3, theta2, theta3, theta4):
     return r2 * omega2 * sin(theta2 - theta4) / (r3 * sin(theta4 - theta3))
 
 
+@stable(
+    lambda r2, omega2, r4, A_turn, angle_OAB, theta3, theta4: (
+        A_turn * r2 * omega2 * sin(angle_OAB) / (r4 * sin(theta4 - theta3))
+    )
+)
 def omega4(r2, omega2, r4, theta2, theta3, theta4):
     """Along the coupler, A and B have the same velocity."""
     return r2 * omega2 * sin(theta2 - theta3) / (r4 * sin(theta4 - theta3))
@@ -256,6 +261,7 @@ def xC_min(xC_far, xC_near):
     return np.minimum(xC_far, xC_near)
 
 
+@stable(lambda _linkage: _linkage.stroke())
 def stroke(xC_max, xC_min):
     return xC_max - xC_min
 
