@@ -80,6 +80,19 @@ class RockerSlider(NamedTuple):
             found = np.where(closes, _stroke(*flat), np.nan)
         return found.reshape(shape) if shape else float(found[0])
 
+    def times_turned(self) -> Any:
+        """How often the slider turns back in a turn, however near to each other; 0 where it does not close all turn.
+
+        Errors as in :meth:`turning_points`.
+        """
+        shape, flat, closes = self._closed_all_turn()
+        with np.errstate(all="ignore"):
+            half = _swing(*flat[:6])[1]
+            passed = np.isfinite(_in_line(*flat)).sum(axis=0)
+        # A rocker that swings passes each direction in the arc twice, and turns back at its ends.
+        found = np.where(closes, np.where(half == math.pi, passed, 2 + 2 * passed), 0)
+        return found.reshape(shape) if shape else int(found[0])
+
     def _closed_all_turn(self) -> tuple[tuple[int, ...], list[np.ndarray], np.ndarray]:
         """The shape, the numbers of each mechanism, and whether it closes at every crank angle."""
         given = np.broadcast_arrays(*self)
@@ -130,22 +143,27 @@ def _swing(
     return middle, np.where(np.isnan(mean), math.pi, half)
 
 
+def _in_line(
+    ground: Any, ground_angle: Any, crank: Any, coupler: Any, rocker: Any, side: Any, rod: Any, line: Any
+) -> np.ndarray:
+    """Where the rod is in line with the rocker, stretched and folded: from the middle of the arc; NaN out of it."""
+    middle, half = _swing(ground, ground_angle, crank, coupler, rocker, side)
+    level = line - ground * np.sin(ground_angle)
+    stretched, folded = np.arcsin(level / (rocker + rod)), math.pi - np.arcsin(level / (rocker - rod))
+    turned = _turn(np.stack([stretched - middle, folded - middle]))
+    return np.where(abs(turned) < half, turned, np.nan)
+
+
 def _stroke(
     ground: Any, ground_angle: Any, crank: Any, coupler: Any, rocker: Any, side: Any, rod: Any, line: Any
 ) -> Any:
     level = line - ground * np.sin(ground_angle)
     middle, half = _swing(ground, ground_angle, crank, coupler, rocker, side)
-    stretched, folded = (
-        np.arcsin(level / (rocker + rod)),
-        math.pi - np.arcsin(level / (rocker - rod)),
-    )
-    in_line = (_turn(way - middle) for way in (stretched, folded))
-    turned = [-half, *(np.where(abs(turn) < half, turn, np.nan) for turn in in_line)]
     start = middle + half
     rise = level - rocker * np.sin(start)
     run = np.sqrt((rod - rise) * (rod + rise))
     reached = [np.zeros_like(start)]
-    for turn in turned:
+    for turn in (-half, *_in_line(ground, ground_angle, crank, coupler, rocker, side, rod, line)):
         by = turn - half
         on = start + 0.5 * by
         rise_there = level - rocker * np.sin(start + by)

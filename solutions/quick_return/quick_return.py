@@ -266,17 +266,16 @@ def stroke(xC_max, xC_min):
     return xC_max - xC_min
 
 
-def _longer_arc(theta2_turns):
+def _longer_arc(theta2_turns, _linkage):
     """The longer of the two arcs of crank between the two positions where C turns back."""
-    two = np.isfinite(theta2_turns).sum(axis=-1) == 2
-    if np.ndim(two) == 0 and not two:
-        found = int(np.isfinite(theta2_turns).sum())
+    times = _linkage.times_turned()
+    if isinstance(times, int) and times != 2:
         raise Undefined(
-            f"C turns back {found} times a turn, not twice: the rod lines up with the rocker within its swing, "
+            f"C turns back {times} times a turn, not twice: the rod lines up with the rocker within its swing, "
             "and one stroke out and one back are not two arcs of crank; only the stroke exists"
         )
     arc = abs(wrap(theta2_turns[..., 0] - theta2_turns[..., 1]))
-    return np.where(two, 360 - arc, np.nan)
+    return np.where(times == 2, 360 - arc, np.nan)
 
 
 @stable(_longer_arc)

@@ -43,6 +43,7 @@ def test_the_slider_stands_still_there_and_nowhere_else(mechanism, count, side):
     mechanism = mechanism._replace(side=side)
     found = mechanism.turning_points()
     assert found.shape == (count,)
+    assert mechanism.times_turned() == count
     for angle in found:
         assert abs(turned_back(mechanism, angle) - angle) < 1e-12
     # Between them it moves one way: as many changes of sense in a plain sweep.
@@ -129,5 +130,16 @@ def test_strokes_of_a_row_are_those_of_its_mechanisms():
     row = RockerSlider(*(np.array(column) for column in zip(*every, strict=True))).stroke()
     assert row[:3].tolist() == [mechanism.stroke() for mechanism in every[:3]]
     assert np.isnan(row[3:]).all()
+    assert RockerSlider(
+        *(np.array(column) for column in zip(*every, strict=True))
+    ).times_turned().tolist() == [2, 4, 2, 0, 0]
     with pytest.raises(CannotAssemble, match="rod does not reach its line all turn"):
         every[4].stroke()
+
+
+@pytest.mark.parametrize("near", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_two_turns_back_that_are_nearly_one_are_counted(near):
+    """The rod folds onto the rocker, in its direction turned by half, just before the rocker turns back, or never."""
+    end = math.radians(60 + 180) - math.acos((80**2 + 60**2 - 120**2) / (2 * 80 * 60))
+    reached = 80 * math.sin(math.radians(60)) - 40 * np.sin(end + near * np.array([-1, 1]))
+    assert FOUR_TIMES._replace(line=reached).times_turned().tolist() == [2, 4]
