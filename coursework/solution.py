@@ -15,6 +15,8 @@
 * ``polygons`` gives the velocity and acceleration polygons, each a :class:`~coursework.polygons.Polygon`;
 * ``LOOPS`` states the closed loops as vectors, by name; their equations are quantities: :mod:`coursework.quantities.loops`;
   ``RATES`` gives the names of derivatives that do not follow from a quantity's own;
+* ``MECHANISM`` states bodies and joints, a :class:`~coursework.mechanics.Mechanism`: forces and motions follow from it;
+* ``EFFECTS`` names what a scene shows of each effect, where it is not what ``LOOPS`` say: :mod:`coursework.motion.effects`;
 * ``STRUCTURES`` names the quantities whose value is a list or a record, such as a list of joints: a request
   may give them, and they are passed to the functions as they come;
 * ``UNITS`` and ``SYMBOLS`` give unit and LaTeX of quantities that no part and no name says;
@@ -33,6 +35,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError, nearest, unknown
+from coursework.mechanics.statement import Mechanism, parameters
 from coursework.quantities.error_kinds import PRICES
 from coursework.quantities.graph import Graph, Node, Replacement
 from coursework.quantities.loops import Loop, quantities, stated
@@ -237,6 +240,8 @@ class Solution:
     polygons: Callable[..., Sequence[Polygon]] | None = None
     loops: Mapping[str, Loop] = field(default_factory=dict)
     film: Film | None = None
+    mechanism: Mechanism | None = None
+    effects: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     @staticmethod
     def of(name: str, module: ModuleType, source: str) -> Solution:
@@ -296,6 +301,8 @@ class Solution:
             own.get("polygons"),
             loops,
             _film(source, module),
+            _mechanism(source, module, graph),
+            _effects(source, module, graph),
         )
 
     def judge(self, name: str) -> Callable[..., Any]:
@@ -357,6 +364,27 @@ def _film(source: str, module: ModuleType) -> Film | None:
     if film is not None and not isinstance(film, Film):
         raise BadCourse(f"{source}: FILM is a Film(…); found {str(film)[:60]}")
     return film
+
+
+def _mechanism(source: str, module: ModuleType, graph: Graph) -> Mechanism | None:
+    mechanism = getattr(module, "MECHANISM", None)
+    if mechanism is None:
+        return None
+    if not isinstance(mechanism, Mechanism):
+        raise BadCourse(f"{source}: MECHANISM is a Mechanism(…); found {str(mechanism)[:60]}")
+    known = graph.names | graph.leaves
+    for name in (*mechanism.angles, *(n for place in mechanism.unfolded() for n in parameters(place))):
+        if name not in known:
+            raise BadCourse(f"{source}: MECHANISM names no quantity by {name!r}{nearest(name, known)}")
+    return mechanism
+
+
+def _effects(source: str, module: ModuleType, graph: Graph) -> Mapping[str, tuple[str, ...]]:
+    effects = {effect: tuple(names) for effect, names in getattr(module, "EFFECTS", {}).items()}
+    for name in (n for names in effects.values() for n in names):
+        if name not in graph.names:
+            raise BadCourse(f"{source}: EFFECTS names no quantity by {name!r}{nearest(name, graph.names)}")
+    return effects
 
 
 def _belongs(function: Any, module: ModuleType) -> bool:

@@ -7,7 +7,17 @@ from coursework.degrees import acos, angle, atan2, from_radians, polar, sin, sqr
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
+from coursework.mechanics import Body, Mechanism
 from coursework.solution import formula, stable
+
+MECHANISM = Mechanism(
+    ground={"O": 0, "C": "r1"},
+    bodies=(
+        Body("2", "theta2", "O", {"A": "r2"}),
+        Body("3", "theta3", "A", {"B": "r3"}),
+        Body("4", "theta4", "C", {"B": "r4"}),
+    ),
+)
 
 
 def _bars(r1, r2, r3, r4, side):

@@ -30,6 +30,10 @@ LOOPS = {
         Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("r4", "theta4", -1),
     ),
 }  # fmt: skip
+EFFECTS = {
+    "velocity": ("omega3", "omega4", "v_B", "v_BA"),
+    "acceleration": ("alpha3", "alpha4", "a_B", "a_BA_n", "a_BA_t"),
+}
 
 
 @formula(

@@ -30,6 +30,9 @@ LOOPS = {
         Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("r4", "theta4", -1),
     ),
 }  # fmt: skip
+EFFECTS = {
+    "position": ("a", "b", "c", "theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed", "mu"),
+}
 
 
 def _open(r1, r2, r3, r4, theta2):

@@ -37,6 +37,11 @@ SYMBOLS = {
     "V_BA": "V_{BA}",
     "torque_ratio": r"\frac{\Gamma_s}{\Gamma_e}",
 }
+EFFECTS = {
+    "position": ("theta3", "theta4"),
+    "velocity": ("omega3", "omega4"),
+    "advantage": ("mechanical_advantage", "torque_ratio"),
+}
 
 
 def V_e(r2, omega2):

@@ -11,6 +11,10 @@ from coursework.figures import Figure, circle, contact, line, note, point, trace
 from coursework.solution import Film, Moving, formula, given, mistake
 
 UNITS = {"phi_ddot": "rad/s^2"}
+EFFECTS = {
+    "velocity": ("omega", "phi_dot", "theta_dot", "v_O3"),
+    "acceleration": ("a_O3_x", "a_O3_y"),
+}
 
 
 def _vector(x, y, z):

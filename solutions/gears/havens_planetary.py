@@ -12,6 +12,7 @@ from coursework.figures import Figure, circle, contact, ground_pivot, link, pin,
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slotted_guide import SlottedGuidePose
+from coursework.mechanics import Body, Gear, Mechanism, Slide
 from coursework.polygons import Side, crank_v, guide_v, polygon_of_velocities, turning
 from coursework.solution import Moving, given, mistake, stable
 
@@ -21,6 +22,20 @@ LOOPS = {
         Vector("d", 0.0), Vector("r2", "theta1"), Vector("r3", "theta1"), Vector("rA", "theta4", -1),
     ),
 }  # fmt: skip
+EFFECTS = {
+    "velocity": ("omega4", "omega2", "v_A1_4", "v_slide", "v_B2_x", "v_B2_y", "omega3", "v_I"),
+}
+MECHANISM = Mechanism(
+    ground={"O1": 0, "O4": lambda d: -d},
+    bodies=(
+        Body("1", "theta1", "O1", {"A1": lambda r2, r3: r2 + r3}),
+        Body("2", "theta4", "A1", {"B2": "b"}),
+        Body("3", None, "O1"),
+        Body("4", "theta4", "O4"),
+    ),
+    slides=(Slide("A1", "2", on="4"),),
+    gears=(Gear("3", "2", carrier="1", radii=("r3", "r2")),),
+)
 
 
 def _arm(d, e, theta1):

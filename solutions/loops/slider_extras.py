@@ -16,6 +16,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.polygons import (
     crank_a,
     crank_v,
@@ -36,6 +37,17 @@ LOOPS = {
     ),
     "loop_2": (Vector("r4", "theta4"), Vector("r6", 0.0, -1), Vector("r5", "theta5", -1)),
 }  # fmt: skip
+MECHANISM = Mechanism(
+    ground={"D": 0, "O": lambda r1: 1j * r1},
+    bodies=(
+        Body("2", "theta2", "O", {"A": "r2"}),
+        Body("3", "theta3", "A", {"B": "r3"}),
+        Body("4", "theta4", "D", {"B": "r4"}),
+        Body("5", "theta5", "B", {"P": lambda r5: -r5}),
+        Body("6", 0, "P"),
+    ),
+    slides=(Slide("P", "6"),),
+)
 
 
 def mobility():

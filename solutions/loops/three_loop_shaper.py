@@ -16,6 +16,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import rrp, side_of
 from coursework.kinematics.four_bar import FourBar
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.polygons import (
     crank_a,
     crank_v,
@@ -70,6 +71,19 @@ LOOPS = {
         Vector("x8", 0.0, -1), Vector("d3", pi / 2, -1),
     ),
 }  # fmt: skip
+MECHANISM = Mechanism(
+    ground={"O": 0, "C": lambda xC, yC: xC + 1j * yC, "D": lambda xD, yD: xD + 1j * yD},
+    bodies=(
+        Body("2", "theta2", "O", {"A": "r2"}),
+        Body("3", "theta3", "A", {"B": "r3", "E": lambda r6, beta: polar(r6, beta)}),
+        Body("4", "theta4", "C", {"B": "r4"}),
+        Body("5", "theta5", "D", {"F": "r5"}),
+        Body("6", "theta5", "E"),
+        Body("7", "theta7", "F", {"G": "r7"}),
+        Body("8", 0, "G"),
+    ),
+    slides=(Slide("E", "6", on="5"), Slide("G", "8")),
+)
 
 
 def _frame(xC, yC):

@@ -16,6 +16,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
+from coursework.mechanics import Body, Mechanism
 from coursework.polygons import (
     crank_a,
     crank_v,
@@ -64,6 +65,16 @@ LOOPS = {
         Vector("xF", 0.0, -1), Vector("yF", pi / 2, -1), Vector("r7", "theta7", -1),
     ),
 }  # fmt: skip
+MECHANISM = Mechanism(
+    ground={"O": 0, "C": lambda xC, yC: xC + 1j * yC, "F": lambda xF, yF: xF + 1j * yF},
+    bodies=(
+        Body("2", "theta2", "O", {"A": "r2"}),
+        Body("3", "theta3", "A", {"B": "r3"}),
+        Body("4", "theta4", "C", {"B": "r4", "D": lambda r5, beta: polar(r5, beta)}),
+        Body("6", "theta6", "D", {"E": "r6"}),
+        Body("7", "theta7", "F", {"E": "r7"}),
+    ),
+)
 
 
 def mobility():

@@ -10,6 +10,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.kinematics.slotted_guide import SlottedGuidePose
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.polygons import crank_v, guide_v, polygon_of_velocities, slider_v, turning
 from coursework.solution import Moving, stable
 
@@ -20,6 +21,17 @@ LOOPS = {
     ),
 }  # fmt: skip
 RATES = {"xC": ("v_C", "")}
+MECHANISM = Mechanism(
+    ground={"O4": 0, "O2": lambda r1: 1j * r1},
+    bodies=(
+        Body("2", "theta2", "O2", {"A": "r2"}),
+        Body("3", "theta4", "A"),
+        Body("4", "theta4", "O4", {"P": "r4"}),
+        Body("5", "theta5", "P", {"C": "r5"}),
+        Body("6", 0, "C"),
+    ),
+    slides=(Slide("A", "3", on="4"), Slide("C", "6")),
+)
 
 
 def _arm(r1, r2, theta2):

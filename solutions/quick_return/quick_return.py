@@ -17,6 +17,7 @@ from coursework.kinematics.dyads import rrp, side_of
 from coursework.kinematics.rocker_slider import RockerSlider
 from coursework.kinematics.triangles import corner, corner_beside, third_side
 from coursework.kinematics.vectors import cross
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.polygons import (
     crank_a,
     crank_v,
@@ -54,6 +55,18 @@ LOOPS = {
     ),
 }  # fmt: skip
 RATES = {"xC": ("v_C", "a_C")}
+EFFECTS = {"advantage": ("mechanical_advantage",)}
+MECHANISM = Mechanism(
+    ground={"O": 0, "D": lambda r1, theta1: polar(r1, theta1)},
+    bodies=(
+        Body("2", "theta2", "O", {"A": "r2"}),
+        Body("3", "theta3", "A", {"B": "r3"}),
+        Body("4", "theta4", "D", {"B": "r4"}),
+        Body("5", "theta5", "B", {"C": "r5"}),
+        Body("6", 0, "C"),
+    ),
+    slides=(Slide("C", "6"),),
+)
 
 
 @formula(r"\sqrt{<r2>^2 + <r3>^2 - 2 \times <r2> \times <r3> \times \cos <angle_OAB>}")

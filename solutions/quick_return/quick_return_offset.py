@@ -15,6 +15,7 @@ from coursework.errors import CannotAssemble
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.solution import Moving, formula, given, mistake, stable
 
@@ -42,6 +43,15 @@ LOOPS = {
     ),
 }
 RATES = {"xC": ("v_C", "")}
+MECHANISM = Mechanism(
+    ground={"O": 0},
+    bodies=(
+        Body("2", "theta2", "O", {"A": "r2"}),
+        Body("3", "theta3", "A", {"C": "r3"}),
+        Body("4", 0, "C"),
+    ),
+    slides=(Slide("C", "4"),),
+)
 
 
 def _turning(r2, r3, e):

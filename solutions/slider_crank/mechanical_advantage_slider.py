@@ -10,6 +10,7 @@ from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.polygons import crank_v, polygon_of_velocities, slider_v
 from coursework.solution import Moving, given, mistake, stable
 
@@ -23,6 +24,20 @@ UNITS = {
     "V_BA": "mm/s",
 }
 SYMBOLS = {"V_BA": "V_{BA}"}
+EFFECTS = {
+    "position": ("theta3",),
+    "velocity": ("omega3", "r1_dot"),
+    "advantage": ("mechanical_advantage",),
+}
+MECHANISM = Mechanism(
+    ground={"O": 0},
+    bodies=(
+        Body("2", "theta2", "O", {"A": "r2"}),
+        Body("3", "theta3", "A", {"B": "r3"}),
+        Body("4", 0, "B"),
+    ),
+    slides=(Slide("B", "4"),),
+)
 
 
 def p(e, r2, theta2):

@@ -13,6 +13,7 @@ from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.polygons import (
     crank_a,
     crank_v,
@@ -32,6 +33,15 @@ LOOPS = {
         Vector("e", pi / 2, -1),
     ),
 }
+MECHANISM = Mechanism(
+    ground={"O": 0},
+    bodies=(
+        Body("2", "theta2", "O", {"A": "r2"}),
+        Body("3", "theta3", "A", {"B": "r3"}),
+        Body("4", 0, "B"),
+    ),
+    slides=(Slide("B", "4"),),
+)
 
 
 def p(e, r2, theta2):

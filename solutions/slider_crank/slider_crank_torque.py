@@ -17,6 +17,7 @@ from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.slider_crank import SliderCrank
+from coursework.mechanics import Body, Load, Mechanism, Slide
 from coursework.polygons import (
     Side,
     crank_a,
@@ -54,6 +55,25 @@ UNITS = {
     "R_A_y": "N",
 }
 SYMBOLS = {"side": r"\sigma", "friction": "f_s", "friction_force": "T"}
+EFFECTS = {
+    "position": ("theta3", "r1"),
+    "velocity": ("omega3", "r1_dot"),
+    "acceleration": ("alpha3", "r1_ddot", "a_G_x", "a_G_y"),
+    "forces": ("torque", "N_guide", "R_A", "R_B", "R_O"),
+}
+MECHANISM = Mechanism(
+    ground={"O": 0},
+    bodies=(
+        Body("2", "theta2", "O", {"A": "r2"}, inertia="J2"),
+        Body(
+            "3", "theta3", "A", {"B": "r3", "G": lambda s3, r3: s3 * r3}, mass="m3", inertia="J3", centre="G"
+        ),
+        Body("4", 0, "B", mass="m4"),
+    ),
+    slides=(Slide("B", "4"),),
+    loads=(Load("B", force="F"),),
+    friction={"B": "f"},
+)
 
 
 class _Loads(NamedTuple):

@@ -13,6 +13,7 @@ from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slotted_guide import SlottedGuidePose
+from coursework.mechanics import Body, Mechanism, Slide
 from coursework.polygons import (
     crank_a,
     crank_v,
@@ -26,6 +27,19 @@ from coursework.solution import Moving, formula, given, mistake, stable
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
 SYMBOLS = {"delta": r"\delta"}
 LOOPS = {"loop_1": (Vector("r1", "theta1"), Vector("r2", "theta2"), Vector("rA", "theta4", -1))}
+EFFECTS = {
+    "acceleration": ("rA_ddot", "alpha4", "a_centripetal", "a_coriolis"),
+    "coriolis": ("a_coriolis",),
+}
+MECHANISM = Mechanism(
+    ground={"O4": 0, "O2": lambda r1, theta1: polar(r1, theta1)},
+    bodies=(
+        Body("2", "theta2", "O2", {"A": "r2"}),
+        Body("3", "theta4", "A"),
+        Body("4", "theta4", "O4"),
+    ),
+    slides=(Slide("A", "3", on="4"),),
+)
 
 
 def _arm(r1, r2, theta1, theta2):

@@ -1,0 +1,84 @@
+"""What the joints bear: three equations a body, for every instant at once.
+
+The unknowns are the forces of the pins on the body that they are named for (x and y), of the slides on the sliding body
+(across the guide, to the left of its direction, and a moment), of the gears on the first wheel (along the common tangent,
+to the left of the line of centres), and the effort of the drive. Newtons and newton metres.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from coursework.mechanics.rates import Stance, solved
+from coursework.mechanics.wrenches import Wrench
+
+PIECE = 1024  #: instants whose equations are solved together: their matrices stay in the cache
+
+
+class Equilibrium:
+    """The equations of a mechanism's bodies at the instants of a stance."""
+
+    def __init__(self, stance: Stance) -> None:
+        self.stance = stance
+        self.linkage = stance.linkage
+        self.bodies = len(self.linkage.origins)
+        names: list[str] = []
+        for pin in self.linkage.pins:
+            names += [f"{pin.name}_x", f"{pin.name}_y"]
+        for slide in self.linkage.slides:
+            names += [f"{slide.name}_n", f"{slide.name}_m"]
+        names += [f"{gear.name}_t" for gear in self.linkage.gears]
+        self.names = (*names, "effort")
+
+    def column(self, name: str) -> int:
+        """Where an unknown stands."""
+        return self.names.index(name)
+
+    @cached_property
+    def matrix(self) -> np.ndarray:
+        """Shape ``(n, 3 bodies, unknowns)``; rows are forces along x, along y, and moments about the origins."""
+        size = 3 * self.bodies
+        columns = [*self._of_pins(), *self._of_slides(), *self._of_gears(), self._of_drive()]
+        found = np.empty((self.stance.count, size, len(columns)))
+        for number, wrench in enumerate(columns):
+            found[:, :, number] = self._rows(wrench)
+        return found
+
+    def _rows(self, wrench: Wrench) -> np.ndarray:
+        """A wrench as rows of the equations, shape ``(n, 3 bodies)``: the ground bears what it must."""
+        parts = (wrench.forces.real[:-1], wrench.forces.imag[:-1], wrench.moments[:-1])
+        return np.stack(parts, axis=1).reshape(3 * self.bodies, -1).T
+
+    def _of_pins(self) -> list[Wrench]:
+        return [
+            Wrench.none(self.stance).push(pin.of, force).push(pin.on, -force)
+            for pin in self.linkage.pins
+            for force in (1.0, 1j)
+        ]
+
+    def _of_slides(self) -> list[Wrench]:
+        found = []
+        for slide in self.linkage.slides:
+            found.append(Wrench.none(self.stance).rub(slide, 1j * self.stance.direction(slide)))
+            found.append(Wrench.none(self.stance).turn(slide.of.body, 1.0).turn(slide.on, -1.0))
+        return found
+
+    def _of_gears(self) -> list[Wrench]:
+        found = []
+        for gear in self.linkage.gears:
+            centres = [self.stance.origins[b] for b in (gear.first, gear.second)]
+            line = (centres[1] - centres[0]) / sum(gear.radii)
+            touching, tangent = gear.radii[0] * line, 1j * line
+            wrench = Wrench.none(self.stance).push_at(gear.first, touching, tangent)
+            found.append(wrench.push_at(gear.second, touching + centres[0] - centres[1], -tangent))
+        return found
+
+    def _of_drive(self) -> Wrench:
+        return Wrench.none(self.stance).turn(self.linkage.driven, 1.0)
+
+    def under(self, *wrenches: Wrench) -> np.ndarray:
+        """The unknowns under each of some wrenches alone, shape ``(n, unknowns, wrenches)``; NaN in a dead point."""
+        right = -np.stack([self._rows(wrench) for wrench in wrenches], axis=-1)
+        return solved(self.matrix, right)

@@ -1,0 +1,174 @@
+"""What a scene calls for, on a mechanism: the drive's effort by virtual power, and what the joints bear where it is asked.
+
+Nothing is computed that no effect needs: without inertia no acceleration, without friction no iteration, without a
+question about joints no equilibrium.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from coursework.mechanics.equilibrium import PIECE, Equilibrium
+from coursework.mechanics.friction import Contact, Rubbing
+from coursework.mechanics.linkage import Linkage
+from coursework.mechanics.loads import Acting, By, Strokes, strokes
+from coursework.mechanics.rates import Stance
+from coursework.mechanics.wrenches import Wrench, inertia_at_rate, inertia_at_start, weight
+
+Pose = Callable[[np.ndarray], Stance]  #: a mechanism at driver's angles, radians
+_STEPS = 1440  #: of a turn, to find how long strokes are
+
+
+@dataclass(frozen=True)
+class Borne:
+    """What is found at ``n`` instants: the drive's effort (N m), and the unknowns of the equilibrium by name, if asked.
+
+    ``rubs``: what each contact rubs with, by joint, along its direction.
+    """
+
+    effort: np.ndarray
+    joints: dict[str, np.ndarray] = field(default_factory=dict)
+    rubs: dict[str, np.ndarray] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Forces:
+    """What acts on a mechanism.
+
+    ``downwards``: the acceleration of gravity, m/s^2, complex; 0 without the effect. ``inertia``: whether masses count;
+    ``flywheel``: kg m^2 on the driver's shaft.
+    """
+
+    linkage: Linkage
+    pose: Pose
+    downwards: complex = 0j
+    inertia: bool = False
+    flywheel: float = 0.0
+    loads: tuple[Acting, ...] = ()
+    contacts: tuple[Contact, ...] = ()
+    by: By | None = None
+
+    @property
+    def needs_bends(self) -> bool:
+        """Whether second derivatives are needed."""
+        return self.inertia and bool(self.linkage.masses)
+
+    @property
+    def resists(self) -> bool:
+        """Whether something always goes against the motion, so that the mechanism can stick."""
+        return bool(self.contacts) or any(acting.turns_over for acting in self.loads)
+
+    @cached_property
+    def rubbing(self) -> Rubbing:
+        return Rubbing(self.contacts)
+
+    # --------------------------------------------------------------------- loads
+
+    @cached_property
+    def strokes(self) -> tuple[Strokes, ...]:
+        """When each load acts."""
+        if not any(acting.load.during != "always" for acting in self.loads):
+            return tuple(Strokes() for _ in self.loads)
+        step = 2 * np.pi / _STEPS
+        stance = self.pose((np.arange(_STEPS) + 0.5) * step)
+        found = []
+        for acting in self.loads:
+            pace = acting.pace(stance)
+            forward, backward = (share_of_turn(way * pace) for way in (1.0, -1.0))
+            found.append(strokes(acting, forward, backward, 1))
+        return tuple(found)
+
+    def load_sizes(self, stance: Stance, driver: np.ndarray, way: np.ndarray | float) -> list[np.ndarray]:
+        """How large each load is along its line, for the way the driver turns: +1, -1, 0 at rest."""
+        found = []
+        for acting, when in zip(self.loads, self.strokes, strict=True):
+            assert self.by is not None or not acting.load.by, "a scene says how positions are found"
+            sizes = acting.sizes(stance, driver, self.by or _no_position)
+            if acting.turns_over or when.way:
+                pace = np.sign(acting.pace(stance))
+                sizes = sizes * when.acts(pace) * (-pace * way if acting.turns_over else 1.0)
+            found.append(sizes)
+        return found
+
+    # -------------------------------------------------------------------- totals
+
+    def applied(
+        self, stance: Stance, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray
+    ) -> Wrench:
+        """Everything but friction and the joints."""
+        total = Wrench.none(stance)
+        for acting, size in zip(self.loads, self.load_sizes(stance, driver, np.sign(speed)), strict=True):
+            total = total + acting.pull(stance) * size
+        if self.downwards:
+            total = total + weight(stance, self.downwards)
+        if self.needs_bends:
+            total = total + inertia_at_rate(stance) * speed**2 + inertia_at_start(stance) * acceleration
+        return total
+
+    def over(
+        self, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray, *, joints: bool = False
+    ) -> Borne:
+        """At angles of the driver (radians), its speed and its acceleration, shape ``(n,)``; NaN where it jams or does
+        not close."""
+        found = [
+            self._piece(driver[k], speed[k], acceleration[k], joints)
+            for k in _pieces(len(driver), PIECE if joints or self.contacts else 16 * PIECE)
+        ]
+        return Borne(
+            np.concatenate([f.effort for f in found]),
+            {n: np.concatenate([f.joints[n] for f in found]) for n in found[0].joints},
+            {n: np.concatenate([f.rubs[n] for f in found]) for n in found[0].rubs},
+        )
+
+    def _piece(self, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray, joints: bool) -> Borne:
+        stance = self.pose(driver)
+        with np.errstate(all="ignore"):
+            applied = self.applied(stance, driver, speed, acceleration)
+            spun = self.flywheel * acceleration
+            if not joints and not self.contacts:
+                return Borne(applied.effort + spun)
+            equations = Equilibrium(stance)
+            if not self.contacts:
+                return self._borne(equations, equations.under(applied)[:, :, 0], spun)
+            under = equations.under(applied, *(c.rubs(stance) for c in self.contacts))
+            sense = np.stack([np.sign(c.rate(stance) * speed) for c in self.contacts], axis=-1)
+            reading = self.rubbing.reading(equations)
+            free, spread = under[:, :, 0] @ reading.T, -np.einsum("ku,nuc->nkc", reading, under[:, :, 1:])
+            rubs = self.rubbing.balanced(free, spread, sense)
+            borne = self._borne(
+                equations, under[:, :, 0] + np.einsum("nuc,nc->nu", under[:, :, 1:], rubs), spun
+            )
+            return Borne(borne.effort, borne.joints, self._by_joint(-rubs))
+
+    def _by_joint(self, rubs: np.ndarray) -> dict[str, np.ndarray]:
+        found: dict[str, np.ndarray] = {}
+        for contact, own in zip(self.contacts, rubs.T, strict=True):
+            found[contact.joint.name] = found.get(contact.joint.name, 0.0) + own
+        return found
+
+    @staticmethod
+    def _borne(equations: Equilibrium, unknowns: np.ndarray, spun: np.ndarray) -> Borne:
+        joints = dict(zip(equations.names, unknowns.T, strict=True))
+        return Borne(joints.pop("effort") + spun, joints)
+
+
+def share_of_turn(pace: np.ndarray) -> float:
+    """How much of a turn, radians, a function that is sampled in the middle of equal steps is positive."""
+    step, after = 2 * np.pi / len(pace), np.roll(pace, -1)
+    with np.errstate(all="ignore"):
+        crossing = np.clip(np.where(pace > 0, pace, after) / np.abs(pace - after), 0.0, 1.0)
+    shares = np.where((pace > 0) & (after > 0), 1.0, np.where((pace > 0) | (after > 0), crossing, 0.0))
+    return float(np.nansum(shares) * step)
+
+
+def _pieces(count: int, size: int) -> Iterator[slice]:
+    for start in range(0, count, size):
+        yield slice(start, start + size)
+
+
+def _no_position(name: str, stance: Stance) -> np.ndarray:
+    raise AssertionError(f"nothing says where {name} is")

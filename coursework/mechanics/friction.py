@@ -1,0 +1,161 @@
+"""Friction of Coulomb, in slides and pins: which side of a guide bears, and where a mechanism jams.
+
+What rubs is a *contact*: a slide at its point, the two edges of a long slide, or a pin's journal. A contact bears a
+normal force s; friction there has the size f |s| (f rho |s|, as a moment, in a pin of radius rho), against the motion. Without
+friction the contacts bear s0; with it
+
+    s = s0 - C w,    w = sign of the motion * f * |s|,
+
+where C says what unit friction at one contact changes at another. The solution wanted is the one that grows out of s0 as
+friction grows from nothing: it ends where the equations become singular. There, and beyond, the mechanism jams.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from coursework.errors import unknown
+from coursework.mechanics.equilibrium import Equilibrium
+from coursework.mechanics.linkage import MM, Linkage, PinJoint, SlideJoint
+from coursework.mechanics.rates import Stance, solved
+from coursework.mechanics.wrenches import Wrench
+
+_STEPS = 4  #: in which friction grows to what it is
+_ROUNDS = 40  #: of Newton's method at a step; sides and magnitudes settle in a few
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Something that rubs. ``reads`` gives what it bears from the joints' unknowns: one row for a slide or an edge, two
+    for a pin; ``size`` is the coefficient, in a pin times its radius in metres."""
+
+    joint: PinJoint | SlideJoint
+    size: float
+    reads: tuple[Mapping[str, float], ...]
+
+    def rubs(self, stance: Stance) -> Wrench:
+        """Friction of size one against a motion in the joint's direction."""
+        wrench = Wrench.none(stance)
+        if isinstance(self.joint, SlideJoint):
+            return wrench.rub(self.joint, -stance.direction(self.joint))
+        return wrench.turn(self.joint.of.body, -1.0).turn(self.joint.on.body, 1.0)
+
+    def rate(self, stance: Stance) -> np.ndarray:
+        """How the joint moves for one of the driver: what rubs goes against it."""
+        if isinstance(self.joint, SlideJoint):
+            return stance.sliding(self.joint)
+        return stance.rates[self.joint.of.body] - stance.rates[self.joint.on.body]
+
+
+def contacts(linkage: Linkage, friction: Mapping[str, Any]) -> tuple[Contact, ...]:
+    """What rubs, for coefficients by joint; a pin has a pair of its coefficient and the radius of its journal, mm.
+
+    Raises
+    ------
+    UnknownName
+        A joint that the mechanism does not have.
+    """
+    slides = {joint.name: joint for joint in linkage.slides}
+    pins = {joint.name: joint for joint in linkage.pins}
+    found: list[Contact] = []
+    for name, given in friction.items():
+        if isinstance(given, (tuple, list)):
+            if name not in pins:
+                raise unknown("pin", name, pins, "the mechanism")
+            size = float(linkage.number(given[0])) * float(linkage.number(given[1])) * MM
+            found.append(Contact(pins[name], size, ({f"{name}_x": 1.0}, {f"{name}_y": 1.0})))
+        elif f"{name} slide" in slides or name in slides:
+            found += _of_slide(slides.get(f"{name} slide") or slides[name], float(linkage.number(given)))
+        else:
+            raise unknown("slide", name, [n.removesuffix(" slide") for n in slides], "the mechanism")
+    return tuple(contact for contact in found if contact.size)
+
+
+def _of_slide(slide: SlideJoint, size: float) -> list[Contact]:
+    normal, moment = f"{slide.name}_n", f"{slide.name}_m"
+    if not slide.length:
+        return [Contact(slide, size, ({normal: 1.0},))]
+    edges = [({normal: 0.5, moment: side / slide.length},) for side in (1.0, -1.0)]
+    return [Contact(slide, size, edge) for edge in edges]
+
+
+class Rubbing:
+    """The contacts of a mechanism, and how the normal forces of each follow from what all bear.
+
+    Attributes
+    ----------
+    owner
+        The contact that each normal force belongs to, shape ``(k,)``: two in a row for a pin.
+    """
+
+    def __init__(self, contacts: Sequence[Contact]) -> None:
+        self.contacts = tuple(contacts)
+        rows = [(number, row) for number, contact in enumerate(contacts) for row in contact.reads]
+        self.owner = np.array([number for number, _ in rows], dtype=int)
+        self._rows = [row for _, row in rows]
+        self.sizes = np.array([contact.size for contact in contacts])
+
+    def reading(self, equations: Equilibrium) -> np.ndarray:
+        """From the unknowns of the equations to the normal forces, shape ``(k, unknowns)``."""
+        found = np.zeros((len(self._rows), len(equations.names)))
+        for number, row in enumerate(self._rows):
+            for name, share in row.items():
+                found[number, equations.column(name)] = share
+        return found
+
+    def magnitudes(self, normals: np.ndarray) -> np.ndarray:
+        """|s| of each contact, shape ``(n, contacts)``, for normal forces ``(n, k)``."""
+        squares = np.zeros((len(normals), len(self.contacts)))
+        np.add.at(squares.T, self.owner, (normals**2).T)
+        return np.sqrt(squares)
+
+    def _slopes(self, normals: np.ndarray) -> np.ndarray:
+        """Derivatives of the magnitudes, shape ``(n, contacts, k)``: signs for slides, unit vectors for pins."""
+        magnitudes = self.magnitudes(normals)[:, self.owner]
+        with np.errstate(all="ignore"):
+            share = np.where(magnitudes > 0, normals / magnitudes, 0.0)
+        found = np.zeros((len(normals), len(self.contacts), len(self.owner)))
+        found[:, self.owner, np.arange(len(self.owner))] = share
+        return found
+
+    def balanced(self, free: np.ndarray, spread: np.ndarray, sense: np.ndarray) -> np.ndarray:
+        """What the contacts rub with, w, shape ``(n, contacts)``; NaN where the mechanism jams.
+
+        Parameters
+        ----------
+        free
+            Normal forces without friction, ``(n, k)``.
+        spread
+            What unit friction at each contact takes from them, ``(n, k, contacts)``.
+        sense
+            Signs of the motions, ``(n, contacts)``.
+        """
+        normals = free
+        for step in range(1, _STEPS + 1):
+            strength = sense * self.sizes * (step / _STEPS)
+            normals, good = self._settled(free, spread, strength, normals)
+            normals = np.where(good[:, None], normals, np.nan)
+        return strength * self.magnitudes(normals)
+
+    def _settled(
+        self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray, start: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Newton's method from a solution for a little less friction; and where it holds."""
+        normals, one = start, np.eye(free.shape[1])
+        size = np.abs(free).max(axis=1) + np.abs(start).max(axis=1)
+        for _ in range(_ROUNDS):
+            lacking = normals - free + np.einsum("nkc,nc->nk", spread, strength * self.magnitudes(normals))
+            slope = one + np.einsum("nkc,nc,ncj->nkj", spread, strength, self._slopes(normals))
+            step = solved(slope, lacking[..., None])[..., 0]
+            normals = normals - step
+            if not np.any(np.abs(step).max(axis=1) > 1e-14 * size):
+                break
+        lacking = normals - free + np.einsum("nkc,nc->nk", spread, strength * self.magnitudes(normals))
+        slope = one + np.einsum("nkc,nc,ncj->nkj", spread, strength, self._slopes(normals))
+        with np.errstate(all="ignore"):
+            good = (np.linalg.det(slope) > 0) & (np.abs(lacking).max(axis=1) <= 1e-9 * size + 1e-300)
+        return normals, good

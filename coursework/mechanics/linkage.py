@@ -1,0 +1,201 @@
+"""A mechanism with its numbers: places in metres as complex numbers, bodies by their place in a list.
+
+The ground stands last in every list of bodies, so that its index is -1. Coordinates are the driver's angle, index 0,
+and the angles that follow from it, from 1 on; a body that never turns has none.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.errors import BadCourse
+from coursework.mechanics.statement import GROUND, Mechanism, Pin, number
+
+MM = 1e-3
+NONE = -1  #: the coordinate of what never turns
+
+
+class Held(NamedTuple):
+    """A place in a body's frame."""
+
+    body: int
+    place: complex
+
+
+class PinJoint(NamedTuple):
+    """A pin: where it lies on either body; ``closes`` where the frames do not already hold it together."""
+
+    name: str
+    of: Held
+    on: Held
+    closes: bool
+
+
+class SlideJoint(NamedTuple):
+    """A slide: its point on the sliding body, the guide, the direction in the guide's frame (unit vector), its length."""
+
+    name: str
+    of: Held
+    on: int
+    along: complex
+    length: float
+
+
+class GearJoint(NamedTuple):
+    """A gear: two wheels, what carries their centres, their radii; the second one negative where it is toothed inside."""
+
+    name: str
+    first: int
+    second: int
+    carrier: int
+    radii: tuple[float, float]
+
+
+class Mass(NamedTuple):
+    """What a body weighs, kg, its moment of inertia about its centre, kg m^2, and where the centre lies."""
+
+    body: int
+    mass: float
+    inertia: float
+    centre: complex
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """The numbers of a mechanism of one degree of freedom."""
+
+    mechanism: Mechanism
+    values: Mapping[str, Any]
+    driver: str  #: the quantity of the driving angle
+
+    # -------------------------------------------------------------------- bodies
+
+    @cached_property
+    def index(self) -> dict[str, int]:
+        """Bodies by name; the ground is -1."""
+        return {**{name: k for k, name in enumerate(self.mechanism.names)}, GROUND: -1}
+
+    @cached_property
+    def driven(self) -> int:
+        """The body that the drive turns."""
+        return self.index[self.mechanism.driven_by(self.driver)]
+
+    @cached_property
+    def coordinates(self) -> tuple[int, ...]:
+        """The coordinate that turns each body, the ground last."""
+        names: dict[Any, int] = {self.driver: 0}
+        found = []
+        for body in self.mechanism.bodies:
+            if isinstance(body.angle, (int, float)):
+                found.append(NONE)
+                continue
+            found.append(names.setdefault(body.angle if body.angle else (body.name,), len(names)))
+        return (*found, NONE)
+
+    @property
+    def unknowns(self) -> int:
+        """How many coordinates follow from the driver's angle."""
+        return max(self.coordinates)
+
+    @cached_property
+    def constant_turns(self) -> np.ndarray:
+        """The angle of each body that never turns, radians; 0 for the others."""
+        angles = [b.angle for b in self.mechanism.bodies]
+        return np.radians([float(a) if isinstance(a, (int, float)) else 0.0 for a in angles] + [0.0])
+
+    # -------------------------------------------------------------------- places
+
+    def number(self, place: Any) -> Any:
+        return number(place, self.values)
+
+    def held(self, point: str, body: str) -> Held:
+        """Where a point lies on a body that has it."""
+        return Held(self.index[body], complex(self.number(self.mechanism.place(point, body))) * MM)
+
+    def owner(self, point: str) -> Held:
+        """A point on the first body that has it."""
+        return self.held(point, self.mechanism.holders(point)[0])
+
+    @cached_property
+    def origins(self) -> tuple[Held, ...]:
+        """Where the frame of each body has its origin: on a body before it, or on the ground."""
+        found = []
+        for k, body in enumerate(self.mechanism.bodies):
+            before = [h for h in self.mechanism.holders(body.at) if self.index[h] < k]
+            found.append(self.held(body.at, before[0]))
+        return tuple(found)
+
+    # -------------------------------------------------------------------- joints
+
+    @cached_property
+    def pins(self) -> tuple[PinJoint, ...]:
+        return tuple(self._pin(pin) for pin in self.mechanism.pins)
+
+    def _pin(self, pin: Pin) -> PinJoint:
+        body = self.mechanism.body(pin.of)
+        several = len(self.mechanism.holders(pin.at)) > 2
+        name = f"{pin.at} {pin.of}" if several else pin.at
+        return PinJoint(name, self.held(pin.at, pin.of), self.held(pin.at, pin.on), body.at != pin.at)
+
+    @cached_property
+    def slides(self) -> tuple[SlideJoint, ...]:
+        pinned = {pin.at for pin in self.mechanism.pins}
+        return tuple(
+            SlideJoint(
+                f"{s.at} slide" if s.at in pinned else s.at,
+                self.held(s.at, s.of),
+                self.index[s.on],
+                complex(np.exp(1j * math.radians(self.number(s.along)))),
+                float(self.number(s.length)) * MM,
+            )
+            for s in self.mechanism.slides
+        )
+
+    @cached_property
+    def gears(self) -> tuple[GearJoint, ...]:
+        found = []
+        for gear in self.mechanism.gears:
+            first, second = (float(self.number(r)) * MM for r in gear.radii)
+            bodies = (self.index[n] for n in (gear.first, gear.second, gear.carrier))
+            found.append(
+                GearJoint(f"{gear.first}/{gear.second}", *bodies, (first, -second if gear.inner else second))
+            )
+        return tuple(found)
+
+    @cached_property
+    def masses(self) -> tuple[Mass, ...]:
+        """The bodies that have a mass or an inertia."""
+        found = []
+        for body in self.mechanism.bodies:
+            mass, inertia = float(self.number(body.mass)), float(self.number(body.inertia))
+            if mass or inertia:
+                found.append(
+                    Mass(
+                        self.index[body.name],
+                        mass,
+                        inertia,
+                        self.held(body.centre or body.at, body.name).place,
+                    )
+                )
+        return tuple(found)
+
+    def check(self) -> None:
+        """Raise where the mechanism is none of one degree of freedom.
+
+        Raises
+        ------
+        BadCourse
+            It counts bodies and joints.
+        """
+        if self.mechanism.mobility != 1:
+            counts = (len(self.mechanism.bodies), len(self.pins) + len(self.slides), len(self.gears))
+            raise BadCourse(
+                f"MECHANISM has {self.mechanism.mobility} degrees of freedom, a driver moves 1: 3 x {counts[0]} bodies, "
+                f"less 2 x {counts[1]} pins and slides, less {counts[2]} gears"
+            )

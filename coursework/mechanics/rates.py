@@ -1,0 +1,205 @@
+"""How a mechanism moves with its driver: places, and their first and second derivatives by its angle.
+
+Angles follow from the exercise; all else from the joints: a pin holds two points together, a slide lets one go along
+the guide alone, a gear rolls. The equations are linear in the derivatives, and solved at every instant at once.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+
+from coursework.mechanics.linkage import NONE, Held, Linkage, SlideJoint
+
+
+class Stance:
+    """A mechanism at ``n`` instants.
+
+    Parameters
+    ----------
+    linkage
+        Its numbers.
+    turns
+        The angle of each body and of the ground, radians, shape ``(bodies + 1, n)``; what never matters is 0.
+
+    Lengths are in metres and complex, x to the right and y up; derivatives are by the driver's angle in radians, each
+    computed when it is first asked for. NaN where the mechanism does not close or stands in a dead point.
+    """
+
+    def __init__(self, linkage: Linkage, turns: np.ndarray) -> None:
+        self.linkage = linkage
+        self.turns = turns
+
+    @property
+    def count(self) -> int:
+        return self.turns.shape[1]
+
+    @cached_property
+    def headings(self) -> np.ndarray:
+        """Unit vectors of the frames."""
+        return np.cos(self.turns) + 1j * np.sin(self.turns)
+
+    @cached_property
+    def origins(self) -> np.ndarray:
+        """Where the frames lie; the ground's at 0."""
+        found = np.zeros(self.turns.shape, dtype=complex)
+        for body, held in enumerate(self.linkage.origins):
+            found[body] = found[held.body] + self.arm(held)
+        return found
+
+    def arm(self, held: Held) -> np.ndarray:
+        """From the origin of a body's frame to a place on it."""
+        return held.place * self.headings[held.body]
+
+    def place(self, held: Held) -> np.ndarray:
+        return self.origins[held.body] + self.arm(held)
+
+    def direction(self, slide: SlideJoint) -> np.ndarray:
+        """Along which a slide goes: unit vectors."""
+        return slide.along * self.headings[slide.on]
+
+    # --------------------------------------------------------------- first order
+
+    @cached_property
+    def _partials(self) -> np.ndarray:
+        """Derivatives of the origins by each coordinate, shape ``(bodies + 1, coordinates, n)``."""
+        bodies, n = self.turns.shape
+        found = np.zeros((bodies, self.linkage.unknowns + 1, n), dtype=complex)
+        for body, held in enumerate(self.linkage.origins):
+            found[body] = self._partial(held, found)
+        return found
+
+    def _partial(self, held: Held, origins: np.ndarray) -> np.ndarray:
+        found = origins[held.body].copy()
+        if (own := self.linkage.coordinates[held.body]) != NONE:
+            found[own] += 1j * self.arm(held)
+        return found
+
+    @cached_property
+    def _conditions(self) -> np.ndarray:
+        """What each joint holds to nothing, linear in the rates: shape ``(conditions, coordinates, n)``."""
+        rows = []
+        for pin in self.linkage.pins:
+            if pin.closes:
+                gap = self._partial(pin.of, self._partials) - self._partial(pin.on, self._partials)
+                rows += [gap.real, gap.imag]
+        for slide in self.linkage.slides:
+            rows.append((np.conj(1j * self.direction(slide)) * self._sliding(slide)).real)
+        for gear in self.linkage.gears:
+            rows.append(self._rolling(gear))
+        shape = (len(rows), self.linkage.unknowns + 1, self.count)
+        return np.array(rows) if rows else np.zeros(shape)
+
+    def _sliding(self, slide: SlideJoint) -> np.ndarray:
+        """Of a slide's point, as seen from the guide's own point under it: by each coordinate."""
+        moved = self._partial(slide.of, self._partials) - self._partials[slide.on]
+        if (own := self.linkage.coordinates[slide.on]) != NONE:
+            moved[own] -= 1j * (self.place(slide.of) - self.origins[slide.on])
+        return moved
+
+    def _rolling(self, gear: object) -> np.ndarray:
+        row = np.zeros((self.linkage.unknowns + 1, self.count))
+        first, second = gear.radii  # type: ignore[attr-defined]
+        for body, share in ((gear.first, first), (gear.second, second), (gear.carrier, -first - second)):  # type: ignore[attr-defined]
+            if (own := self.linkage.coordinates[body]) != NONE:
+                row[own] += share
+        return row
+
+    def _solved(self, right: np.ndarray) -> np.ndarray:
+        """Rates of the unknown coordinates for right sides ``(conditions, n)``."""
+        if not self.linkage.unknowns:
+            return np.zeros((0, self.count))
+        matrix = np.moveaxis(self._conditions[:, 1:], -1, 0)
+        return solved(matrix, right.T[..., None])[..., 0].T
+
+    @cached_property
+    def rates(self) -> np.ndarray:
+        """How fast each body turns, for one of the driver: shape ``(bodies + 1, n)``."""
+        unknown = self._solved(-self._conditions[:, 0])
+        return self._by_body(np.concatenate([np.ones((1, self.count)), unknown]))
+
+    def _by_body(self, coordinates: np.ndarray) -> np.ndarray:
+        nothing = np.zeros(self.count)
+        return np.array([nothing if own == NONE else coordinates[own] for own in self.linkage.coordinates])
+
+    @cached_property
+    def origin_rates(self) -> np.ndarray:
+        """How the frames' origins move, for one of the driver."""
+        found = np.zeros(self.turns.shape, dtype=complex)
+        for body, held in enumerate(self.linkage.origins):
+            found[body] = found[held.body] + 1j * self.rates[held.body] * self.arm(held)
+        return found
+
+    def rate(self, held: Held) -> np.ndarray:
+        """How a place moves, for one of the driver."""
+        return self.origin_rates[held.body] + 1j * self.rates[held.body] * self.arm(held)
+
+    def sliding(self, slide: SlideJoint) -> np.ndarray:
+        """How fast a slide goes along its direction, for one of the driver: signed."""
+        under = self.place(slide.of) - self.origins[slide.on]
+        guide = self.origin_rates[slide.on] + 1j * self.rates[slide.on] * under
+        return (np.conj(self.direction(slide)) * (self.rate(slide.of) - guide)).real
+
+    # -------------------------------------------------------------- second order
+
+    @cached_property
+    def bends(self) -> np.ndarray:
+        """Second derivative of each body's angle by the driver's."""
+        rows = []
+        still = np.zeros(self.turns.shape)
+        origins = self._origin_bends(still)
+        for pin in self.linkage.pins:
+            if pin.closes:
+                gap = self._bend(pin.of, origins, still) - self._bend(pin.on, origins, still)
+                rows += [gap.real, gap.imag]
+        for slide in self.linkage.slides:
+            under = self.place(slide.of) - self.origins[slide.on]
+            guide = origins[slide.on] - self.rates[slide.on] ** 2 * under
+            along = self.direction(slide)
+            turned = 2j * self.rates[slide.on] * self.sliding(slide) * along
+            rows.append((np.conj(1j * along) * (self._bend(slide.of, origins, still) - guide - turned)).real)
+        rows += [np.zeros(self.count) for _ in self.linkage.gears]
+        unknown = self._solved(-np.array(rows)) if rows else np.zeros((0, self.count))
+        return self._by_body(np.concatenate([np.zeros((1, self.count)), unknown]))
+
+    def _origin_bends(self, turning: np.ndarray) -> np.ndarray:
+        found = np.zeros(self.turns.shape, dtype=complex)
+        for body, held in enumerate(self.linkage.origins):
+            found[body] = self._bend(held, found, turning)
+        return found
+
+    def _bend(self, held: Held, origins: np.ndarray, turning: np.ndarray) -> np.ndarray:
+        """Second derivative of a place, for second derivatives of the origins and of the bodies' angles."""
+        return origins[held.body] + (1j * turning[held.body] - self.rates[held.body] ** 2) * self.arm(held)
+
+    @cached_property
+    def origin_bends(self) -> np.ndarray:
+        """Second derivative of the frames' origins by the driver's angle."""
+        return self._origin_bends(self.bends)
+
+    def bend(self, held: Held) -> np.ndarray:
+        """Second derivative of a place by the driver's angle."""
+        return self._bend(held, self.origin_bends, self.bends)
+
+    # ---------------------------------------------------------------- certificate
+
+    @cached_property
+    def gap(self) -> np.ndarray:
+        """By how much the pins that close the loops fail to meet, metres: rounding, where all is right."""
+        gaps = [abs(self.place(p.of) - self.place(p.on)) for p in self.linkage.pins if p.closes]
+        return np.max(gaps, axis=0) if gaps else np.zeros(self.count)
+
+
+def solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Many small linear systems, shapes ``(n, k, k)`` and ``(n, k, columns)``; NaN where one is singular."""
+    try:
+        return np.linalg.solve(matrix, right)
+    except np.linalg.LinAlgError:
+        found = np.full(right.shape, np.nan)
+        for place in range(len(matrix)):
+            try:
+                found[place] = np.linalg.solve(matrix[place], right[place])
+            except np.linalg.LinAlgError:
+                continue
+        return found

@@ -1,0 +1,255 @@
+"""The statement of a mechanism: its bodies, where each one's frame lies, and what joins them.
+
+A place is a quantity's name, a number, or a function of quantities: mm in the frame of the body that holds it, complex
+where it does not lie on the frame's x axis. Places do not move within their body.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from coursework.errors import BadCourse, nearest
+
+GROUND = "ground"
+
+Place: TypeAlias = (
+    str | complex | Callable[..., Any]
+)  #: what gives a number: a quantity, a number, a function
+
+
+@dataclass(frozen=True)
+class Body:
+    """A moving body.
+
+    Attributes
+    ----------
+    name
+        What the course calls it: ``"3"``.
+    angle
+        The quantity that says how its frame is turned, degrees; a number for a body that never turns; None for a wheel
+        whose marks nobody looks at: only its rate counts, and a gear gives it.
+    at
+        The point where its frame has its origin, one of another body or of the ground.
+    points
+        Its other points, by name.
+    mass, inertia
+        kg, and kg m^2 about the centre of mass; none unless told.
+    centre
+        The point that is its centre of mass; the origin of its frame unless told.
+    """
+
+    name: str
+    angle: str | float | None
+    at: str
+    points: Mapping[str, Place] = field(default_factory=dict)
+    mass: Place = 0.0
+    inertia: Place = 0.0
+    centre: str = ""
+
+    @property
+    def places(self) -> Mapping[str, Place]:
+        """Every point of the body, its origin first."""
+        return {self.at: 0.0, **self.points}
+
+
+@dataclass(frozen=True)
+class Slide:
+    """A body that slides on another along a line of it: at a point, in a direction of the guide's frame (degrees).
+
+    The two are turned alike. ``length`` (mm): a long slide bears on both of its edges; one without length at its point.
+    """
+
+    at: str
+    of: str
+    on: str = GROUND
+    along: Place = 0.0
+    length: Place = 0.0
+
+
+@dataclass(frozen=True)
+class Gear:
+    """Two round wheels that roll on each other without slip, their centres held by a carrier; ``inner``: the second
+    one's teeth are on its inside. ``radii`` in mm."""
+
+    first: str
+    second: str
+    carrier: str
+    radii: tuple[Place, Place]
+    inner: bool = False
+
+
+@dataclass(frozen=True)
+class Load:
+    """What acts on a point (``force``, N) or turns a body (``moment``, N m): a quantity of the exercise, or a number.
+
+    A force points along ``angle``, degrees from the ground's x axis; or, ``against`` the motion, the other way than its
+    point moves, and a moment the other way than its body turns. ``during``: ``"always"``, on the ``"working stroke"``
+    (the slower one) or the ``"return stroke"`` of what it acts on. ``table``: pairs of what ``by`` names, the driver's
+    angle or a position of the exercise, and of the load; between them it goes straight, by the angle around the turn.
+    """
+
+    on: str
+    force: Place = 0.0
+    moment: Place = 0.0
+    angle: Place = 0.0
+    against: bool = False
+    during: str = "always"
+    by: str = ""
+    table: tuple[tuple[float, float], ...] = ()
+
+
+@dataclass(frozen=True)
+class Pin:
+    """A joint that follows from a point which two bodies share."""
+
+    at: str
+    of: str
+    on: str
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Bodies and joints, with the loads and the friction that the exercise itself speaks of.
+
+    ``friction``: by joint (a point), a coefficient, for slides; for a pin, a pair of coefficient and radius (mm).
+
+    Raises
+    ------
+    BadCourse
+        A point that no body holds, a body of a name that is taken, a slide whose two bodies are not turned alike.
+    """
+
+    ground: Mapping[str, Place]
+    bodies: Sequence[Body]
+    slides: Sequence[Slide] = ()
+    gears: Sequence[Gear] = ()
+    loads: Sequence[Load] = ()
+    friction: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for fault in self._faults():
+            raise BadCourse(f"MECHANISM: {fault}")
+
+    # ------------------------------------------------------------------- look-up
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The moving bodies."""
+        return tuple(body.name for body in self.bodies)
+
+    def body(self, name: str) -> Body:
+        return next(body for body in self.bodies if body.name == name)
+
+    def holders(self, point: str) -> tuple[str, ...]:
+        """The bodies that have a point, in order; the ground first."""
+        on_ground = (GROUND,) if point in self.ground else ()
+        return (*on_ground, *(b.name for b in self.bodies if point in b.places))
+
+    def place(self, point: str, body: str) -> Place:
+        """Where a point lies in a body's frame."""
+        return self.ground[point] if body == GROUND else self.body(body).places[point]
+
+    @property
+    def points(self) -> tuple[str, ...]:
+        """Every point, each once."""
+        return tuple(dict.fromkeys([*self.ground, *(p for b in self.bodies for p in b.places)]))
+
+    @property
+    def pins(self) -> tuple[Pin, ...]:
+        """The joints that shared points make: each body is pinned to the first that holds the point."""
+        shared = ((p, self.holders(p)) for p in self.points)
+        return tuple(Pin(point, other, first) for point, (first, *others) in shared for other in others)
+
+    @property
+    def joints(self) -> tuple[Pin | Slide | Gear, ...]:
+        return (*self.pins, *self.slides, *self.gears)
+
+    @property
+    def mobility(self) -> int:
+        """Degrees of freedom by the count of Chebyshev and Gruebler: 3 a body, less 2 a pin or slide, less 1 a gear."""
+        return 3 * len(self.bodies) - 2 * (len(self.pins) + len(self.slides)) - len(self.gears)
+
+    @property
+    def angles(self) -> tuple[str, ...]:
+        """The quantities that turn bodies, each once."""
+        return tuple(dict.fromkeys(b.angle for b in self.bodies if isinstance(b.angle, str)))
+
+    def driven_by(self, angle: str) -> str:
+        """The body that the drive turns.
+
+        Raises
+        ------
+        BadCourse
+            No body is turned by that quantity.
+        """
+        for body in self.bodies:
+            if body.angle == angle:
+                return body.name
+        raise BadCourse(
+            f"MECHANISM: no body is turned by the driver's angle {angle!r}; it has {', '.join(self.angles)}"
+        )
+
+    def unfolded(self) -> Iterator[Place]:
+        """Everything that a number must be found for."""
+        yield from self.ground.values()
+        for body in self.bodies:
+            yield from (*body.points.values(), body.mass, body.inertia)
+        for slide in self.slides:
+            yield from (slide.along, slide.length)
+        for gear in self.gears:
+            yield from gear.radii
+
+    # -------------------------------------------------------------------- checks
+
+    def _faults(self) -> Iterator[str]:
+        twice = [n for n, count in Counter(self.names).items() if count > 1 or n == GROUND]
+        yield from (f"two bodies are called {n!r}" for n in twice)
+        known = set(self.ground)
+        for body in self.bodies:
+            if body.at not in known:
+                yield (
+                    f"body {body.name!r} has its origin at {body.at!r}, which no body before it holds"
+                    f"{nearest(body.at, known)}"
+                )
+            known |= set(body.places)
+            if body.centre and body.centre not in body.places:
+                yield f"the centre of body {body.name!r} is none of its points{nearest(body.centre, body.places)}"
+        for slide in self.slides:
+            yield from self._faults_of_slide(slide)
+        for gear in self.gears:
+            for name in (gear.first, gear.second, gear.carrier):
+                if name not in (*self.names, GROUND):
+                    yield f"a gear names the body {name!r}{nearest(name, self.names)}"
+
+    def _faults_of_slide(self, slide: Slide) -> Iterator[str]:
+        for name in (slide.of, slide.on):
+            if name not in (*self.names, GROUND):
+                yield f"the slide at {slide.at} names the body {name!r}{nearest(name, self.names)}"
+                return
+        if slide.at not in self.body(slide.of).places:
+            yield f"the slide at {slide.at!r}: body {slide.of!r} has no such point"
+        turned = [0.0 if n == GROUND else self.body(n).angle for n in (slide.of, slide.on)]
+        fixed = [isinstance(t, (int, float)) for t in turned]
+        if turned[0] != turned[1] and not all(fixed):
+            yield (
+                f"the slide at {slide.at}: bodies {slide.of} and {slide.on} are turned alike, so by one quantity; "
+                f"found {turned[0]!r} and {turned[1]!r}"
+            )
+
+
+def parameters(place: Place) -> tuple[str, ...]:
+    """The quantities that a place is given by."""
+    if isinstance(place, str):
+        return (place,)
+    return tuple(inspect.signature(place).parameters) if callable(place) else ()
+
+
+def number(place: Place, values: Mapping[str, Any]) -> Any:
+    """The number of a place."""
+    if isinstance(place, str):
+        return values[place]
+    return place(*(values[n] for n in parameters(place))) if callable(place) else place

@@ -1,0 +1,118 @@
+"""Functions of the driver's angle as a table over the turn, good to rounding: built by Fourier series, read by polynomials.
+
+What is periodic and smooth is known everywhere once it is known at enough equal steps: the number of steps is doubled
+until the series has run out. Between finer steps, values and two derivatives of the series give a polynomial of the fifth
+degree, which costs little to read.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+TURN = 2 * math.pi
+_FIRST, _MOST = 64, 8192  #: steps at which a series is tried
+_RUN_OUT = 1e-13  #: of a function's largest value: what the last third of its series may hold
+_FINEST = 16384  #: steps of the polynomials
+
+Functions = Callable[[np.ndarray], np.ndarray]  #: from angles (n,) in radians to values (m, n)
+
+
+class TurnTable:
+    """Some functions of an angle, tabulated.
+
+    Attributes
+    ----------
+    steps
+        How many steps of the turn the series took; 0 where none was found.
+    error
+        The largest of what the tails of the series hold, over each function's largest value.
+    """
+
+    def __init__(self, functions: Functions) -> None:
+        self.steps, self.error = 0, math.inf
+        count = _FIRST
+        while count <= _MOST:
+            values = functions(np.arange(count) * (TURN / count))
+            if not np.isfinite(values).all():
+                return
+            series = np.fft.rfft(values, axis=1) / count
+            self.error = self._tail(series, values)
+            if self.error < _RUN_OUT:
+                self.steps = count
+                self._pieces(series)
+                return
+            count *= 2
+
+    @staticmethod
+    def _tail(series: np.ndarray, values: np.ndarray) -> float:
+        size = np.abs(values).max(axis=1)
+        tail = np.abs(series[:, 2 * series.shape[1] // 3 :]).max(axis=1)
+        return float(np.max(tail / np.where(size > 0, size, 1.0), initial=0.0))
+
+    def _pieces(self, series: np.ndarray) -> None:
+        """Polynomials between fine steps, coefficients of shape ``(steps, 6, functions)``."""
+        order = np.arange(series.shape[1])
+        # The error of a fifth-degree polynomial is its step to the sixth times the sixth derivative over 46080.
+        bend = (np.abs(series) * order**6.0).sum(axis=1) / np.maximum(np.abs(series).sum(axis=1), 1e-300)
+        wanted = TURN * (float(bend.max(initial=1.0)) / (46080 * 1e-15)) ** (1 / 6)
+        count = max(2 * (series.shape[1] - 1), 1 << math.ceil(math.log2(min(max(wanted, 64), _FINEST))))
+        self._count, self._step = count, TURN / count
+        f, f1, f2 = (self._at_nodes(series * (1j * order) ** k, count) * self._step**k for k in range(3))
+        g, g1, g2 = (np.roll(x, -1, axis=1) for x in (f, f1, f2))
+        rise, slope, bow = g - f - f1 - f2 / 2, g1 - f1 - f2, g2 - f2
+        self._coefficients = np.ascontiguousarray(
+            np.stack(
+                [
+                    f, f1, f2 / 2,
+                    10 * rise - 4 * slope + bow / 2,
+                    -15 * rise + 7 * slope - bow,
+                    6 * rise - 3 * slope + bow / 2,
+                ]
+            ).transpose(2, 1, 0)
+        )  # fmt: skip
+
+    @staticmethod
+    def _at_nodes(series: np.ndarray, count: int) -> np.ndarray:
+        padded = np.zeros((series.shape[0], count // 2 + 1), dtype=complex)
+        padded[:, : series.shape[1]] = series
+        return np.fft.irfft(padded * count, count, axis=1)
+
+    def at(self, angle: float) -> np.ndarray:
+        """The functions at one angle, shape ``(m,)``."""
+        place = angle / self._step
+        whole = math.floor(place)
+        x = place - whole
+        xx = x * x
+        powers = (1.0, x, xx, xx * x, xx * xx, xx * xx * x)
+        return self._coefficients[whole % self._count] @ powers
+
+    def over(self, angles: np.ndarray) -> np.ndarray:
+        """The functions at many angles, shape ``(m, n)``."""
+        place = angles / self._step
+        whole = np.floor(place)
+        powers = (place - whole)[:, None] ** np.arange(6)
+        return np.einsum("nmp,np->mn", self._coefficients[whole.astype(int) % self._count], powers)
+
+
+class Untabulated:
+    """The same face for functions that have no table: computed each time they are asked."""
+
+    steps = 0
+
+    def __init__(self, functions: Functions) -> None:
+        self._functions = functions
+
+    def at(self, angle: float) -> np.ndarray:
+        return self._functions(np.array([angle]))[:, 0]
+
+    def over(self, angles: np.ndarray) -> np.ndarray:
+        return self._functions(angles)
+
+
+def tabulated(functions: Functions) -> TurnTable | Untabulated:
+    """A table where one can be had: the functions close around the turn and are smooth."""
+    table = TurnTable(functions)
+    return table if table.steps else Untabulated(functions)

@@ -1,0 +1,87 @@
+"""What acts on the bodies: a force and a moment about the origin of each body's frame, at every instant.
+
+Newtons and newton metres. Inertia is one of them, by d'Alembert's principle, and comes in two: for one rad/s of the
+driver squared, and for one rad/s^2.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from coursework.mechanics.linkage import Held, SlideJoint
+from coursework.mechanics.rates import Stance
+
+GRAVITY = 9.81  #: m/s^2, unless a scene says another
+
+
+@dataclass
+class Wrench:
+    """Forces, complex, and moments about the frames' origins, shape ``(bodies + 1, n)``; the ground's last."""
+
+    stance: Stance
+    forces: np.ndarray
+    moments: np.ndarray
+
+    @staticmethod
+    def none(stance: Stance) -> Wrench:
+        return Wrench(stance, np.zeros(stance.turns.shape, dtype=complex), np.zeros(stance.turns.shape))
+
+    def push(self, held: Held, force: np.ndarray | complex) -> Wrench:
+        """With a force at a place of a body."""
+        return self.push_at(held.body, self.stance.arm(held), force)
+
+    def push_at(self, body: int, arm: np.ndarray, force: np.ndarray | complex) -> Wrench:
+        """With a force at an arm from the origin of a body."""
+        self.forces[body] += force
+        self.moments[body] += (np.conj(arm) * force).imag
+        return self
+
+    def turn(self, body: int, moment: np.ndarray | float) -> Wrench:
+        """With a moment on a body."""
+        self.moments[body] += moment
+        return self
+
+    def rub(self, slide: SlideJoint, force: np.ndarray | complex) -> Wrench:
+        """With a force on a sliding body at its point, and its opposite on the guide there."""
+        under = self.stance.place(slide.of) - self.stance.origins[slide.on]
+        return self.push(slide.of, force).push_at(slide.on, under, -force)
+
+    @property
+    def effort(self) -> np.ndarray:
+        """What the drive must supply for it, along its angle, by virtual power: N m, shape ``(n,)``."""
+        power = (np.conj(self.forces) * self.stance.origin_rates).real + self.moments * self.stance.rates
+        return -power.sum(axis=0)
+
+    def __mul__(self, factor: np.ndarray | float) -> Wrench:
+        return Wrench(self.stance, self.forces * factor, self.moments * factor)
+
+    def __add__(self, other: Wrench) -> Wrench:
+        return Wrench(self.stance, self.forces + other.forces, self.moments + other.moments)
+
+
+def weight(stance: Stance, downwards: complex = -1j * GRAVITY) -> Wrench:
+    """The weights; ``downwards`` is the acceleration of gravity."""
+    wrench = Wrench.none(stance)
+    for own in stance.linkage.masses:
+        wrench.push(Held(own.body, own.centre), own.mass * downwards)
+    return wrench
+
+
+def inertia_at_rate(stance: Stance) -> Wrench:
+    """Inertia for a driver at a constant 1 rad/s."""
+    wrench = Wrench.none(stance)
+    for own in stance.linkage.masses:
+        held = Held(own.body, own.centre)
+        wrench.push(held, -own.mass * stance.bend(held)).turn(own.body, -own.inertia * stance.bends[own.body])
+    return wrench
+
+
+def inertia_at_start(stance: Stance) -> Wrench:
+    """Inertia for a driver at rest that accelerates by 1 rad/s^2: its effort is the generalised inertia, kg m^2."""
+    wrench = Wrench.none(stance)
+    for own in stance.linkage.masses:
+        held = Held(own.body, own.centre)
+        wrench.push(held, -own.mass * stance.rate(held)).turn(own.body, -own.inertia * stance.rates[own.body])
+    return wrench

@@ -1,0 +1,111 @@
+"""What a scene adds to the mechanism of its exercise: masses, loads, friction, a flywheel, gravity of another place."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from coursework.errors import WrongValue, unknown
+from coursework.mechanics.statement import Body, Load, Mechanism, Place
+from coursework.mechanics.wrenches import GRAVITY
+
+
+@dataclass(frozen=True)
+class Weighed:
+    """Mass (kg), moment of inertia about the centre (kg m^2), and the centre: one of the body's points, or a place in its
+    frame, mm. None leaves what the exercise says."""
+
+    mass: float | None = None
+    inertia: float | None = None
+    centre: str | complex | None = None
+
+
+@dataclass(frozen=True)
+class Flywheel:
+    """A flywheel on the driver's shaft, by its moment of inertia (kg m^2), or by the unevenness that it has to keep:
+    (largest - least speed) / mean speed, over a cycle at the given speed."""
+
+    inertia: float | None = None
+    unevenness: float | None = None
+
+
+@dataclass(frozen=True)
+class Motor:
+    """What drives in time: a torque at rest (N m), and the speed (rad/s) at which none is left, on a straight line between;
+    without that speed the torque is constant."""
+
+    torque: float
+    no_load_speed: float | None = None
+
+    def at(self, speed: float) -> float:
+        """The torque at a speed of the driver."""
+        return self.torque * (1.0 - speed / self.no_load_speed) if self.no_load_speed else self.torque
+
+
+@dataclass(frozen=True)
+class Added:
+    """The data of a scene.
+
+    ``friction``: by joint, a coefficient for a slide, a pair of coefficient and radius of the journal (mm) for a pin;
+    ``lengths``: of slides that bear on both edges, mm; ``gravity``: its acceleration, m/s^2, complex.
+    """
+
+    bodies: Mapping[str, Weighed] = field(default_factory=dict)
+    loads: tuple[Load, ...] = ()
+    friction: Mapping[str, Any] = field(default_factory=dict)
+    lengths: Mapping[str, float] = field(default_factory=dict)
+    flywheel: Flywheel | None = None
+    gravity: complex = -1j * GRAVITY
+
+    @property
+    def is_own(self) -> bool:
+        """Whether it says anything that the exercise does not know of."""
+        return (
+            bool(self.bodies or self.loads or self.friction or self.lengths) or self.gravity != -1j * GRAVITY
+        )
+
+    def to(self, mechanism: Mechanism) -> Mechanism:
+        """The mechanism with it.
+
+        Raises
+        ------
+        UnknownName
+            A body, a point or a slide that the mechanism does not have.
+        """
+        for name in self.bodies:
+            if name not in mechanism.names:
+                raise unknown("body", name, mechanism.names, "the mechanism")
+        slides = {slide.at: slide for slide in mechanism.slides}
+        for name, length in self.lengths.items():
+            if name not in slides:
+                raise unknown("slide", name, slides, "the mechanism")
+            slides[name] = dataclasses.replace(slides[name], length=length)
+        return dataclasses.replace(
+            mechanism,
+            bodies=tuple(_weighed(body, self.bodies.get(body.name)) for body in mechanism.bodies),
+            slides=tuple(slides.values()),
+            loads=(*mechanism.loads, *self.loads),
+            friction={**mechanism.friction, **self.friction},
+        )
+
+
+def _weighed(body: Body, own: Weighed | None) -> Body:
+    if own is None:
+        return body
+    changes: dict[str, Any] = {
+        k: v for k, v in (("mass", own.mass), ("inertia", own.inertia)) if v is not None
+    }
+    for name, value in changes.items():
+        if value < 0:
+            raise WrongValue(f"the {name} of body {body.name} is not negative; found {value:g}")
+    if isinstance(own.centre, str):
+        if own.centre not in body.places:
+            raise unknown("point", own.centre, body.places, f"body {body.name}")
+        changes["centre"] = own.centre
+    elif own.centre is not None:
+        name = f"G{body.name}"
+        points: dict[str, Place | Callable[..., Any]] = {**body.points, name: own.centre}
+        changes |= {"points": points, "centre": name}
+    return dataclasses.replace(body, **changes)

@@ -1,0 +1,123 @@
+"""What a scene can show besides the exercise's quantities: motions of points, what joints bear, the drive.
+
+``drive_torque``, ``drive_power``, ``kinetic_energy``; ``position B``, ``velocity B``, ``acceleration B``, ``coriolis A``;
+``reaction B``, of a pin or a slide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from coursework.errors import WrongValue, unknown
+from coursework.mechanics.forces import Borne
+from coursework.mechanics.linkage import MM, Linkage, SlideJoint
+from coursework.mechanics.rates import Stance
+from coursework.solution import Moving
+
+DRIVE = ("drive_torque", "drive_power", "kinetic_energy")
+OF_POINTS = ("position", "velocity", "acceleration", "coriolis")
+REACTION = "reaction"
+
+Columns = dict[str, tuple[Any, str]]  #: values and unit, by name
+
+
+def what(name: str) -> tuple[str, str]:
+    """The kind and the point or joint of ``"velocity B"``; no kind for the name of a quantity."""
+    kind, _, of = name.strip().partition(" ")
+    return (kind, of.strip()) if of and kind in (*OF_POINTS, REACTION) else ("", name.strip())
+
+
+def check(name: str, linkage: Linkage, quantities: Iterable[str]) -> None:
+    """Refuse what a scene cannot show.
+
+    Raises
+    ------
+    UnknownName
+        No such quantity, point or joint.
+    """
+    kind, of = what(name)
+    if kind == REACTION:
+        joints = [*joint_points(linkage)]
+        if of not in joints:
+            raise unknown("joint", of, joints, "the mechanism")
+    elif kind == "coriolis":
+        if of not in [s.name.removesuffix(" slide") for s in turning_slides(linkage)]:
+            raise WrongValue(f"no Coriolis term at {of}: no body slides there on one that turns")
+    elif kind:
+        if of not in linkage.mechanism.points:
+            raise unknown("point", of, linkage.mechanism.points, "the mechanism")
+    elif of not in DRIVE and of not in quantities:
+        kinds = [f"{kind} …" for kind in (*OF_POINTS, REACTION)]
+        raise unknown("quantity to show", of, [*quantities, *DRIVE, *kinds])
+
+
+def turning_slides(linkage: Linkage) -> tuple[SlideJoint, ...]:
+    """The slides whose guide turns: there Coriolis has a term."""
+    return tuple(s for s in linkage.slides if linkage.coordinates[s.on] != -1)
+
+
+def joint_points(linkage: Linkage) -> dict[str, list[str]]:
+    """The joints at each point, by what they are called in a scene."""
+    found: dict[str, list[str]] = {}
+    for joint in (*linkage.pins, *linkage.slides, *linkage.gears):
+        for name in {joint.name, joint.name.split(" ")[0]}:
+            found.setdefault(name, []).append(joint.name)
+    return found
+
+
+def of_point(kind: str, point: str, stance: Stance, speed: np.ndarray, acceleration: np.ndarray) -> Columns:
+    """Two components and, of a rate, its length: mm, mm/s, mm/s^2, in the ground's frame."""
+    if kind == "coriolis":
+        (slide,) = (s for s in turning_slides(stance.linkage) if s.name.removesuffix(" slide") == point)
+        size = 2 * stance.rates[slide.on] * stance.sliding(slide) * speed**2 / MM
+        return {f"a_coriolis_{point}": (size, "mm/s^2")}
+    held = stance.linkage.owner(point)
+    if kind == "position":
+        place = stance.place(held) / MM
+        return {f"x_{point}": (place.real, "mm"), f"y_{point}": (place.imag, "mm")}
+    if kind == "velocity":
+        return _vector(f"v_{point}", stance.rate(held) * speed / MM, "mm/s")
+    return _vector(
+        f"a_{point}", (stance.bend(held) * speed**2 + stance.rate(held) * acceleration) / MM, "mm/s^2"
+    )
+
+
+def of_moving(kind: str, point: str, moving: Moving) -> Columns:
+    """The same of a point that a solution moves itself; nothing where it does not say it."""
+    values = getattr(moving, kind)
+    if values is None:
+        return {}
+    values = np.asarray(values, dtype=complex)
+    if kind == "position":
+        return {f"x_{point}": (values.real, "mm"), f"y_{point}": (values.imag, "mm")}
+    letter, unit = {"velocity": ("v", "mm/s"), "acceleration": ("a", "mm/s^2")}[kind]
+    return _vector(f"{letter}_{point}", values, unit)
+
+
+def _vector(name: str, values: np.ndarray, unit: str) -> Columns:
+    return {f"{name}_x": (values.real, unit), f"{name}_y": (values.imag, unit), name: (np.abs(values), unit)}
+
+
+def of_joint(point: str, linkage: Linkage, borne: Borne) -> Columns:
+    """What the joints at a point bear, on the body that slides or is pinned on."""
+    found: Columns = {}
+    for name in joint_points(linkage)[point]:
+        found |= _of_one(name, borne.joints, borne.rubs)
+    return found
+
+
+def _of_one(name: str, joints: Mapping[str, np.ndarray], rubs: Mapping[str, np.ndarray]) -> Columns:
+    """A pin's force, a slide's normal force, moment and friction, or a gear's."""
+    called = name.removesuffix(" slide").replace(" ", "_")
+    if f"{name}_x" in joints:
+        force = joints[f"{name}_x"] + 1j * joints[f"{name}_y"]
+        turned = {f"Mf_{called}": (rubs[name], "N*m")} if name in rubs else {}
+        return {**_vector(f"R_{called}", force, "N"), **turned}
+    if f"{name}_t" in joints:
+        return {f"T_{called}": (joints[f"{name}_t"], "N")}
+    rubbed = {f"T_{called}": (rubs[name], "N")} if name in rubs else {}
+    bearing = {f"N_{called}": (joints[f"{name}_n"], "N"), f"M_{called}": (joints[f"{name}_m"], "N*m")}
+    return {**bearing, **rubbed}
