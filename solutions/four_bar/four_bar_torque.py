@@ -13,6 +13,7 @@ from coursework.degrees import cos, polar, sin
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
+from coursework.mechanics import Body, Load, Mechanism
 from coursework.polygons import (
     Side,
     crank_a,
@@ -77,6 +78,37 @@ LOOPS = {
         Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("r4", "theta4", -1),
     ),
 }  # fmt: skip
+
+
+EFFECTS = {
+    "acceleration": ("alpha3", "alpha4", "a_G3_x", "a_G3_y", "a_G4_x", "a_G4_y"),
+    "forces": ("torque", "R_B", "R_A", "R_C", "R_O"),
+}
+MECHANISM = Mechanism(
+    ground={"O": 0, "C": "r1"},
+    bodies=(
+        Body("2", "theta2", "O", {"A": "r2"}, mass="m2", inertia="J2"),
+        Body(
+            "3",
+            "theta3",
+            "A",
+            {"B": "r3", "G3": lambda s3, r3: s3 * r3},
+            mass="m3",
+            inertia="J3",
+            centre="G3",
+        ),
+        Body(
+            "4",
+            "theta4",
+            "C",
+            {"B": "r4", "G4": lambda s4, r4: s4 * r4},
+            mass="m4",
+            inertia="J4",
+            centre="G4",
+        ),
+    ),
+    loads=(Load("4", moment="M", against=True),),
+)
 
 
 class _Loads(NamedTuple):

@@ -8,6 +8,7 @@ import pytest
 
 import coursework
 from coursework.errors import CannotAssemble, MissingQuantity, UnknownName
+from coursework.motion.scenes import Scene
 
 EXERCISE = coursework.open_course()["four_bar_torque"]
 EFFECTS = ("load", "gravity", "inertia")
@@ -125,6 +126,19 @@ def test_variants_call_for_every_effect():
     expected = {name: float(value) for name, value in three_bodies(variant.given, EFFECTS).items()}
     assert variant.solution() == pytest.approx(expected, rel=1e-11)
     assert all(mark.verdict == "correct" for mark in variant.grade(expected).values())
+
+
+@every_seed
+def test_the_stated_mechanism_bears_the_same_over_a_turn(seed):
+    """Bodies and joints alone, without any formula of the exercise."""
+    given, joints = given_of(seed), "ABCO"
+    for effects in (("load",), ("gravity",), EFFECTS):
+        scene = Scene(EXERCISE, given, effects, show=("drive_torque", *(f"reaction {pin}" for pin in joints)))
+        columns = scene.over_cycle(24).columns
+        stated = {f"R_{pin}": np.hypot(columns[f"R_{pin}_x"], columns[f"R_{pin}_y"]) for pin in joints}
+        for name, values in {"torque": columns["drive_torque"], **stated}.items():
+            found = EXERCISE.solve(**{**given, "theta2": columns["theta2"]}, effects=effects, only=name)[name]
+            np.testing.assert_allclose(values, found, atol=1e-11 * abs(found).max())
 
 
 @pytest.mark.parametrize("away", [1.0, 1e-3, 1e-6, 1e-9])
