@@ -95,6 +95,7 @@ PLACES = {
     "slotted_mechanism": ("theta2", "theta2", ("rA", "theta4"), slotted),
     "quick_return_whitworth": ("theta2", "theta2", ("rA", "theta4", "xC"), slotted_ram),
     "quick_return_shaper": ("theta2", "theta2", ("rA", "theta4", "xC"), slotted_ram),
+    "shaper_torque": ("theta2", "theta2", ("rA", "theta4", "xC"), slotted_ram),
     "havens_planetary": ("theta1", "theta1", ("rA", "theta4"), havens),
     "two_loop_linkage": ("theta2", "theta2", ("theta3", "theta5", "theta6"), two_loops),
     "three_loop_shaper": ("theta2", "theta2", ("theta3", "theta6", "theta5", "d5", "x8"), three_loops),
