@@ -32,8 +32,9 @@ def crank_rod(end):
 
 
 def four_bar(v):
-    A = polar(v["r2"], v["theta2"])
-    return {"a": A, "b": A + polar(v["r3"], v["theta3"])}
+    A, coupler = polar(v["r2"], v["theta2"]), polar(v["r3"], v["theta3"])
+    found = {"a": A, "b": A + coupler}
+    return found | ({"g_3": A + v["s3"] * coupler} if "s3" in v else {})
 
 
 def slider_extras(v):
@@ -87,12 +88,14 @@ PLACES = {
     "mechanical_advantage_slider": ("theta2", "theta2", ("p", "q"), crank_rod("b")),
     "quick_return_offset": ("theta2", "theta2", ("p", "q"), crank_rod("c")),
     "four_bar_motion": ("theta2", "theta2", ("theta3",), four_bar),
+    "four_bar_torque": ("theta2", "theta2", ("theta3",), four_bar),
     "mechanical_advantage": ("theta2", "theta2", ("theta3",), four_bar),
     "slider_extras": ("theta2", "theta2", ("theta3", "r6"), slider_extras),
     "quick_return": ("angle_OAB", "theta2", ("theta2", "theta3", "theta5"), quick_return),
     "slotted_mechanism": ("theta2", "theta2", ("rA", "theta4"), slotted),
     "quick_return_whitworth": ("theta2", "theta2", ("rA", "theta4", "xC"), slotted_ram),
     "quick_return_shaper": ("theta2", "theta2", ("rA", "theta4", "xC"), slotted_ram),
+    "shaper_torque": ("theta2", "theta2", ("rA", "theta4", "xC"), slotted_ram),
     "havens_planetary": ("theta1", "theta1", ("rA", "theta4"), havens),
     "two_loop_linkage": ("theta2", "theta2", ("theta3", "theta5", "theta6"), two_loops),
     "three_loop_shaper": ("theta2", "theta2", ("theta3", "theta6", "theta5", "d5", "x8"), three_loops),

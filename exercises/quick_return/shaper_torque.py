@@ -1,0 +1,135 @@
+"""Shaper that cuts: what torque turns its crank, and what flywheel keeps the crank nearly steady?"""
+
+import math
+
+import numpy as np
+
+from coursework.degrees import asin
+from coursework.figures import Figure, vector
+from coursework.model import Driver, Exercise, Part, drawn
+
+from ._slotted_ram import C, P, arm, crank_off_the_axes, guide_rate
+from .quick_return_shaper import figure as _shaper
+from .quick_return_shaper import (
+    lowest_P,
+    pins_can_be_told_apart_on_paper,
+    place_of_the_rod_on_the_guide_tells,
+    projection_on_the_guide_tells,
+    ram,
+    ram_away_from_the_y_axis,
+    ram_moves_visibly,
+    rod_never_in_line_with_the_guide,
+    rod_reaches_with_room,
+    turning_of_the_guide_tells,
+)
+
+STEP = 5  #: degrees between the crank angles of the table
+
+
+def table(r1, r2, r4, r5, h):
+    """How far the ram goes to the left per radian of the crank, at crank angles along a first axis: every 5 degrees
+    from -90 to 270, over the stroke that a radian has on average."""
+    shape = (-1,) + (1,) * np.ndim(r1)
+    theta = np.arange(-90.0, 271.0, STEP).reshape(shape)
+    guide = arm(r1, r2, theta)
+    pin = P(guide, r4)
+    rod = C(pin, r5, h + 0 * theta) - pin
+    rate = guide_rate(guide, r1, r2, theta)
+    return rate * (pin.imag - pin.real * rod.imag / rod.real) * math.pi * r1 / (r4 * r2)
+
+
+def crossings(table):
+    """How many steps of the table the mean lies in."""
+    above = table > 1
+    return (above[1:] != above[:-1]).sum(axis=0)
+
+
+def tells(r1, r2, r4, r5, h):
+    """The steps of the table within which the torque rises above its mean, and falls below it."""
+    above = table(*(np.float64(length) for length in (r1, r2, r4, r5, h))) > 1
+    rise, fall = -90 + STEP * np.flatnonzero(above[1:] != above[:-1])
+    return {"rise": (int(rise), int(rise) + STEP), "fall": (int(fall), int(fall) + STEP)}
+
+
+def crank_on_the_working_stroke(theta2, r1, r2):
+    """The guide turns the same way as the crank, and the ram is well away from where it turns back."""
+    swing = asin(r2 / r1)
+    return (theta2 > 8 - swing) & (theta2 < 172 + swing)
+
+
+def torque_crosses_its_mean_twice(crossings):
+    return crossings == 2
+
+
+def crossings_lie_within_their_steps(table):
+    """By a twentieth at least, so that nobody doubts which step it is."""
+    before, after = table[:-1] - 1, table[1:] - 1
+    share = before / (before - after)
+    return ~((before * after < 0) & ((share < 0.05) | (share > 0.95))).any(axis=0)
+
+
+def torque_is_not_near_its_mean(ram, r1, r2, r4):
+    return abs(abs(ram[1]) * math.pi * r1 / (r4 * r2) - 1) > 0.08
+
+
+def figure(arm, P, C, r1, r2, r4, theta2, omega2):
+    """The force on the ram besides, as it moves to the left."""
+    shaper = _shaper(arm, P, C, r1, r2, r4, theta2, omega2)
+    half_rail = 0.3 * r2 + 0.05 * r4
+    return Figure(*shaper.elements, vector(C + 1.1 * half_rail, 1.3 * half_rail, "F"))
+
+
+EXERCISE = Exercise(
+    given={
+        "r1": drawn(200, 400, step=5, unit="mm"),
+        "r2": drawn(lambda r1: 0.25 * r1, lambda r1: 0.6 * r1, step=5, unit="mm", positive=True),
+        "r4": drawn(lambda r1: 1.5 * r1, lambda r1: 2.2 * r1, step=5, unit="mm", positive=True),
+        "r5": drawn(120, 300, step=5, unit="mm"),
+        "h": drawn(lambda r4: r4 - 40, lambda r4: r4, step=5, unit="mm", positive=False),
+        "theta2": drawn(-30, 210, step=5, unit="deg"),
+        "omega2": drawn(5, 14, step=0.5, unit="rad/s"),
+        "F": drawn(500, 2500, step=50, unit="N"),
+        "delta": drawn(0.03, 0.08, step=0.005),
+    },
+    helpers=(arm, guide_rate, P, C, ram, lowest_P, table, crossings),
+    keep=(
+        rod_reaches_with_room,
+        rod_never_in_line_with_the_guide,
+        pins_can_be_told_apart_on_paper,
+        crank_off_the_axes,
+        crank_on_the_working_stroke,
+        ram_away_from_the_y_axis,
+        ram_moves_visibly,
+        place_of_the_rod_on_the_guide_tells,
+        turning_of_the_guide_tells,
+        projection_on_the_guide_tells,
+        torque_is_not_near_its_mean,
+        torque_crosses_its_mean_twice,
+        crossings_lie_within_their_steps,
+    ),
+    parts=(
+        Part("v_C", unit="mm/s", points=2),
+        Part("torque", unit="N*m", points=2),
+        Part("work", unit="J", points=1),
+        Part("mean_torque", unit="N*m", points=1),
+        Part("power", unit="W", points=1),
+        Part("theta_rise", unit="deg", kind="angle", points=2),
+        Part("theta_fall", unit="deg", kind="angle", points=2),
+        Part("excess", unit="J", points=2),
+        Part("J", unit="kg*m^2", points=1),
+    ),
+    symbols={
+        "torque": r"\Gamma",
+        "work": "W",
+        "mean_torque": r"\Gamma_m",
+        "power": "P_m",
+        "theta_rise": r"\theta_2'",
+        "theta_fall": r"\theta_2''",
+        "excess": r"\Delta E",
+        "delta": r"\delta",
+    },
+    effects=("load",),
+    tells=tells,
+    figure=figure,
+    driver=Driver("theta2", "omega2", effort="torque", output="v_C"),
+)
