@@ -12,30 +12,40 @@ mechanism, an angle is free, and no condition of a good variant holds.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from coursework.accuracy.closure import Closure
-from coursework.accuracy.followed import Followed, NotFollowed, of_arrays
+from coursework.accuracy.followed import Arithmetic, Followed, NotFollowed, of_arrays
 from coursework.course import draws
 from coursework.course.exercise import CourseExercise
 from coursework.errors import CourseworkError
+from coursework.quantities.graph import Graph
 
 DISTANCES = tuple(10.0**-k for k in range(1, 13))  #: from a place, in parts of the scale of what is moved
-DETERMINANT, VANISHING, TURNS = "determinant", "vanishing", "turns"
+DETERMINANT, VANISHING = "determinant", "vanishing"
 _ANGLE = 100.0  #: degrees: the scale of an angle
-_ALONG, _ACROSS = 241, 33  #: points along a line; lines in a plane
+_ALONG = 241  #: points along a line
+_ROWS, _COLUMNS = 33, 91  #: of a plane
+_HALVINGS = 56
+_ZOOMS = 24  #: of a plane about a double zero
 _BASES = 2  #: variants from which is sought
 _SAME = 1e-7  #: of a scale: two zeros are one
 _ZERO = 1e-11  #: of its usual size: a margin has vanished
 _NEAR, _FAR = 1e-6, 1e-2  #: distances at which is asked what is lost
 _LOST = 1e-13  #: relative: a place where no more is lost is none
+_OF_A_SORT = 2  #: places at which the same vanishes
 _MOST = 8  #: places of an exercise
 
-Margins = dict[tuple[str, str, int], np.ndarray]  #: by quantity, kind, and which of them
+_SAMPLE = 400  #: random places on which margins are compared
+_LOOPS = "loops"
+
+_Key: TypeAlias = tuple[str, str, int]  #: quantity, kind, and which of them
+Margins = dict[_Key, np.ndarray]
+_FAILURES = (CourseworkError, NotFollowed, TypeError, ValueError)
 
 
 @dataclass(frozen=True)
@@ -62,16 +72,23 @@ class HardPlace:
     def double(self) -> bool:
         return bool(self.tuned)
 
-    def at(self, distance: float) -> dict[str, Any]:
-        """The given values so far away, in parts of the scale; negative on the other side."""
-        return {**self.given, self.moved: self.given[self.moved] + distance * self.scale}
+    def at(self, distance: float, aside: float = 0.0) -> dict[str, Any]:
+        """The given values so far away, in parts of the scale; negative on the other side.
 
-    def approach(self, distances: Sequence[float] = DISTANCES) -> Iterator[dict[str, Any]]:
+        ``aside`` is how far off what is tuned lies, in parts of its own value: there the solutions come near and pass.
+        """
+        moved = {self.moved: self.given[self.moved] + distance * self.scale}
+        tuned = {self.tuned: self.given[self.tuned] * (1 + aside)} if self.tuned else {}
+        return {**self.given, **tuned, **moved}
+
+    def approach(
+        self, distances: Sequence[float] = DISTANCES, aside: float = 0.0
+    ) -> Iterator[dict[str, Any]]:
         """Both sides in turn, from far to near."""
         for distance in distances:
-            yield self.at(distance)
-            if not (self.kind == VANISHING or self.kind == TURNS):
-                yield self.at(-distance)
+            yield self.at(distance, aside)
+            if self.kind != VANISHING:
+                yield self.at(-distance, aside)
 
 
 def hard_places(exercise: CourseExercise, wanted: Sequence[str], most: int = _MOST) -> tuple[HardPlace, ...]:
@@ -81,7 +98,7 @@ def hard_places(exercise: CourseExercise, wanted: Sequence[str], most: int = _MO
     """
     terrain = Terrain(exercise, wanted)
     found = [*_turning_points(terrain), *_crossings(terrain), *_vanishing(terrain)]
-    return tuple(_ranked(terrain, _merged(found))[:most])
+    return tuple(_ranked(terrain, _merged(terrain, found))[:most])
 
 
 class Terrain:
@@ -98,7 +115,9 @@ class Terrain:
         loops = exercise.solution.loops
         vectors = [[link.vector for link in loop.links] for loop in loops.values()]
         inside = {n for loop in loops.values() for n in loop.names}
-        self.unknowns = tuple(n for n in exercise.solution.graph.quantities if n in inside and n not in exercise.spec.given)
+        self.unknowns = tuple(
+            n for n in exercise.solution.graph.quantities if n in inside and n not in exercise.spec.given
+        )
         square = bool(loops) and len(self.unknowns) == 2 * len(loops)
         self.closure = Closure(vectors, self.unknowns) if square else None
 
@@ -185,37 +204,54 @@ class Terrain:
 
     # ------------------------------------------------------------------ margins
 
-    def margins(self, given: Mapping[str, Any]) -> Margins:
-        """Every margin at each place of arrays of one shape."""
-        notes: list[tuple[str, Any]] = []
-        arithmetic = of_arrays(lambda kind, value: notes.append((kind, value)))
-        found: Margins = {}
+    def margins(self, given: Mapping[str, Any], wanted: Sequence[str]) -> Margins:
+        """Every margin on the way to some quantities, at each place of arrays of one shape."""
         shape = np.broadcast_shapes(*(np.shape(v) for v in given.values()))
-
-        def observe(name: str, value: Any) -> Any:
-            for i, (kind, margin) in enumerate(notes):
-                if np.shape(margin) == shape and np.asarray(margin).dtype.kind in "fc":
-                    own = np.asarray(margin)
-                    found[name, kind, i] = own if own.dtype.kind == "f" else abs(own)
-            notes.clear()
-            return value
-
-        wrapped = {
-            n: Followed(np.broadcast_to(np.asarray(v, dtype=float), shape), arithmetic) if n in self.names else v
-            for n, v in given.items()
-        }
-        values = {}
-        for name in self.wanted:
-            if name in values:
-                continue
-            try:
-                values |= self._observed(observe).everything((name,), wrapped, self.effects, found=values)
-            except (CourseworkError, NotFollowed, TypeError, ValueError):
-                notes.clear()
+        self._notes.clear()
+        self._margins = found = {}
+        wrapped = {n: self._followed(v, shape) if n in self.names else v for n, v in given.items()}
+        try:
+            values = self._watched.everything(tuple(wanted), wrapped, self.effects)
+        except _FAILURES:
+            values = self._one_by_one(wanted, wrapped)
+        found = {key: m for key, m in found.items() if np.shape(m) == shape}
         found |= self._determinant({**wrapped, **values}, shape)
         return found
 
-    def _observed(self, observe: Any) -> Any:
+    def _followed(self, value: Any, shape: tuple[int, ...]) -> Followed:
+        return Followed(np.broadcast_to(np.asarray(value, dtype=float), shape), self._arithmetic)
+
+    def _one_by_one(self, wanted: Sequence[str], given: Mapping[str, Any]) -> dict[str, Any]:
+        """What can be followed, where something cannot."""
+        values: dict[str, Any] = {}
+        for name in wanted:
+            try:
+                values |= self._watched.everything((name,), given, self.effects, found=values)
+            except _FAILURES:
+                self._notes.clear()
+        return values
+
+    @cached_property
+    def _notes(self) -> list[tuple[str, Any]]:
+        """What the tape has noted since the last quantity was complete."""
+        return []
+
+    @cached_property
+    def _arithmetic(self) -> Arithmetic:
+        return of_arrays(lambda kind, value: self._notes.append((kind, value)))
+
+    @cached_property
+    def _watched(self) -> Graph:
+        """The formulas, which leave their margins behind."""
+
+        def observe(name: str, value: Any) -> Any:
+            for i, (kind, margin) in enumerate(self._notes):
+                own = np.asarray(margin)
+                if own.dtype.kind in "fc":
+                    self._margins[name, kind, i] = own if own.dtype.kind == "f" else abs(own)
+            self._notes.clear()
+            return value
+
         return self.graph.observed(observe)
 
     def _determinant(self, values: Mapping[str, Any], shape: tuple[int, ...]) -> Margins:
@@ -223,46 +259,89 @@ class Terrain:
         if self.closure is None:
             return {}
         try:
-            plain = {n: _plain_radians(values[n], self._is_angle(n)) for n in self._loop_names}
+            plain = {n: _plain_radians(values[n], angle) for n, angle in self._loop_names.items()}
         except KeyError:
             return {}
         rows = self.closure.jacobian(plain)
         count = len(rows)
-        flat = np.broadcast_arrays(*[np.asarray(e, dtype=float) for row in rows for e in row], np.zeros(shape))[:-1]
+        flat = np.broadcast_arrays(
+            *[np.asarray(e, dtype=float) for row in rows for e in row], np.zeros(shape)
+        )[:-1]
         matrix = np.stack(flat, axis=-1).reshape(*shape, count, count)
         with np.errstate(all="ignore"):
             sizes = np.linalg.norm(matrix, axis=-2, keepdims=True)
             finite = np.isfinite(matrix).all(axis=(-1, -2)) & (sizes > 0).all(axis=(-1, -2))
-            scaled = np.where(finite[..., None, None], matrix / np.where(sizes > 0, sizes, 1.0), np.eye(count))
+            scaled = np.where(
+                finite[..., None, None], matrix / np.where(sizes > 0, sizes, 1.0), np.eye(count)
+            )
             found = np.where(finite, np.linalg.det(scaled), np.nan)
-        return {("loops", DETERMINANT, 0): found}
+        return {(_LOOPS, DETERMINANT, 0): found}
 
     @cached_property
-    def _loop_names(self) -> tuple[str, ...]:
-        return tuple({n for loop in self.exercise.solution.loops.values() for n in loop.names})
-
-    def _is_angle(self, name: str) -> bool:
-        return any(name in loop.angles for loop in self.exercise.solution.loops.values())
+    def _loop_names(self) -> dict[str, bool]:
+        """The names that the loops hold, and whether each is an angle."""
+        loops = self.exercise.solution.loops.values()
+        return {n: n in loop.angles for loop in loops for n in loop.names}
 
     @cached_property
-    def usual(self) -> dict[tuple[str, str, int], float]:
-        """The usual size of each margin."""
+    def _sampled(self) -> Margins:
+        """The margins at random places, anywhere and along single lines from the bases."""
         rng = np.random.default_rng(1)
-        count = 400
-        found: dict[tuple[str, str, int], float] = {}
+        rows = []
         for base in self.bases:
-            given = {n: v if isinstance(v, str) else np.full(count, v) for n, v in base.items()}
-            given |= {n: rng.uniform(low, high, count) for n, (low, high) in self.ranges.items()}
-            for key, values in self.margins(given).items():
-                sizes = abs(values[np.isfinite(values)])
-                if sizes.size > 8 and np.ptp(sizes) > 0:
-                    found[key] = max(found.get(key, 0.0), float(np.median(sizes)))
-        return {key: size for key, size in found.items() if size > 0}
+            anywhere = {**_arrays(base, _SAMPLE)}
+            anywhere |= {n: rng.uniform(low, high, _SAMPLE) for n, (low, high) in self.ranges.items()}
+            rows.append(anywhere)
+            for name, (low, high) in self.ranges.items():
+                rows.append({**_arrays(base, _SAMPLE // 4), name: rng.uniform(low, high, _SAMPLE // 4)})
+        choices = {n for n, v in self.bases[0].items() if isinstance(v, str)}
+        given = {n: np.concatenate([row[n] for row in rows]) for n in self.bases[0] if n not in choices}
+        return self.margins({**given, **{n: self.bases[0][n] for n in choices}}, self.wanted)
+
+    @cached_property
+    def usual(self) -> dict[_Key, float]:
+        """The usual size of each margin that varies."""
+        found = {}
+        for key, values in self._sampled.items():
+            sizes = abs(values[np.isfinite(values)])
+            if (
+                sizes.size > 8
+                and np.ptp(sizes) > 1e-9 * sizes.max()
+                and (size := float(np.median(sizes))) > 0
+            ):
+                found[key] = size
+        return found
 
     def relative(self, given: Mapping[str, Any]) -> Margins:
-        """The margins that vary, in parts of their usual size."""
-        margins = self.margins(given)
-        return {key: margins[key] / size for key, size in self.usual.items() if key in margins}
+        """The margins that vary, in parts of their usual size; of those that vanish together the first."""
+        keys = self.distinct
+        margins = self.margins(given, tuple(dict.fromkeys(name for name, _, _ in keys if name != _LOOPS)))
+        return {key: margins[key] / self.usual[key] for key in keys if key in margins}
+
+    @cached_property
+    def distinct(self) -> tuple[_Key, ...]:
+        """The margins whose zeros differ."""
+        usual = {key: values for key, values in self._sampled.items() if key in self.usual}
+        kept: dict[_Key, np.ndarray] = {}
+        for key, values in usual.items():
+            if not any(_vanish_together(values, other) for other in kept.values()):
+                kept[key] = values
+        return tuple(kept)
+
+
+def _vanish_together(a: np.ndarray, b: np.ndarray) -> bool:
+    """Whether two margins have the same zeros, by what they are at random places."""
+    both = np.isfinite(a) & np.isfinite(b)
+    if both.sum() < 0.9 * max(np.isfinite(a).sum(), np.isfinite(b).sum()):
+        return False
+    a, b = a[both], b[both]
+    crosses = (a < 0).any() and (a > 0).any()
+    if crosses or ((b < 0).any() and (b > 0).any()):
+        same = a * b > 0
+        return bool(crosses and (same.all() or not same.any()))
+    with np.errstate(all="ignore"):
+        logs = np.log(abs(a)), np.log(abs(b))
+    return bool(np.isfinite(logs).all() and np.corrcoef(*logs)[0, 1] > 0.9999)
 
 
 def _plain_radians(value: Any, is_angle: bool) -> Any:
@@ -270,92 +349,120 @@ def _plain_radians(value: Any, is_angle: bool) -> Any:
     return np.radians(value) if is_angle else value
 
 
-# ------------------------------------------------------------------------ crossings
+# ------------------------------------------------------------------------- spots
 
 
 @dataclass(frozen=True)
-class _Zero:
+class _Spot:
+    """A place that is sought, or found: where a margin vanishes as one given quantity moves, another tuned."""
+
     given: Mapping[str, Any]
     moved: str
-    key: tuple[str, str, int]
-    scale: float
+    key: _Key
     tuned: str = ""
-    others: tuple[tuple[str, str, int], ...] = ()
 
-
-def _crossings(terrain: Terrain) -> list[_Zero]:
-    """Where a margin changes its sign, or touches nought, along one given quantity."""
-    found: list[_Zero] = []
-    for base in terrain.bases:
-        for name, (low, high) in terrain.ranges.items():
-            at = np.linspace(low, high, _ALONG)
-            margins = terrain.relative({**_arrays(base, _ALONG), name: at})
-            brackets = [
-                (key, at[i], at[i + 1])
-                for key, m in margins.items()
-                for i in np.flatnonzero(np.isfinite(m[:-1]) & np.isfinite(m[1:]) & (m[:-1] * m[1:] < 0))
-            ]
-            for key, zero in _bisected(terrain, base, name, brackets):
-                found.append(_Zero({**base, name: zero}, name, key, terrain.scale(name, base)))
-    return found
+    def put(self, **values: float) -> _Spot:
+        return replace(self, given={**self.given, **{n: float(v) for n, v in values.items()}})
 
 
 def _arrays(base: Mapping[str, Any], count: int) -> dict[str, Any]:
     return {n: v if isinstance(v, str) else np.full(count, float(v)) for n, v in base.items()}
 
 
-def _bisected(
-    terrain: Terrain, base: Mapping[str, Any], name: str, brackets: Sequence[tuple]
-) -> Iterator[tuple[tuple[str, str, int], float]]:
-    """The zeros of many margins at once; none where it has a pole."""
-    if not brackets:
-        return
-    keys = [key for key, _, _ in brackets]
-    low, high = (np.array([b[i] for b in brackets]) for i in (1, 2))
-    count = len(brackets)
-    fixed = _arrays(base, count)
+def _alike(spots: Sequence[_Spot]) -> list[list[_Spot]]:
+    """Spots that one call can compute: those whose choices are the same."""
+    groups: dict[Any, list[_Spot]] = {}
+    for spot in spots:
+        groups.setdefault(tuple(v for v in spot.given.values() if isinstance(v, str)), []).append(spot)
+    return list(groups.values())
+
+
+def _together(spots: Sequence[_Spot], shape: tuple[int, ...] = ()) -> dict[str, Any]:
+    """The given values of many spots as arrays, a row a spot."""
+    found = {}
+    for name, value in spots[0].given.items():
+        if isinstance(value, str):
+            found[name] = value
+        else:
+            column = np.array([float(s.given[name]) for s in spots]).reshape(-1, *[1] * len(shape))
+            found[name] = np.array(np.broadcast_to(column, (len(spots), *shape)))
+    return found
+
+
+def _own_margins(
+    terrain: Terrain, spots: Sequence[_Spot], given: Mapping[str, Any], shape: tuple[int, ...]
+) -> np.ndarray:
+    """The margin of each spot at its own row of places."""
+    flat = {n: v if isinstance(v, str) else v.ravel() for n, v in given.items()}
+    margins = terrain.relative(flat)
+    none = np.full(shape, np.nan)
+    whole = {key: m.reshape(len(spots), *shape) for key, m in margins.items()}
+    return np.stack([whole[s.key][i] if s.key in whole else none for i, s in enumerate(spots)])
+
+
+# ------------------------------------------------------------------------ crossings
+
+
+def _crossings(terrain: Terrain) -> list[_Spot]:
+    """Where a margin changes its sign along one given quantity."""
+    brackets: list[tuple[_Spot, float, float]] = []
+    for base in terrain.bases:
+        for name, (low, high) in terrain.ranges.items():
+            at = np.linspace(low, high, _ALONG)
+            for key, m in terrain.relative({**_arrays(base, _ALONG), name: at}).items():
+                turns = np.flatnonzero(np.isfinite(m[:-1]) & np.isfinite(m[1:]) & (m[:-1] * m[1:] < 0))
+                brackets += [(_Spot(base, name, key), at[i], at[i + 1]) for i in turns[:4]]
+    found = []
+    for group in _alike([spot for spot, _, _ in brackets]):
+        ends = {id(s): (low, high) for s, low, high in brackets}
+        found += _bisected(terrain, group, *np.array([ends[id(s)] for s in group]).T)
+    return found
+
+
+def _bisected(terrain: Terrain, spots: Sequence[_Spot], low: np.ndarray, high: np.ndarray) -> Iterator[_Spot]:
+    """The spots at their zeros; none where a margin has a pole."""
+    given = _together(spots)
 
     def values(at: np.ndarray) -> np.ndarray:
-        margins = terrain.relative({**fixed, name: at})
-        return np.array([margins[key][i] if key in margins else np.nan for i, key in enumerate(keys)])
+        for i, spot in enumerate(spots):
+            given[spot.moved][i] = at[i]
+        return _own_margins(terrain, spots, given, ())
 
     sign = np.sign(values(low))
-    for _ in range(60):
+    for _ in range(_HALVINGS):
         middle = (low + high) / 2
         same = np.sign(values(middle)) == sign
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     left = np.minimum(abs(values(low)), abs(values(high)))
-    for key, zero, size in zip(keys, high, left, strict=True):
+    for spot, zero, size in zip(spots, high, left, strict=True):
         if size < _ZERO:
-            yield key, _short(float(zero), 1e-11 * max(terrain.scale(name, base), 1.0))
+            scale = terrain.scale(spot.moved, spot.given)
+            yield spot.put(**{spot.moved: _short(float(zero), 1e-11 * max(scale, 1.0))})
 
 
 # ------------------------------------------------------------------ double zeros
 
 
-def _turning_points(terrain: Terrain) -> list[_Zero]:
+def _turning_points(terrain: Terrain) -> list[_Spot]:
     """Where a margin vanishes and is least, or largest, along an angle: two solutions touch."""
-    found: list[_Zero] = []
+    spots: list[_Spot] = []
     for base in terrain.bases:
         for moved in terrain.angles[:2]:
             for tuned in terrain.ranges:
                 if tuned != moved and terrain.unit(tuned) in ("mm", "deg"):
-                    found += _touching(terrain, base, moved, tuned)
-    return found
+                    spots += _touching(terrain, base, moved, tuned)
+    return [zero for group in _alike(spots) for zero in _zoomed(terrain, group)]
 
 
-def _touching(terrain: Terrain, base: Mapping[str, Any], moved: str, tuned: str) -> Iterator[_Zero]:
-    across = np.linspace(*terrain.ranges[tuned], _ACROSS)
-    along = np.linspace(*terrain.ranges[moved], 91)
+def _touching(terrain: Terrain, base: Mapping[str, Any], moved: str, tuned: str) -> Iterator[_Spot]:
+    """Where a margin is about to touch nought, on a plane of two given quantities."""
+    across = np.linspace(*terrain.ranges[tuned], _ROWS)
+    along = np.linspace(*terrain.ranges[moved], _COLUMNS)
     y, x = (v.ravel() for v in np.meshgrid(across, along, indexing="ij"))
     margins = terrain.relative({**_arrays(base, y.size), tuned: y, moved: x})
-    spots = []
     for key, values in margins.items():
-        m = values.reshape(_ACROSS, -1)
-        for i, j in _near_touch(m):
-            spots.append((key, across[i], along[j]))
-    steps = across[1] - across[0], along[1] - along[0]
-    yield from _zoomed(terrain, base, moved, tuned, spots, steps)
+        for i, j in _near_touch(values.reshape(_ROWS, -1)):
+            yield _Spot(base, moved, key, tuned).put(**{tuned: across[i], moved: along[j]})
 
 
 def _near_touch(m: np.ndarray) -> list[tuple[int, int]]:
@@ -372,59 +479,51 @@ def _near_touch(m: np.ndarray) -> list[tuple[int, int]]:
             for i in range(len(m) - 1):
                 if not (inside[i] and inside[i + 1]):
                     continue
-                if value[i] * value[i + 1] < 0:
-                    found.append((i, int(j[i])))
-                elif i and inside[i - 1] and abs(value[i]) < 0.3 and abs(value[i]) <= min(abs(value[i - 1]), abs(value[i + 1])):
+                crosses = value[i] * value[i + 1] < 0
+                touches = i and inside[i - 1] and abs(value[i]) <= min(0.3, *abs(value[[i - 1, i + 1]]))
+                if crosses or touches:
                     found.append((i, int(j[i])))
     return found
 
 
-def _zoomed(
-    terrain: Terrain, base: Mapping[str, Any], moved: str, tuned: str, spots: Sequence[tuple], steps: tuple[float, float]
-) -> Iterator[_Zero]:
+def _zoomed(terrain: Terrain, spots: Sequence[_Spot]) -> Iterator[_Spot]:
     """The spots as exactly as doubles tell them: the plane around each, finer and finer."""
-    if not spots:
-        return
-    keys = [s[0] for s in spots]
-    y, x = (np.array([s[i] for s in spots]) for i in (1, 2))
-    wide, long = np.full(len(spots), 1.5 * steps[0]), np.full(len(spots), 2.0 * steps[1])
-    levels, points = np.linspace(-1, 1, 9), np.linspace(-1, 1, 17)
-    size = np.full(len(spots), np.inf)
-    for _ in range(22):
-        Y = (y[:, None, None] + wide[:, None, None] * levels[None, :, None]) + 0 * points
-        X = (x[:, None, None] + long[:, None, None] * points[None, None, :]) + 0 * levels[:, None]
-        margins = terrain.relative({**_arrays(base, Y.size), tuned: Y.ravel(), moved: X.ravel()})
-        for s, key in enumerate(keys):
-            if key not in margins:
-                continue
-            plane = margins[key].reshape(Y.shape)[s]
-            row, column, size[s] = _best_extremum(plane)
-            y[s] += wide[s] * levels[row]
-            x[s] += long[s] * column
-        wide, long = wide * 0.3, long * 0.45
-    seen = set()
-    for s, key in enumerate(keys):
-        low, high = terrain.ranges[tuned]
-        if not np.isfinite(size[s]) or not low <= y[s] <= high:
-            continue
-        given = _settled({**base, moved: _short(float(x[s]), 2e-5)}, terrain, key, tuned, float(y[s]))
-        if given is not None and (at := (key, round(given[tuned], 5), round(given[moved], 4))) not in seen:
-            seen.add(at)
-            yield _Zero(given, moved, key, terrain.scale(moved, base), tuned)
+    levels, points = np.linspace(-1, 1, 5), np.linspace(-1, 1, 9)
+    shape = len(levels), len(points)
+    y, x = (np.array([s.given[name] for s, name in pairs]) for pairs in _pairs(spots))
+    wide = np.array([1.5 * np.ptp(terrain.ranges[s.tuned]) / (_ROWS - 1) for s in spots])
+    long = np.array([2.0 * np.ptp(terrain.ranges[s.moved]) / (_COLUMNS - 1) for s in spots])
+    given = _together(spots, shape)
+    for _ in range(_ZOOMS):
+        for i, spot in enumerate(spots):
+            given[spot.tuned][i] = (y[i] + wide[i] * levels)[:, None]
+            given[spot.moved][i] = x[i] + long[i] * points
+        for i, plane in enumerate(_own_margins(terrain, spots, given, shape)):
+            row, column = _best_extremum(plane)
+            y[i] += wide[i] * levels[row]
+            x[i] += long[i] * column
+        wide, long = wide * 0.4, long * 0.5
+    near = [s.put(**{s.moved: _short(x[i], 2e-5), s.tuned: y[i]}) for i, s in enumerate(spots)]
+    yield from _settled(terrain, near)
 
 
-def _settled(
-    given: Mapping[str, Any], terrain: Terrain, key: tuple[str, str, int], tuned: str, found: float
-) -> dict[str, Any] | None:
-    """The place with what is tuned as a short decimal where that makes the margin vanish, or as it was found; None
-    where it does not vanish."""
-    tried = dict.fromkeys((_short(found, 1e-5 * max(abs(found), 1.0)), found))
-    at = {**_arrays(given, len(tried)), tuned: np.array(list(tried))}
-    left = terrain.relative(at).get(key, np.full(len(tried), np.nan))
-    for value, size in zip(tried, left, strict=True):
-        if abs(size) < _ZERO:
-            return {**given, tuned: value}
-    return None
+def _pairs(spots: Sequence[_Spot]) -> tuple[list[tuple[_Spot, str]], list[tuple[_Spot, str]]]:
+    return [(s, s.tuned) for s in spots], [(s, s.moved) for s in spots]
+
+
+def _settled(terrain: Terrain, spots: Sequence[_Spot]) -> Iterator[_Spot]:
+    """With what is tuned as a short decimal where that makes the margin vanish, or as it was found; those whose margin
+    does not vanish, or that lie without the range, are left out."""
+    short = [s.put(**{s.tuned: _short(v := s.given[s.tuned], 1e-5 * max(abs(v), 1.0))}) for s in spots]
+    left = [abs(_own_margins(terrain, own, _together(own), ())) for own in (short, spots)]
+    for own in zip(short, spots, *left, strict=True):
+        chosen = own[0] if own[2] < _ZERO else own[1] if own[3] < _ZERO else None
+        if chosen is not None and _is_inside(chosen.given[chosen.tuned], terrain.ranges[chosen.tuned]):
+            yield chosen
+
+
+def _is_inside(value: float, limits: tuple[float, float]) -> bool:
+    return limits[0] <= value <= limits[1]
 
 
 def _short(value: float, apart: float) -> float:
@@ -435,40 +534,41 @@ def _short(value: float, apart: float) -> float:
     return value
 
 
-def _best_extremum(plane: np.ndarray) -> tuple[int, float, float]:
-    """The row whose extremum along it is nearest to nought, where that is, and its size."""
-    best = (plane.shape[0] // 2, 0.0, np.inf)
+def _best_extremum(plane: np.ndarray) -> tuple[int, float]:
+    """The row whose extremum along it is nearest to nought, and where on it that is, from -1 to 1."""
+    best, place = np.inf, (plane.shape[0] // 2, 0.0)
+    last = plane.shape[1] - 1
     for row, values in enumerate(plane):
         if not np.isfinite(values).all():
             continue
         for own in (values, -values):
             j = int(own.argmin())
-            if 0 < j < len(own) - 1:
+            if 0 < j < last:
                 a, b, c = own[j - 1], own[j], own[j + 1]
                 bend = a - 2 * b + c
                 shift = 0.5 * (a - c) / bend if bend > 0 else 0.0
-                low = b - 0.125 * (a - c) ** 2 / bend if bend > 0 else b
-                if abs(low) < best[2]:
-                    best = (row, (j + shift) * 2 / (len(own) - 1) - 1, abs(low))
-    return best
+                low = abs(b - 0.125 * (a - c) ** 2 / bend if bend > 0 else b)
+                if low < best:
+                    best, place = low, (row, (j + shift) * 2 / last - 1)
+    return place
 
 
 # ---------------------------------------------------------------------- other places
 
 
-def _vanishing(terrain: Terrain) -> list[_Zero]:
+def _vanishing(terrain: Terrain) -> list[_Spot]:
     """A length as small as one likes beside the others."""
     base = terrain.bases[0]
-    return [
-        _Zero({**base, name: 0.0}, name, (name, VANISHING, 0), float(base[name])) for name in terrain.lengths
-    ]
+    return [_Spot({**base, name: 0.0}, name, (name, VANISHING, 0)) for name in terrain.lengths]
 
 
-def _merged(found: Sequence[_Zero]) -> list[HardPlace]:
+def _merged(terrain: Terrain, found: Sequence[_Spot]) -> list[HardPlace]:
     """One place for all that vanishes there; for one sort of place, what is found first."""
-    by_place: dict[Any, list[_Zero]] = {}
+    by_place: dict[Any, list[_Spot]] = {}
     for zero in found:
-        where = tuple(v if isinstance(v, str) else round(v / _SAME / max(abs(v), 1.0)) for v in zero.given.values())
+        where = tuple(
+            v if isinstance(v, str) else round(v / _SAME / max(abs(v), 1.0)) for v in zero.given.values()
+        )
         by_place.setdefault((zero.moved, where), []).append(zero)
     places, sorts = [], set()
     for (moved, _), zeros in by_place.items():
@@ -479,16 +579,20 @@ def _merged(found: Sequence[_Zero]) -> list[HardPlace]:
             continue
         sorts.add(sort)
         kind, quantity = first.key[1], first.key[0]
-        places.append(HardPlace(first.given, moved, first.scale, kind, quantity, sort[1], seen=seen))
+        scale = terrain.scale(moved, terrain.bases[0] if kind == VANISHING else first.given)
+        places.append(HardPlace(first.given, moved, scale, kind, quantity, sort[1], seen=seen))
     return places
 
 
 def _ranked(terrain: Terrain, places: Sequence[HardPlace]) -> list[HardPlace]:
     """With what each loses, most first."""
-    from dataclasses import replace
-
-    weighed = [replace(p, lost=_lost(terrain, p)) for p in places]
-    return sorted((p for p in weighed if p.lost > _LOST), key=lambda p: -p.lost)
+    weighed = sorted((replace(p, lost=_lost(terrain, p)) for p in places), key=lambda p: -p.lost)
+    kept: dict[Any, list[HardPlace]] = {}
+    for place in weighed:
+        own = kept.setdefault((place.kind, place.quantity, place.double), [])
+        if place.lost > _LOST and len(own) < _OF_A_SORT:
+            own.append(place)
+    return sorted((p for own in kept.values() for p in own), key=lambda p: -p.lost)
 
 
 def _lost(terrain: Terrain, place: HardPlace) -> float:
@@ -508,7 +612,9 @@ def _lost(terrain: Terrain, place: HardPlace) -> float:
         for wanted in terrain.wanted:
             try:
                 stable = np.broadcast_to(graph.evaluate((wanted,), spread, terrain.effects)[wanted], (count,))
-                formula = np.broadcast_to(textbook.evaluate((wanted,), spread, terrain.effects)[wanted], (count,))
+                formula = np.broadcast_to(
+                    textbook.evaluate((wanted,), spread, terrain.effects)[wanted], (count,)
+                )
             except (CourseworkError, TypeError, ValueError):
                 continue
             if np.asarray(stable).dtype.kind not in "f" or not np.isfinite(stable[0]):
@@ -524,4 +630,3 @@ def _lost(terrain: Terrain, place: HardPlace) -> float:
             condition = float(moves.max(initial=0.0)) / step / size * eps
             worst = max(worst, condition, float(apart / size) if np.isfinite(apart) else 1.0)
     return worst
-
