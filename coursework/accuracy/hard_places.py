@@ -20,13 +20,14 @@ import numpy as np
 
 from coursework.accuracy.closure import Closure
 from coursework.accuracy.followed import Arithmetic, Followed, NotFollowed, of_arrays
+from coursework.accuracy.reference import twinned
 from coursework.course import draws
 from coursework.course.exercise import CourseExercise
 from coursework.errors import CourseworkError
 from coursework.quantities.graph import Graph
 
 DISTANCES = tuple(10.0**-k for k in range(1, 13))  #: from a place, in parts of the scale of what is moved
-DETERMINANT, VANISHING = "determinant", "vanishing"
+DETERMINANT, VANISHING, TURNS = "determinant", "vanishing", "turns"
 _ANGLE = 100.0  #: degrees: the scale of an angle
 _ALONG = 241  #: points along a line
 _ROWS, _COLUMNS = 33, 91  #: of a plane
@@ -35,7 +36,7 @@ _ZOOMS = 24  #: of a plane about a double zero
 _BASES = 2  #: variants from which is sought
 _SAME = 1e-7  #: of a scale: two zeros are one
 _ZERO = 1e-11  #: of its usual size: a margin has vanished
-_NEAR, _FAR = 1e-6, 1e-2  #: distances at which is asked what is lost
+_NEAR = 1e-6  #: the distance at which is asked what is lost
 _LOST = 1e-13  #: relative: a place where no more is lost is none
 _OF_A_SORT = 2  #: places at which the same vanishes
 _MOST = 8  #: places of an exercise
@@ -86,9 +87,15 @@ class HardPlace:
     ) -> Iterator[dict[str, Any]]:
         """Both sides in turn, from far to near."""
         for distance in distances:
-            yield self.at(distance, aside)
-            if self.kind != VANISHING:
-                yield self.at(-distance, aside)
+            for side in self.sides:
+                yield self.at(side * distance, aside)
+
+    @property
+    def sides(self) -> tuple[int, ...]:
+        """From where it can be approached: what vanishes has one side."""
+        if self.kind != VANISHING:
+            return (1, -1)
+        return (1,) if not self.given[self.moved] else (-1,)
 
 
 def hard_places(exercise: CourseExercise, wanted: Sequence[str], most: int = _MOST) -> tuple[HardPlace, ...]:
@@ -106,11 +113,9 @@ class Terrain:
 
     def __init__(self, exercise: CourseExercise, wanted: Sequence[str]) -> None:
         self.exercise, self.wanted = exercise, tuple(wanted)
-        self.graph = exercise.solution.graph.textbook
+        self.graph = twinned(exercise.solution.graph.textbook)
         self.effects = exercise.spec.effects
-        used = self.graph._ancestors(self.wanted) | set(self.effects)
-        for effect in self.effects:
-            used |= self.graph._ancestors((effect,))
+        used = self.graph.ancestors((*self.wanted, *self.effects))
         self.names = tuple(n for n, s in exercise.spec.given.items() if n in used and not s.is_choice)
         loops = exercise.solution.loops
         vectors = [[link.vector for link in loop.links] for loop in loops.values()]
@@ -170,12 +175,13 @@ class Terrain:
                 found[name] = (-reach, reach)
             elif self.unit(name) == "deg":
                 # Off the quarters of the turn, so that what vanishes there changes sign between two points.
-                found[name] = (-183.7, 176.3) if self._turns(name) else (min(least, 0.0), max(largest, 180.0))
+                found[name] = (-183.7, 176.3) if self.turns(name) else (min(least, 0.0), max(largest, 180.0))
             else:
                 found[name] = (least, largest)
         return {n: r for n, r in found.items() if r[1] > r[0]}
 
-    def _turns(self, name: str) -> bool:
+    def turns(self, name: str) -> bool:
+        """Whether an angle may be any, not one of a triangle."""
         least, largest = self._drawn[name]
         driver = self.exercise.spec.driver
         return largest - least >= 180 or least < 0 or (driver is not None and name == driver.angle)
@@ -557,9 +563,11 @@ def _best_extremum(plane: np.ndarray) -> tuple[int, float]:
 
 
 def _vanishing(terrain: Terrain) -> list[_Spot]:
-    """A length as small as one likes beside the others."""
+    """A length as small as one likes beside the others; an angle of a triangle that is flat."""
     base = terrain.bases[0]
-    return [_Spot({**base, name: 0.0}, name, (name, VANISHING, 0)) for name in terrain.lengths]
+    flat = [n for n in terrain.angles if not terrain.turns(n)]
+    ends = [(n, 0.0) for n in (*terrain.lengths, *flat)] + [(n, 180.0) for n in flat]
+    return [_Spot({**base, name: end}, name, (name, VANISHING, 0)) for name, end in ends]
 
 
 def _merged(terrain: Terrain, found: Sequence[_Spot]) -> list[HardPlace]:
@@ -597,12 +605,11 @@ def _ranked(terrain: Terrain, places: Sequence[HardPlace]) -> list[HardPlace]:
 
 def _lost(terrain: Terrain, place: HardPlace) -> float:
     """What the textbook formula, or the last digit of a datum, changes beside a place, relative."""
-    sides = [_NEAR] if place.kind == VANISHING else [_NEAR, -_NEAR]
     worst = 0.0
     graph, textbook = terrain.exercise.solution.graph, terrain.graph
     eps = np.finfo(float).eps
-    for side in sides:
-        given = place.at(side)
+    for side in place.sides:
+        given = place.at(side * _NEAR)
         names = [n for n in terrain.names if given[n]]
         count = 1 + len(names)
         spread = _arrays(given, count)

@@ -41,7 +41,7 @@ def test_what_an_expert_would_type_is_found(course, name):
     assert same
     for place in same:
         beside = margins({**place.given, **typed, "theta2": typed["theta2"] + 0.1})[
-            place.kind, place.quantity
+            place.quantity, place.kind
         ]
         assert 0 < beside < 1e-2  # of second order, or a distance: it does not change its sign
         assert margins(place.given)[place.quantity, place.kind] < 1e-11
