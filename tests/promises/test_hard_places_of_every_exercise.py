@@ -37,7 +37,9 @@ QUICK = (1e-2, 1e-4, 1e-6, 1e-8)
 
 def lost(name, **how):
     known = KNOWN_LOSSES.get(name, set())
-    return [m.told() for m in misses(COURSE[name], numbers_of(COURSE[name]), **how) if m.quantity not in known]
+    return [
+        m.told() for m in misses(COURSE[name], numbers_of(COURSE[name]), **how) if m.quantity not in known
+    ]
 
 
 @pytest.mark.parametrize("name", NUMERIC)
@@ -77,5 +79,3 @@ def _textbook(graph):
         return plain(textbook if self is graph else self, *args, **options)
 
     return evaluate
-
-
