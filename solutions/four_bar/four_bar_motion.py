@@ -6,7 +6,6 @@ core instead, which keeps its digits there.
 
 import numpy as np
 
-from coursework.accuracy import Study
 from coursework.degrees import cos, polar, sin
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
 from coursework.kinematics.chains import Vector
@@ -216,19 +215,4 @@ KNOWN = (
         theta3=60, theta4=90, omega3=-1, omega4=0, alpha3=4 * 3**0.5 - 2, alpha4=4 * 3**0.5, v_B=0, a_B=720,
         v_BA=90, a_BA_n=90,
     ),
-)  # fmt: skip
-
-ACCURACY = Study(
-    given={
-        "r1": 200, "r2": 60, "r3": 180, "r4": 140, "omega2": 10, "alpha2": 0, "mode": "open",
-    },
-    positions=("theta3", "theta4"),
-    rates=("omega3", "omega4"),
-    # A change point: stretched out, the four bars lie on one line.
-    hard={
-        "r1": 100, "r2": 50, "r3": 70, "r4": 80,
-        "theta2": [180 + side * 10.0**-k for k in range(10) for side in (-1, 1)],
-    },
-    loops=tuple(LOOPS.values()),
-    unknowns=("theta3", "theta4"),
 )  # fmt: skip

@@ -7,7 +7,6 @@ to O4 as it likes.
 
 import numpy as np
 
-from coursework.accuracy import Study
 from coursework.degrees import atan, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
@@ -217,16 +216,3 @@ KNOWN = (
     # Frame and crank equal: the guide turns at half the crank's speed, wherever it is.
     given(r1=150, r2=150, theta1=90, theta2=-80, omega2=10).gives(omega4=5, alpha4=0, theta4=5),
 )
-
-ACCURACY = Study(
-    given={"r1": 228.6, "r2": 114.3, "theta1": 90, "omega2": 10, "alpha2": 0},
-    positions=("rA", "theta4"),
-    rates=("rA_dot", "omega4"),
-    # The block passes O4 at a ten-millionth of the crank's length.
-    hard={
-        "r1": 200, "r2": 200 * (1 - 1e-7),
-        "theta2": [-90 + side * 10.0**-k for k in range(10) for side in (-1, 1)],
-    },
-    loops=tuple(LOOPS.values()),
-    unknowns=("rA", "theta4"),
-)  # fmt: skip
