@@ -24,6 +24,11 @@ OF_FORCES = "forces"
 REFUSED = ("impact", "impacts", "clearance", "clearances", "play", "backlash")
 
 
+def refusal(name: str) -> str:
+    """What is said of an effect that is never simulated."""
+    return f"{name}: impacts and clearances are not simulated; joints hold without play, and nothing strikes"
+
+
 def check_effect(effect: str, exercise: CourseExercise) -> None:
     """Refuse an effect that there is not.
 
@@ -35,9 +40,7 @@ def check_effect(effect: str, exercise: CourseExercise) -> None:
         Any other.
     """
     if effect in REFUSED:
-        raise WrongValue(
-            f"{effect}: impacts and clearances are not simulated; joints hold without play, and nothing strikes"
-        )
+        raise WrongValue(refusal(effect))
     known = (*EFFECTS, *exercise.solution.graph.effects())
     if effect not in known:
         raise unknown("effect", effect, known, exercise.name)

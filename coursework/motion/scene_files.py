@@ -38,7 +38,7 @@ from coursework.mechanics.loads import STROKES
 from coursework.mechanics.statement import Load, Place
 from coursework.mechanics.wrenches import GRAVITY
 from coursework.motion.added import Added, Flywheel, Motor, Weighed
-from coursework.motion.effects import check_effect
+from coursework.motion.effects import REFUSED, check_effect, refusal
 from coursework.motion.scenes import Scene
 from coursework.reading.numbers import read_number
 from coursework.reading.units import same_dimension
@@ -156,6 +156,8 @@ class _Reader:
 
     def _only(self, table: Mapping[str, Any], known: Sequence[str], at: Path_) -> None:
         for key in table:
+            if key in REFUSED:
+                raise self.refused((*at, key), refusal(key))
             if key not in known:
                 raise self.refused((*at, key), f"no key {key!r}{nearest(key, known)}")
 

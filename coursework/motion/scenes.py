@@ -481,6 +481,7 @@ class Scene:
         return replace(self.forces, downwards=0j, inertia=True, loads=(), contacts=())
 
     def _cycle_notes(self, columns: Mapping[str, np.ndarray], angles: np.ndarray) -> Iterator[str]:
+        yield from self._empty_effects()
         gaps = np.logical_or.reduce([np.isnan(column) for column in columns.values()])
         if not gaps.any():
             yield from self._flywheel_notes()
@@ -499,6 +500,21 @@ class Scene:
             yield f"the mechanism jams at {self.driver.angle} = {listed} deg{more}: its friction outgrows what overcomes it"
         else:
             yield f"not everything exists at {self.driver.angle} = {listed} deg{more}: a dead centre"
+
+    def _empty_effects(self) -> Iterator[str]:
+        """Effects that are called and for which the scene has no data."""
+        if self.exercise.solution.mechanism is None or (self._graph_effects and not self.added.is_own):
+            return
+        data = self.with_data()
+        lacks = {
+            "load": "no load",
+            "gravity": "no mass",
+            INERTIA: "no mass",
+            FRICTION: "no friction at a joint",
+        }
+        for effect, what in lacks.items():
+            if effect in self.effects and effect not in data:
+                yield f"{effect}: the scene has {what}, so that it adds nothing; a scene file gives some"
 
     def _is_open(self, columns: Mapping[str, np.ndarray], angles: np.ndarray) -> np.ndarray:
         """Where a position of the mechanism does not exist."""
@@ -604,8 +620,11 @@ class Scene:
             if "drive_torque" in extra
             else {}
         )
+        stuck = (ways == 0) & bool(self.forces.contacts)
         for name, (values, unit) in extra.items():
-            columns[name], units[name] = np.broadcast_to(values, t.shape), unit
+            # At rest friction is whatever holds: what the joints bear is not determined.
+            empty = stuck & (name.startswith(("R_", "N_", "M_", "Mf_", "T_")))
+            columns[name], units[name] = np.where(empty, np.nan, np.broadcast_to(values, t.shape)), unit
         columns["dead_centre"] = np.isin(t, motion.dead_centres).astype(float)
         units["dead_centre"] = "1"
         inertia = running.table.over(angle)[0] + running.forces.flywheel
@@ -613,6 +632,7 @@ class Scene:
         exchanged = max(float(np.ptp(kinetic)), float(np.ptp(work)), 1e-300)
         balance = float(np.max(np.abs(kinetic - kinetic[0] - work))) / exchanged
         notes = (
+            *self._empty_effects(),
             f"energy balance: {balance:.1e} of the energy exchanged",
             *(f"the mechanism comes to rest at t = {start:.6g} s and stays" for start, _ in motion.stuck),
             counted(len(motion.dead_centres), "dead centre"),
@@ -637,5 +657,5 @@ class Scene:
 
     def _units(self, names: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
         advantage = "1/m" if self._output_slides else "1"
-        known = {"t": "s", ADVANTAGE: advantage, **self.exercise.units}
+        known = {"t": "s", ADVANTAGE: advantage, self.driver.angle: "deg", **self.exercise.units}
         return {n: known.get(n, "1") for n in names}

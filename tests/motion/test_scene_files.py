@@ -105,6 +105,7 @@ WRONG = {
     "effects = ['clearance']": ("line 2", "impacts and clearances are not simulated"),
     "show = ['reaction Q']": ("line 2", "no joint 'Q'"),
     "show = ['velocity']": ("line 2", "no quantity to show 'velocity'"),
+    "[clearance]\nB = 0.1": ("line 2", "impacts and clearances are not simulated"),
     "efects = []": ("line 2", "did you mean 'effects'"),
     "steps = 0": ("line 2", "whole number from 1 on"),
     "duration = '2 s'": ("line 2", "needs a drive"),

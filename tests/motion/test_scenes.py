@@ -307,3 +307,19 @@ def test_a_budget_says_what_a_scene_could_do_without_and_what_it_lacks(course):
     assert "lacks friction, for which it has data" in said
     assert "gravity is left out, rightly" in said
     assert "without load" not in said
+
+
+def test_an_effect_without_data_is_told(course):
+    exercise = course["four_bar_motion"]
+    table = Scene(exercise, exercise.variant(0).used, ("load", "gravity", "friction")).over_cycle(6)
+    assert [note.split(":")[0] for note in table.notes] == ["load", "gravity", "friction"]
+    assert (table.columns["drive_torque"] == 0).all()
+
+
+def test_what_joints_bear_at_rest_under_friction_is_left_empty(course):
+    exercise = course["slider_crank_torque"]
+    given = {**exercise.variant(0).used, "omega2": 0.0, "alpha2": 0.0, "theta2": 0.0}
+    scene = Scene(exercise, given, ("inertia", "friction"), ("reaction B",))
+    table = scene.in_time(0.0, 0.1, count=4)
+    assert "stays" in " ".join(table.notes)
+    assert np.isnan(table.columns["N_B"]).all()
