@@ -231,9 +231,14 @@ def _write_budget_plot(found: Budget, title: str, stem: Path) -> None:
         most = worth.most
         part = 100 * most.largest_part if most else 0.0
         what = f"{most.output}, " if most and part else ""
-        rows.append((worth.effect, part, f"{part:.2g} % ({what}{1e3 * worth.seconds:.2g} ms)"))
+        rows.append((worth.effect, part, f"{_rounded(part)} % ({what}{_rounded(1e3 * worth.seconds)} ms)"))
     plot = bars(rows, title, "largest change without the effect, % of the output")
     write_whole(stem.parent / f"{stem.name}.svg", plot)
+
+
+def _rounded(value: float) -> str:
+    """Two digits, or whole."""
+    return f"{value:.0f}" if abs(value) >= 10 else f"{value:.2g}"
 
 
 def _write_rows(rows: Sequence[dict[str, Any]], stem: Path, decimal: str) -> None:
