@@ -8,8 +8,8 @@ import mpmath
 
 from coursework.mechanics.statement import GROUND, number
 
-DIGITS = 60
-STEP = mpmath.mpf(10) ** -15  #: radians: differences are good to some 28 digits
+DIGITS = 90
+STEP = mpmath.mpf(10) ** -25  #: radians: differences are good to some 40 digits, also beside a dead point
 
 
 class ExactMechanics:

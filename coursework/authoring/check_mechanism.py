@@ -57,7 +57,7 @@ def faults(variant: Variant) -> Iterator[str]:
     scene = Scene(exercise, variant.used)
     try:
         angle = np.radians([exercise.driver_angle(variant.used)])
-        stance = scene.pose(angle)
+        stance = scene.pose(angle, by_joints=True)
     except CourseworkError as fault:
         yield str(fault)
         return

@@ -98,6 +98,14 @@ class Linkage:
             found.append(names.setdefault(body.angle if body.angle else (body.name,), len(names)))
         return (*found, NONE)
 
+    @cached_property
+    def unknown_angles(self) -> tuple[str, ...] | None:
+        """The quantities of the coordinates from 1 on; None where one is a wheel's, which has none."""
+        bodies = zip(self.mechanism.bodies, self.coordinates, strict=False)
+        names = {own: body.angle for body, own in bodies if own > 0}
+        found = [names[k] for k in range(1, self.unknowns + 1)]
+        return tuple(map(str, found)) if all(isinstance(n, str) for n in found) else None
+
     @property
     def unknowns(self) -> int:
         """How many coordinates follow from the driver's angle."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -28,6 +28,7 @@ from coursework.model import Driver
 from coursework.motion import shown
 from coursework.motion.added import Added, Motor
 from coursework.motion.effects import ADVANTAGE, FORCES, KINEMATIC, OF_FORCES, check_effect, of_exercise
+from coursework.quantities.loops import usual_rates
 from coursework.solution import Moving
 
 INERTIA, FRICTION = "inertia", "friction"
@@ -296,8 +297,9 @@ class Scene:
         linkage.check()
         return linkage
 
-    def pose(self, angles: np.ndarray) -> Stance:
-        """The mechanism at driver's angles, radians, shape ``(n,)``."""
+    def pose(self, angles: np.ndarray, *, by_joints: bool = False) -> Stance:
+        """The mechanism at driver's angles, radians, shape ``(n,)``; its rates by the solution's own formulas where it
+        has all of them, and by the joints where it has not, or where that is asked."""
         linkage = self.linkage
         wanted = tuple(n for n in linkage.mechanism.angles if n != self.driver.angle)
         degrees = np.degrees(angles)
@@ -307,7 +309,31 @@ class Scene:
         for number, body in enumerate(linkage.mechanism.bodies):
             if isinstance(body.angle, str):
                 turns[number] = np.radians(turned[body.angle])
-        return Stance(linkage, turns)
+        return Stance(linkage, turns, None if by_joints else partial(self._stated_rates, degrees))
+
+    def _stated_rates(self, degrees: np.ndarray, order: int) -> np.ndarray | None:
+        """First or second derivatives of the unknown angles by the driver's, as the solution's own rates give them."""
+        names, driver = self._rates_by_name[order - 1], self.driver
+        if names is None or not driver.speed:
+            return None
+        rest = {driver.acceleration: 0.0} if driver.acceleration else {}
+        given: dict[str, Any] = {**self._driven(degrees), driver.speed: 1.0, **rest}
+        found = self.exercise.solve(**given, only=names) if names else {}
+        return np.array([np.broadcast_to(found[n], degrees.shape) for n in names]).reshape(
+            len(names), len(degrees)
+        )
+
+    @cached_property
+    def _rates_by_name(self) -> tuple[tuple[str, ...] | None, tuple[str, ...] | None]:
+        """The quantities of the unknown angles' rates, and of their accelerations; None where one is missing."""
+        angles, solution = self.linkage.unknown_angles, self.exercise.solution
+        known = frozenset(solution.graph.quantities)
+        of_loops = {n: pair for loop in solution.loops.values() for n, pair in loop.rates.items()}
+        if angles is None:
+            return None, None
+        pairs = [of_loops.get(n) or usual_rates(n, known) for n in angles]
+        first, second = (tuple(pair[order] for pair in pairs) for order in (0, 1))
+        return (first if known.issuperset(first) else None), (second if known.issuperset(second) else None)
 
     @cached_property
     def forces(self) -> Forces:

@@ -83,7 +83,7 @@ def test_loops_close_and_rates_are_those_of_the_solution(name, seed):
     """The rates follow from the joints alone; the solution has its own formulas for them."""
     exercise, scene = COURSE[name], scene_of(name, seed, ("inertia",))
     q, _, _ = instants(scene)
-    stance = scene.pose(q)
+    stance = scene.pose(q, by_joints=True)
     closes = np.isfinite(stance.turns).all(axis=0)
     size = max(np.abs(stance.origins[:, closes]).max(), 1e-3)
     assert stance.gap[closes].max() < 1e-13 * size
@@ -213,3 +213,24 @@ def test_points_move_as_the_solution_says():
         np.testing.assert_allclose(stance.rate(held) * speed * 1000, point.velocity, atol=1e-8)
         np.testing.assert_allclose(stance.bend(held) * speed**2 * 1000, point.acceleration, atol=1e-6)
     assert isinstance(held, Held)
+
+
+CHANGE = {"r1": 100.0, "r2": 50.0, "r3": 70.0, "r4": 80.0, "omega2": 2.0, "alpha2": 0.0, "mode": "open"}
+
+
+@pytest.mark.parametrize("beside", [1.0, 1e-2, 1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("side", [-1, 1])
+def test_the_effort_keeps_its_digits_beside_a_change_point(beside, side):
+    """Stretched out, the four bars lie on one line: the joints' own equations lose the accelerations there, a thousandth of
+    a degree away, the formulas of the exercise do not."""
+    exercise, angle = COURSE["four_bar_motion"], 180.0 + side * beside
+    data = Added({b: Weighed(2.0, 0.01, 20 + 5j) for b in "234"}, (Load("B", force=50.0, angle=30.0),))
+    scene = Scene(exercise, {**CHANGE, "theta2": angle}, ("load", "gravity", "inertia"), (), data)
+    force = complex(50.0 * np.exp(1j * np.radians(30.0)))
+    exact = ExactMechanics(exercise, scene.mechanism, scene.given, angle, 2.0, 3.0).borne(
+        gravity=True, inertia=True, loads=[("B", force)]
+    )["effort"]
+    found = scene.forces.over(np.radians([angle]), np.array([2.0]), np.array([3.0])).effort[0]
+    # The driver's angle in radians is rounded once more than in degrees: the effort goes as 1 / distance there.
+    allowed = 8 * np.finfo(float).eps * (1 + 180.0 / beside)
+    assert found == pytest.approx(float(exact), rel=allowed)
