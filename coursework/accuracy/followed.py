@@ -30,6 +30,7 @@ class Arithmetic:
 
     def __init__(self, functions: dict[str, Callable[..., Any]], tape: Tape | None = None) -> None:
         self.functions, self.tape = functions, tape
+        self.mp: Any = None  #: the context of mpmath, of many digits
 
     def __call__(self, name: str, *values: Any) -> Any:
         """A function of followed or plain numbers; truths come out plain, numbers followed."""
@@ -240,7 +241,7 @@ def of_many_digits(digits: int, tape: Tape | None = None) -> Arithmetic:
 
     made = Arithmetic({name: taking(function) for name, function in functions.items()}, tape)
     made.functions["where"] = lambda c, a, b: _exact(mp, a) if _truth(c) else _exact(mp, b)
-    made.mp = mp  # type: ignore[attr-defined]
+    made.mp = mp
     return made
 
 
