@@ -250,7 +250,7 @@ def _truth(value: Any) -> bool:
 
 
 def _exact(mp: Any, value: Any) -> Any:
-    """A plain number as the many-digit number that it is; pi and its simple parts as themselves."""
+    """A plain number of a formula as the many-digit number that is meant; pi and its simple parts as themselves."""
     if hasattr(value, "context") or isinstance(value, (str, bool)):
         return value
     if isinstance(value, np.ndarray):
@@ -264,8 +264,11 @@ def _exact(mp: Any, value: Any) -> Any:
         return mp.mpc(_exact(mp, value.real), _exact(mp, value.imag))
     if isinstance(value, float) and value in _TRANSCENDENT:
         return _TRANSCENDENT[value](mp)
-    return mp.mpf(value)
+    # A constant of a formula is the decimal that is written there.
+    return mp.mpf(repr(value) if isinstance(value, float) and len(repr(value)) <= _WRITTEN else value)
 
+
+_WRITTEN = 12  #: characters of a number that somebody wrote
 
 #: The floats that stand for parts of pi, and for degrees a radian.
 _TRANSCENDENT: dict[float, Callable[[Any], Any]] = {

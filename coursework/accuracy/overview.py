@@ -35,13 +35,14 @@ class Line:
     places two errors: the solver's and the textbook formula's;
     ``beyond`` is the solver's largest error there over eight times what is unavoidable at the same place, so that more
     than 1 is a digit that could be kept. ``wrong`` tells of formulas that contradict the stated equations: nothing is
-    measured then.
+    measured then. ``lacking`` are quantities whose formulas cannot be followed in many digits.
     """
 
     exercise: str
     quantities: int
     places: int = 0
     wrong: str = ""
+    lacking: tuple[str, ...] = ()
     lack: float | None = None
     in_doubles: bool = False
     vouched: int = 0
@@ -75,6 +76,8 @@ def overview(exercise: CourseExercise, *, quick: bool = False) -> Line | None:
         closing = checked(subject)
     except BadCourse as fault:
         return Line(exercise.name, len(subject.numbers), wrong=str(fault))
+    if not subject.reference.wanted:
+        return Line(exercise.name, 0, lacking=subject.reference.lacking)
     return _Survey(subject, quick).line(closing)
 
 
@@ -98,12 +101,12 @@ class _Survey:
             self.subject.exercise.name,
             len(self.wanted),
             len(self.subject.hard),
-            "",
-            closing and closing.lack,
-            bool(closing and closing.in_doubles),
-            len(closing.held & set(self.wanted)) if closing else 0,
-            generic["stable"],
-            generic["textbook"],
+            lacking=self.subject.reference.lacking,
+            lack=closing and closing.lack,
+            in_doubles=bool(closing and closing.in_doubles),
+            vouched=len(closing.held & set(self.wanted)) if closing else 0,
+            generic=generic["stable"],
+            generic_textbook=generic["textbook"],
             **self._hard(scales),
             stable_ns=times[0],
             textbook_ns=times[1],

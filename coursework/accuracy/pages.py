@@ -25,7 +25,7 @@ def overview_report(course: Course, lines: Sequence[Line], without: Sequence[str
     """A row an exercise: digits, times, where it is hardest, what vouches for the reference."""
     said = words(lang)["accuracy"]
     told = said["overview"]
-    right = [line for line in lines if not line.wrong]
+    right = [line for line in lines if not line.wrong and line.quantities]
     sections = (
         Section(told["short"], _short(course, lines, without, told, lang)),
         Section(told["table"], "", (), (_digits_table(course, right, told, lang),)),
@@ -39,7 +39,7 @@ def overview_report(course: Course, lines: Sequence[Line], without: Sequence[str
 
 
 def _short(course: Course, lines: Sequence[Line], without: Sequence[str], told: Words, lang: str) -> str:
-    right = [line for line in lines if not line.wrong]
+    right = [line for line in lines if not line.wrong and line.quantities]
     losing = [_titled(course, line, lang) for line in right if line.beyond > 1]
     key = "keeps_but" if losing else "keeps_all"
     found = [told[key].format(count=len(right), kept=len(right) - len(losing), others=", ".join(losing))]
@@ -48,6 +48,10 @@ def _short(course: Course, lines: Sequence[Line], without: Sequence[str], told: 
     wrong = [_titled(course, line, lang) for line in lines if line.wrong]
     if wrong:
         found.append(told["wrong"].format(", ".join(wrong)))
+    if lacking := [
+        f"{_titled(course, line, lang)} ({', '.join(line.lacking)})" for line in lines if line.lacking
+    ]:
+        found.append(told["lacking"].format(", ".join(lacking)))
     if is_busy(right):
         found.append(told["busy"])
     if without:

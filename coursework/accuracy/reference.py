@@ -24,6 +24,7 @@ from coursework.quantities.loops import Loop
 DIGITS = 80
 CLOSED = 1e-40  #: what equations may lack, in parts of their terms
 CLOSED_IN_DOUBLES = 1e-11  #: the same for an equation that takes plain floats alone
+_ROUNDED = 1e-15  #: what constants make that are rounded to doubles
 
 _DOUBLES = " (doubles)"
 _FAILURES = (CourseworkError, NotFollowed, TypeError, ValueError, ArithmeticError)
@@ -167,12 +168,14 @@ class Reference:
                 lacks[name] = max(lack, lacks.get(name, 0.0))
         if not lacks:
             return None
-        in_doubles = any(name.endswith(_DOUBLES) for name in lacks)
+        in_doubles = any(name.endswith(_DOUBLES) or CLOSED < lack <= _ROUNDED for name, lack in lacks.items())
         open_ones = [name for name, lack in lacks.items() if not lack <= CLOSED_IN_DOUBLES]
-        open_ones = open_ones or [n for n, lack in lacks.items() if not lack <= CLOSED and _DOUBLES not in n]
+        open_ones = open_ones or [n for n, lack in lacks.items() if lack > _ROUNDED and _DOUBLES not in n]
         # Of what does not close the first: what comes after may only follow from it.
         equation = open_ones[0] if open_ones else max(lacks, key=lambda name: lacks[name])
-        return Closing(lacks[equation], equation.removesuffix(_DOUBLES), self.held, in_doubles)
+        worst = lacks[equation]
+        in_doubles = in_doubles and not (worst > _ROUNDED and _DOUBLES not in equation)
+        return Closing(worst, equation.removesuffix(_DOUBLES), self.held, in_doubles)
 
     def lacks(self, given: Mapping[str, Any]) -> dict[str, float]:
         """What each stated equation lacks to close, in parts of its terms."""
