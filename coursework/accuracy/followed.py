@@ -30,6 +30,7 @@ class Arithmetic:
 
     def __init__(self, functions: dict[str, Callable[..., Any]], tape: Tape | None = None) -> None:
         self.functions, self.tape = functions, tape
+        self.mp: Any = None  #: the context of mpmath, of many digits
 
     def __call__(self, name: str, *values: Any) -> Any:
         """A function of followed or plain numbers; truths come out plain, numbers followed."""
@@ -240,7 +241,7 @@ def of_many_digits(digits: int, tape: Tape | None = None) -> Arithmetic:
 
     made = Arithmetic({name: taking(function) for name, function in functions.items()}, tape)
     made.functions["where"] = lambda c, a, b: _exact(mp, a) if _truth(c) else _exact(mp, b)
-    made.mp = mp  # type: ignore[attr-defined]
+    made.mp = mp
     return made
 
 
@@ -249,7 +250,7 @@ def _truth(value: Any) -> bool:
 
 
 def _exact(mp: Any, value: Any) -> Any:
-    """A plain number as the many-digit number that it is; pi and its simple parts as themselves."""
+    """A plain number of a formula as the many-digit number that is meant; pi and its simple parts as themselves."""
     if hasattr(value, "context") or isinstance(value, (str, bool)):
         return value
     if isinstance(value, np.ndarray):
@@ -263,8 +264,11 @@ def _exact(mp: Any, value: Any) -> Any:
         return mp.mpc(_exact(mp, value.real), _exact(mp, value.imag))
     if isinstance(value, float) and value in _TRANSCENDENT:
         return _TRANSCENDENT[value](mp)
-    return mp.mpf(value)
+    # A constant of a formula is the decimal that is written there.
+    return mp.mpf(repr(value) if isinstance(value, float) and len(repr(value)) <= _WRITTEN else value)
 
+
+_WRITTEN = 12  #: characters of a number that somebody wrote
 
 #: The floats that stand for parts of pi, and for degrees a radian.
 _TRANSCENDENT: dict[float, Callable[[Any], Any]] = {

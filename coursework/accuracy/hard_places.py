@@ -219,7 +219,8 @@ class Terrain:
         """Every margin on the way to some quantities, at each place of arrays of one shape."""
         shape = np.broadcast_shapes(*(np.shape(v) for v in given.values()))
         self._notes.clear()
-        self._margins = found = {}
+        found: Margins = {}
+        self._margins = found
         wrapped = {n: self._followed(v, shape) if n in self.names else v for n, v in given.items()}
         try:
             values = self._watched.everything(tuple(wanted), wrapped, self.effects)
@@ -390,7 +391,7 @@ def _alike(spots: Sequence[_Spot]) -> list[list[_Spot]]:
 
 def _together(spots: Sequence[_Spot], shape: tuple[int, ...] = ()) -> dict[str, Any]:
     """The given values of many spots as arrays, a row a spot."""
-    found = {}
+    found: dict[str, Any] = {}
     for name, value in spots[0].given.items():
         if isinstance(value, str):
             found[name] = value
@@ -423,7 +424,7 @@ def _crossings(terrain: Terrain) -> list[_Spot]:
             for key, m in terrain.relative({**_arrays(base, _ALONG), name: at}).items():
                 turns = np.flatnonzero(np.isfinite(m[:-1]) & np.isfinite(m[1:]) & (m[:-1] * m[1:] < 0))
                 brackets += [(_Spot(base, name, key), at[i], at[i + 1]) for i in turns[:4]]
-    found = []
+    found: list[_Spot] = []
     for group in _alike([spot for spot, _, _ in brackets]):
         ends = {id(s): (low, high) for s, low, high in brackets}
         found += _bisected(terrain, group, *np.array([ends[id(s)] for s in group]).T)

@@ -117,6 +117,11 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Row]:
     """
     subject = subject_of(exercise)
     checked(subject)
+    if not subject.reference.wanted:
+        raise BadInput(
+            f"{exercise.name}: there is no reference of {', '.join(subject.reference.lacking)}: its formula cannot be followed "
+            "in many digits; plain formulas with coursework.degrees and numpy's functions of numbers can"
+        )
     for what in WHATS:
         if subject.quantities(what):
             yield from _Trial(subject, what, quick).rows()

@@ -8,13 +8,13 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from typing import Any
 
+from coursework.accuracy.conditioning import ALLOWED, unavoidable
 from coursework.accuracy.hard_places import VANISHING, HardPlace
 from coursework.accuracy.measuring import (
     checked,
     compare,
     needs_mpmath,
     right_values,
-    unavoidable_of,
     usual_sizes,
 )
 from coursework.accuracy.reference import twinned
@@ -24,7 +24,7 @@ from coursework.course.exercise import CourseExercise
 from coursework.errors import BadCourse, CourseworkError
 
 _TIMED = 10_000
-_BEYOND = 8.0
+_RIGHT = 2e-15  #: relative: right to the last digits
 
 
 @dataclass(frozen=True)
@@ -32,16 +32,17 @@ class Line:
     """What is measured of one exercise; errors in the parts that :class:`~coursework.accuracy.measuring.Row` says.
 
     ``lack`` of the equation that vouches for the reference, in parts of its terms; None where none is stated. At the hard
-    places three errors: the solver's, the textbook formula's, and what the last digits of the data make by themselves;
+    places two errors: the solver's and the textbook formula's;
     ``beyond`` is the solver's largest error there over eight times what is unavoidable at the same place, so that more
     than 1 is a digit that could be kept. ``wrong`` tells of formulas that contradict the stated equations: nothing is
-    measured then.
+    measured then. ``lacking`` are quantities whose formulas cannot be followed in many digits.
     """
 
     exercise: str
     quantities: int
     places: int = 0
     wrong: str = ""
+    lacking: tuple[str, ...] = ()
     lack: float | None = None
     in_doubles: bool = False
     vouched: int = 0
@@ -50,7 +51,6 @@ class Line:
     hard: float | None = None
     hard_textbook: float | None = None
     hard_textbook_failed: int = 0
-    unavoidable: float | None = None
     beyond: float = 0.0
     place: dict[str, Any] | None = None
     stable_ns: Times | None = None
@@ -76,6 +76,8 @@ def overview(exercise: CourseExercise, *, quick: bool = False) -> Line | None:
         closing = checked(subject)
     except BadCourse as fault:
         return Line(exercise.name, len(subject.numbers), wrong=str(fault))
+    if not subject.reference.wanted:
+        return Line(exercise.name, 0, lacking=subject.reference.lacking)
     return _Survey(subject, quick).line(closing)
 
 
@@ -99,12 +101,12 @@ class _Survey:
             self.subject.exercise.name,
             len(self.wanted),
             len(self.subject.hard),
-            "",
-            closing and closing.lack,
-            bool(closing and closing.in_doubles),
-            len(closing.held & set(self.wanted)) if closing else 0,
-            generic["stable"],
-            generic["textbook"],
+            lacking=self.subject.reference.lacking,
+            lack=closing and closing.lack,
+            in_doubles=bool(closing and closing.in_doubles),
+            vouched=len(closing.held & set(self.wanted)) if closing else 0,
+            generic=generic["stable"],
+            generic_textbook=generic["textbook"],
             **self._hard(scales),
             stable_ns=times[0],
             textbook_ns=times[1],
@@ -138,8 +140,7 @@ class _Survey:
             "hard": error,
             "hard_textbook": of_formula,
             "hard_textbook_failed": failed,
-            "unavoidable": unavoidable_of(self.subject, places, reference, scales),
-            "beyond": self._beyond(places, reference, scales, solver),
+            "beyond": self._beyond(places, reference, names, solver),
         }
 
     def _is_same_case(self, name: str, solver: dict[str, Any], reference: dict[str, list[Any]]) -> bool:
@@ -154,26 +155,27 @@ class _Survey:
         return bool(count) and not failed and (error or 0.0) < 1e-6
 
     def _beyond(
-        self,
-        places: Places,
-        reference: dict[str, list[Any]],
-        scales: dict[str, float],
-        solver: dict[str, Any],
+        self, places: Places, reference: dict[str, list[Any]], names: Sequence[str], solver: dict[str, Any]
     ) -> float:
         """The largest of the solver's errors, each in eight times what is unavoidable where it is made."""
         worst = 0.0
         for i, place in enumerate(one_by_one(places)):
-            for name in scales:
+            doubtful = {}
+            for name in names:
                 own = {name: reference[name][i : i + 1]}
                 error, _, _ = compare(self.subject, {name: _entry(solver.get(name), i)}, own, {name: 0.0})
-                if error and error > 2e-15:
-                    spot = {n: [v] if not isinstance(v, str) else v for n, v in place.items()}
-                    least = unavoidable_of(self.subject, _row(spot), own, {name: 0.0})
-                    worst = max(worst, error / (_BEYOND * least) if least else math.inf)
+                if error and error > _RIGHT:
+                    doubtful[name] = error
+            # What is right to the last digits needs no conditioning.
+            values = {name: reference[name][i] for name in doubtful}
+            least = unavoidable(self.subject.reference, place, values) if doubtful else {}
+            for name, error in doubtful.items():
+                size = abs(float(values[name])) or 1.0
+                worst = max(worst, error * size / (ALLOWED * least[name]) if least[name] else math.inf)
         return worst
 
     def _values(self, way: str, places: Places) -> dict[str, Any]:
-        found = {}
+        found: dict[str, Any] = {}
         for name in self.wanted:
             try:
                 found |= self.graphs[way].evaluate((name,), places, self.subject.effects)
@@ -198,12 +200,6 @@ def _entry(values: Any, i: int) -> Any:
     if values is None:
         return np.array([np.nan])
     return np.asarray(values)[i : i + 1] if np.ndim(values) else np.array([values])
-
-
-def _row(place: dict[str, Any]) -> Places:
-    import numpy as np
-
-    return {n: v if isinstance(v, str) else np.array(v) for n, v in place.items()}
 
 
 def _told(place: HardPlace) -> dict[str, Any]:

@@ -108,7 +108,7 @@ def _motion_table(rows: Sequence[Row], where: str, said: Words) -> Table:
         (
             _method(r, said),
             number(r.median * 1e-9),
-            f"{number(r.low * 1e-9)} … {number(r.high * 1e-9)}",
+            _spread(r),
             number(_measured(r)),
         )
         for r in rows
@@ -272,11 +272,13 @@ def _series(rows: Sequence[Row], said: Words, across: Any) -> dict[str, tuple[li
     return found
 
 
-def charts_of(points: Mapping[str, Any], heading: str, horizontal: str, said: Words) -> tuple[Chart, ...]:
+def charts_of(
+    points: Mapping[str, Any], heading: str, horizontal: str, said: Words, *, digits: bool = False
+) -> tuple[Chart, ...]:
     """The chart, where charts can be drawn."""
     if lacking():
         return ()
-    svg = scatter(points, heading, horizontal, said["error"]).decode("utf-8")
+    svg = scatter(points, heading, horizontal, said["error"], whole=digits).decode("utf-8")
     return (Chart(svg, said["alt"].format(heading)),)
 
 
@@ -290,7 +292,7 @@ def _table(rows: Rows, said: Words) -> Table:
     for own in by_method.values():
         first = own.get(GENERIC)
         shown = next(iter(own.values()))
-        times = ("", "") if first is None else (number(first.median), _quartiles(first))
+        times = ("", "") if first is None else (number(first.median), _spread(first))
         paid = (_paid(first, rows, said),) if has_tables else ()
         errors = [_error_cell(own.get(p), said) for p in rows.places]
         lines.append((_method(shown, said), *times, *paid, *errors))
@@ -304,8 +306,9 @@ def _table(rows: Rows, said: Words) -> Table:
     return Table(heads, tuple(lines), (False, *[True] * (len(heads) - 1)))
 
 
-def _quartiles(row: Row) -> str:
-    return f"{number(row.low)} … {number(row.high)}"
+def _spread(row: Row) -> str:
+    """From quartile to quartile, in parts of the median."""
+    return f"{number(100 * (row.high - row.low) / row.median)}\N{NO-BREAK SPACE}%"
 
 
 def _paid(row: Row | None, rows: Rows, said: Words) -> str:

@@ -25,7 +25,7 @@ def overview_report(course: Course, lines: Sequence[Line], without: Sequence[str
     """A row an exercise: digits, times, where it is hardest, what vouches for the reference."""
     said = words(lang)["accuracy"]
     told = said["overview"]
-    right = [line for line in lines if not line.wrong]
+    right = [line for line in lines if not line.wrong and line.quantities]
     sections = (
         Section(told["short"], _short(course, lines, without, told, lang)),
         Section(told["table"], "", (), (_digits_table(course, right, told, lang),)),
@@ -39,7 +39,7 @@ def overview_report(course: Course, lines: Sequence[Line], without: Sequence[str
 
 
 def _short(course: Course, lines: Sequence[Line], without: Sequence[str], told: Words, lang: str) -> str:
-    right = [line for line in lines if not line.wrong]
+    right = [line for line in lines if not line.wrong and line.quantities]
     losing = [_titled(course, line, lang) for line in right if line.beyond > 1]
     key = "keeps_but" if losing else "keeps_all"
     found = [told[key].format(count=len(right), kept=len(right) - len(losing), others=", ".join(losing))]
@@ -48,6 +48,10 @@ def _short(course: Course, lines: Sequence[Line], without: Sequence[str], told: 
     wrong = [_titled(course, line, lang) for line in lines if line.wrong]
     if wrong:
         found.append(told["wrong"].format(", ".join(wrong)))
+    if lacking := [
+        f"{_titled(course, line, lang)} ({', '.join(line.lacking)})" for line in lines if line.lacking
+    ]:
+        found.append(told["lacking"].format(", ".join(lacking)))
     if is_busy(right):
         found.append(told["busy"])
     if without:
@@ -187,13 +191,15 @@ def _percent(share: Share, told: Words) -> str:
 
 def _paper_charts(rows: Sequence[PaperRow], said: Words) -> tuple[Chart, ...]:
     told = said["paper"]
-    own = [row for row in rows if row.digits != PLAIN]
-    at = [row.digits for row in own]
-    series = {
-        told[name]: (at, [max(100 * getattr(row, name).value, 1e-3) for row in own])
-        for name in ("wronged", "wronged_ours", "mistakes", "neighbours")
-    }
-    return charts_of(series, told["chart"], told["axis_digits"], {**said, "error": told["axis_share"]})
+    series: dict[str, tuple[list[float], list[float]]] = {}
+    for name in ("wronged", "wronged_ours", "mistakes", "neighbours"):
+        shares = [(row.digits, 100 * getattr(row, name).value) for row in rows if row.digits != PLAIN]
+        kept = [(float(digits), share) for digits, share in shares if share > 0]
+        if kept:
+            series[told[name]] = [d for d, _ in kept], [s for _, s in kept]
+    return charts_of(
+        series, told["chart"], told["axis_digits"], {**said, "error": told["axis_share"]}, digits=True
+    )
 
 
 def _paper_table(rows: Sequence[PaperRow], told: Words) -> Table:
@@ -213,9 +219,20 @@ def _paper_line(first: str, row: PaperRow, told: Words) -> tuple[str, ...]:
 
 
 def _by_exercise(course: Course, rows: Sequence[PaperRow], digits: int, told: Words, lang: str) -> Table:
-    heads = tuple(
-        told[key] for key in ("exercise", "wronged", "wronged_ours", "mistakes_short", "neighbours")
+    """A line an exercise: wronged by a plain margin at each number of digits, then what the course's margin does."""
+    kept = [d for d in dict.fromkeys(row.digits for row in rows) if d != PLAIN]
+    heads = (
+        told["exercise"],
+        *map(str, kept),
+        *(told[k] for k in ("ours_short", "mistakes_short", "neighbours_short")),
     )
-    own = [row for row in rows if row.digits == digits]
-    lines = tuple(_paper_line(course[row.exercise].title(lang), row, told) for row in own)
-    return Table(heads, lines, (False, *[True] * 4))
+    lines = []
+    for name in dict.fromkeys(row.exercise for row in rows):
+        own = {row.digits: row for row in rows if row.exercise == name}
+        shares = [own[d].wronged for d in kept]
+        shares += (
+            [own[digits].wronged_ours, own[digits].mistakes, own[digits].neighbours] if digits in own else []
+        )
+        cells = (_percent(share, told) if share.found else "–" for share in shares)
+        lines.append((course[name].title(lang), *cells))
+    return Table(heads, tuple(lines), (False, *[True] * (len(heads) - 1)))

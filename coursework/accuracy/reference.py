@@ -24,6 +24,7 @@ from coursework.quantities.loops import Loop
 DIGITS = 80
 CLOSED = 1e-40  #: what equations may lack, in parts of their terms
 CLOSED_IN_DOUBLES = 1e-11  #: the same for an equation that takes plain floats alone
+_ROUNDED = 1e-15  #: what constants make that are rounded to doubles
 
 _DOUBLES = " (doubles)"
 _FAILURES = (CourseworkError, NotFollowed, TypeError, ValueError, ArithmeticError)
@@ -31,7 +32,8 @@ _FAILURES = (CourseworkError, NotFollowed, TypeError, ValueError, ArithmeticErro
 
 @dataclass(frozen=True)
 class Closing:
-    """How well values close the equations that are stated besides: the largest lack, and of which equation."""
+    """How well values close the equations that are stated besides: the largest lack, and of which equation; where some
+    do not close, of the first of these."""
 
     lack: float
     equation: str
@@ -52,7 +54,7 @@ class Reference:
     def __init__(self, exercise: CourseExercise, wanted: Sequence[str], digits: int = DIGITS) -> None:
         self.exercise = exercise
         self.arithmetic = of_many_digits(digits)
-        self.mp = self.arithmetic.mp  # type: ignore[attr-defined]
+        self.mp = self.arithmetic.mp
         self.effects = exercise.spec.effects
         self.graph = twinned(exercise.solution.graph.textbook)
         self.asked = tuple(wanted)
@@ -83,7 +85,7 @@ class Reference:
             return self._one_by_one(start, names)
 
     def _one_by_one(self, start: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
-        found = {}
+        found: dict[str, Any] = {}
         for name in names:
             try:
                 found |= self.graph.evaluate((name,), start, self.effects)
@@ -166,9 +168,14 @@ class Reference:
                 lacks[name] = max(lack, lacks.get(name, 0.0))
         if not lacks:
             return None
-        in_doubles = any(name.endswith(_DOUBLES) for name in lacks)
-        equation = max(lacks, key=lambda name: lacks[name])
-        return Closing(lacks[equation], equation.removesuffix(_DOUBLES), self.held, in_doubles)
+        in_doubles = any(name.endswith(_DOUBLES) or CLOSED < lack <= _ROUNDED for name, lack in lacks.items())
+        open_ones = [name for name, lack in lacks.items() if not lack <= CLOSED_IN_DOUBLES]
+        open_ones = open_ones or [n for n, lack in lacks.items() if lack > _ROUNDED and _DOUBLES not in n]
+        # Of what does not close the first: what comes after may only follow from it.
+        equation = open_ones[0] if open_ones else max(lacks, key=lambda name: lacks[name])
+        worst = lacks[equation]
+        in_doubles = in_doubles and not (worst > _ROUNDED and _DOUBLES not in equation)
+        return Closing(worst, equation.removesuffix(_DOUBLES), self.held, in_doubles)
 
     def lacks(self, given: Mapping[str, Any]) -> dict[str, float]:
         """What each stated equation lacks to close, in parts of its terms."""

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 WIDE = 0.6  #: a spread, in parts of the median, from which on times are not compared
-ALIKE = 1.5  #: times whose ratio is smaller are alike, whatever their spreads
+ALIKE = 1.75  #: times whose ratio is smaller are alike, whatever their spreads
 _ROUNDS = 9
 _LEAST_ROUNDS = 3
 
@@ -63,4 +63,10 @@ def interleaved(
             for _ in range(repeats[i]):
                 calls[i]()
             samples[i].append((time.perf_counter() - start) / repeats[i])
-    return [Times(*map(float, np.quantile(own, (0.5, 0.25, 0.75))), len(own)) for own in samples]
+    return [times_of(own) for own in samples]
+
+
+def times_of(samples: Sequence[float]) -> Times:
+    """Median and quartiles of some measurements, seconds."""
+    low, median, high = (float(np.quantile(samples, part)) for part in (0.25, 0.5, 0.75))
+    return Times(median, low, high, len(samples))

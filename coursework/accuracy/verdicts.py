@@ -69,37 +69,45 @@ class Rows:
 
 
 def enough(rows: Rows, said: Words, name: Any, number: Any) -> list[str]:
-    """For some errors the cheapest ways that keep below them everywhere."""
-    reading = said["reading"]
-    found = []
+    """For some errors the cheapest ways that keep below them everywhere; limits of one answer together."""
+    told: dict[tuple[str, str], list[float]] = {}
     for limit in LIMITS:
-        everywhere = rows.within(limit, rows.places)
-        best = cheapest(everywhere)
-        shown = number(limit)
-        if not everywhere:
-            found.append(reading["nowhere_below"].format(limit=shown))
-        elif not best:
-            return [*found, reading["busy"]]
-        else:
-            key = "everywhere_alike" if best[1:] else "everywhere"
-            found.append(reading[key].format(limit=shown, methods=listed(best, said, name)))
-        if better := _cheaper_at_generic_places(rows, limit, best):
-            found.append(reading["generic_only"].format(limit=shown, methods=listed(better, said, name)))
+        for key, methods in _answers(rows, said, name, limit):
+            told.setdefault((key, methods), []).append(limit)
+    reading = said["reading"]
+    return [
+        reading[key].format(limit=_and([number(limit) for limit in limits], said), methods=methods)
+        for (key, methods), limits in told.items()
+    ]
+
+
+def _answers(rows: Rows, said: Words, name: Any, limit: float) -> list[tuple[str, str]]:
+    """What is to be said of one limit: the sentence, and the methods that it names."""
+    everywhere = rows.within(limit, rows.places)
+    best = cheapest(everywhere)
+    if everywhere and not best:
+        return [("busy", "")]
+    found = [("nowhere_below", "")]
+    if best:
+        found = [("everywhere_alike" if best[1:] else "everywhere", listed(best, said, name))]
+    if better := _cheaper_at_generic_places(rows, limit, best):
+        found.append(("generic_only", listed(better, said, name)))
     return found
 
 
 def _cheaper_at_generic_places(rows: Rows, limit: float, best: Sequence[Row]) -> list[Row]:
     """Ways that would do at generic places alone, clearly cheaper than the best that do everywhere."""
     generic = cheapest(rows.within(limit, (GENERIC,)))
-    if best and any(overlap(best[0], row) or row.median > best[0].median for row in generic):
-        return []
-    return generic
+    return [] if {row.method for row in best} & {row.method for row in generic} else generic
 
 
 def listed(rows: Sequence[Row], said: Words, name: Any) -> str:
     """Methods by name: in an order of their own, since their times are no order."""
-    names = sorted(f"*{name(row)}*" for row in rows)
-    return said["reading"]["and"].join([", ".join(names[:-1]), names[-1]]) if names[1:] else names[0]
+    return _and(sorted(f"*{name(row)}*" for row in rows), said)
+
+
+def _and(words: Sequence[str], said: Words) -> str:
+    return str(said["reading"]["and"]).join([", ".join(words[:-1]), words[-1]]) if words[1:] else words[0]
 
 
 def paid_after(row: Row, stable: Row | None) -> float | None:

@@ -108,6 +108,9 @@ def _told(line: Any) -> str:
     if line.wrong:
         return f"{line.exercise:28} {line.wrong}"
 
+    if not line.quantities:
+        return f"{line.exercise:28} no reference: the formula of {', '.join(line.lacking)} cannot be followed in many digits"
+
     def error(value: float | None) -> str:
         return "      –" if value is None else f"{value:7.1e}"
 
