@@ -52,8 +52,8 @@ def quotient_arctangent(tangent: Any) -> Any:
 
 def _numpy_has_one() -> bool:
     """Whether numpy's arctangent is made for this processor's vector units."""
-    found = np.show_config(mode="dicts")["SIMD Extensions"]["found"]
-    return sys.platform.startswith("linux") and not {"AVX512_SKX", "X86_V4"}.isdisjoint(found)
+    units = np.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", ())
+    return sys.platform.startswith("linux") and not {"AVX512_SKX", "X86_V4"}.isdisjoint(units)
 
 
 #: The faster of the two here.
@@ -63,19 +63,19 @@ arctangent = np.arctan if _numpy_has_one() else quotient_arctangent
 def _plus_cubed(x: Any, above: Sequence[float], below: Sequence[float]) -> Any:
     """x + x^3 P / Q. In place, so that of long arrays few are in the cache."""
     squared = x * x
-    found = _grown(above[-1] * squared, above[:-1], squared)
-    found /= _grown(squared + below[-1], below[:-1], squared, first=False)
+    found = above[-1] * squared
+    found += above[-2]
+    found = _horner(found, above[:-2], squared)
+    found /= _horner(squared + below[-1], below[:-1], squared)
     found *= squared
     found *= x
     found += x
     return found
 
 
-def _grown(found: Any, coefficients: Sequence[float], x: Any, first: bool = True) -> Any:
-    """A polynomial by Horner's rule, from its highest terms on; ``first`` where they are times x already."""
-    for coefficient in reversed(coefficients):
-        if not first:
-            found *= x
+def _horner(found: Any, lower: Sequence[float], x: Any) -> Any:
+    """A polynomial by Horner's rule, from the value of its highest terms and the lower coefficients."""
+    for coefficient in reversed(lower):
+        found *= x
         found += coefficient
-        first = False
     return found
