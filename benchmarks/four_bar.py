@@ -78,6 +78,7 @@ def tried(angles: np.ndarray) -> dict:
                 patch.object(vectors, "arctangent", arctangent),
                 patch.object(blocks, "processors", lambda: threads),
                 patch.object(blocks, "_PAYS", math.inf),
+                patch.object(blocks, "_NOTICED", 0.0),
             ):
                 solve(**DATA, theta2=angles, only=SIX)
 

@@ -112,14 +112,14 @@ def joined(
 
 
 def _each(fill: Callable[[slice], None], places: Sequence[slice], alone: float) -> None:
-    """Each place once, by threads if the first few of them are faster so than ``alone``, the seconds of one by itself.
+    """Each place once; long work by threads if the first few places are faster so than ``alone``, the seconds of one.
 
     numpy lets threads run side by side while it computes and not between: a request of many short calls goes no faster by
     two, nor does any while other processes take the processors.
     """
     threads = processors()
     tried = 2 * threads
-    if threads == 1 or len(places) <= tried:
+    if threads == 1 or len(places) <= tried or alone * len(places) < _NOTICED:
         for place in places:
             fill(place)
         return
@@ -133,6 +133,7 @@ def _each(fill: Callable[[slice], None], places: Sequence[slice], alone: float) 
             pass
 
 
+_NOTICED = 0.2  #: seconds of work from which threads are tried at all: trying them costs some
 _PAYS = 0.85  #: share of the time of places one by one below which threads are worth while
 
 

@@ -16,6 +16,7 @@ from coursework.system import blocks
 def test_each_place_is_computed_once_with_or_without_threads(processors, pays, count, monkeypatch):
     monkeypatch.setattr(blocks, "processors", lambda: processors)
     monkeypatch.setattr(blocks, "_PAYS", pays)
+    monkeypatch.setattr(blocks, "_NOTICED", 0.0)
     given, seen = np.arange(3.0 * count), []
 
     def compute(place):
@@ -37,6 +38,7 @@ def test_each_place_is_computed_once_with_or_without_threads(processors, pays, c
 def test_an_error_in_a_thread_is_raised(monkeypatch):
     monkeypatch.setattr(blocks, "processors", lambda: 2)
     monkeypatch.setattr(blocks, "_PAYS", float("inf"))
+    monkeypatch.setattr(blocks, "_NOTICED", 0.0)
 
     def compute(place):
         if place.start == 30:
@@ -45,3 +47,16 @@ def test_an_error_in_a_thread_is_raised(monkeypatch):
 
     with pytest.raises(ValueError, match="at 30"):
         blocks.joined(compute, [slice(i, i + 1) for i in range(40)], 40)
+
+
+def test_short_work_starts_no_thread(monkeypatch):
+    monkeypatch.setattr(blocks, "processors", lambda: 2)
+    seen = set()
+
+    def compute(place):
+        seen.add(threading.get_ident())
+        return {"x": np.zeros(1)}
+
+    monkeypatch.setattr(blocks, "_NOTICED", float("inf"))
+    blocks.joined(compute, [slice(i, i + 1) for i in range(40)], 40)
+    assert seen == {threading.get_ident()}
