@@ -5,7 +5,7 @@ from __future__ import annotations
 import platform
 import time
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +21,29 @@ def best_in_turn(calls: Mapping[str, Callable[[], Any]], rounds: int = 15) -> di
             call()
             best[name] = min(best[name], time.perf_counter() - start)
     return best
+
+
+class Rounds(NamedTuple):
+    """Of one call, over rounds that each run all calls once: seconds by the clock, and of the processor's own time.
+
+    Where other processes take the processor too, its own time says more.
+    """
+
+    clock: np.ndarray
+    processor: np.ndarray
+
+
+def rounds_in_turn(calls: Mapping[str, Callable[[], Any]], rounds: int = 25) -> dict[str, Rounds]:
+    """Every round of every call, after one that does not count."""
+    found: dict[str, list[tuple[float, float]]] = {name: [] for name in calls}
+    for call in calls.values():
+        call()
+    for _ in range(rounds):
+        for name, call in calls.items():
+            start, own = time.perf_counter(), time.process_time()
+            call()
+            found[name].append((time.perf_counter() - start, time.process_time() - own))
+    return {name: Rounds(*np.transpose(times)) for name, times in found.items()}
 
 
 def machine() -> str:
