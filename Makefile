@@ -30,7 +30,7 @@ test-all: $(VENV)/ready lint  ## Every test, sweeps at full length
 	$(BIN)/$(PYTEST)
 
 # The tests of numbers, where a last bit would show.
-NUMBERS := exercises kinematics solids structure course/test_draws.py quantities/test_graph.py motion/test_scenes.py
+NUMBERS := exercises kinematics mechanics solids structure course/test_draws.py quantities/test_graph.py motion/test_scenes.py
 
 # The vector units that numpy has found here and would use; nothing where it names none.
 VECTOR_UNITS := import numpy; print(*numpy.show_config('dicts').get('SIMD Extensions', {}).get('found', []))

@@ -127,7 +127,8 @@ def _inverse(name: str, x: Any) -> Angle:
 
 def from_radians(theta: Any) -> Angle:
     """Degrees of an angle in radians; (-pi, pi] becomes (-180, 180]."""
-    return theta * (180.0 / math.pi)
+    mp = _digits_of(theta)
+    return theta * (180.0 / math.pi) if mp is None else mp.degrees(theta)
 
 
 def sqrt(x: Any) -> Any:

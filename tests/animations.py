@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from html.parser import HTMLParser
 
+import numpy as np
+
 import coursework
+from coursework.motion.scenes import Scene
 from coursework.rendering.displayed import DisplayedAnimation as Animation
 
 COURSE = coursework.open_course()
 DRIVEN = [n for n in COURSE.names if COURSE[n].spec.driver is not None]
 MOVING = [n for n in COURSE.names if COURSE[n].is_animated]
 FILMED = [n for n in MOVING if COURSE[n].film is not None]
-WITH_POINTS = [n for n in MOVING if COURSE[n].solution.motion is not None]
+WITH_POINTS = [n for n in MOVING if COURSE[n].solution.motion or COURSE[n].solution.mechanism]
 SVG = "{http://www.w3.org/2000/svg}"
 _kept: dict[tuple, Animation] = {}
 
@@ -23,6 +26,17 @@ def animation(name, seed=1, lang="fr", effects=()):
         shown = plain.available if effects == "all" else effects
         _kept[key] = COURSE[name].variant(seed, lang).animation(shown, count=36)
     return _kept[key]
+
+
+def points_at(exercise, given, angle):
+    """The points that a solution moves, or those of its mechanism, the driver at an angle or at many, degrees."""
+    solution = exercise.solution
+    given = {**given, **exercise.posed(given, angle)}
+    if solution.motion is None:
+        return Scene(exercise, given).moving_points(np.atleast_1d(angle))
+    graph = solution.graph.with_functions({"motion": solution.motion})
+    known = {n: v for n, v in given.items() if n in graph.leaves or n in graph.quantities}
+    return graph.evaluate(("motion",), known, exercise.spec.effects)["motion"]
 
 
 class Page(HTMLParser):

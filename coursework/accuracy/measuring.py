@@ -3,34 +3,47 @@
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from coursework.accuracy.study import Motion, Study
-from coursework.accuracy.ways import MOTION, Values, exactly, ways
+from coursework.accuracy.conditioning import unavoidable
+from coursework.accuracy.hard_places import VANISHING, HardPlace
+from coursework.accuracy.motion import motion_rows
+from coursework.accuracy.reference import Closing
+from coursework.accuracy.subject import (
+    MOTION,
+    WHATS,
+    Places,
+    Subject,
+    numbers_of,
+    one_by_one,
+    together,
+)
+from coursework.accuracy.timing import Times, interleaved
+from coursework.accuracy.ways import Values, Way, ways
 from coursework.course.exercise import CourseExercise
-from coursework.errors import BadCourse, BadInput
-from coursework.motion.scenes import INERTIA, Scene
+from coursework.errors import BadCourse, BadInput, CourseworkError
 from coursework.system.distribution import DISTRIBUTION
 
 GENERIC, HARD = "generic", "hard"
-_DIGITS = 70  #: of the reference
-_RTOLS = tuple(10.0**-k for k in range(3, 13))
+DATA = "data"  #: the family of what the last digits of the data do by themselves
+_PLACES_OF_A_SORT = 3  #: hard places that all ways are put to
+_TIMED = 10_000
 
 
 @dataclass(frozen=True)
 class Row:
     """One way at one kind of place.
 
-    ``max_error`` is the largest, over places and quantities, against the reference: radians for angles, parts of
-    the longest length for lengths, parts of the driver's speed (times that length) for rates, of the value itself where it is larger; for motions in
-    time, radians of the driver after the whole motion. ``failed`` of the ``n`` places have no answer, and
-    do not count; None when none has one.
+    ``max_error`` is the largest, over places and quantities, against the reference: radians for angles; for the rest parts
+    of the value, or of its usual size where that is larger; beside a vanishing length parts of the value itself. For motions
+    in time, radians of the driver after the whole motion. ``failed`` of the ``n`` places have no answer though there is
+    one, and do not count; the error is None when none has one. Times are medians, with the quartiles beside;
+    ``build_ns`` is what a table costs before its first use.
     """
 
     exercise: str
@@ -43,18 +56,53 @@ class Row:
     failed: int
     family: str
     setting: float | None
+    ns_low: float = 0.0
+    ns_high: float = 0.0
+    rounds: int = 1
+    build_ns: float | None = None
 
     def as_json(self) -> dict[str, Any]:
         return asdict(self)
 
+    @property
+    def median(self) -> float:
+        return self.ns_per_configuration
 
-def study_of(exercise: CourseExercise) -> Study | None:
-    """What the exercise's solution states, or None."""
-    found = exercise.folder.module("solutions", exercise.name)
-    study = getattr(found, "ACCURACY", None) if exercise.solution else None
-    if study is not None and exercise.spec.driver is None:
-        raise BadCourse(f"{exercise.name} states ACCURACY but no driver=Driver(…) to move it by")
-    return study
+    @property
+    def low(self) -> float:
+        return self.ns_low or self.ns_per_configuration
+
+    @property
+    def high(self) -> float:
+        return self.ns_high or self.ns_per_configuration
+
+
+def needs_mpmath() -> None:
+    """Refuse where the digits of a reference cannot be had."""
+    try:
+        import mpmath  # noqa: F401
+    except ImportError:
+        raise BadInput(
+            "accuracy is measured against mpmath, which is not installed: "
+            f"pip install '{DISTRIBUTION}[accuracy]'"
+        ) from None
+
+
+def subject_of(exercise: CourseExercise) -> Subject:
+    """What is measured of an exercise.
+
+    Raises
+    ------
+    BadInput
+        It asks for no number, or has no solution; or mpmath is not installed.
+    """
+    needs_mpmath()
+    if not numbers_of(exercise):
+        raise BadInput(
+            f"{exercise.name} asks for no number that could lose digits: nothing to measure; "
+            "counts, choices and equations are exact"
+        )
+    return Subject(exercise)
 
 
 def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Row]:
@@ -63,208 +111,220 @@ def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Row]:
     Raises
     ------
     BadInput
-        The exercise's solution states no study, or mpmath is not installed.
+        As :func:`subject_of`.
+    BadCourse
+        The reference does not close the equations that the solution states besides: its formulas are wrong.
     """
-    try:
-        import mpmath  # noqa: F401
-    except ImportError:
+    subject = subject_of(exercise)
+    checked(subject)
+    if not subject.reference.wanted:
         raise BadInput(
-            "accuracy is measured against mpmath, which is not installed: "
-            f"pip install '{DISTRIBUTION}[accuracy]'"
-        ) from None
-    study = study_of(exercise)
-    if study is None:
-        raise BadInput(
-            f"{exercise.folder.source('solutions', exercise.name)} states no ACCURACY = Study(…): nothing to measure"
+            f"{exercise.name}: there is no reference of {', '.join(subject.reference.lacking)}: its formula cannot be followed "
+            "in many digits; plain formulas with coursework.degrees and numpy's functions of numbers can"
         )
-    for place in (GENERIC, HARD):
-        if study.positions and (place == GENERIC or study.hard):
-            yield from _Trial(exercise, study, place, quick).rows()
-    if study.motion is not None:
-        yield from _motion_rows(exercise, study, study.motion, quick)
+    for what in WHATS:
+        if subject.quantities(what):
+            yield from _Trial(subject, what, quick).rows()
+    if subject.study.motion is not None:
+        for m in motion_rows(exercise, subject.study, quick):
+            yield Row(
+                exercise.name, MOTION, f"{m.method}-{m.setting:g}", m.place, 1e9 * m.times.median, m.error, 1, 0, m.method,
+                m.setting, 1e9 * m.times.low, 1e9 * m.times.high, m.times.rounds, m.build and 1e9 * m.build,
+            )  # fmt: skip
+
+
+def checked(subject: Subject, seeds: Sequence[int] = (0, 1)) -> Closing | None:
+    """What vouches for the reference; None where the solution states no equation besides.
+
+    Raises
+    ------
+    BadCourse
+        The values do not close the equations.
+    """
+    closing = subject.reference.closing(v.given for v in subject.exercise.variants(seeds))
+    if closing is not None and not closing.is_closed:
+        raise BadCourse(
+            f"{subject.exercise.solution.source}: its formulas and its equations contradict each other: "
+            f"{closing.equation} lacks {closing.lack:.1e} of its terms to close; with a wrong formula nothing can be "
+            "called exact, so nothing is measured"
+        )
+    return closing
 
 
 class _Trial:
-    """One mechanism at one kind of place: the angles to time on, and those that are compared."""
+    """The ways to one sort of quantity: timed at generic places, compared there and at hard ones."""
 
-    def __init__(self, exercise: CourseExercise, study: Study, place: str, quick: bool) -> None:
-        self.exercise, self.study, self.place, self.quick = exercise, study, place, quick
-        driver = exercise.spec.driver
-        assert driver is not None  # a study without one is refused
-        self.driver, self.speed = driver.angle, driver.speed
-        given = {**study.given, **(study.hard if place == HARD else {})}
-        count = 10_000
-        if place == HARD:
-            self.compared = np.asarray(given.pop(self.driver), dtype=float)
-            self.timed = np.resize(self.compared, count)
-        else:
-            self.timed = np.random.default_rng(1).uniform(-180.0, 180.0, count)
-            self.compared = self.timed[: 60 if quick else 400]
-        given = {**exercise.intake.defaults, **given}
-        self.given = {
-            n: v if isinstance(v, str) else float(v)
-            for n, v in given.items()
-            if n in exercise.quantity_names and n != self.driver
-        }
-        self.size = max(
-            v for n, v in self.given.items() if exercise.units.get(n) == "mm" and isinstance(v, float)
-        )
+    def __init__(self, subject: Subject, what: str, quick: bool) -> None:
+        self.subject, self.what, self.quick = subject, what, quick
+        self.wanted = subject.quantities(what)
+        self.timed = subject.generic(_TIMED)
+        self.compared = _first(self.timed, 60 if quick else 400)
 
     def rows(self) -> Iterator[Row]:
-        wanted = (*self.study.positions, *self.study.rates)
-        reference = exactly(self.exercise, self.given, self.driver, self.compared, wanted, _DIGITS)
-        for way in ways(self.exercise, self.study, self.given):
-            compared, timed = self.compared, self.timed
-            if way.one_by_one:
-                compared = compared[: 20 if self.quick else 200]
-                timed = compared[:10] if self.quick else compared[:50]
-            found = way.compute(compared)
-            error, failed = self._error(found, reference, len(compared))
-            seconds = best_time(partial(way.compute, timed), 0.004 if self.quick else 0.1)
-            yield Row(
-                self.exercise.name, way.what, way.name, self.place, 1e9 * seconds / len(timed), error,
-                len(compared), failed, way.family, way.setting,
-            )  # fmt: skip
+        subject = self.subject
+        fixed = subject.base if subject.driver else None
+        own = list(ways(subject, self.what, fixed))
+        reference = self._reference(self.compared)
+        scales = usual_sizes(subject, self.wanted, reference)
+        times = self._times(own)
+        for way, spent in zip(own, times, strict=True):
+            compared = _first(self.compared, self._few) if way.one_by_one else self.compared
+            error, failed, count = compare(subject, _computed(way, compared), reference, scales)
+            yield self._row(way, GENERIC, spent, error, count, failed)
+        yield from self._hard_rows(own, times, scales)
 
-    def _error(
-        self, found: Values, reference: Mapping[str, Sequence], count: int
-    ) -> tuple[float | None, int]:
-        errors = np.zeros(count)
-        for name, values in found.items():
-            scale = self._scale(self.exercise.units.get(name, "1"))
-            whole = 360 if self.exercise.units.get(name) == "deg" else None
-            right = reference[name]
-            values = values if isinstance(values, list) else np.broadcast_to(values, (count,))
-            own = [
-                _difference(v, r, whole) / _size(r, scale, whole) for v, r in zip(values, right, strict=False)
-            ]
-            errors = np.maximum(errors, own)
-        answered = np.isfinite(errors)
-        largest = float(errors[answered].max()) if answered.any() else None
-        return largest, int(count - answered.sum())
+    @property
+    def _few(self) -> int:
+        return 20 if self.quick else 200
 
-    def _scale(self, unit: str) -> float:
-        """What an error is counted in."""
-        speed = abs(float(self.given.get(self.speed, 1.0)))
-        return {
-            "deg": math.degrees(1.0),
-            "mm": self.size,
-            "rad/s": speed,
-            "mm/s": speed * self.size,
-        }[unit]
+    def _times(self, own: Sequence[Way]) -> list[Times]:
+        """Of every way at generic places, in rounds."""
+        counts = [10 if way.one_by_one else _TIMED for way in own]
+        calls = [
+            partial(_computed, way, _first(self.timed, count)) for way, count in zip(own, counts, strict=True)
+        ]
+        at_least, budget = (1e-3, 0.05) if self.quick else (1e-2, 0.5)
+        found = interleaved(calls, at_least, budget, 5 if self.quick else 9)
+        return [spent.per(count) for spent, count in zip(found, counts, strict=True)]
+
+    def _hard_rows(
+        self, own: Sequence[Way], times: Sequence[Times], scales: Mapping[str, float]
+    ) -> Iterator[Row]:
+        """At the places that lose most; a way that needs a fixed mechanism only where the driver is what moves."""
+        worst: dict[str, tuple[float | None, int, int]] = {}
+        least = 0.0
+        for place in self._places:
+            places = together(list(place.approach(place.distances(self.quick))))
+            reference = self._reference(places)
+            fixed = place.given if place.moved == self.subject.driver else None
+            sizes = dict.fromkeys(scales, 0.0) if place.kind == VANISHING else scales
+            least = max(least, unavoidable_of(self.subject, places, reference, sizes))
+            for way in ways(self.subject, self.what, fixed):
+                found = compare(self.subject, _computed(way, places), reference, sizes)
+                worst[way.name] = _worse(worst.get(way.name), found)
+        for way, spent in zip(own, times, strict=True):
+            if way.name in worst and worst[way.name][2]:
+                error, failed, count = worst[way.name]
+                yield self._row(way, HARD, spent, error, count, failed)
+        if worst:
+            count = max(n for _, _, n in worst.values())
+            yield Row(self.subject.exercise.name, self.what, DATA, HARD, 0.0, least, count, 0, DATA, None)
+
+    @property
+    def _places(self) -> list[HardPlace]:
+        """The hardest that the driver comes to, where there are such: every way can be put to these."""
+        driven = [p for p in self.subject.hard if p.moved == self.subject.driver]
+        return (driven or list(self.subject.hard))[:_PLACES_OF_A_SORT]
+
+    def _row(self, way: Way, place: str, spent: Times, error: float | None, count: int, failed: int) -> Row:
+        return Row(
+            self.subject.exercise.name, self.what, way.name, place, 1e9 * spent.median, error, count, failed, way.family,
+            way.setting, 1e9 * spent.low, 1e9 * spent.high, spent.rounds, way.build and 1e9 * way.build,
+        )  # fmt: skip
+
+    def _reference(self, places: Places) -> dict[str, list[Any]]:
+        return right_values(self.subject, places, self.wanted)
 
 
-def _size(reference: Any, scale: float, whole: int | None) -> float:
-    """What the error of one value is counted in: itself, where it exceeds the usual scale."""
-    return scale if whole else max(scale, float(abs(reference)))
+def right_values(subject: Subject, places: Places, wanted: Sequence[str]) -> dict[str, list[Any]]:
+    """The reference at each place; None where there is no value."""
+    rows = [subject.reference.at(place) for place in one_by_one(places)]
+    return {name: [row[name] for row in rows] for name in wanted}
 
 
-def _difference(value: Any, reference: Any, whole: int | None) -> float:
-    """|value - reference|, modulo a whole turn where there is one; NaN where there is no value."""
-    context = reference.context
+def _first(places: Places, count: int) -> Places:
+    return {n: v if np.ndim(v) == 0 else v[:count] for n, v in places.items()}
+
+
+def _computed(way: Way, places: Places) -> Values:
+    """What a way gives, and nothing where it stops."""
+    try:
+        return way.compute(places)
+    except CourseworkError:
+        return {}
+
+
+def usual_sizes(
+    subject: Subject, wanted: Sequence[str], reference: Mapping[str, Sequence[Any]]
+) -> dict[str, float]:
+    """The usual size of each quantity; of an angle a radian."""
+    sizes = {}
+    for name in wanted:
+        values = [abs(float(v)) for v in reference[name] if v is not None]
+        usual = float(np.median(values)) if values else 1.0
+        sizes[name] = math.degrees(1.0) if subject.exercise.units.get(name) == "deg" else usual
+    return sizes
+
+
+def compare(
+    subject: Subject,
+    found: Mapping[str, Any],
+    reference: Mapping[str, Sequence[Any]],
+    scales: Mapping[str, float],
+) -> tuple[float | None, int, int]:
+    """The largest error, at how many places an answer lacks that there is, and at how many there is one."""
+    count = _count(found, reference)
+    errors = np.zeros(count)
+    exists = np.zeros(count, dtype=bool)
+    for name, scale in scales.items():
+        whole = subject.exercise.units.get(name) == "deg"
+        values = found.get(name)
+        values = [math.nan] * count if values is None else values
+        values = values if isinstance(values, list) else np.broadcast_to(values, (count,))
+        for i in range(count):
+            right = reference[name][i]
+            if right is not None:
+                exists[i] = True
+                size = scale if whole and scale else max(scale, abs(float(right))) or 1.0
+                errors[i] = np.maximum(errors[i], _difference(values[i], right, whole) / size)
+    answered = exists & np.isfinite(errors)
+    largest = float(errors[answered].max()) if answered.any() else None
+    return largest, int((exists & ~answered).sum()), int(exists.sum())
+
+
+def unavoidable_of(
+    subject: Subject, places: Places, reference: Mapping[str, Sequence[Any]], scales: Mapping[str, float]
+) -> float:
+    """The largest error that the last digits of the data make by themselves, counted as all errors are."""
+    largest = 0.0
+    for i, place in enumerate(one_by_one(places)):
+        values = {name: reference[name][i] for name in scales if reference[name][i] is not None}
+        for name, moves in unavoidable(subject.reference, place, values).items():
+            whole = subject.exercise.units.get(name) == "deg"
+            size = (
+                scales[name] if whole and scales[name] else max(scales[name], abs(float(values[name]))) or 1.0
+            )
+            largest = max(largest, moves / size)
+    return largest
+
+
+def _count(found: Mapping[str, Any], reference: Mapping[str, Sequence[Any]]) -> int:
+    """At how many places a way was asked: those that are solved one by one are asked at fewer."""
+    whole = len(next(iter(reference.values())))
+    sizes = [len(v) for v in found.values() if np.ndim(v)]
+    return min([whole, *sizes])
+
+
+def _difference(value: Any, right: Any, whole: bool) -> float:
+    """|value - right|, modulo a turn for an angle; NaN where there is no value."""
+    context = right.context
+    if value is None:
+        return math.nan
     if not hasattr(value, "context"):
         near = float(value)
         if not math.isfinite(near):
             return math.nan
         value = context.mpf(near) + context.mpf(float(value - type(value)(near)))
-    apart = context.mpf(value) - reference
+    apart = context.mpf(value) - right
     if whole:
-        apart -= whole * context.nint(apart / whole)
+        apart -= 360 * context.nint(apart / 360)
     return float(abs(apart))
 
 
-def best_time(call: Callable[[], Any], at_least: float) -> float:
-    """Seconds that a call takes: the best of three rounds, each of at least so many seconds; a call that is
-    longer than all three is timed once."""
-    start = time.perf_counter()
-    call()
-    once = max(time.perf_counter() - start, 1e-9)
-    if once > 3 * at_least:
-        return once
-    repeats = max(1, math.ceil(at_least / once))
-    best = math.inf
-    for _ in range(3):
-        start = time.perf_counter()
-        for _ in range(repeats):
-            call()
-        best = min(best, (time.perf_counter() - start) / repeats)
-    return best
-
-
-# ---------------------------------------------------------------------- motion
-
-
-def _motion_rows(exercise: CourseExercise, study: Study, motion: Motion, quick: bool) -> Iterator[Row]:
-    """Integration in time at each tolerance, against the energy integral."""
-    scene = Scene(exercise, {**study.given, **motion.given}, (INERTIA,))
-    driver, runs = scene.driver, []
-    for rtol in _RTOLS[:: 3 if quick else 1]:
-        start = time.perf_counter()
-        # The state at the end is all that is compared.
-        table = scene.in_time(motion.effort, motion.duration, rtol=rtol, count=1)
-        seconds = time.perf_counter() - start
-        runs.append((rtol, seconds, table.columns[driver.angle][-1], table.columns[driver.speed][-1]))
-    exact = _EnergyIntegral(scene, motion.effort)
-    # The whole way is integrated once, to the end of the last run; the others end beside it.
-    last = runs[-1][2]
-    there = exact.time(exact.start_angle, last)
-    for rtol, seconds, angle, speed in runs:
-        late = there + exact.time(last, angle) - motion.duration
-        yield Row(
-            exercise.name, MOTION, f"integration-{rtol:g}", GENERIC, 1e9 * seconds, abs(speed * float(late)),
-            1, 0, "integration", rtol,
-        )  # fmt: skip
-
-
-class _EnergyIntegral:
-    """When a mechanism of one degree of freedom reaches an angle under a constant effort: many digits.
-
-    Its kinetic energy grows by the work of the drive, and is half the generalised inertia times the speed
-    squared: so t = integral of sqrt(I / (2 E)) over the angle, piece by piece of the turn.
-    """
-
-    def __init__(self, scene: Scene, effort: float) -> None:
-        import mpmath
-
-        self.context = mpmath.MPContext()
-        self.context.dps = 20
-        self.driver = scene.driver
-        self.graph = scene.exercise.solution.graph.textbook
-        mpf = self.context.mpf
-        given = {
-            **scene.exercise.intake.defaults,
-            **{n: scene.exercise.intake.value(n, v) for n, v in scene.given.items()},
-        }
-        given = {n: v for n, v in given.items() if n in scene.exercise.quantity_names}
-        self.start_angle = given.pop(self.driver.angle)
-        self.start = self._radians(self.start_angle)
-        self.speed, self.effort = mpf(given.pop(self.driver.speed)), mpf(effort)
-        given.pop(self.driver.acceleration, None)
-        self.fixed = {n: mpf(v) if isinstance(v, float) else v for n, v in given.items()}
-        self.energy = self._inertia(self.start) * self.speed**2 / 2
-
-    def _inertia(self, angle: Any) -> Any:
-        at = {self.driver.angle: self.context.degrees(angle), self.driver.speed: self.context.mpf(0)}
-        pulls = [
-            self.graph.evaluate(
-                (self.driver.effort,),
-                {**self.fixed, **at, self.driver.acceleration: self.context.mpf(a)},
-                (INERTIA,),
-            )[self.driver.effort]
-            for a in (0, 1)
-        ]
-        return pulls[1] - pulls[0]
-
-    def time(self, start: float, end: float) -> Any:
-        """Seconds from one angle to another, in degrees and not reduced."""
-        start, end = self._radians(start), self._radians(end)
-
-        def slowness(angle: Any) -> Any:
-            energy = self.energy + self.effort * (angle - self.start)
-            return self.context.sqrt(self._inertia(angle) / (2 * energy))
-
-        pieces = int(abs(end - start) / (self.context.pi / 4)) + 1
-        return self.context.quad(slowness, self.context.linspace(start, end, pieces + 1))
-
-    def _radians(self, degrees: float) -> Any:
-        return self.context.mpf(degrees) * self.context.pi / 180
+def _worse(
+    one: tuple[float | None, int, int] | None, other: tuple[float | None, int, int]
+) -> tuple[float | None, int, int]:
+    if one is None:
+        return other
+    errors = [e for e in (one[0], other[0]) if e is not None]
+    return max(errors, default=None), one[1] + other[1], one[2] + other[2]

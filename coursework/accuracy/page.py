@@ -4,125 +4,179 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import groupby, pairwise
+from itertools import groupby
 from typing import Any
 
-from coursework.accuracy.measuring import GENERIC, HARD, Row, study_of
-from coursework.accuracy.ways import MOTION, POSITION, RATE
+from coursework.accuracy.hard_places import HardPlace
+from coursework.accuracy.measuring import DATA, GENERIC, HARD, Row
+from coursework.accuracy.motion import FREE, RUBBING
+from coursework.accuracy.subject import ACCELERATION, MOTION, OTHER, POSITION, RATE, Subject
+from coursework.accuracy.verdicts import Rows, Words, cheapest, enough, halves, is_busy, listed, paid_after
 from coursework.course.course import Course
 from coursework.figures.charts import lacking, scatter
 from coursework.language.numbers import significant, unit_text
 from coursework.language.words import words
 from coursework.sheets.report import Chart, Report, Section, Table
 
-_LIMITS = (1e-3, 1e-6, 1e-12)
 _LEAST = 1e-20  #: what a chart shows of an error below
-
-Words = Mapping[str, Any]
+_MOTION_LIMITS = (1e-3, 1e-6)
 
 
 def report(course: Course, rows: Sequence[Row], lang: str) -> Report:
     """A section an exercise and kind of quantity, in the order of the rows."""
     said = words(lang)["accuracy"]
     sections = []
+    kinds = {POSITION: "positions", RATE: "rates", ACCELERATION: "accelerations", OTHER: "others"}
     for name, of_one in groupby(rows, key=lambda row: row.exercise):
         own = list(of_one)
-        title = course[name].title(lang)
-        for what, section in ((POSITION, _positions), (RATE, _rates), (MOTION, _motion)):
-            chosen = [row for row in own if row.what == what]
-            if chosen:
-                sections.append(section(course[name], title, chosen, said, lang))
+        title, data = course[name].title(lang), _data(Subject(course[name]), said, lang)
+        for what, key in kinds.items():
+            if chosen := [row for row in own if row.what == what]:
+                sections.append(_quantities(f"{title} – {said[key]}", chosen, data, said, what))
+                data = ""
+        if chosen := [row for row in own if row.what == MOTION]:
+            sections.append(_motion(f"{title} – {said['motion']}", chosen, said))
     return Report(
         lang,
         course.folder.title(lang),
         said["title"],
         "coursework accuracy",
-        said["opening"].format(50) + (f" {said['no_charts']}" if lacking() else ""),
+        said["opening"].format(50) + no_charts(said),
         tuple(sections),
     )
+
+
+def no_charts(said: Words) -> str:
+    """What is said where charts cannot be drawn."""
+    return f" {said['no_charts']}" if lacking() else ""
 
 
 # ------------------------------------------------------------------------ sections
 
 
-def _positions(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: str) -> Section:
+def _quantities(title: str, rows: Sequence[Row], data: str, said: Words, what: str) -> Section:
+    own = Rows(rows)
     charts: list[Chart] = []
-    for place in (GENERIC, HARD):
-        shown = [r for r in rows if r.place == place and r.max_error is not None and r.family != "mpmath"]
-        if shown:
-            points = _series(shown, said, lambda row: row.ns_per_configuration)
-            heading = said["chart_positions"].format(said["places"][place])
-            charts += _charts(points, heading, said["time"], said)
-    text = [_data(exercise, said, lang), *_read_positions(_Rows(rows), said)]
-    return Section(f"{title} – {said['positions']}", _paragraphs(text), tuple(charts), (_table(rows, said),))
+    for place in own.places if what in (POSITION, RATE) else ():
+        charts += (_position_charts if what == POSITION else _rate_charts)(own, place, said)
+    read = _read_rates(own, said) if what == RATE else _read_positions(own, said)
+    return Section(title, _paragraphs([data, *read]), tuple(charts), (_table(own, said),))
 
 
-def _rates(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: str) -> Section:
+def _position_charts(rows: Rows, place: str, said: Words) -> tuple[Chart, ...]:
+    shown = [r for r in rows.rows if r.place == place and r.max_error is not None]
+    shown = [r for r in shown if r.family not in ("mpmath", DATA)]
+    heading = said["chart_positions"].format(said["places"][place])
+    return (
+        charts_of(_series(shown, said, lambda row: row.median), heading, said["time"], said) if shown else ()
+    )
+
+
+def _rate_charts(rows: Rows, place: str, said: Words) -> tuple[Chart, ...]:
+    differences = rows.answered("differences", place)
+    if not differences:
+        return ()
+    ends = [min(map(_set, differences)), max(map(_set, differences))]
+    others = [r for r in rows.rows if r.place == place and r.max_error is not None]
+    # What has no step is a level line.
+    levels = {
+        _method(r, said): (ends, [max(_measured(r), _LEAST)] * 2)
+        for r in others
+        if r.family not in ("differences", "mpmath")
+    }
+    heading = said["chart_rates"].format(said["places"][place])
+    return charts_of({**_series(differences, said, _set), **levels}, heading, said["step"], said)
+
+
+def _motion(title: str, rows: Sequence[Row], said: Words) -> Section:
     charts: list[Chart] = []
-    for place in (GENERIC, HARD):
-        shown = [r for r in rows if r.place == place and r.max_error is not None]
-        steps = [_set(r) for r in shown if r.family == "differences"]
-        if steps:
-            # What has no step is a level line.
-            levels = {
-                _method(r, said): ([min(steps), max(steps)], [max(_measured(r), _LEAST)] * 2)
-                for r in shown
-                if r.family != "differences"
-            }
-            vee = _series([r for r in shown if r.family == "differences"], said, _set)
-            heading = said["chart_rates"].format(said["places"][place])
-            charts += _charts({**vee, **levels}, heading, said["step"], said)
-    return Section(
-        f"{title} – {said['rates']}",
-        _paragraphs(_read_rates(_Rows(rows), said)),
-        tuple(charts),
-        (_table(rows, said),),
-    )
+    text: list[str] = []
+    tables = []
+    for place in (FREE, RUBBING):
+        own = [r for r in rows if r.place == place]
+        if own:
+            where = said["places"][place]
+            points = _series(own, said, lambda row: row.median * 1e-9)
+            charts += charts_of(points, said["chart_motion"].format(where), said["duration"], said)
+            text += _read_motion(own, where, said)
+            tables.append(_motion_table(own, where, said))
+    return Section(title, _paragraphs(text), tuple(charts), tuple(tables))
 
 
-def _motion(exercise: Any, title: str, rows: Sequence[Row], said: Words, lang: str) -> Section:
-    points = _series(rows, said, lambda row: row.ns_per_configuration * 1e-9)
-    charts = _charts(points, said["chart_motion"], said["duration"], said)
-    first, last = rows[0], rows[-1]
-    text = said["reading"]["motion"].format(
-        loose=_number(_set(first)),
-        tight=_number(_set(last)),
-        ratio=_number(last.ns_per_configuration / first.ns_per_configuration),
-        first=_number(_measured(first)),
-        last=_number(_measured(last)),
-    )
-    table = Table(
-        (said["tolerance"], said["duration"], said["error"]),
-        tuple(
-            (_number(_set(r)), _number(r.ns_per_configuration * 1e-9), _number(_measured(r))) for r in rows
-        ),
-        (True, True, True),
-    )
-    return Section(f"{title} – {said['motion']}", text, charts, (table,))
+def _motion_table(rows: Sequence[Row], where: str, said: Words) -> Table:
+    lines = [
+        (
+            _method(r, said),
+            number(r.median * 1e-9),
+            _spread(r),
+            number(_measured(r)),
+        )
+        for r in rows
+    ]
+    heads = said["method"], said["duration_head"], said["spread_head"], said["error_head"].format(where)
+    return Table(heads, tuple(lines), (False, True, True, True), where)
 
 
-def _data(exercise: Any, said: Words, lang: str) -> str:
+def _read_motion(rows: Sequence[Row], where: str, said: Words) -> list[str]:
+    reading, found = said["reading"], []
+    tolerances = [r for r in rows if r.family == "integration"]
+    if tolerances:
+        first, last = tolerances[0], tolerances[-1]
+        found.append(
+            reading["motion"].format(
+                loose=number(_set(first)), tight=number(_set(last)), first=number(_measured(first)),
+                last=number(_measured(last)), place=where,
+            )
+        )  # fmt: skip
+    for limit in _MOTION_LIMITS:
+        good = [r for r in rows if _measured(r) <= limit]
+        best = cheapest(good)
+        key = "motion_none" if not good else "motion_alike" if best[1:] else "motion_best"
+        if good and not best:
+            return [*found, reading["busy"]]
+        methods = listed(best, said, lambda r: _method(r, said)) if best else ""
+        found.append(reading[key].format(limit=number(limit), place=where, methods=methods))
+    return found
+
+
+def _data(subject: Subject, said: Words, lang: str) -> str:
     """The data of both kinds of places."""
-    study = study_of(exercise)
-    assert study is not None  # it was measured
-
-    def listed(values: Mapping[str, Any]) -> str:
-        shown = []
-        for name, value in values.items():
-            unit = exercise.units.get(name, "1")
-            if isinstance(value, str):
-                shown.append(value)
-            elif isinstance(value, (list, tuple)):
-                low, high = (_number(v, unit, lang, 4) for v in (min(value), max(value)))
-                shown.append(f"${exercise.symbol(name)}$ {low} … {high}")
-            else:
-                shown.append(f"${exercise.symbol(name)} = $ {_number(value, unit, lang, 9)}")
-        return ", ".join(shown)
-
-    lines = [said["generic_data"].format(listed(study.given))]
-    if study.hard:
-        lines.append(said["hard_data"].format(listed(study.hard)))
+    lines = [said["generic_variants"]]
+    if subject.driver:
+        shown = {n: v for n, v in subject.base.items() if n != subject.driver}
+        lines = [said["generic_data"].format(_values(subject, shown, lang))]
+    driven = [p for p in subject.hard if p.moved == subject.driver] or list(subject.hard)
+    if driven:
+        lines.append(
+            said["hard_data"].format("; ".join(told_place(subject, p, said, lang) for p in driven[:3]))
+        )
     return " ".join(lines)
+
+
+def _values(subject: Subject, values: Mapping[str, Any], lang: str) -> str:
+    return ", ".join(_value(subject, name, value, lang) for name, value in values.items())
+
+
+def _value(subject: Subject, name: str, value: Any, lang: str) -> str:
+    if isinstance(value, str):
+        return value
+    unit = subject.exercise.units.get(name, "1")
+    return f"${subject.exercise.symbol(name)} = $ {number(value, unit, lang, 6)}"
+
+
+def told_place(subject: Subject, place: HardPlace, said: Words, lang: str) -> str:
+    """A hard place in words: what comes near what, and what vanishes there."""
+    unit = subject.exercise.units.get(place.moved, "1")
+    tuned = ""
+    if place.tuned:
+        tuned = said["hard_tuned"].format(_value(subject, place.tuned, place.given[place.tuned], lang))
+    symbol = subject.exercise.solution.symbols.get(place.quantity) or subject.exercise.symbol(place.quantity)
+    return said["hard_place"].format(
+        moved=f"${subject.exercise.symbol(place.moved)}$",
+        value=number(place.given[place.moved], unit, lang, 6),
+        tuned=tuned,
+        why=said["kinds"][place.kind].format(f"${symbol}$"),
+    )
 
 
 def _paragraphs(sentences: Iterable[str]) -> str:
@@ -132,91 +186,64 @@ def _paragraphs(sentences: Iterable[str]) -> str:
 # ------------------------------------------------------------------------- reading
 
 
-class _Rows:
-    """Rows of one kind, looked up by family, place and setting."""
-
-    def __init__(self, rows: Sequence[Row]) -> None:
-        self.rows = rows
-
-    def of(self, family: str, place: str = GENERIC) -> list[Row]:
-        found = [r for r in self.rows if r.family == family and r.place == place]
-        return sorted(found, key=lambda r: (r.setting is not None, r.setting))
-
-    def answered(self, family: str, place: str = GENERIC) -> list[Row]:
-        """Those that have an answer somewhere, and so an error."""
-        return [r for r in self.of(family, place) if r.max_error is not None]
-
-    def one(self, family: str, place: str = GENERIC) -> Row | None:
-        found = self.of(family, place)
-        return found[0] if found else None
-
-    def cheapest_within(self, limit: float) -> Row | None:
-        good = [
-            r
-            for r in self.rows
-            if r.place == GENERIC and not r.failed and r.max_error is not None and r.max_error <= limit
-        ]
-        return min(good, key=lambda r: r.ns_per_configuration, default=None)
-
-
-def _read_positions(rows: _Rows, said: Words) -> list[str]:
+def _read_positions(rows: Rows, said: Words) -> list[str]:
     reading = said["reading"]
-    stable, textbook = rows.one("stable"), rows.one("textbook")
-    found = []
-    for limit in _LIMITS:
-        best = rows.cheapest_within(limit)
-        if best is not None:
-            time = f"{_number(best.ns_per_configuration)} ns"
-            found.append(
-                reading["enough"].format(limit=_number(limit), method=_method(best, said), time=time)
-            )
-    found = [" ".join(found)]
-    hard, hard_stable = rows.one("textbook", HARD), rows.one("stable", HARD)
-    if textbook and hard and hard_stable:
-        failed = reading["hard_textbook_failed"].format(hard.failed, hard.n) if hard.failed else ""
-        found.append(
-            reading["hard_textbook"].format(
-                error=_error(hard, said), failed=failed, stable=_error(hard_stable, said)
-            )
-        )
+    found = [" ".join(enough(rows, said, lambda row: _method(row, said), number))]
+    found.append(" ".join(filter(None, (_read_hard(rows, said), _read_data(rows, said)))))
     newton, hard_newton = rows.of("newton"), rows.of("newton", HARD)
     if newton:
         errors = ", ".join(_error(r, said) for r in newton)
         # Where two solutions meet, Newton's method halves the error and no more.
-        halves = len(hard_newton) > 1 and all(
-            a.max_error and b.max_error and 0.3 < b.max_error / a.max_error < 0.7
-            for a, b in pairwise(hard_newton)
-        )
-        key = "newton" if halves else "newton_generic"
-        hard_error = _error(hard_newton[-1], said) if halves else ""
+        key = "newton" if halves(hard_newton) else "newton_generic"
+        hard_error = _error(hard_newton[-1], said) if halves(hard_newton) else ""
         found.append(reading[key].format(errors=errors, hard=hard_error))
     solver, hard_solver = rows.of("fsolve"), rows.of("fsolve", HARD)
-    if solver and stable and hard_solver:
-        tightest, hardest = solver[0], hard_solver[0]
+    if solver and hard_solver:
         found.append(
-            reading["solver"].format(
-                ratio=_number(tightest.ns_per_configuration / stable.ns_per_configuration),
-                error=_error(tightest, said),
-                hard=_error(hardest, said),
-            )
+            reading["solver"].format(error=_error(solver[0], said), hard=_error(hard_solver[0], said))
         )
-    many = rows.one("mpmath")
-    if many and stable:
-        ratio = many.ns_per_configuration / stable.ns_per_configuration
-        found.append(reading["digits"].format(ratio=_number(ratio)))
+    tables, stable = rows.of("table"), rows.one("stable")
+    if tables and stable and not is_busy([*tables, stable]):
+        pays = any(paid_after(row, stable) is not None for row in tables)
+        found.append(reading["table_pays" if pays else "table_never"])
+    if newton and rows.one("mpmath"):
+        found.append(reading["digits"])
     return found
 
 
-def _read_rates(rows: _Rows, said: Words) -> list[str]:
+def _read_hard(rows: Rows, said: Words) -> str:
+    reading = said["reading"]
+    hard, hard_stable = rows.one("textbook", HARD), rows.one("stable", HARD)
+    if hard is None or hard_stable is None:
+        return ""
+    failed = reading["hard_textbook_failed"].format(hard.failed, hard.n) if hard.failed else ""
+    return reading["hard_textbook"].format(
+        error=_error(hard, said), failed=failed, stable=_error(hard_stable, said)
+    )
+
+
+def _read_data(rows: Rows, said: Words) -> str:
+    data = rows.one(DATA, HARD)
+    if data is None or not data.max_error:
+        return ""
+    return said["reading"]["data"].format(_at_most_one(data.max_error, said))
+
+
+def _at_most_one(error: float, said: Words) -> str:
+    """An error of a whole value or more is one of the whole."""
+    return number(min(error, 1.0))
+
+
+def _read_rates(rows: Rows, said: Words) -> list[str]:
     reading = said["reading"]
     stable, complex_step = rows.one("stable"), rows.one("complex_step")
-    found = []
+    found = [" ".join(filter(None, (_read_hard(rows, said), _read_data(rows, said))))]
     best = min(rows.answered("differences"), key=_measured, default=None)
     if best is not None and stable is not None:
         key = "differences" if complex_step else "differences_plain"
         found.append(
             reading[key].format(
-                step=_number(_set(best)),
+                step=number(_set(best)),
                 error=_error(best, said),
                 stable=_error(stable, said),
                 complex=_error(complex_step, said) if complex_step else "",
@@ -245,32 +272,50 @@ def _series(rows: Sequence[Row], said: Words, across: Any) -> dict[str, tuple[li
     return found
 
 
-def _charts(points: Mapping[str, Any], heading: str, horizontal: str, said: Words) -> tuple[Chart, ...]:
+def charts_of(
+    points: Mapping[str, Any], heading: str, horizontal: str, said: Words, *, digits: bool = False
+) -> tuple[Chart, ...]:
     """The chart, where charts can be drawn."""
     if lacking():
         return ()
-    svg = scatter(points, heading, horizontal, said["error"]).decode("utf-8")
+    svg = scatter(points, heading, horizontal, said["error"], whole=digits).decode("utf-8")
     return (Chart(svg, said["alt"].format(heading)),)
 
 
-def _table(rows: Sequence[Row], said: Words) -> Table:
+def _table(rows: Rows, said: Words) -> Table:
     """A line a method, both kinds of places side by side."""
     by_method: dict[str, dict[str, Row]] = {}
-    for row in rows:
+    for row in rows.rows:
         by_method.setdefault(row.method, {})[row.place] = row
-    places = [p for p in (GENERIC, HARD) if any(row.place == p for row in rows)]
+    has_tables = bool(rows.of("table"))
     lines = []
     for own in by_method.values():
-        any_row = next(iter(own.values()))
-        first = own.get(GENERIC, any_row)
-        errors = [_error_cell(own.get(p), said) for p in places]
-        lines.append((_method(any_row, said), _number(first.ns_per_configuration), *errors))
+        first = own.get(GENERIC)
+        shown = next(iter(own.values()))
+        times = ("", "") if first is None else (number(first.median), _spread(first))
+        paid = (_paid(first, rows, said),) if has_tables else ()
+        errors = [_error_cell(own.get(p), said) for p in rows.places]
+        lines.append((_method(shown, said), *times, *paid, *errors))
     heads = (
         said["method"],
         said["time_head"],
-        *(said["error_head"].format(said["places"][p]) for p in places),
+        said["spread_head"],
+        *([said["paid_head"]] if has_tables else []),
+        *(said["error_head"].format(said["places"][p]) for p in rows.places),
     )
     return Table(heads, tuple(lines), (False, *[True] * (len(heads) - 1)))
+
+
+def _spread(row: Row) -> str:
+    """From quartile to quartile, in parts of the median."""
+    return f"{number(100 * (row.high - row.low) / row.median)}\N{NO-BREAK SPACE}%"
+
+
+def _paid(row: Row | None, rows: Rows, said: Words) -> str:
+    if row is None or row.build_ns is None:
+        return ""
+    uses = paid_after(row, rows.one("stable"))
+    return said["never_paid"] if uses is None else said["paid"].format(number(uses))
 
 
 def _set(row: Row) -> float:
@@ -288,12 +333,14 @@ def _measured(row: Row) -> float:
 def _error_cell(row: Row | None, said: Words) -> str:
     if row is None:
         return ""
+    if row.family == DATA:
+        return _at_most_one(_measured(row), said)
     failed = said["failed"].format(row.failed, row.n) if row.failed and row.max_error is not None else ""
     return ", ".join(filter(None, (_error(row, said), failed)))
 
 
 def _error(row: Row, said: Words) -> str:
-    return said["none"] if row.max_error is None else _number(row.max_error)
+    return said["none"] if row.max_error is None else number(row.max_error)
 
 
 def _method(row: Row, said: Words) -> str:
@@ -308,11 +355,12 @@ def _setting(value: float) -> str:
     return "10⁻" + "".join("⁰¹²³⁴⁵⁶⁷⁸⁹"[int(d)] for d in str(exponent))
 
 
-def _number(value: float, unit: str = "1", lang: str = "en", digits: int = 2) -> str:
+def number(value: float, unit: str = "1", lang: str = "en", digits: int = 2) -> str:
+    """A figure of these pages as inline Markdown."""
     shown = unit_text(unit, lang)
     space = "" if shown in ("", "°") else "\N{NO-BREAK SPACE}"
     if 10 <= value < 1e4 and digits == 2:
         return rf"$\num{{{round(value):d}}}$"
     if value >= 1e4 and digits == 2:
-        return rf"$\num{{{value:.1e}}}$".replace("e+0", "e")
+        return rf"$\num{{{value:.1e}}}$".replace("e+0", "e").replace("e+", "e")
     return rf"$\num{{{significant(value, digits)}}}${space}{shown}"

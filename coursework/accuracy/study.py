@@ -1,22 +1,19 @@
-"""What a solution states to take part in the measurement of accuracy against time."""
+"""What a solution states of the measurement of accuracy against time, where it does not follow."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
-
-from coursework.errors import BadCourse
-from coursework.kinematics.chains import Vector
 
 
 @dataclass(frozen=True)
 class Motion:
     """A motion in time that is integrated at several tolerances.
 
-    The only effect is ``inertia``, under a constant effort of the driver: then the speed follows from the
-    energy at every angle, and the time from an integral, so that there is something exact to compare with.
-    ``given`` are values that replace the generic ones; ``duration`` is in seconds.
+    The effects are ``inertia``, under a constant effort of the driver, and where ``friction`` is given a second motion
+    with that. Without friction the speed follows from the energy at every angle, and the time from an integral, so that
+    there is something exact to compare with. ``given`` are values that replace the generic ones; ``duration`` is in seconds.
     """
 
     effort: float
@@ -26,33 +23,15 @@ class Motion:
 
 @dataclass(frozen=True)
 class Study:
-    """Which quantities to compute, where it is easy and where it is hard, and the equations behind them.
+    """What does not follow from the exercise: values of the generic mechanism, and a motion in time.
 
     Attributes
     ----------
     given
-        The mechanism at generic places, in canonical units, without the driver's angle.
-    positions, rates
-        Quantities that the driver moves, and their time derivatives in the same order.
-    hard
-        Values that replace the generic ones at hard places; the driver's angle is a sequence, in degrees.
-    loops, unknowns
-        The loop-closure equations as for :class:`coursework.kinematics.chains.Chain`, in the names of the
-        quantities; the unknowns are among the positions.
+        Values that replace those of the first variant, in canonical units.
     motion
         A motion in time, for exercises whose driver has an effort.
     """
 
-    given: Mapping[str, Any]
-    positions: tuple[str, ...] = ()
-    rates: tuple[str, ...] = ()
-    hard: Mapping[str, Any] = field(default_factory=dict)
-    loops: Sequence[Sequence[Vector]] = ()
-    unknowns: tuple[str, ...] = ()
+    given: Mapping[str, Any] = field(default_factory=dict)
     motion: Motion | None = None
-
-    def __post_init__(self) -> None:
-        if len(self.rates) not in (0, len(self.positions)):
-            raise BadCourse("a study names a rate for each position, in the same order")
-        if not set(self.unknowns) <= set(self.positions):
-            raise BadCourse("the unknowns of a study's loops are among its positions")

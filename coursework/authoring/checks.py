@@ -23,6 +23,7 @@ from coursework.authoring.check_answers import (
 from coursework.authoring.check_formulas import check_formulas
 from coursework.authoring.check_knowledge import check_knowledge
 from coursework.authoring.check_loops import check_loops
+from coursework.authoring.check_mechanism import check_mechanism
 from coursework.authoring.check_prices import check_prices
 from coursework.authoring.check_report import RESIDUAL, Report
 from coursework.authoring.check_units import check_units
@@ -155,6 +156,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
     check_knowledge(drawn, report)
     check_prices(drawn, report)
     check_loops(drawn[0], report)
+    check_mechanism(drawn, report)
     check_formulas(drawn, report)
     check_units(drawn, report)
     for name in exercise.solution.mistakes:

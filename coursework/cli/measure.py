@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from coursework.cli.options import exercises_argument, json_option, lang_option, opened, tell_lack_of_charts
 from coursework.cli.printing import print_json
 
+if TYPE_CHECKING:
+    from coursework.sheets.report import Report
+
 # --------------------------------------------------------------------- accuracy
 
 
 @click.command()
 @exercises_argument
-@click.option("--quick", is_flag=True, help="Fewer places and shorter timings: under half a minute.")
+@click.option("--quick", is_flag=True, help="Fewer places and shorter timings: a minute or so.")
+@click.option("--paper", is_flag=True, help="The accuracy of students on paper: digits kept, and the margin.")
 @lang_option
 @click.option(
     "--out",
@@ -25,26 +31,47 @@ from coursework.cli.printing import print_json
 @json_option
 @click.pass_context
 def accuracy(
-    context: click.Context, exercises: Sequence[str], quick: bool, lang: str, out: Path | None, as_json: bool
+    context: click.Context,
+    exercises: Sequence[str],
+    quick: bool,
+    paper: bool,
+    lang: str,
+    out: Path | None,
+    as_json: bool,
 ) -> None:
     """Measure what accuracy costs in time, here and now.
 
-    Every exercise whose solution states a study, unless some are named: time a configuration and largest
-    error against fifty digits, at generic and at hard places, of every way to compute it.
+    Without names, one row for every exercise that asks for numbers: digits kept at generic and at the hardest places,
+    and time a configuration, beside the textbook formula. With names, every way to compute them: time and
+    largest error against fifty digits.
     """
-    import json
-
-    from coursework.accuracy.measuring import measure, study_of
-    from coursework.rendering.renderer import renderer_of
-    from coursework.system.writing import write_whole
-
     course = opened(context)
-    names = exercises or [n for n in course.names if study_of(course[n]) is not None]
+    if paper:
+        rows, page = _on_paper(course, exercises or course.names, quick, lang, as_json)
+    elif exercises:
+        rows, page = _in_detail(course, exercises, quick, lang, as_json)
+    else:
+        rows, page = _overview(course, quick, lang, as_json)
+    if as_json:
+        print_json(rows)
+    if out is not None:
+        _write(course, rows, page(), out)
+        if not as_json:
+            click.echo(f"page and rows: {out / 'accuracy'}.html, .pdf, .json")
+
+
+def _in_detail(course: Any, names: Sequence[str], quick: bool, lang: str, silent: bool) -> tuple[list, Any]:
+    """Every way to compute each of the named exercises."""
+    from coursework.accuracy.measuring import DATA, measure, subject_of
+    from coursework.accuracy.page import report
+
+    for name in names:
+        subject_of(course[name])  # what cannot be measured is refused before anything is
     rows = []
     for name in names:
         for row in measure(course[name], quick=quick):
             rows.append(row)
-            if not as_json:
+            if not silent and row.family != DATA:
                 error = "no answer" if row.max_error is None else f"{row.max_error:.1e}"
                 failed = (
                     f"  no answer at {row.failed} of {row.n}"
@@ -52,19 +79,74 @@ def accuracy(
                     else ""
                 )
                 click.echo(
-                    f"{row.exercise:22} {row.what:9} {row.method:20} {row.place:8} "
-                    f"{row.ns_per_configuration:14,.0f} ns  {error}{failed}"
+                    f"{row.exercise:22} {row.what:12} {row.method:20} {row.place:16} {row.median:14,.0f} ns "
+                    f"({row.low:,.0f} to {row.high:,.0f})  {error}{failed}"
                 )
-    as_rows = [row.as_json() for row in rows]
-    if as_json:
-        print_json(as_rows)
-    if out is not None:
-        from coursework.accuracy.page import report
+    return [row.as_json() for row in rows], lambda: report(course, rows, lang)
 
-        page = report(course, rows, lang)
-        write_whole(out / "accuracy.json", (json.dumps(as_rows, indent=1) + "\n").encode())
-        write_whole(out / "accuracy.html", renderer_of(course.folder).report_html(page).encode("utf-8"))
-        write_whole(out / "accuracy.pdf", renderer_of(course.folder).report_pdf(page))
-        tell_lack_of_charts()
-        if not as_json:
-            click.echo(f"page and rows: {out / 'accuracy'}.html, .pdf, .json")
+
+def _overview(course: Any, quick: bool, lang: str, silent: bool) -> tuple[list, Any]:
+    """A line for each exercise of the course."""
+    from coursework.accuracy.overview import overview
+    from coursework.accuracy.pages import overview_report
+
+    lines, without = [], []
+    for name in course.names:
+        line = overview(course[name], quick=quick)
+        if line is None:
+            without.append(name)
+            continue
+        lines.append(line)
+        if not silent:
+            click.echo(_told(line))
+    if not silent and without:
+        click.echo(f"no numbers to lose digits: {', '.join(without)}")
+    return [line.as_json() for line in lines], lambda: overview_report(course, lines, without, lang)
+
+
+def _told(line: Any) -> str:
+    if line.wrong:
+        return f"{line.exercise:28} {line.wrong}"
+
+    if not line.quantities:
+        return f"{line.exercise:28} no reference: the formula of {', '.join(line.lacking)} cannot be followed in many digits"
+
+    def error(value: float | None) -> str:
+        return "      –" if value is None else f"{value:7.1e}"
+
+    times = f"{1e9 * line.stable_ns.median:8,.0f} ns, textbook {1e9 * line.textbook_ns.median:8,.0f} ns"
+    kept = "all that the data allow" if line.beyond <= 1 else f"{line.beyond:.0e} times what the data explain"
+    hard = (
+        f"hard {error(line.hard)} (textbook {error(line.hard_textbook)}), {kept}"
+        if line.places
+        else "no hard place"
+    )
+    return f"{line.exercise:28} generic {error(line.generic)} (textbook {error(line.generic_textbook)})  {times}  {hard}"
+
+
+def _on_paper(course: Any, names: Sequence[str], quick: bool, lang: str, silent: bool) -> tuple[list, Any]:
+    """What students' digits and the course's margin do to right and to wrong answers."""
+    from coursework.accuracy.pages import paper_report
+    from coursework.accuracy.paper import PLAIN, on_paper, total
+
+    variants = 100 if quick else 500
+    rows = [row for name in names for row in on_paper(course[name], variants)]
+    if not silent:
+        for row in total(rows):
+            digits = "1 % alone" if row.digits == PLAIN else f"{row.digits} digits"
+            click.echo(
+                f"{digits:10} right answers wronged: by 1 % {row.wronged.value:8.3%}, by our margin "
+                f"{row.wronged_ours.value:8.3%};  let pass: mistakes {row.mistakes.value:8.3%}, neighbours "
+                f"{row.neighbours.value:8.3%}"
+            )
+    return [row.as_json() for row in rows], lambda: paper_report(course, rows, variants, lang)
+
+
+def _write(course: Any, rows: list, page: Report, out: Path) -> None:
+    from coursework.rendering.renderer import renderer_of
+    from coursework.system.writing import write_whole
+
+    write_whole(out / "accuracy.json", (json.dumps(rows, indent=1) + "\n").encode())
+    write_whole(out / "accuracy.html", renderer_of(course.folder).report_html(page).encode("utf-8"))
+    write_whole(out / "accuracy.pdf", renderer_of(course.folder).report_pdf(page))
+    tell_lack_of_charts()

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from coursework.cli import completion
 from coursework.cli.options import (
     Whole,
     decimal_option,
@@ -23,63 +25,129 @@ from coursework.cli.options import (
 from coursework.cli.printing import print_json, print_table
 from coursework.errors import WrongValue
 
+if TYPE_CHECKING:
+    from coursework.motion.added import Motor
+    from coursework.motion.scene_files import SceneFile
+    from coursework.motion.scenes import Scene, Table
+    from coursework.motion.worth import Budget
+
 # --------------------------------------------------------------------- simulate
 
 
 @click.command()
-@exercise_argument
+@click.argument("exercise", metavar="EXERCISE|SCENE.toml", shell_complete=completion.exercises)
 @click.option(
     "--effects", default="", metavar="E,E", help="What the scene calls for; positions alone unless told."
 )
 @click.option("--set", "settings", multiple=True, metavar="NAME=VALUE", help="A given value: r1=228.6mm.")
+@click.option(
+    "--show",
+    multiple=True,
+    metavar="WHAT",
+    help="Show this, too: stroke, drive_torque, 'reaction B', 'velocity B'.",
+)
 @seed_option
 @click.option(
     "--over", type=click.Choice(["cycle"]), default="cycle", show_default=True, help="One turn of the driver."
 )
-@click.option("--steps", type=Whole(1), default=360, show_default=True, help="Steps of a cycle.")
+@click.option("--steps", type=Whole(1), help="Steps of a cycle; 360 unless told.")
 @click.option(
     "--drive", metavar="torque=VALUE", help="Integrate the motion under this constant torque instead."
 )
-@click.option("--duration", type=float, default=1.0, show_default=True, help="Seconds of a motion in time.")
+@click.option("--duration", metavar="SECONDS", help="Of a motion in time; 1 s unless told.")
+@click.option("--plan", is_flag=True, help="Say what would be evaluated and why, and stop.")
+@click.option(
+    "--budget", is_flag=True, help="Say what each effect costs in time, and changes of what is shown."
+)
+@click.option(
+    "--tolerance",
+    default=0.01,
+    show_default=True,
+    help="With --budget: a part that may be left out of an output.",
+)
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for table and plot.")
 @decimal_option
 @json_option
 @click.pass_context
 def simulate(
     context: click.Context,
+    /,
     exercise: str,
-    effects: str,
-    settings: Sequence[str],
-    seed: int,
-    over: str,
-    steps: int,
-    drive: str | None,
-    duration: float,
+    plan: bool,
+    budget: bool,
+    tolerance: float,
     out: Path | None,
     decimal: str,
     as_json: bool,
+    **told: Any,
 ) -> None:
     """Move a mechanism over a cycle or in time, with only the effects named.
 
-    Values that are not set are those of the variant of --seed.
+    A scene is a file, or an exercise with options; values that are not set are those of the variant of --seed.
     """
+    told_file = _scene_file(opened(context), exercise, told)
+    if plan:
+        _tell_plan(told_file.scene, as_json)
+    elif budget:
+        _tell_budget(told_file, tolerance, out, decimal, as_json)
+    else:
+        _tell_table(told_file, out, decimal, as_json)
+
+
+def _scene_file(course: Any, exercise: str, told: dict[str, Any]) -> SceneFile:
+    """The scene of a file, or that of the options."""
+    from coursework.motion.scene_files import SceneFile, read_scene
     from coursework.motion.scenes import Scene
 
-    one = opened(context)[exercise]
-    scene = Scene(one, {**one.variant(seed).used, **settings_given(settings)}, split_list(effects))
-    table = scene.over_cycle(steps) if drive is None else scene.in_time(_drive(one, drive), duration)
+    if exercise.endswith(".toml"):
+        for option in ("effects", "settings", "show", "steps", "drive", "duration"):
+            if told[option]:
+                name = "set" if option == "settings" else option
+                raise WrongValue(f"{exercise} says what the scene is; leave --{name} out, or write it there")
+        return read_scene(Path(exercise), course)
+    one = course[exercise]
+    given = {**one.variant(told["seed"]).used, **settings_given(told["settings"])}
+    scene = Scene(one, given, split_list(told["effects"]), tuple(told["show"]))
+    if told["drive"] is None:
+        if told["duration"] is not None:
+            raise WrongValue("--duration is of a motion in time: give its drive too, --drive torque=5")
+        return SceneFile(exercise, scene, told["steps"] or 360)
+    return SceneFile(exercise, scene, drive=_drive(one, told["drive"]), duration=_seconds(told["duration"]))
+
+
+def _seconds(text: str | None) -> float:
+    from coursework.reading.numbers import read_number
+
+    if text is None:
+        return 1.0
+    reading = read_number(text, "s")
+    if reading.status != "read" or len(reading.values) != 1 or not reading.values[0] > 0:
+        raise WrongValue(f"--duration takes a time above 0, such as 2 or '500 ms'; found {text!r}")
+    return reading.values[0]
+
+
+def _run(told: SceneFile, scene: Scene) -> Table:
+    """A scene as its file says: over a cycle, or in time."""
+    if told.drive is None:
+        return scene.over_cycle(told.steps)
+    return scene.in_time(told.drive, told.duration)
+
+
+def _tell_table(told: SceneFile, out: Path | None, decimal: str, as_json: bool) -> None:
+    table = _run(told, told.scene)
     rows = table.rows()
     if as_json:
-        print_json({"exercise": exercise, "evaluated": table.evaluated, "rows": rows, "notes": table.notes})
+        name = told.scene.exercise.name
+        print_json({"exercise": name, "evaluated": table.evaluated, "rows": rows, "notes": table.notes})
     else:
         click.echo(f"evaluated: {', '.join(table.evaluated)}")
         for note in table.notes:
             click.echo(f"note: {note}")
     if out is not None:
-        stem = out / f"{exercise}-{'cycle' if drive is None else 'motion'}"
-        _write_scene(table, stem, decimal)
+        stem = out / f"{told.name}-{'cycle' if told.drive is None else 'motion'}"
+        _write_rows(rows, stem, decimal)
         if not (bare := tell_lack_of_charts()):
-            _write_plot(table, exercise, stem)
+            _write_plot(table, told.name, stem)
         if not as_json:
             click.echo(f"table: {stem}.csv" if bare else f"table and plot: {stem}.csv, .svg")
     elif not as_json:
@@ -87,16 +155,101 @@ def simulate(
         print_table([{h: _short_number(v) for h, v in row.items()} for row in shown_rows])
 
 
-def _write_scene(table: Any, stem: Path, decimal: str) -> None:
-    """The table of a scene as ``STEM.csv``."""
+def _tell_plan(scene: Scene, as_json: bool) -> None:
+    from coursework.motion.planning import plan
+
+    steps = plan(scene)
+    if as_json:
+        print_json({"exercise": scene.exercise.name, "plan": [{"evaluated": a, "why": b} for a, b in steps]})
+    else:
+        print_table([{"evaluated at every instant": a, "why": b} for a, b in steps])
+
+
+def _tell_budget(told: SceneFile, tolerance: float, out: Path | None, decimal: str, as_json: bool) -> None:
+    from coursework.motion.worth import budget
+
+    found = budget(told.scene, partial(_run, told), tolerance)
+    said, rows = list(found.said()), list(_budget_rows(found))
+    if as_json:
+        print_json(
+            {"exercise": told.scene.exercise.name, "seconds": found.seconds, "effects": rows, "said": said}
+        )
+    else:
+        print_table(list(_each_effect_once(rows)))
+        click.echo(f"the whole scene: {1e3 * found.seconds:.3g} ms")
+        for sentence in said:
+            click.echo(sentence)
+    if out is not None:
+        stem = out / f"{told.name}-budget"
+        _write_rows(rows, stem, decimal)
+        if not (bare := tell_lack_of_charts()):
+            _write_budget_plot(found, told.name, stem)
+        if not as_json:
+            click.echo(f"table: {stem}.csv" if bare else f"table and plot: {stem}.csv, .svg")
+
+
+def _each_effect_once(rows: Sequence[dict[str, Any]]) -> Iterator[dict[str, str]]:
+    """Rows to be read: an effect and its time stand in its first row alone."""
+    last = None
+    for row in rows:
+        shown = {h: _short_number(v, 3) for h, v in row.items()}
+        if row["effect"] == last:
+            shown |= dict.fromkeys(("effect", "time [ms]", "spread [ms]"), "")
+        last = row["effect"]
+        yield shown
+
+
+def _budget_rows(found: Budget) -> Iterator[dict[str, Any]]:
+    """A row an effect and output."""
+    for worth in found.worths:
+        time = {"effect": worth.effect, "time [ms]": 1e3 * worth.seconds, "spread [ms]": 1e3 * worth.spread}
+        if worth.needed or not worth.changes:
+            why = worth.needed or "nothing shown without it"
+            yield {
+                **time,
+                "output": why,
+                "largest": "",
+                "rms": "",
+                "unit": "",
+                "largest [%]": "",
+                "rms [%]": "",
+            }
+        for change in worth.changes:
+            yield {
+                **time, "output": change.output, "largest": change.largest, "rms": change.rms, "unit": change.unit,
+                "largest [%]": 100 * change.largest_part, "rms [%]": 100 * change.rms_part,
+            }  # fmt: skip
+
+
+def _write_budget_plot(found: Budget, title: str, stem: Path) -> None:
+    """A bar an effect: what leaving it out changes at most, and what it costs."""
+    from coursework.figures.charts import bars
+    from coursework.system.writing import write_whole
+
+    rows = []
+    for worth in found.worths:
+        most = worth.most
+        part = 100 * most.largest_part if most else 0.0
+        what = f"{most.output}, " if most and part else ""
+        rows.append((worth.effect, part, f"{_rounded(part)} % ({what}{_rounded(1e3 * worth.seconds)} ms)"))
+    plot = bars(rows, title, "largest change without the effect, % of the output")
+    write_whole(stem.parent / f"{stem.name}.svg", plot)
+
+
+def _rounded(value: float) -> str:
+    """Two digits, or whole."""
+    return f"{value:.0f}" if abs(value) >= 10 else f"{value:.2g}"
+
+
+def _write_rows(rows: Sequence[dict[str, Any]], stem: Path, decimal: str) -> None:
+    """A table as ``STEM.csv``."""
     from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole
 
-    rows = table.rows()
     write_whole(stem.parent / f"{stem.name}.csv", csv_file(rows, list(rows[0]), SPREADSHEETS[decimal]))
 
 
-def _write_plot(table: Any, title: str, stem: Path) -> None:
+def _write_plot(table: Table, title: str, stem: Path) -> None:
     """The curves of a scene as ``STEM.svg``."""
     from coursework.figures.charts import curves
     from coursework.system.writing import write_whole
@@ -107,20 +260,27 @@ def _write_plot(table: Any, title: str, stem: Path) -> None:
     write_whole(stem.parent / f"{stem.name}.svg", plot)
 
 
-def _short_number(value: Any) -> str:
+def _short_number(value: Any, digits: int = 5) -> str:
     from coursework.language.numbers import significant
 
-    return significant(value, 5) if isinstance(value, float) else str(value)
+    if isinstance(value, float):
+        return "" if value != value else significant(value, digits)
+    return str(value)
 
 
-def _drive(exercise: Any, text: str) -> float:
-    """The torque of ``--drive torque=5``, in N*m."""
+def _drive(exercise: Any, text: str) -> Motor:
+    """The torque of ``--drive torque=5``, in N*m, by that name or by the exercise's own."""
+    from coursework.motion.added import Motor
+    from coursework.reading.numbers import read_number
+
     name, equals, value = text.partition("=")
     effort = exercise.spec.driver.effort if exercise.spec.driver else ""
-    if not equals or name.strip() != effort:
-        wanted = f"{effort}=VALUE" if effort else "nothing: the exercise names no effort of its driver"
-        raise WrongValue(f"--drive takes {wanted}; found {text!r}")
-    return exercise.intake.value(effort, value.strip())
+    if not equals or name.strip() not in ("torque", effort):
+        raise WrongValue(f"--drive takes {effort or 'torque'}=VALUE; found {text!r}")
+    reading = read_number(value.strip(), "N*m")
+    if reading.status != "read" or len(reading.values) != 1:
+        raise WrongValue(f"the torque of --drive is a number in N*m; found {value!r}")
+    return Motor(reading.values[0])
 
 
 # ---------------------------------------------------------------------- animate

@@ -126,7 +126,16 @@ class CourseExercise(Generic[V]):
     @cached_property
     def intake(self) -> Intake:
         """Takes in what requests give."""
-        return Intake(self.name, self.spec.given, self.units, self.quantity_names, self.solution.structures)
+        structures = self.solution.structures
+        return Intake(
+            self.name, self.spec.given, self.units, self.quantity_names, structures, self._directions
+        )
+
+    @property
+    def _directions(self) -> frozenset[str]:
+        """The angles of the loops and the driver's, which whole turns do not change."""
+        own = {self.spec.driver.angle} if self.spec.driver else set()
+        return frozenset(own.union(*(loop.angles for loop in self.solution.loops.values())))
 
     def solve(
         self,

@@ -30,12 +30,14 @@ class Intake:
         units: Mapping[str, str],
         known: frozenset[str],
         structures: frozenset[str],
+        directions: frozenset[str] = frozenset(),
     ):
         self.name = name
         self._given = given
         self._units = units
         self._known = known  #: every name that a request may give
         self._structures = structures  #: names of lists and records
+        self._directions = directions  #: angles that whole turns do not change
 
     @cached_property
     def defaults(self) -> Mapping[str, float | str]:
@@ -52,7 +54,10 @@ class Intake:
         return frozenset(n for n, s in self._given.items() if s.positive or s.nonzero or s.is_choice)
 
     def values(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """All that a request gives and the solution knows, with defaults for what it leaves out."""
+        """All that a request gives and the solution knows, with defaults for what it leaves out.
+
+        Directions of many turns are taken within one.
+        """
         names = self._known
         values = {n: v for n, v in self.defaults.items() if n in names}
         for name, value in given.items():
@@ -63,6 +68,8 @@ class Intake:
             # The usual case at once: a plain number that nothing forbids.
             plainly = type(value) is float and value - value == 0 and name not in self._looked_at
             values[name] = value if plainly else self.value(name, value)
+        for name in self._directions.intersection(values):
+            values[name] = _within_a_turn(values[name])
         return values
 
     def value(self, name: str, value: Any) -> Any:
@@ -132,6 +139,15 @@ class Intake:
                 raise WrongValue(f"{name} must be positive; found {value:g} {spec.unit}")
             if spec.nonzero and value == 0:
                 raise WrongValue(f"{name} must not be 0")
+
+
+def _within_a_turn(angle: Any) -> Any:
+    """The same direction, without rounding, where whole turns would take digits from what is added to it."""
+    if isinstance(angle, float):
+        return angle if abs(angle) <= 360 else math.remainder(angle, 360.0)
+    if not np.size(angle) or max(np.max(angle), -np.min(angle)) <= 360:
+        return angle
+    return np.where(abs(angle) <= 360, angle, np.fmod(angle, 360.0))
 
 
 def _structure(name: str, value: Any) -> Any:

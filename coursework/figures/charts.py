@@ -133,8 +133,9 @@ def scatter(
     vertical: str,
     *,
     joined: bool = True,
+    whole: bool = False,
 ) -> bytes:
-    """Named series of points on two logarithmic axes, as SVG."""
+    """Named series of points on two logarithmic axes, as SVG; ``whole`` numbers stand on a plain axis."""
     pyplot = _pyplot()
     marks = "osD^v<>Px*hp+d"
     with pyplot.rc_context(STYLE):
@@ -142,7 +143,10 @@ def scatter(
         for number, (name, (x, y)) in enumerate(points.items()):
             line = LINES[number % len(LINES)] if joined else ""
             panel.plot(x, y, marks[number % len(marks)] + line, label=name, markersize=5, linewidth=0.9)
-        panel.set(xscale="log", yscale="log", xlabel=horizontal, ylabel=vertical, title=title)
+        across = "linear" if whole else "log"
+        panel.set(xscale=across, yscale="log", xlabel=horizontal, ylabel=vertical, title=title)
+        if whole:
+            panel.set_xticks(sorted({int(v) for x, _ in points.values() for v in x}))
         panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False, fontsize=8)
         return _svg(pyplot, figure)
 

@@ -8,6 +8,7 @@ rod lines up with the rocker: two, four or more times a turn.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ from coursework.errors import CannotAssemble
 from coursework.kinematics.cycle import turning_points
 from coursework.kinematics.dyads import rrr
 from coursework.kinematics.margins import grashof_margins
+from coursework.kinematics.triangles import corner
 from coursework.kinematics.vectors import cross
 
 
@@ -58,15 +60,48 @@ class RockerSlider(NamedTuple):
         ------
         Changes of sign of the slider's velocity, refined to neighbouring doubles (:mod:`cycle`).
         """
-        given = np.broadcast_arrays(*self)
-        shape = given[0].shape
-        flat = [np.atleast_1d(np.asarray(value, dtype=float)).ravel() for value in given]
-        crank, rod = _margins(*flat)
-        if not shape:
-            _refuse_negative(crank[0], rod[0])
+        shape, flat, closes = self._closed_all_turn()
         angles = turning_points(_advance_of_slider, flat)
-        angles[~((crank > 0) & (rod > 0))] = np.nan
+        angles[~closes] = np.nan
         return angles.reshape(*shape, angles.shape[1])
+
+    def stroke(self) -> Any:
+        """From the nearest to the farthest place of the slider, however often it turns back.
+
+        A small crank costs no digit: nothing is a difference of two places. Errors as in :meth:`turning_points`.
+
+        Source
+        ------
+        The rocker swings between the directions where crank and coupler are in line; within that arc the slider
+        turns back where the rod is in line with the rocker.
+        """
+        shape, flat, closes = self._closed_all_turn()
+        with np.errstate(all="ignore"):
+            found = np.where(closes, _stroke(*flat), np.nan)
+        return found.reshape(shape) if shape else float(found[0])
+
+    def times_turned(self) -> Any:
+        """How often the slider turns back in a turn, however near to each other; 0 where it does not close all turn.
+
+        Errors as in :meth:`turning_points`.
+        """
+        shape, flat, closes = self._closed_all_turn()
+        with np.errstate(all="ignore"):
+            half = _swing(*flat[:6])[1]
+            passed = np.isfinite(_in_line(*flat)).sum(axis=0)
+        # A rocker that swings passes each direction in the arc twice, and turns back at its ends.
+        found = np.where(closes, np.where(half == math.pi, passed, 2 + 2 * passed), 0)
+        return found.reshape(shape) if shape else int(found[0])
+
+    def _closed_all_turn(self) -> tuple[tuple[int, ...], list[np.ndarray], np.ndarray]:
+        """The shape, the numbers of each mechanism, and whether it closes at every crank angle."""
+        given = np.broadcast_arrays(*self)
+        flat = [np.atleast_1d(np.asarray(value, dtype=float)).ravel() for value in given]
+        with np.errstate(all="ignore"):
+            crank, rod = _margins(*flat)
+        if not given[0].shape:
+            _refuse_negative(crank[0], rod[0])
+        return given[0].shape, flat, (crank > 0) & (rod > 0)
 
 
 def _refuse_negative(crank: float, rod: float) -> None:
@@ -84,12 +119,63 @@ def _margins(
     """By how much the crank turns fully, and the rod reaches its line, at every crank angle; shape ``(n,)`` each."""
     stretched, folded = grashof_margins(ground, crank, coupler, rocker)
     turns = np.minimum(stretched, folded) / (ground + crank + coupler + rocker)
-    linkage = (ground, ground_angle, crank, coupler, rocker, side)
-    at_ends = turning_points(_rise_of_joint, linkage)
-    with np.errstate(invalid="ignore"):
-        arm = _rocker_and_coupler(at_ends, *[value[:, None] for value in linkage])[0]
-        rise = abs((line - ground * np.sin(ground_angle))[:, None] - arm.imag)
-    return turns, rod - np.where(np.isnan(rise), 0.0, rise).max(axis=1)
+    middle, half = _swing(ground, ground_angle, crank, coupler, rocker, side)
+    up, down = (np.where(abs(_turn(way - middle)) < half, way, np.nan) for way in (math.pi / 2, -math.pi / 2))
+    level = line - ground * np.sin(ground_angle)
+    rises = [abs(level - rocker * np.sin(way)) for way in (middle + half, middle - half, up, down)]
+    return turns, rod - np.fmax.reduce(rises)
+
+
+def _swing(
+    ground: Any, ground_angle: Any, crank: Any, coupler: Any, rocker: Any, side: Any
+) -> tuple[Any, Any]:
+    """The arc of the rocker's directions, of a crank that turns fully: its middle, and half of its size.
+
+    That is half a turn where the rocker turns fully too: then crank and coupler are never in line.
+    """
+    # Angles at D of the triangles with crank and coupler stretched and folded; their cosines differ by
+    # 2 crank coupler / (ground rocker), which is their difference where it is small.
+    far, near = corner(ground, rocker, coupler + crank), corner(ground, rocker, abs(coupler - crank))
+    mean = (far + near) / 2
+    half = np.arcsin(crank * coupler / (ground * rocker * np.sin(mean)))
+    half = np.where(half < 0.5, half, (far - near) / 2)
+    middle = ground_angle + math.pi - side * np.where(np.isnan(mean), 0.0, mean)
+    return middle, np.where(np.isnan(mean), math.pi, half)
+
+
+def _in_line(
+    ground: Any, ground_angle: Any, crank: Any, coupler: Any, rocker: Any, side: Any, rod: Any, line: Any
+) -> np.ndarray:
+    """Where the rod is in line with the rocker, stretched and folded: from the middle of the arc; NaN out of it."""
+    middle, half = _swing(ground, ground_angle, crank, coupler, rocker, side)
+    level = line - ground * np.sin(ground_angle)
+    stretched, folded = np.arcsin(level / (rocker + rod)), math.pi - np.arcsin(level / (rocker - rod))
+    turned = _turn(np.stack([stretched - middle, folded - middle]))
+    return np.where(abs(turned) < half, turned, np.nan)
+
+
+def _stroke(
+    ground: Any, ground_angle: Any, crank: Any, coupler: Any, rocker: Any, side: Any, rod: Any, line: Any
+) -> Any:
+    level = line - ground * np.sin(ground_angle)
+    middle, half = _swing(ground, ground_angle, crank, coupler, rocker, side)
+    start = middle + half
+    rise = level - rocker * np.sin(start)
+    run = np.sqrt((rod - rise) * (rod + rise))
+    reached = [np.zeros_like(start)]
+    for turn in (-half, *_in_line(ground, ground_angle, crank, coupler, rocker, side, rod, line)):
+        by = turn - half
+        on = start + 0.5 * by
+        rise_there = level - rocker * np.sin(start + by)
+        slope = (rise + rise_there) / (run + np.sqrt((rod - rise_there) * (rod + rise_there)))
+        # The rocker's pin goes along a chord across the direction half way; the rod's run follows its rise.
+        reached.append(2 * rocker * np.sin(0.5 * by) * (slope * np.cos(on) - np.sin(on)))
+    return np.fmax.reduce(reached) - np.fmin.reduce(reached)
+
+
+def _turn(angle: Any) -> Any:
+    """In [-pi, pi]."""
+    return angle - 2 * math.pi * np.rint(angle / (2 * math.pi))
 
 
 def _rocker_and_coupler(
@@ -105,12 +191,6 @@ def _rocker_ratio(rocker: Any, coupler: Any, crank: Any) -> Any:
     """Angular velocity of the rocker over that of the crank, of the three vectors: along the coupler both ends
     move alike."""
     return cross(coupler, crank) / cross(coupler, rocker)
-
-
-def _rise_of_joint(angle: Any, *linkage: Any) -> Any:
-    """Derivative of B's ordinate with respect to the crank angle."""
-    vectors = _rocker_and_coupler(angle, *linkage)
-    return _rocker_ratio(*vectors) * vectors[0].real
 
 
 def _advance_of_slider(angle: Any, *mechanism: Any) -> Any:

@@ -282,12 +282,23 @@ def _motion(t: _Linkage, swept: Sweep, cos: Any, sin: Any, _: Any, *rates: Any) 
     # It is a function of the complement, so that its odd derivatives change sign.
     by_angle = [(-rho, rho * rise - r_sin)]
     if order >= 2:
-        first = opening.first
+        first = opening.first if swept.cos is not None else _opening_rate(t, close, swept, r_sin)
         by_angle.append((first, -(first * rise + (1 + rho) * r_cos)))
     if order >= 3:
         second = opening.second
         by_angle.append((-second, second * rise + 2 * first * r_cos + (1 + rho) * r_sin))
     return found + in_time(by_angle, rates)
+
+
+def _opening_rate(t: _Linkage, close: Closing, swept: Sweep, r_sin: Any) -> Any:
+    """The first derivative of rho where the side is kept: as :class:`Opening`'s, and exact near its zeros too.
+
+    Of the two ways to take out the sine, for a line above and for one below O, each is a sum where the other cancels.
+    """
+    least, most = np.minimum(t.stretched, t.folded), np.maximum(t.stretched, t.folded)
+    squared = np.where(np.greater(t.offset, 0), swept.cos_squared, swept.sin_squared)
+    total = 2 * r_sin * (least * (most + t.reach)) + 2 * t.offset * (squared * squared)
+    return 0.5 * total / (close.product * close.determinant)
 
 
 def _displacement(t: _Linkage, swept: Sweep, cos: Any, sin: Any, angle: Any) -> tuple[Any]:

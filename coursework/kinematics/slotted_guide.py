@@ -182,16 +182,18 @@ class _Pose:
         ratio = (self.r * self.gap + 0.5 * self.swept.cos_squared) / self.squared
         return np.where(self.gap == 0, 0.5, ratio), -self._pull
 
+    # Of the arm's square m = g^2 + c, with g = r - d, c and s the swept squares: the derivatives of arm and angle are
+    # quotients of sums over m. Where A passes near O4 both g^2 and c are small, and no difference of them is left.
+
     @cached_property
     def second(self) -> tuple[Any, Any]:
-        turned = self._turning * (0.5 * self.swept.both)
-        return turned, -(self._along + self._pull * self._pull) / self.arm
+        return self._turning * (0.5 * self.swept.both), -self._bend / self.arm
 
     @cached_property
     def third(self) -> tuple[Any, Any]:
-        pull, along = self._pull, self._along
-        turned = self._turning * (along + 4 * pull * pull)
-        return turned, pull * (1 - 3 * (along + pull * pull) / self.squared)
+        swung = 0.75 * self.swept.sin_squared
+        turned = self._turning * (self._bend + swung * self._passing)
+        return turned, self._pull * (0.25 * self._passing + self._missing * (1 + swung / self.squared))
 
     @cached_property
     def _pull(self) -> Any:
@@ -202,8 +204,22 @@ class _Pose:
         return np.where(self.gap == 0, 0.0, self.gap * (self.r + self.d) / (self.squared * self.squared))
 
     @cached_property
-    def _along(self) -> Any:
-        return 0.25 * (self.swept.cos_squared - self.swept.sin_squared)
+    def _passing(self) -> Any:
+        """c / m: 1 where the circle of A passes through O4."""
+        return self.swept.cos_squared / self.squared
+
+    @cached_property
+    def _missing(self) -> Any:
+        """g^2 / m, the other share of it."""
+        return self.gap * (self.gap / self.squared)
+
+    @cached_property
+    def _bend(self) -> Any:
+        """-arm times the second derivative of the arm: (g^2 (c - s) + c^2) / 4 m."""
+        swept = self.swept
+        return 0.25 * (
+            self._missing * (swept.cos_squared - swept.sin_squared) + swept.cos_squared * self._passing
+        )
 
 
 def _motion(pose: _Pose, *rates: Any) -> tuple:

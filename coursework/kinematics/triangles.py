@@ -71,7 +71,10 @@ def corner_beside(one: Any, other: Any, angle: Any, third: Any) -> Any:
 
 
 def _direction(y: Any, x: Any) -> Any:
-    return math.atan2(y, x) if np.ndim(y) == 0 else np.arctan2(y, x)
+    if np.ndim(y):
+        return np.arctan2(y, x)
+    mp = getattr(y, "context", None)  # a number of mpmath keeps its digits
+    return math.atan2(y, x) if mp is None else mp.atan2(y, x)
 
 
 def _square_of_third(one: Any, other: Any, half_sin: Any) -> Any:

@@ -14,7 +14,9 @@ import numpy as np
 from coursework.mechanics.rates import Stance, solved
 from coursework.mechanics.wrenches import Wrench
 
-PIECE = 1024  #: instants whose equations are solved together: their matrices stay in the cache
+PIECE = (
+    4096  #: instants whose equations are set up and solved together: fewer calls, and matrices of some 10 MB
+)
 
 
 class Equilibrium:

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from coursework.errors import unknown
+from coursework.errors import WrongValue, unknown
 from coursework.mechanics.equilibrium import Equilibrium
 from coursework.mechanics.linkage import MM, Linkage, PinJoint, SlideJoint
 from coursework.mechanics.rates import Stance, solved
@@ -58,12 +58,18 @@ def contacts(linkage: Linkage, friction: Mapping[str, Any]) -> tuple[Contact, ..
     ------
     UnknownName
         A joint that the mechanism does not have.
+    WrongValue
+        A point at which several bodies are pinned, without the one that is meant.
     """
     slides = {joint.name: joint for joint in linkage.slides}
     pins = {joint.name: joint for joint in linkage.pins}
     found: list[Contact] = []
     for name, given in friction.items():
         if isinstance(given, (tuple, list)):
+            if several := [n for n in pins if n.startswith(f"{name} ")]:
+                raise WrongValue(
+                    f"at {name} several bodies are pinned; name one of their joints: {', '.join(several)}"
+                )
             if name not in pins:
                 raise unknown("pin", name, pins, "the mechanism")
             size = float(linkage.number(given[0])) * float(linkage.number(given[1])) * MM

@@ -98,6 +98,14 @@ class Linkage:
             found.append(names.setdefault(body.angle if body.angle else (body.name,), len(names)))
         return (*found, NONE)
 
+    @cached_property
+    def unknown_angles(self) -> tuple[str, ...] | None:
+        """The quantities of the coordinates from 1 on; None where one is a wheel's, which has none."""
+        bodies = zip(self.mechanism.bodies, self.coordinates, strict=False)
+        names = {own: body.angle for body, own in bodies if own > 0}
+        found = [names[k] for k in range(1, self.unknowns + 1)]
+        return tuple(map(str, found)) if all(isinstance(n, str) for n in found) else None
+
     @property
     def unknowns(self) -> int:
         """How many coordinates follow from the driver's angle."""
@@ -162,9 +170,15 @@ class Linkage:
         found = []
         for gear in self.mechanism.gears:
             first, second = (float(self.number(r)) * MM for r in gear.radii)
-            bodies = (self.index[n] for n in (gear.first, gear.second, gear.carrier))
+            one, other, carrier = (self.index[n] for n in (gear.first, gear.second, gear.carrier))
             found.append(
-                GearJoint(f"{gear.first}/{gear.second}", *bodies, (first, -second if gear.inner else second))
+                GearJoint(
+                    f"{gear.first}/{gear.second}",
+                    one,
+                    other,
+                    carrier,
+                    (first, -second if gear.inner else second),
+                )
             )
         return tuple(found)
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from coursework.errors import WrongValue, unknown
-from coursework.mechanics.linkage import Linkage
+from coursework.mechanics.linkage import Held, Linkage
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.statement import Load
 from coursework.mechanics.wrenches import Wrench
@@ -39,6 +39,10 @@ class Acting:
             raise unknown("point or body", self.load.on, known, "the mechanism")
         if self.load.during not in STROKES:
             raise unknown("stroke", self.load.during, STROKES, f"the load on {self.load.on}")
+        if self.load.body and self.load.body not in mechanism.holders(self.load.on):
+            raise unknown(
+                "body", self.load.body, mechanism.holders(self.load.on), f"those that hold {self.load.on}"
+            )
 
     @property
     def is_moment(self) -> bool:
@@ -58,6 +62,12 @@ class Acting:
         """Newtons or newton metres, where no table says it."""
         return float(self.linkage.number(self.load.moment if self.is_moment else self.load.force))
 
+    @property
+    def _held(self) -> Held:
+        """Where its force acts."""
+        body = self.load.body or self.linkage.mechanism.holders(self.load.on)[-1]
+        return self.linkage.held(self.load.on, body)
+
     def _line(self, stance: Stance) -> np.ndarray | complex:
         """Of the pull: a unit vector."""
         if not self.load.against:
@@ -68,7 +78,7 @@ class Acting:
                 and self.load.on in self.linkage.mechanism.body(self._name(slide.of.body)).places
             ):
                 return slide.along
-        rate = stance.rate(self.linkage.owner(self.load.on))
+        rate = stance.rate(self._held)
         with np.errstate(all="ignore"):
             return np.where(rate == 0, 0, rate / np.abs(rate))
 
@@ -79,14 +89,14 @@ class Acting:
         """One newton along the line, or one N m."""
         if self.is_moment:
             return Wrench.none(stance).turn(self.linkage.index[self.load.on], 1.0)
-        return Wrench.none(stance).push(self.linkage.owner(self.load.on), self._line(stance))
+        return Wrench.none(stance).push(self._held, self._line(stance))
 
     def pace(self, stance: Stance) -> np.ndarray:
         """How fast what it acts on goes along the line, for one of the driver."""
         if self.is_moment:
             return stance.rates[self.linkage.index[self.load.on]]
         line = self._line(stance)
-        return (np.conj(line) * stance.rate(self.linkage.owner(self.load.on))).real
+        return (np.conj(line) * stance.rate(self._held)).real
 
     def sizes(self, stance: Stance, driver: np.ndarray, by: By) -> np.ndarray:
         """How large it is at each instant, along the line; ``driver`` in radians."""

@@ -1,16 +1,24 @@
 """How a mechanism moves with its driver: places, and their first and second derivatives by its angle.
 
 Angles follow from the exercise; all else from the joints: a pin holds two points together, a slide lets one go along
-the guide alone, a gear rolls. The equations are linear in the derivatives, and solved at every instant at once.
+the guide alone, a gear rolls. The equations are linear in the derivatives, and solved at every instant at once. Where the
+exercise has formulas for the rates of all angles, these are taken instead: near a dead point they keep the digits that a
+linear system of nearly parallel bars loses.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 
 from coursework.mechanics.linkage import NONE, Held, Linkage, SlideJoint
+
+#: First (1) or second (2) derivatives of the unknown coordinates by the driver's angle, shape ``(unknowns, n)``, as an
+#: exercise's own formulas give them; None where they do not give all.
+Stated: TypeAlias = Callable[[int], np.ndarray | None]
 
 
 class Stance:
@@ -22,14 +30,17 @@ class Stance:
         Its numbers.
     turns
         The angle of each body and of the ground, radians, shape ``(bodies + 1, n)``; what never matters is 0.
+    stated
+        The exercise's own rates; by the joints alone without.
 
     Lengths are in metres and complex, x to the right and y up; derivatives are by the driver's angle in radians, each
     computed when it is first asked for. NaN where the mechanism does not close or stands in a dead point.
     """
 
-    def __init__(self, linkage: Linkage, turns: np.ndarray) -> None:
+    def __init__(self, linkage: Linkage, turns: np.ndarray, stated: Stated | None = None) -> None:
         self.linkage = linkage
         self.turns = turns
+        self._stated = stated
 
     @property
     def count(self) -> int:
@@ -116,7 +127,9 @@ class Stance:
     @cached_property
     def rates(self) -> np.ndarray:
         """How fast each body turns, for one of the driver: shape ``(bodies + 1, n)``."""
-        unknown = self._solved(-self._conditions[:, 0])
+        unknown = self._stated(1) if self._stated else None
+        if unknown is None:
+            unknown = self._solved(-self._conditions[:, 0])
         return self._by_body(np.concatenate([np.ones((1, self.count)), unknown]))
 
     def _by_body(self, coordinates: np.ndarray) -> np.ndarray:
@@ -146,6 +159,13 @@ class Stance:
     @cached_property
     def bends(self) -> np.ndarray:
         """Second derivative of each body's angle by the driver's."""
+        unknown = self._stated(2) if self._stated else None
+        if unknown is None:
+            unknown = self._bent()
+        return self._by_body(np.concatenate([np.zeros((1, self.count)), unknown]))
+
+    def _bent(self) -> np.ndarray:
+        """Second derivatives of the unknown coordinates by the joints."""
         rows = []
         still = np.zeros(self.turns.shape)
         origins = self._origin_bends(still)
@@ -160,8 +180,7 @@ class Stance:
             turned = 2j * self.rates[slide.on] * self.sliding(slide) * along
             rows.append((np.conj(1j * along) * (self._bend(slide.of, origins, still) - guide - turned)).real)
         rows += [np.zeros(self.count) for _ in self.linkage.gears]
-        unknown = self._solved(-np.array(rows)) if rows else np.zeros((0, self.count))
-        return self._by_body(np.concatenate([np.zeros((1, self.count)), unknown]))
+        return self._solved(-np.array(rows)) if rows else np.zeros((0, self.count))
 
     def _origin_bends(self, turning: np.ndarray) -> np.ndarray:
         found = np.zeros(self.turns.shape, dtype=complex)

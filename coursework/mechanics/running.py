@@ -9,10 +9,10 @@ efforts that would move it either way, and leaves on the side that the drive exc
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -28,6 +28,16 @@ MOST_STEPS = 2_000_000  #: evaluations of the equation of motion, before a run i
 _SEARCH = 2048  #: places of the turn between which a pace may change its sign once
 
 Drive = Callable[[float], float]  #: N m, by the driver's speed in rad/s
+
+
+class _Instant(NamedTuple):
+    """A driver's angle, speed and way, what its drive gives beyond all but inertia and friction, and the inertia."""
+
+    angle: float
+    speed: float
+    way: int
+    lacking: float
+    inertia: float
 
 
 @dataclass(frozen=True)
@@ -117,11 +127,11 @@ class Running:
         loads = [acting.pace(stance) for acting in self.forces.loads]
         return loads + [contact.rate(stance) for contact in self.forces.contacts]
 
-    @property
+    @cached_property
     def _wrenches(self) -> int:
         return 3 + self.count_loads + self.count_contacts
 
-    @property
+    @cached_property
     def _normals(self) -> int:
         return len(self.forces.rubbing.owner) if self.forces.contacts else 0
 
@@ -167,49 +177,60 @@ class Running:
                 "give a shorter duration or a looser tolerance"
             )
         values = self.table.at(angle)
-        efforts, normals, paces = self._parts(values)
-        paces = paces if signs is None else signs
-        free = efforts[2] + sum(
-            size * effort for size, effort in zip(self._sizes(angle, paces, way), efforts[3:], strict=False)
-        )
+        efforts: list[float] = values[: self._wrenches].tolist()
         inertia = efforts[0] + self.forces.flywheel
-        lacking = self.drive(speed) - free
+        lacking = self.drive(speed) - efforts[2]
         if not inertia > 0:
             raise Undefined(
                 f"no inertia resists at {math.degrees(angle):.6g} degrees, or the mechanism does not close"
             )
+        if not self.count_loads and not self.count_contacts:
+            return (lacking - efforts[1] * speed * speed) / inertia, lacking
+        paces = self._parts(values)[2] if signs is None else signs
+        sizes = self._sizes(angle, paces, way)
+        for size, effort in zip(sizes, efforts[3:], strict=False):
+            lacking -= size * effort
         if self.count_contacts:
-            lacking -= self._rubbed(angle, speed, way, paces, efforts, normals, lacking, inertia)
+            state = _Instant(angle, speed, way, lacking, inertia)
+            rubbed = self._rubbed(state, values, sizes, paces)
+            if not math.isfinite(rubbed):
+                raise Undefined(
+                    f"the mechanism jams at {math.degrees(angle) % 360:.6g} degrees of its driver: its friction grows "
+                    "faster than what overcomes it"
+                )
+            lacking -= rubbed
         return (lacking - efforts[1] * speed * speed) / inertia, lacking
 
-    def _rubbed(
-        self, angle: float, speed: float, way: int, paces: np.ndarray, efforts: np.ndarray, normals: np.ndarray,
-        lacking: float, inertia: float,
-    ) -> float:  # fmt: skip
-        """What friction asks of the drive, the acceleration being free."""
+    def _rubbed(self, at: _Instant, values: np.ndarray, sizes: Sequence[float], paces: np.ndarray) -> float:
+        """What friction asks of the drive, the acceleration being free; NaN where the mechanism jams."""
+        if self._normals == 1:
+            return self._rubbed_by_one(at, values.tolist(), sizes, float(paces[self.count_loads]))
+        efforts, normals, _ = self._parts(values)
         first = 3 + self.count_loads
-        shares = np.array([0.0, speed * speed, 1.0, *self._sizes(angle, paces, way)])
-        start = (lacking - efforts[1] * speed * speed) / inertia
-        free = shares @ normals[:first] + start * normals[0]
-        asks = efforts[first:]
-        spread = -normals[first:].T + np.outer(normals[0], asks) / inertia
-        sense = np.sign(paces[self.count_loads :]) * way
-        rubs = self._balanced(free, spread, sense)
-        if not np.isfinite(rubs).all():
-            raise Undefined(
-                f"the mechanism jams at {math.degrees(angle) % 360:.6g} degrees of its driver: its friction "
-                "grows faster than what overcomes it"
-            )
-        return float(asks @ rubs)
+        start = (at.lacking - efforts[1] * at.speed**2) / at.inertia
+        free = np.array([start, at.speed**2, 1.0, *sizes]) @ normals[:first]
+        spread = -normals[first:].T + np.outer(normals[0], efforts[first:]) / at.inertia
+        sense = np.sign(paces[self.count_loads :]) * at.way
+        return float(efforts[first:] @ self._balanced(free, spread, sense))
+
+    def _rubbed_by_one(
+        self, at: _Instant, values: Sequence[float], sizes: Sequence[float], pace: float
+    ) -> float:
+        """The same where one place rubs on one side or the other: in numbers, as most mechanisms have it."""
+        n, first = self._wrenches, 3 + self.count_loads
+        efforts, normals = values[:n], values[n : 2 * n]
+        start = (at.lacking - efforts[1] * at.speed**2) / at.inertia
+        free = start * normals[0] + at.speed**2 * normals[1] + normals[2]
+        for size, normal in zip(sizes, normals[3:], strict=False):
+            free += size * normal
+        strength = (at.way if pace > 0 else -at.way if pace < 0 else 0) * self.forces.contacts[0].size
+        spread = -normals[first] + normals[0] * efforts[first] / at.inertia
+        slope = 1.0 + spread * math.copysign(strength, strength * free)
+        return efforts[first] * strength * abs(free) / slope if slope > 0 else math.nan
 
     def _balanced(self, free: np.ndarray, spread: np.ndarray, sense: np.ndarray) -> np.ndarray:
-        """What the contacts rub with; at once for a single one without sides, as most are."""
-        rubbing = self.forces.rubbing
-        if len(free) == 1:
-            strength = sense[0] * rubbing.sizes[0]
-            slope = 1.0 + spread[0, 0] * strength * math.copysign(1.0, free[0])
-            return np.array([strength * abs(free[0]) / slope if slope > 0 else math.nan])
-        return rubbing.balanced(free[None], spread[None], sense[None])[0]
+        """What the contacts rub with, at one instant."""
+        return self.forces.rubbing.balanced(free[None], spread[None], sense[None])[0]
 
     def holding(self, angle: float) -> tuple[float, float]:
         """The efforts between which the drive does not move the mechanism from rest, N m; infinite where it locks itself."""
@@ -320,7 +341,7 @@ class Running:
         place = (
             self._next_place(float(state[0]), way) if resists or len(self.turning_places) else way * math.inf
         )
-        signs = self._signs(float(state[0]), place, way) if math.isfinite(place) else None
+        signs = self._signs(float(state[0]), place) if math.isfinite(place) else None
 
         def derivative(_: float, y: np.ndarray) -> list[float]:
             acceleration, lacking = self._balance(y[0], y[1], way, signs)
@@ -348,10 +369,9 @@ class Running:
         dead = tuple(map(float, solved.t_events[0])) if events else ()
         return Phase(t, end, way, solved.sol, dead), last
 
-    def _signs(self, angle: float, place: float, way: int) -> np.ndarray:
+    def _signs(self, angle: float, place: float) -> np.ndarray:
         """Signs of the paces between a place and the next turning place: as halfway between them."""
-        before = angle if abs(place - angle) < math.pi else place - way * math.pi
-        return np.sign(self._parts(self.table.at((before + place) / 2))[2])
+        return np.sign(self._parts(self.table.at((angle + place) / 2))[2])
 
 
 def _changes(values: np.ndarray) -> Iterator[int]:

@@ -86,6 +86,7 @@ class Gear:
 class Load:
     """What acts on a point (``force``, N) or turns a body (``moment``, N m): a quantity of the exercise, or a number.
 
+    Where bodies share the point, the last of them bears the force: the piston, not the rod; ``body`` may name another.
     A force points along ``angle``, degrees from the ground's x axis; or, ``against`` the motion, the other way than its
     point moves, and a moment the other way than its body turns. ``during``: ``"always"``, on the ``"working stroke"``
     (the slower one) or the ``"return stroke"`` of what it acts on. ``table``: pairs of what ``by`` names, the driver's
@@ -100,6 +101,7 @@ class Load:
     during: str = "always"
     by: str = ""
     table: tuple[tuple[float, float], ...] = ()
+    body: str = ""
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,8 @@
 """An exercise in motion: its figure over the cycle of its driver, paths of points, and vectors.
 
 The figure is the statement's own, asked again at every angle, unless the solution states a :class:`~coursework.solution.Film`
-with one that can move. Which points leave a trace, and which vectors they carry, a solution states in a function ``motion``
-of its quantities, called once with arrays over the cycle::
+with one that can move. The points that leave a trace and carry vectors are those of the solution's ``MECHANISM``, or of its
+function ``motion`` of quantities, called once with arrays over the cycle::
 
     def motion(r2, theta2, omega2):
         A = polar(r2, theta2)
@@ -27,6 +27,7 @@ from coursework.language.words import words
 from coursework.markup.shown import Picture
 from coursework.motion.gauges import EFFECTS, UNIT, Gauge, gauges, number
 from coursework.motion.reel import Reel
+from coursework.motion.scenes import Scene
 from coursework.solution import Moving
 
 if TYPE_CHECKING:
@@ -77,10 +78,18 @@ class Animation(Reel):
     def points(self) -> Mapping[str, Moving]:
         """The points that the solution states, over the instants."""
         exercise = self.variant.exercise
-        if not exercise.folder.has_solutions or exercise.solution.motion is None:
+        if not exercise.folder.has_solutions:
             return {}
+        if exercise.solution.motion is None:
+            return self._of_mechanism if exercise.solution.mechanism is not None else {}
         found = self._stated("motion", exercise.solution.motion, self._with_driver_at(self.angles))
         return {name: point.over(len(self.angles)) for name, point in found.items()}
+
+    @property
+    def _of_mechanism(self) -> Mapping[str, Moving]:
+        """The moving points of the mechanism that the solution states."""
+        scene = Scene(self.variant.exercise, self.variant.used)
+        return scene.moving_points(self.angles)
 
     @cached_property
     def readings(self) -> tuple[Gauge, ...]:

@@ -13,7 +13,6 @@ from collections.abc import Mapping
 from coursework.course.exercise import CourseExercise
 from coursework.errors import WrongValue, unknown
 from coursework.model import Driver
-from coursework.solution import Film
 
 KINEMATIC = ("position", "velocity", "acceleration", "coriolis")
 ADVANTAGE = "advantage"
@@ -23,6 +22,11 @@ EFFECTS = (*KINEMATIC, ADVANTAGE, *FORCES)
 OF_FORCES = "forces"
 #: What is never simulated, and what is said of it.
 REFUSED = ("impact", "impacts", "clearance", "clearances", "play", "backlash")
+
+
+def refusal(name: str) -> str:
+    """What is said of an effect that is never simulated."""
+    return f"{name}: impacts and clearances are not simulated; joints hold without play, and nothing strikes"
 
 
 def check_effect(effect: str, exercise: CourseExercise) -> None:
@@ -36,15 +40,13 @@ def check_effect(effect: str, exercise: CourseExercise) -> None:
         Any other.
     """
     if effect in REFUSED:
-        raise WrongValue(
-            f"{effect}: impacts and clearances are not simulated; joints hold without play, and nothing strikes"
-        )
+        raise WrongValue(refusal(effect))
     known = (*EFFECTS, *exercise.solution.graph.effects())
     if effect not in known:
         raise unknown("effect", effect, known, exercise.name)
 
 
-def of_exercise(exercise: CourseExercise, driver: Driver | Film) -> Mapping[str, tuple[str, ...]]:
+def of_exercise(exercise: CourseExercise, driver: Driver) -> Mapping[str, tuple[str, ...]]:
     """The quantities of each effect, in order."""
     stated = exercise.solution.effects
     usual = _of_loops(exercise) if exercise.solution.loops else _of_parts(exercise, driver)
@@ -68,10 +70,10 @@ def _of_loops(exercise: CourseExercise) -> dict[str, tuple[str, ...]]:
     return {"position": unknowns, "velocity": first, "acceleration": second}
 
 
-def _of_parts(exercise: CourseExercise, driver: Driver | Film) -> dict[str, tuple[str, ...]]:
+def _of_parts(exercise: CourseExercise, driver: Driver) -> dict[str, tuple[str, ...]]:
     graph = exercise.solution.graph
     asked = [p.quantity for p in exercise.spec.parts if p.sort.is_number]
-    speed, acceleration = driver.speed, getattr(driver, "acceleration", "")
+    speed, acceleration = driver.speed, driver.acceleration
     moving, fast, faster = (graph.descendants((n,) if n else ()) for n in (driver.angle, speed, acceleration))
     return {
         "position": tuple(n for n in asked if n in moving and n not in fast | faster),

@@ -9,12 +9,12 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from coursework.errors import CourseworkError
 from coursework.language.numbers import localise, significant, unit_text
+from coursework.model import Driver
+from coursework.motion.effects import KINEMATIC, of_exercise
 from coursework.motion.reel import Reel
-from coursework.motion.scenes import LEVELS, Scene
 
-EFFECTS = tuple(LEVELS)
+EFFECTS = KINEMATIC
 UNIT = {"velocity": "mm/s", "acceleration": "mm/s^2", "coriolis": "mm/s^2"}
 
 Vectors: TypeAlias = tuple[
@@ -67,15 +67,11 @@ def gauges(reel: Reel, vectors: Sequence[Vectors]) -> tuple[Gauge, ...]:
 
 
 def _measured(reel: Reel, effect: str) -> Sequence[str]:
-    """The quantities of an effect: those of the scene; of a film, those asked, which keep their values."""
+    """The quantities of an effect; of a film, they keep their values."""
     exercise = reel.variant.exercise
-    if reel.film is not None:
-        parts = [p for p in exercise.spec.parts if p.sort.is_number]
-        return [p.quantity for p in parts if p.unit in LEVELS[effect]]
-    try:
-        return Scene(exercise, reel.variant.used, (effect,)).quantities
-    except CourseworkError:
-        return ()
+    film = reel.film
+    driver = exercise.spec.driver if film is None else Driver(film.angle, film.speed)
+    return () if driver is None else of_exercise(exercise, driver).get(effect, ())
 
 
 def _norms(reel: Reel, vectors: Sequence[Vectors]) -> list[Gauge]:

@@ -10,16 +10,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
 from coursework.course.exercise import CourseExercise
-from coursework.errors import BadCourse, CourseworkError, Undefined, WrongValue, counted
+from coursework.errors import BadCourse, CourseworkError, WrongValue, counted
 from coursework.mechanics.forces import Borne, Forces
 from coursework.mechanics.friction import contacts
-from coursework.mechanics.linkage import Linkage
+from coursework.mechanics.linkage import MM, Linkage, SlideJoint
 from coursework.mechanics.loads import Acting
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.running import Motion, Running
@@ -28,7 +28,8 @@ from coursework.model import Driver
 from coursework.motion import shown
 from coursework.motion.added import Added, Motor
 from coursework.motion.effects import ADVANTAGE, FORCES, KINEMATIC, OF_FORCES, check_effect, of_exercise
-from coursework.solution import Film
+from coursework.quantities.loops import usual_rates
+from coursework.solution import Moving
 
 INERTIA, FRICTION = "inertia", "friction"
 _JUDGED = 720  #: steps of the cycle over which a flywheel is sized
@@ -98,15 +99,17 @@ class Scene:
     # -------------------------------------------------------------------- driver
 
     @property
-    def driver(self) -> Driver | Film:
-        """What drives the mechanism.
+    def driver(self) -> Driver:
+        """What drives the mechanism; a film's angle and speed, where the solution states one.
 
         Raises
         ------
         BadCourse
             The exercise names none.
         """
-        driver = self.exercise.spec.driver or self.exercise.film
+        driver, film = self.exercise.spec.driver, self.exercise.film
+        if driver is None and film is not None:
+            return Driver(film.angle, film.speed)
         if driver is None:
             raise BadCourse(f"{self.exercise.name} names no driver=Driver(…), so it cannot be simulated")
         return driver
@@ -119,7 +122,7 @@ class Scene:
 
     def _driven(self, angle: Any) -> dict[str, Any]:
         """The given values with the driver at an angle, degrees."""
-        if isinstance(self.driver, Film):
+        if self.exercise.spec.driver is None:
             return dict(self.given)
         return {**self.given, **self.exercise.posed(self._accepted, angle)}
 
@@ -133,7 +136,7 @@ class Scene:
 
     @property
     def _acceleration(self) -> float:
-        return self._value(getattr(self.driver, "acceleration", ""))
+        return self._value(self.driver.acceleration)
 
     # ------------------------------------------------------------------- effects
 
@@ -172,8 +175,27 @@ class Scene:
             n for n in dict.fromkeys(wanted) if n != self.driver.angle and n not in self.exercise.spec.given
         )
 
+    def shown_by(self, effect: str) -> tuple[str, ...]:
+        """The exercise's quantities that an effect shows."""
+        return self._of(OF_FORCES if effect in self._graph_effects else effect)
+
+    def with_data(self) -> tuple[str, ...]:
+        """The effects of forces for which there are data: masses, loads, friction, a flywheel."""
+        if self.exercise.solution.mechanism is None:
+            return self.exercise.solution.graph.effects()
+        mechanism, found = self.mechanism, []
+        if mechanism.loads:
+            found.append("load")
+        if self.linkage.masses:
+            found += [
+                e for e in ("gravity", INERTIA) if e == INERTIA or any(m.mass for m in self.linkage.masses)
+            ]
+        if contacts(self.linkage, mechanism.friction):
+            found.append(FRICTION)
+        return (*found, *(("flywheel",) if self.added.flywheel else ()))
+
     @property
-    def _constants(self) -> frozenset[str]:
+    def constants(self) -> frozenset[str]:
         """Quantities shown that no effect moves: they are computed once."""
         moving = {n for names in self._by_effect.values() for n in names}
         if self.exercise.spec.driver is None or self.exercise.spec.driver.poses is None:
@@ -184,7 +206,7 @@ class Scene:
     def extra(self) -> tuple[str, ...]:
         """What is shown besides: of the drive, of points, of joints."""
         named = [n for n in self.show if n not in self.exercise.quantity_names]
-        effort = getattr(self.driver, "effort", "")
+        effort = self.driver.effort
         if self._forces_called and self.exercise.solution.mechanism and effort not in self.quantities:
             named.insert(0, "drive_torque")
         if "coriolis" in self.effects and not self._of("coriolis"):
@@ -208,7 +230,7 @@ class Scene:
 
     def _of_what_the_solution_leaves_out(self) -> list[str]:
         """Velocities and accelerations of moving points, where the effect is called and no quantity tells it."""
-        points = [p for p in self._linkage.mechanism.points if p not in self._linkage.mechanism.ground]
+        points = [p for p in self.linkage.mechanism.points if p not in self.linkage.mechanism.ground]
         return [
             f"{effect} {point}"
             for effect in ("velocity", "acceleration")
@@ -222,7 +244,7 @@ class Scene:
                 f"{self.exercise.name} has no Coriolis term to show: its solution states no MECHANISM, and no "
                 "EFFECTS of coriolis"
             )
-        points = tuple(s.name.removesuffix(" slide") for s in shown.turning_slides(self._linkage))
+        points = tuple(s.name.removesuffix(" slide") for s in shown.turning_slides(self.linkage))
         if not points:
             raise WrongValue(f"{self.exercise.name} has no Coriolis term: no body slides on one that turns")
         return points
@@ -235,7 +257,7 @@ class Scene:
             if kind not in ("position", "velocity", "acceleration") or of not in self._moved_by_solution:
                 self.mechanism  # noqa: B018  # is refused here
             return
-        shown.check(name, self._linkage, self.exercise.solution.graph.quantities)
+        shown.check(name, self.linkage, self.exercise.solution.graph.quantities)
 
     # ------------------------------------------------------------------- mechanism
 
@@ -256,7 +278,7 @@ class Scene:
         return self.added.to(stated)
 
     @cached_property
-    def _linkage(self) -> Linkage:
+    def linkage(self) -> Linkage:
         mechanism = self.mechanism
         places = [n for place in mechanism.unfolded() for n in parameters(place)]
         places += [
@@ -275,9 +297,10 @@ class Scene:
         linkage.check()
         return linkage
 
-    def pose(self, angles: np.ndarray) -> Stance:
-        """The mechanism at driver's angles, radians, shape ``(n,)``."""
-        linkage = self._linkage
+    def pose(self, angles: np.ndarray, *, by_joints: bool = False) -> Stance:
+        """The mechanism at driver's angles, radians, shape ``(n,)``; its rates by the solution's own formulas where it
+        has all of them, and by the joints where it has not, or where that is asked."""
+        linkage = self.linkage
         wanted = tuple(n for n in linkage.mechanism.angles if n != self.driver.angle)
         degrees = np.degrees(angles)
         found = self.exercise.solve(**self._driven(degrees), only=wanted) if wanted else {}
@@ -286,12 +309,36 @@ class Scene:
         for number, body in enumerate(linkage.mechanism.bodies):
             if isinstance(body.angle, str):
                 turns[number] = np.radians(turned[body.angle])
-        return Stance(linkage, turns)
+        return Stance(linkage, turns, None if by_joints else partial(self._stated_rates, degrees))
+
+    def _stated_rates(self, degrees: np.ndarray, order: int) -> np.ndarray | None:
+        """First or second derivatives of the unknown angles by the driver's, as the solution's own rates give them."""
+        names, driver = self._rates_by_name[order - 1], self.driver
+        if names is None or not driver.speed:
+            return None
+        rest = {driver.acceleration: 0.0} if driver.acceleration else {}
+        given: dict[str, Any] = {**self._driven(degrees), driver.speed: 1.0, **rest}
+        found = self.exercise.solve(**given, only=names) if names else {}
+        return np.array([np.broadcast_to(found[n], degrees.shape) for n in names]).reshape(
+            len(names), len(degrees)
+        )
+
+    @cached_property
+    def _rates_by_name(self) -> tuple[tuple[str, ...] | None, tuple[str, ...] | None]:
+        """The quantities of the unknown angles' rates, and of their accelerations; None where one is missing."""
+        angles, solution = self.linkage.unknown_angles, self.exercise.solution
+        known = frozenset(solution.graph.quantities)
+        of_loops = {n: pair for loop in solution.loops.values() for n, pair in loop.rates.items()}
+        if angles is None:
+            return None, None
+        pairs = [of_loops.get(n) or usual_rates(n, known) for n in angles]
+        first, second = (tuple(pair[order] for pair in pairs) for order in (0, 1))
+        return (first if known.issuperset(first) else None), (second if known.issuperset(second) else None)
 
     @cached_property
     def forces(self) -> Forces:
         """What acts, of the effects called."""
-        linkage, called = self._linkage, self.effects
+        linkage, called = self.linkage, self.effects
         mechanism = linkage.mechanism
         inertia = INERTIA in called
         return Forces(
@@ -305,9 +352,30 @@ class Scene:
             self._position,
         )
 
+    def moving_points(self, angle: np.ndarray) -> dict[str, Moving]:
+        """The points of the bodies at driver's angles, degrees: mm, mm/s, mm/s^2; rates where the driver has a speed."""
+        stance, linkage = self.pose(np.radians(angle)), self.linkage
+        points = [p for p in linkage.mechanism.points if p not in linkage.mechanism.ground]
+        sliding = {s.name.removesuffix(" slide"): s for s in shown.turning_slides(linkage)}
+        return {point: self._moving(point, stance, sliding.get(point)) for point in points}
+
+    def _moving(self, point: str, stance: Stance, slide: SlideJoint | None) -> Moving:
+        held = stance.linkage.owner(point)
+        place = stance.place(held) / MM
+        if not self.driver.speed:
+            return Moving(place)
+        speed, acceleration = self._speed, self._acceleration
+        with np.errstate(all="ignore"):
+            velocity = stance.rate(held) * speed / MM
+            bent = (stance.bend(held) * speed**2 + stance.rate(held) * acceleration) / MM
+            if slide is None:
+                return Moving(place, velocity, bent)
+            turning = 2j * stance.rates[slide.on] * speed**2 / MM
+            return Moving(place, velocity, bent, turning * stance.sliding(slide) * stance.direction(slide))
+
     def _position(self, name: str, stance: Stance) -> np.ndarray:
         """A position of the exercise over the instants of a stance."""
-        angle = np.degrees(stance.turns[self._linkage.driven])
+        angle = np.degrees(stance.turns[self.linkage.driven])
         return np.asarray(self.exercise.solve(**self._driven(angle), only=name)[name])
 
     @cached_property
@@ -367,7 +435,7 @@ class Scene:
         return Table(columns, units, self._evaluated(), tuple(self._cycle_notes(columns, np.radians(angle))))
 
     def _exercise_columns(self, driven: Mapping[str, Any], shape: tuple[int, ...]) -> dict[str, np.ndarray]:
-        constants = self._constants
+        constants = self.constants
         moving = tuple(n for n in self.quantities if n not in constants)
         found = self.exercise.solve(**driven, only=moving, effects=self._graph_effects) if moving else {}
         if constants:
@@ -378,7 +446,7 @@ class Scene:
 
     def _advantage(self, driven: Mapping[str, Any]) -> dict[str, Any]:
         """Effort that comes out for effort that goes in: the driver's speed over that of its output."""
-        output = getattr(self.driver, "output", "")
+        output = self.driver.output
         if not output or not self.driver.speed:
             raise WrongValue(f"{self.exercise.name}: its driver names no output, so no advantage is known")
         speed = np.abs(np.asarray(self.exercise.solve(**driven, only=output)[output], dtype=float))
@@ -388,7 +456,7 @@ class Scene:
 
     @property
     def _output_slides(self) -> bool:
-        return self.exercise.units.get(getattr(self.driver, "output", ""), "") == "mm/s"
+        return self.exercise.units.get(self.driver.output, "") == "mm/s"
 
     def _extra_columns(
         self, angles: np.ndarray, speed: np.ndarray, acceleration: np.ndarray
@@ -406,7 +474,7 @@ class Scene:
         found: shown.Columns = {}
         for name, kind, of in kinds:
             if kind == shown.REACTION and borne is not None:
-                found |= shown.of_joint(of, self._linkage, borne)
+                found |= shown.of_joint(of, self.linkage, borne)
             elif kind and stance is not None:
                 found |= shown.of_point(kind, of, stance, speed, acceleration)
             elif borne is not None:
@@ -439,6 +507,7 @@ class Scene:
         return replace(self.forces, downwards=0j, inertia=True, loads=(), contacts=())
 
     def _cycle_notes(self, columns: Mapping[str, np.ndarray], angles: np.ndarray) -> Iterator[str]:
+        yield from self._empty_effects()
         gaps = np.logical_or.reduce([np.isnan(column) for column in columns.values()])
         if not gaps.any():
             yield from self._flywheel_notes()
@@ -457,6 +526,21 @@ class Scene:
             yield f"the mechanism jams at {self.driver.angle} = {listed} deg{more}: its friction outgrows what overcomes it"
         else:
             yield f"not everything exists at {self.driver.angle} = {listed} deg{more}: a dead centre"
+
+    def _empty_effects(self) -> Iterator[str]:
+        """Effects that are called and for which the scene has no data."""
+        if self.exercise.solution.mechanism is None or (self._graph_effects and not self.added.is_own):
+            return
+        data = self.with_data()
+        lacks = {
+            "load": "no load",
+            "gravity": "no mass",
+            INERTIA: "no mass",
+            FRICTION: "no friction at a joint",
+        }
+        for effect, what in lacks.items():
+            if effect in self.effects and effect not in data:
+                yield f"{effect}: the scene has {what}, so that it adds nothing; a scene file gives some"
 
     def _is_open(self, columns: Mapping[str, np.ndarray], angles: np.ndarray) -> np.ndarray:
         """Where a position of the mechanism does not exist."""
@@ -494,17 +578,14 @@ class Scene:
             raise WrongValue(
                 "a motion in time needs the effect 'inertia': without mass nothing moves in time"
             )
-        if isinstance(self.driver, Film):
-            raise BadCourse(f"{self.exercise.name} moves in a film: nothing drives it in time")
         output = self._output_pace if self.driver.output and self.driver.speed else None
         return Running(self.forces, drive.at, output)
 
     def _output_pace(self, angles: np.ndarray) -> np.ndarray:
         """Rate of the output per unit of the driver's speed: 0 at a dead centre."""
         driver = self.driver
-        assert isinstance(driver, Driver)  # a film has no output
         rest = {driver.acceleration: 0.0} if driver.acceleration else {}
-        given = {**self._driven(np.degrees(angles)), driver.speed: 1.0, **rest}
+        given: dict[str, Any] = {**self._driven(np.degrees(angles)), driver.speed: 1.0, **rest}
         return np.broadcast_to(self.exercise.solve(**given, only=driver.output)[driver.output], angles.shape)
 
     def in_time(
@@ -550,12 +631,12 @@ class Scene:
         ])  # fmt: skip
         driver = self.driver
         moved = {driver.angle: np.degrees(angle), driver.speed or "speed": speed}
-        moved[getattr(driver, "acceleration", "") or "acceleration"] = acceleration
+        moved[driver.acceleration or "acceleration"] = acceleration
         posed = {
             **self._driven(moved[driver.angle]),
             **{n: v for n, v in moved.items() if n in self.exercise.quantity_names},
         }
-        effort = getattr(driver, "effort", "")
+        effort = driver.effort
         columns = {"t": t, **moved}
         columns |= {n: v for n, v in self._exercise_columns(posed, t.shape).items() if n != effort}
         units = {**self._units(columns), "speed": "rad/s", "acceleration": "rad/s^2"}
@@ -565,8 +646,11 @@ class Scene:
             if "drive_torque" in extra
             else {}
         )
+        stuck = (ways == 0) & bool(self.forces.contacts)
         for name, (values, unit) in extra.items():
-            columns[name], units[name] = np.broadcast_to(values, t.shape), unit
+            # At rest friction is whatever holds: what the joints bear is not determined.
+            empty = stuck & (name.startswith(("R_", "N_", "M_", "Mf_", "T_")))
+            columns[name], units[name] = np.where(empty, np.nan, np.broadcast_to(values, t.shape)), unit
         columns["dead_centre"] = np.isin(t, motion.dead_centres).astype(float)
         units["dead_centre"] = "1"
         inertia = running.table.over(angle)[0] + running.forces.flywheel
@@ -574,6 +658,7 @@ class Scene:
         exchanged = max(float(np.ptp(kinetic)), float(np.ptp(work)), 1e-300)
         balance = float(np.max(np.abs(kinetic - kinetic[0] - work))) / exchanged
         notes = (
+            *self._empty_effects(),
             f"energy balance: {balance:.1e} of the energy exchanged",
             *(f"the mechanism comes to rest at t = {start:.6g} s and stays" for start, _ in motion.stuck),
             counted(len(motion.dead_centres), "dead centre"),
@@ -583,19 +668,20 @@ class Scene:
     # ------------------------------------------------------------------------ told
 
     def _evaluated(self) -> tuple[str, ...]:
-        graph = self.exercise.solution.graph
-        names = {**self.exercise.intake.defaults, **self._driven(0.0)}
         wanted = [*self.quantities]
         if self.extra and self.exercise.solution.mechanism:
-            wanted += [n for n in self._linkage.mechanism.angles if n in graph.names]
+            wanted += [n for n in self.linkage.mechanism.angles if n in self.exercise.solution.graph.names]
+        return self.evaluated(wanted)
+
+    def evaluated(self, wanted: Sequence[str]) -> tuple[str, ...]:
+        """The quantities that are evaluated for some, in order."""
+        graph = self.exercise.solution.graph
+        names = {**self.exercise.intake.defaults, **self._driven(0.0)}
         given = frozenset(names) & self.exercise.quantity_names
         plan = graph.plan(tuple(dict.fromkeys(wanted)), given, self._graph_effects)
         return tuple(name for name in plan if not name.startswith("_"))  # a hidden one is the solution's own
 
     def _units(self, names: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
         advantage = "1/m" if self._output_slides else "1"
-        known = {"t": "s", ADVANTAGE: advantage, **self.exercise.units}
+        known = {"t": "s", ADVANTAGE: advantage, self.driver.angle: "deg", **self.exercise.units}
         return {n: known.get(n, "1") for n in names}
-
-
-__all__ = ["Added", "Motor", "Scene", "Table", "Undefined"]

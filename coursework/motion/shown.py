@@ -62,9 +62,14 @@ def turning_slides(linkage: Linkage) -> tuple[SlideJoint, ...]:
 def joint_points(linkage: Linkage) -> dict[str, list[str]]:
     """The joints at each point, by what they are called in a scene."""
     found: dict[str, list[str]] = {}
-    for joint in (*linkage.pins, *linkage.slides, *linkage.gears):
-        for name in {joint.name, joint.name.split(" ")[0]}:
-            found.setdefault(name, []).append(joint.name)
+    names = [
+        *(p.name for p in linkage.pins),
+        *(s.name for s in linkage.slides),
+        *(g.name for g in linkage.gears),
+    ]
+    for joint in names:
+        for name in dict.fromkeys((joint, joint.split(" ")[0])):
+            found.setdefault(name, []).append(joint)
     return found
 
 

@@ -203,6 +203,10 @@ class Graph:
         """The names that have a function, hidden ones too."""
         return frozenset(self._nodes)
 
+    def ancestors(self, names: Iterable[str]) -> frozenset[str]:
+        """The names and all that they need, optional effects among it, by the first of each node's functions."""
+        return self._ancestors(names)
+
     def node(self, name: str) -> Node:
         if name not in self._nodes:
             raise unknown("quantity", name, self._nodes)
@@ -436,6 +440,18 @@ class Graph:
 
         graph = Graph.__new__(Graph)
         nodes = {n: node if _is_hidden(n) else wrapped(n, node) for n, node in self._nodes.items()}
+        graph._build(nodes, self._shadowed, self._effects)
+        return graph
+
+    def mapped(self, change: Callable[[Callable[..., Value]], Callable[..., Value]]) -> Graph:
+        """The same graph with every function as ``change`` gives it, hidden ones too; arguments stay."""
+
+        def changed(node: Node) -> Node:
+            stable = changed(node.stable) if node.stable else None
+            return replace(node, function=change(node.function), stable=stable)
+
+        graph = Graph.__new__(Graph)
+        nodes = {name: changed(node) for name, node in self._nodes.items()}
         graph._build(nodes, self._shadowed, self._effects)
         return graph
 

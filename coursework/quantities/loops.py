@@ -276,14 +276,15 @@ def stated(
                 raise BadCourse(
                     f"{source}: the loop {name!r} names no quantity by {one!r}{nearest(one, names)}"
                 )
-        own = {n: rates.get(n) or _usual_rates(n, names) for n in loop.names}
+        own = {n: rates.get(n) or usual_rates(n, names) for n in loop.names}
         first = all(r[0] or n not in computed for n, r in own.items())
         second = first and all(r[1] or r[0] not in computed for r in own.values())
         found[name] = replace(loop, rates={n: r for n, r in own.items() if r[0]}, known=first + second)
     return found
 
 
-def _usual_rates(name: str, names: Collection[str]) -> tuple[str, str]:
+def usual_rates(name: str, names: Collection[str]) -> tuple[str, str]:
+    """What the first and the second derivative of a quantity are called, by its own name; '' where there is none."""
     stem = name.removeprefix("theta")
     first, second = (f"omega{stem}", f"alpha{stem}") if stem != name else (f"{name}_dot", f"{name}_ddot")
     return first if first in names else "", second if second in names else ""

@@ -1,11 +1,14 @@
-"""Grashof's rule, decided on the lengths as they are printed.
+"""Grashof's rule, decided exactly on the lengths as they are printed.
 
-A printed length such as 0.3 is no double; the sums here count as equal when the doubles differ by no more than
-their rounding, which is when the decimals are equal.
+A printed length such as 0.3 is no double: the lengths are the decimals, the shortest that their doubles stand for, and
+their sums are compared without rounding. So 0.1 + 0.6 equals 0.3 + 0.4, and a length that differs from another in its
+last digit differs.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -32,18 +35,35 @@ def longest(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
 
 
 def closing_excess(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
-    """Of s + p + q over l: the bars close a loop when it is positive. Exactly 0 when the decimals say so."""
-    return _snapped(exact_sum(r1, r2, r3, r4, -2 * longest(r1, r2, r3, r4)), r1, r2, r3, r4)
+    """Of s + p + q over l: the bars close a loop when it is positive. Its sign is that of the decimals."""
+    return _exact(_closing, r1, r2, r3, r4)
 
 
 def grashof_excess(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
-    """Of p + q over s + l: some bar turns fully when it is positive. Exactly 0 when the decimals say so."""
-    ends = (-2 * shortest(r1, r2, r3, r4), -2 * longest(r1, r2, r3, r4))
-    return _snapped(exact_sum(r1, r2, r3, r4, *ends), r1, r2, r3, r4)
+    """Of p + q over s + l: some bar turns fully when it is positive. Its sign is that of the decimals."""
+    return _exact(_grashof, r1, r2, r3, r4)
 
 
-def _snapped(excess: Any, *lengths: Any) -> Any:
-    return np.where(abs(excess) <= 2.0**-53 * sum(lengths), 0.0, excess)
+def _closing(s: Any, p: Any, q: Any, l: Any) -> tuple[Any, ...]:
+    return s, p, q, -l
+
+
+def _grashof(s: Any, p: Any, q: Any, l: Any) -> tuple[Any, ...]:
+    return p, q, -s, -l
+
+
+def _exact(terms: Callable[..., tuple[Any, ...]], *lengths: Any) -> Any:
+    """The sum of the terms of the lengths in order: of decimals wherever that of the doubles leaves its sign open."""
+    ordered = np.sort(np.stack(np.broadcast_arrays(*[np.asarray(r, dtype=float) for r in lengths])), axis=0)
+    excess = np.asarray(exact_sum(*terms(*ordered)))
+    # Of up to six decimals, the usual case, the millionths are whole numbers, and so are their sums.
+    millionths = np.rint(ordered * 1e6)
+    whole = ((millionths / 1e6 == ordered) & (millionths < 2.0**50)).all(axis=0)
+    excess = np.where(whole, sum(terms(*millionths)) / 1e6, excess)
+    open_ = ~whole & np.isfinite(excess) & (abs(excess) <= 2.0**-53 * ordered.sum(axis=0))
+    for place in map(tuple, np.argwhere(open_)):
+        excess[place] = sum(terms(*(Fraction(repr(r)) for r in ordered[:, *place].tolist())))
+    return excess[()]
 
 
 def type_by_shortest(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:

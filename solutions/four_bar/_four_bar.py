@@ -14,7 +14,7 @@ MECHANISM = Mechanism(
     ground={"O": 0, "C": "r1"},
     bodies=(
         Body("2", "theta2", "O", {"A": "r2"}),
-        Body("3", "theta3", "A", {"B": "r3"}),
+        Body("3", "theta3", "A", {"B": "r3", "M": lambda r3: r3 / 2}),
         Body("4", "theta4", "C", {"B": "r4"}),
     ),
 )

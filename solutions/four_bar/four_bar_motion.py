@@ -6,7 +6,6 @@ core instead, which keeps its digits there.
 
 import numpy as np
 
-from coursework.accuracy import Study
 from coursework.degrees import cos, polar, sin
 from coursework.figures import Figure, ground_pivot, line, link, pin, vector
 from coursework.kinematics.chains import Vector
@@ -19,7 +18,7 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 from ._four_bar import *
 
@@ -132,17 +131,6 @@ def other_mode(mode):
     return np.where(side_of(mode) > 0, "crossed", "open")
 
 
-def motion(r1, r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4):
-    """The two moving joints, and the middle of the coupler."""
-    crank, half, rocker = polar(r2, theta2), polar(r3 / 2, theta3), polar(r4, theta4)
-    v_A, a_A = 1j * omega2 * crank, (1j * alpha2 - omega2**2) * crank
-    return {
-        "A": Moving(crank, v_A, a_A),
-        "B": Moving(r1 + rocker, 1j * omega4 * rocker, (1j * alpha4 - omega4**2) * rocker),
-        "M": Moving(crank + half, v_A + 1j * omega3 * half, a_A + (1j * alpha3 - omega3**2) * half),
-    }
-
-
 def polygons(r2, r3, r4, theta2, theta3, theta4, omega2, omega3, omega4, alpha2, alpha3, alpha4):
     OA, AB, CB = polar(r2, theta2), polar(r3, theta3), polar(r4, theta4)
     return (
@@ -227,19 +215,4 @@ KNOWN = (
         theta3=60, theta4=90, omega3=-1, omega4=0, alpha3=4 * 3**0.5 - 2, alpha4=4 * 3**0.5, v_B=0, a_B=720,
         v_BA=90, a_BA_n=90,
     ),
-)  # fmt: skip
-
-ACCURACY = Study(
-    given={
-        "r1": 200, "r2": 60, "r3": 180, "r4": 140, "omega2": 10, "alpha2": 0, "mode": "open",
-    },
-    positions=("theta3", "theta4"),
-    rates=("omega3", "omega4"),
-    # A change point: stretched out, the four bars lie on one line.
-    hard={
-        "r1": 100, "r2": 50, "r3": 70, "r4": 80,
-        "theta2": [180 + side * 10.0**-k for k in range(10) for side in (-1, 1)],
-    },
-    loops=tuple(LOOPS.values()),
-    unknowns=("theta3", "theta4"),
 )  # fmt: skip

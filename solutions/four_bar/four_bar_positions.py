@@ -12,6 +12,7 @@ from coursework.figures import Figure, circle, ground_pivot, line, link, pin
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.four_bar import FourBar
+from coursework.mechanics import Body, Mechanism
 from coursework.solution import Moving, formula, given, mistake, stable
 from coursework.structure import grashof
 
@@ -30,6 +31,14 @@ LOOPS = {
         Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r1", 0.0, -1), Vector("r4", "theta4", -1),
     ),
 }  # fmt: skip
+MECHANISM = Mechanism(
+    ground={"O": 0, "C": "r1"},
+    bodies=(
+        Body("2", "theta2", "O", {"A": "r2"}),
+        Body("3", "theta3_open", "A", {"B": "r3"}),
+        Body("4", "theta4_open", "C", {"B": "r4"}),
+    ),
+)
 EFFECTS = {
     "position": ("a", "b", "c", "theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed", "mu"),
 }

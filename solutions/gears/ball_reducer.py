@@ -12,7 +12,7 @@ from coursework.solution import Film, Moving, formula, given, mistake
 
 UNITS = {"phi_ddot": "rad/s^2"}
 EFFECTS = {
-    "velocity": ("omega", "phi_dot", "theta_dot", "v_O3"),
+    "velocity": ("omega", "phi_dot", "theta_dot", "v_O3", "rolling_D", "spin_D"),
     "acceleration": ("a_O3_x", "a_O3_y"),
 }
 

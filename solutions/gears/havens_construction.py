@@ -27,7 +27,9 @@ def _images(_pose, r2, r3, omega1):
     v40 = _guide_part(_pose, v10)
     v14 = v10 - v40
     v20 = _of_B2(_pose, v40, v14)
-    return v10, v40, v14, v14, v20, _of_I(_pose, v20)
+    # I is on S2, which turns with the guide; projected on B2 I, its velocity would have few digits where that is the crank.
+    omega2 = (v40 / (1j * _pose[1])).real / _pose[2]
+    return v10, v40, v14, v14, v20, v10 - 1j * r2 * omega2 * _pose[0]
 
 
 def _guide_part(pose, v10):

@@ -27,7 +27,7 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"A": "1", "side": "1"}
 SYMBOLS = {"side": r"\varepsilon"}
@@ -141,10 +141,17 @@ def omega4(r2, omega2, r4, theta2, theta3, theta4):
     return r2 * omega2 * sin(theta2 - theta3) / (r4 * sin(theta4 - theta3))
 
 
+@stable(lambda r4, omega4, r5, theta5, _linkage: r4 * omega4 * _rise(_linkage) / (r5 * cos(theta5)))
 def omega5(r4, omega4, theta4, r5, theta5):
     return r4 * omega4 * cos(theta4) / (r5 * cos(theta5))
 
 
+def _rise(linkage):
+    """cos(theta4), which vanishes where the rocker points along the frame OD: exact there."""
+    return np.sin(linkage.rocker_angle)
+
+
+@stable(lambda r6, omega4, theta5: r6 * omega4 * tan(theta5))
 def r6_dot(r4, omega4, theta4, r5, omega5, theta5):
     return r5 * omega5 * sin(theta5) - r4 * omega4 * sin(theta4)
 
@@ -171,6 +178,11 @@ def alpha5(r4, omega4, alpha4, theta4, r5, omega5, theta5):
     )
 
 
+@stable(
+    lambda r6, r6_dot, omega4, alpha4, omega5, theta5: (
+        (r6_dot * omega4 + r6 * alpha4) * tan(theta5) + r6 * omega4 * omega5 / cos(theta5) ** 2
+    )
+)
 def r6_ddot(r4, omega4, alpha4, theta4, r5, omega5, alpha5, theta5):
     return (
         r5 * alpha5 * sin(theta5)
@@ -327,16 +339,6 @@ def no_normal_terms():
 @mistake("r6_ddot")
 def r6dd_rod_only(r4, omega4, alpha4, theta4, r5, alpha5, theta5):
     return r5 * alpha5 * sin(theta5) - r4 * alpha4 * sin(theta4) - r4 * omega4**2 * cos(theta4)
-
-
-def motion(r1, r2, theta2, omega2, r4, theta4, omega4, alpha4, r6, r6_dot, r6_ddot):
-    """The joints of the crank and of the rocker, and the slider."""
-    crank, rocker = polar(r2, theta2), polar(r4, theta4)
-    return {
-        "A": Moving(1j * r1 + crank, 1j * omega2 * crank, -(omega2**2) * crank),
-        "B": Moving(rocker, 1j * omega4 * rocker, (1j * alpha4 - omega4**2) * rocker),
-        "P": Moving(r6, r6_dot, r6_ddot),
-    }
 
 
 def polygons(

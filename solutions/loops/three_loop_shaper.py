@@ -32,7 +32,7 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 from ._first_four_bar import *
 
@@ -394,31 +394,6 @@ def polygons(
             slider_a("G", "F", FG, omega7, alpha7, "r_7", x8_ddot),
         ),
     )
-
-
-def motion(
-    xC, yC, xD, yD, r2, theta2, omega2, r4, theta4, omega4, alpha4, r6, theta6, omega3, alpha3,
-    r5, theta5, omega5, alpha5, d5_dot, x8, x8_dot, x8_ddot, d3,
-):  # fmt: skip
-    """The five moving joints; the block at E slides on the turning bar DF."""
-
-    def carried(origin, arm, omega, alpha):
-        return (
-            origin[0] + arm,
-            origin[1] + 1j * omega * arm,
-            origin[2] + (1j * alpha - omega**2) * arm,
-        )
-
-    C, D = (xC + 1j * yC, 0j, 0j), (xD + 1j * yD, 0j, 0j)
-    A = carried((0j, 0j, 0j), polar(r2, theta2), omega2, 0.0)
-    E = carried(A, polar(r6, theta6), omega3, alpha3)
-    return {
-        "A": Moving(*A),
-        "B": Moving(*carried(C, polar(r4, theta4), omega4, alpha4)),
-        "E": Moving(*E, coriolis=2j * omega5 * d5_dot * polar(1, theta5)),
-        "F": Moving(*carried(D, polar(r5, theta5), omega5, alpha5)),
-        "G": Moving(x8 + 1j * d3, x8_dot, x8_ddot),
-    }
 
 
 def figure(xC, yC, xD, yD, r2, theta2, omega2, r3, theta3, r5, theta5, omega5, r6, theta6, x8, x8_dot, d3):

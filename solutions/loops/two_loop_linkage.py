@@ -28,7 +28,7 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 from ._first_four_bar import *
 
@@ -363,24 +363,6 @@ def polygons(
             two_bars_a("E", "D", "F", DE, omega6, alpha6, "r_6", FE, omega7, alpha7, "r_7"),
         ),
     )
-
-
-def motion(
-    xC, yC, xF, yF, r2, theta2, omega2, r4, theta4, omega4, alpha4, r5, theta5, r7, theta7, omega7, alpha7
-):
-    """The four moving pins: each turns about one of the frame's."""
-
-    def on_circle(centre, length, theta, omega, alpha):
-        arm = polar(length, theta)
-        return Moving(centre + arm, 1j * omega * arm, (1j * alpha - omega**2) * arm)
-
-    C, F = xC + 1j * yC, xF + 1j * yF
-    return {
-        "A": on_circle(0j, r2, theta2, omega2, 0.0),
-        "B": on_circle(C, r4, theta4, omega4, alpha4),
-        "D": on_circle(C, r5, theta5, omega4, alpha4),
-        "E": on_circle(F, r7, theta7, omega7, alpha7),
-    }
 
 
 def figure(xC, yC, xF, yF, r2, theta2, omega2, r4, theta4, omega4, r5, theta5, r7, theta7, omega7):

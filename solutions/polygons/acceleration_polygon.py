@@ -8,7 +8,7 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
 from coursework.marking.drawn_polygons import Asked, Read, met, to_paper, turned, verdicts
 from coursework.polygons import crank_a, polygon_of_accelerations, two_bars_a
-from coursework.solution import given, judge, mistake
+from coursework.solution import given, judge, mistake, stable
 
 from ._drawn_acceleration import *
 
@@ -59,12 +59,14 @@ def _start(m):
     return m
 
 
+@stable(lambda _bars, omega2, r3, ka: abs(_bars[5]) * r3 * omega2**2 / ka)
 def bb_t(_images, ka):
     """Measured on the drawing."""
     _, of_n, _, of_B = _images
     return abs(of_B - of_n) / ka
 
 
+@stable(lambda _bars, omega2, r4, ka: abs(_bars[6]) * r4 * omega2**2 / ka)
 def mb_t(_images, ka):
     """From b'' to b, measured on the drawing."""
     *_, of_m, of_B = _images

@@ -12,7 +12,7 @@ from coursework.kinematics.slider_crank import SliderCrank
 from coursework.kinematics.slotted_guide import SlottedGuidePose
 from coursework.mechanics import Body, Mechanism, Slide
 from coursework.polygons import crank_v, guide_v, polygon_of_velocities, slider_v, turning
-from coursework.solution import Moving, stable
+from coursework.solution import stable
 
 LOOPS = {
     "loop_1": (Vector("r1", pi / 2), Vector("r2", "theta2"), Vector("rA", "theta4", -1)),
@@ -106,18 +106,3 @@ def polygons(r2, theta2, omega2, rA, theta4, omega4, r4, p, q, omega5, v_C):
             slider_v("C", "P", q + 1j * p, omega5, v_C),
         ),
     )
-
-
-def motion(r1, r2, theta2, omega2, rA, theta4, omega4, r4, h, p, q, omega5, xC, v_C):
-    """The crank pin, which slides on the guide, the guide's end and the ram; the crank turns steadily."""
-    crank, along = polar(r2, theta2), polar(1, theta4)
-    v_A, a_A = 1j * omega2 * crank, -(omega2**2) * crank
-    sliding = (v_A / along).real
-    alpha4 = ((a_A / along).imag - 2 * omega4 * sliding) / rA
-    a_P = (1j * alpha4 - omega4**2) * r4 * along
-    alpha5 = (p * omega5**2 - a_P.imag) / q
-    return {
-        "A": Moving(1j * r1 + crank, v_A, a_A, coriolis=2j * omega4 * sliding * along),
-        "P": Moving(r4 * along, 1j * omega4 * r4 * along, a_P),
-        "C": Moving(xC + 1j * h, v_C, a_P.real - p * alpha5 - q * omega5**2),
-    }

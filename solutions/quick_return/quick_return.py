@@ -28,7 +28,7 @@ from coursework.polygons import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 from ._strokes import *
 
@@ -153,6 +153,11 @@ def omega3(r2, omega2, r3, theta2, theta3, theta4):
     return r2 * omega2 * sin(theta2 - theta4) / (r3 * sin(theta4 - theta3))
 
 
+@stable(
+    lambda r2, omega2, r4, A_turn, angle_OAB, theta3, theta4: (
+        A_turn * r2 * omega2 * sin(angle_OAB) / (r4 * sin(theta4 - theta3))
+    )
+)
 def omega4(r2, omega2, r4, theta2, theta3, theta4):
     """Along the coupler, A and B have the same velocity."""
     return r2 * omega2 * sin(theta2 - theta3) / (r4 * sin(theta4 - theta3))
@@ -269,21 +274,21 @@ def xC_min(xC_far, xC_near):
     return np.minimum(xC_far, xC_near)
 
 
+@stable(lambda _linkage: _linkage.stroke())
 def stroke(xC_max, xC_min):
     return xC_max - xC_min
 
 
-def _longer_arc(theta2_turns):
+def _longer_arc(theta2_turns, _linkage):
     """The longer of the two arcs of crank between the two positions where C turns back."""
-    two = np.isfinite(theta2_turns).sum(axis=-1) == 2
-    if np.ndim(two) == 0 and not two:
-        found = int(np.isfinite(theta2_turns).sum())
+    times = _linkage.times_turned()
+    if isinstance(times, int) and times != 2:
         raise Undefined(
-            f"C turns back {found} times a turn, not twice: the rod lines up with the rocker within its swing, "
+            f"C turns back {times} times a turn, not twice: the rod lines up with the rocker within its swing, "
             "and one stroke out and one back are not two arcs of crank; only the stroke exists"
         )
     arc = abs(wrap(theta2_turns[..., 0] - theta2_turns[..., 1]))
-    return np.where(two, 360 - arc, np.nan)
+    return np.where(times == 2, 360 - arc, np.nan)
 
 
 @stable(_longer_arc)
@@ -392,16 +397,6 @@ def polygons(
             slider_a("C", "B", BC, omega5, alpha5, "r_5", a_C),
         ),
     )
-
-
-def motion(r1, theta1, r2, theta2, omega2, r4, theta4, omega4, alpha4, xC, h, v_C, a_C):
-    """Crank pin, rocker pin and piston."""
-    crank, rocker = polar(r2, theta2), polar(r4, theta4)
-    return {
-        "A": Moving(crank, 1j * omega2 * crank, -(omega2**2) * crank),
-        "B": Moving(polar(r1, theta1) + rocker, 1j * omega4 * rocker, (1j * alpha4 - omega4**2) * rocker),
-        "C": Moving(xC + 1j * h, v_C, a_C),
-    }
 
 
 def residual(

@@ -17,7 +17,7 @@ from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.mechanics import Body, Mechanism, Slide
 from coursework.polygons import crank_v, polygon_of_velocities, slider_v
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 from ._in_line import _in_line
 from ._strokes import *
@@ -194,17 +194,6 @@ def T_is_frequency(omega2):
 @mistake("alpha", "beta", kind="exchanged")
 def advance_and_return_exchanged(alpha, beta):
     return beta, alpha
-
-
-def motion(r2, e, theta2, omega2, p, q, omega3, xC, v_C):
-    """The crank pin and the piston; the crank turns steadily."""
-    A = polar(r2, theta2)
-    a_A = -(omega2**2) * A
-    alpha3 = (p * omega3**2 - a_A.imag) / q
-    return {
-        "A": Moving(A, 1j * omega2 * A, a_A),
-        "C": Moving(xC + 1j * e, v_C, a_A.real - p * alpha3 - q * omega3**2),
-    }
 
 
 def polygons(r2, theta2, omega2, p, q, omega3, v_C):

@@ -8,7 +8,6 @@ from math import pi
 
 import numpy as np
 
-from coursework.accuracy import Study
 from coursework.degrees import atan2, cos, polar, sin, sqrt
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
@@ -22,7 +21,7 @@ from coursework.polygons import (
     slider_a,
     slider_v,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"p": "mm", "q": "mm"}
 LOOPS = {
@@ -182,15 +181,6 @@ def scale_left_out(kv, ka):
     return 1, 1
 
 
-def motion(r2, e, theta2, omega2, alpha2, r1, r1_dot, r1_ddot):
-    """The crank pin and the piston."""
-    A = polar(r2, theta2)
-    return {
-        "A": Moving(A, 1j * omega2 * A, (1j * alpha2 - omega2**2) * A),
-        "B": Moving(r1 + 1j * e, r1_dot, r1_ddot),
-    }
-
-
 def polygons(r2, theta2, omega2, alpha2, p, q, omega3, r1_dot, alpha3, r1_ddot, kv, ka):
     """At the scales of the statement."""
     OA, AB = polar(r2, theta2), q + 1j * p
@@ -251,17 +241,4 @@ KNOWN = (
     given(r2=20, r3=50, e=-20, theta2=30, omega2=0, alpha2=8).gives(
         omega3=0, r1_dot=0, alpha3=-2 * _ROOT3, r1_ddot=-80 - 60 * _ROOT3,
     ),
-)  # fmt: skip
-
-ACCURACY = Study(
-    given={"r2": 60, "r3": 200, "e": 15, "omega2": 10, "alpha2": 0},
-    positions=("theta3", "r1"),
-    rates=("omega3", "r1_dot"),
-    # A rod as long as the crank: upright, the piston stands under O and may go either way.
-    hard={
-        "r2": 100, "r3": 100, "e": 0,
-        "theta2": [90 + side * 10.0**-k for k in range(10) for side in (-1, 1)],
-    },
-    loops=tuple(LOOPS.values()),
-    unknowns=("theta3", "r1"),
 )  # fmt: skip

@@ -27,7 +27,7 @@ from coursework.polygons import (
     slider_a,
     slider_v,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 GRAVITY = 9.81  #: m/s^2, along -y
 
@@ -357,17 +357,6 @@ def polygons(r2, theta2, omega2, alpha2, s3, p, q, omega3, r1_dot, alpha3, r1_dd
             ),
         ),
     )
-
-
-def motion(r2, theta2, omega2, alpha2, p, q, s3, r1_dot, r1_ddot, a_G_x, a_G_y):
-    """The crank pin, the centre of mass of the rod, and the piston."""
-    A, rod = polar(r2, theta2), q + 1j * p
-    v_A = 1j * omega2 * A
-    return {
-        "A": Moving(A, v_A, (1j * alpha2 - omega2**2) * A),
-        "G": Moving(A + s3 * rod, v_A + s3 * (r1_dot - v_A), a_G_x + 1j * a_G_y),
-        "B": Moving(A + rod, r1_dot, r1_ddot),
-    }
 
 
 def residual(

@@ -7,7 +7,6 @@ to O4 as it likes.
 
 import numpy as np
 
-from coursework.accuracy import Study
 from coursework.degrees import atan, atan2, cos, from_radians, polar, sin, sqrt, wrap
 from coursework.errors import Undefined
 from coursework.kinematics.angles import Degrees
@@ -22,7 +21,7 @@ from coursework.polygons import (
     polygon_of_accelerations,
     polygon_of_velocities,
 )
-from coursework.solution import Moving, formula, given, mistake, stable
+from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"delta": "deg", "a_radial": "mm/s^2", "a_tangential": "mm/s^2"}
 SYMBOLS = {"delta": r"\delta"}
@@ -169,19 +168,6 @@ def no_centripetal(r2, alpha2, omega2, theta2, theta4):
     return -r2 * alpha2 * sin(theta2 - theta4) - r2 * omega2**2 * cos(theta2 - theta4)
 
 
-def motion(r1, theta1, r2, theta2, omega2, alpha2, rA_dot, theta4, omega4):
-    """The crank pin, which slides on the turning guide."""
-    crank = polar(r2, theta2)
-    return {
-        "A": Moving(
-            polar(r1, theta1) + crank,
-            1j * omega2 * crank,
-            (1j * alpha2 - omega2**2) * crank,
-            coriolis=2j * omega4 * rA_dot * polar(1, theta4),
-        )
-    }
-
-
 def polygons(r2, theta2, omega2, alpha2, rA, theta4, rA_dot, omega4, rA_ddot, alpha4):
     """The crank pin is A_2; A_4 is the point of the guide under it."""
     crank, arm = polar(r2, theta2), polar(rA, theta4)
@@ -230,16 +216,3 @@ KNOWN = (
     # Frame and crank equal: the guide turns at half the crank's speed, wherever it is.
     given(r1=150, r2=150, theta1=90, theta2=-80, omega2=10).gives(omega4=5, alpha4=0, theta4=5),
 )
-
-ACCURACY = Study(
-    given={"r1": 228.6, "r2": 114.3, "theta1": 90, "omega2": 10, "alpha2": 0},
-    positions=("rA", "theta4"),
-    rates=("rA_dot", "omega4"),
-    # The block passes O4 at a ten-millionth of the crank's length.
-    hard={
-        "r1": 200, "r2": 200 * (1 - 1e-7),
-        "theta2": [-90 + side * 10.0**-k for k in range(10) for side in (-1, 1)],
-    },
-    loops=tuple(LOOPS.values()),
-    unknowns=("rA", "theta4"),
-)  # fmt: skip

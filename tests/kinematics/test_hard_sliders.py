@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from reference import away, mp, relative, slider_crank, turned
+from reference import away, exact, mp, relative, slider_crank, turned
 
 from coursework.errors import CannotAssemble, Undefined, WrongValue
 from coursework.kinematics import slotted_guide
@@ -220,3 +220,54 @@ def test_guide_rates_are_derivatives_of_the_arm(d, r, theta):
             expected = mp.diff(path, 0, order)
             allowed = (1.0, max(d, r))[i] * float(4 * nearness) ** (order + 1) * 10
             assert abs(found[2 * order + i] - expected) <= 64 * EPS * (allowed + abs(expected))
+
+
+def guide_at(d, r, angle):
+    """Length of the arm, and derivatives of guide and arm up to the third, by the vector of the pin."""
+    with mp.workdps(120):
+        d, r = exact(d, r)
+        crank = r * mp.expjpi(mp.mpf(angle) / 180)
+        arm = abs(d + crank)
+        unit = (d + crank) / arm
+        # Along and across the guide, of the pin's velocity, acceleration and jerk.
+        (v, v_), (a, a_), (j, j_) = (((z := factor * crank / unit).real, z.imag) for factor in (1j, -1, -1j))
+        w = v_ / arm
+        slide = a + arm * w**2
+        turn = (a_ - 2 * v * w) / arm
+        return (
+            arm,
+            (w, v),
+            (turn, slide),
+            (
+                (j_ - 3 * slide * w - 3 * v * turn + arm * w**3) / arm,
+                j + 3 * arm * w * turn + 3 * v * w**2,
+            ),
+        )
+
+
+@pytest.mark.parametrize("gap", [0.0, 1e-9, -1e-9, 1e-12, -1e-3, 0.7])
+@pytest.mark.parametrize("near", [60.0, 1e-1, 1e-3, 1e-6, 1e-9])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_pin_that_passes_beside_the_pivot_costs_no_digit_of_any_order(gap, near, side):
+    d, r, angle = 200.0, 200.0 * (1 + gap), 180.0 - side * near
+    found = slotted_guide.motion(d, r, heading_in_degrees(angle), order=3)
+    arm, *derivatives = guide_at(d, r, angle)
+    assert relative(found.arm, arm) < 4 * EPS
+    for order, pair in enumerate(derivatives, 1):
+        for value, expected in zip(found[2 * order : 2 * order + 2], pair, strict=True):
+            # An equal crank turns its guide evenly, and the rate does not change at all.
+            assert abs(value - expected) <= 16 * EPS * abs(expected) + mp.mpf("1e-50"), order
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.3, -0.3])
+@pytest.mark.parametrize("near", [1e-2, 1e-6, 1e-10])
+def test_the_rod_of_a_slider_gains_speed_evenly_on_both_sides_of_a_dead_centre(offset, near):
+    for crank in (near, -near, 180 - near):
+        found = SliderCrank(1.0, 2.5, offset).motion(heading_in_degrees(crank), 1.0, 0.0, order=2)
+        with mp.workdps(60):
+            r, l, e = exact(1.0, 2.5, offset)
+            s = mp.sinpi(mp.mpf(crank) / 180)
+            expected = (
+                r * (s * (l**2 - e**2 - r**2) + r * e * (1 + s**2)) / mp.sqrt(l**2 - (e - r * s) ** 2) ** 3
+            )
+        assert relative(found.rod_acceleration, expected) < 16 * EPS

@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 import pytest
-from reference import exact, four_bar, mp
+from reference import exact, four_bar, mp, relative
 
 from coursework.errors import CannotAssemble
 from coursework.kinematics.rocker_slider import RockerSlider
 
+EPS = 2.0**-52
 ORDINARY = RockerSlider(80.0, math.radians(30), 20.0, 70.0, 70.0, 1, 300.0, 100.0)
 #: The rod lines up with the rocker within its swing, so that the slider turns back four times.
 FOUR_TIMES = RockerSlider(80.0, math.radians(60), 30.0, 90.0, 60.0, 1, 100.0, 60.0)
@@ -42,6 +43,7 @@ def test_the_slider_stands_still_there_and_nowhere_else(mechanism, count, side):
     mechanism = mechanism._replace(side=side)
     found = mechanism.turning_points()
     assert found.shape == (count,)
+    assert mechanism.times_turned() == count
     for angle in found:
         assert abs(turned_back(mechanism, angle) - angle) < 1e-12
     # Between them it moves one way: as many changes of sense in a plain sweep.
@@ -103,3 +105,41 @@ def test_what_cannot_turn_is_refused_or_nan_in_its_row_alone():
 def test_a_mechanism_with_fewer_turns_than_its_neighbour_ends_in_nan():
     both = RockerSlider(*(np.array(pair) for pair in zip(ORDINARY, FOUR_TIMES, strict=True)))
     assert np.isfinite(both.turning_points()).sum(axis=-1).tolist() == [2, 4]
+
+
+#: The frame is the shortest: the rocker turns fully, and crank and coupler are never in line.
+DOUBLE_CRANK = RockerSlider(20.0, math.radians(25), 60.0, 50.0, 45.0, 1, 200.0, 30.0)
+
+
+SHORT = [m._replace(crank=crank) for m in (ORDINARY, FOUR_TIMES) for crank in (1e-3, 1e-6, 1e-9)]
+
+
+@pytest.mark.parametrize("mechanism", [ORDINARY, FOUR_TIMES, DOUBLE_CRANK, *SHORT])
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_stroke_keeps_its_digits_however_small_the_crank(mechanism, side):
+    mechanism = mechanism._replace(side=side)
+    # Where the slider stands still, an angle's last digit moves nothing.
+    places = [position(mechanism, angle) for angle in mechanism.turning_points()]
+    stroke = max(places) - min(places)
+    # Where the rod is nearly in line with the rocker, the slider moves less than the crank.
+    assert relative(mechanism.stroke(), stroke) < 16 * EPS * max(1, 2 * mechanism.crank / stroke)
+
+
+def test_strokes_of_a_row_are_those_of_its_mechanisms():
+    every = (ORDINARY, FOUR_TIMES, DOUBLE_CRANK, ORDINARY._replace(crank=60.0), ORDINARY._replace(rod=30.0))
+    row = RockerSlider(*(np.array(column) for column in zip(*every, strict=True))).stroke()
+    assert row[:3].tolist() == [mechanism.stroke() for mechanism in every[:3]]
+    assert np.isnan(row[3:]).all()
+    assert RockerSlider(
+        *(np.array(column) for column in zip(*every, strict=True))
+    ).times_turned().tolist() == [2, 4, 2, 0, 0]
+    with pytest.raises(CannotAssemble, match="rod does not reach its line all turn"):
+        every[4].stroke()
+
+
+@pytest.mark.parametrize("near", [1e-2, 1e-4, 1e-6, 1e-8])
+def test_two_turns_back_that_are_nearly_one_are_counted(near):
+    """The rod folds onto the rocker, in its direction turned by half, just before the rocker turns back, or never."""
+    end = math.radians(60 + 180) - math.acos((80**2 + 60**2 - 120**2) / (2 * 80 * 60))
+    reached = 80 * math.sin(math.radians(60)) - 40 * np.sin(end + near * np.array([-1, 1]))
+    assert FOUR_TIMES._replace(line=reached).times_turned().tolist() == [2, 4]

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from animations import COURSE, DRIVEN, FILMED, MOVING, WITH_POINTS, animation
+from animations import COURSE, DRIVEN, FILMED, MOVING, WITH_POINTS, animation, points_at
 
 import coursework
 from coursework.api import Variant
@@ -90,10 +90,10 @@ def motion_at(name, seed, turn, speed, acceleration):
     """The points of a variant, its driver at another angle, turning otherwise."""
     exercise = COURSE[name]
     variant, driver = exercise.variant(seed), exercise.spec.driver
-    given = {**variant.used, **exercise.posed(variant.used, exercise.driver_angle(variant.used) + turn)}
-    given |= {n: v for n, v in ((driver.speed, speed), (driver.acceleration, acceleration)) if n in given}
-    graph = exercise.solution.graph.with_functions({"motion": exercise.solution.motion})
-    return graph.evaluate(("motion",), given, exercise.spec.effects)["motion"]
+    rates = {
+        n: v for n, v in ((driver.speed, speed), (driver.acceleration, acceleration)) if n in variant.used
+    }
+    return points_at(exercise, {**variant.used, **rates}, exercise.driver_angle(variant.used) + turn)
 
 
 def test_every_animated_mechanism_states_its_points():

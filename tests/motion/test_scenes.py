@@ -7,12 +7,16 @@ import json
 
 import numpy as np
 import pytest
-from scipy.optimize import bisect
 
 from coursework.cli import run
-from coursework.errors import BadCourse, Undefined, UnknownName, WrongValue
-from coursework.motion.scenes import Scene, _Motion
-from coursework.quantities.graph import Replacement
+from coursework.errors import BadCourse, UnknownName, WrongValue
+from coursework.mechanics.equilibrium import Equilibrium
+from coursework.mechanics.rates import Stance
+from coursework.mechanics.statement import Load
+from coursework.motion.added import Added, Weighed
+from coursework.motion.planning import plan
+from coursework.motion.scenes import Scene
+from coursework.motion.worth import budget
 
 GIVEN = {"r1": 228.6, "r2": 114.3, "theta1": 90.0, "omega2": 5.0, "alpha2": 0.0}
 
@@ -79,9 +83,13 @@ def test_misuse_is_told(course):
     with pytest.raises(UnknownName, match="did you mean 'velocity'"):
         scene(course, "velocitty")
     with pytest.raises(WrongValue, match="no Coriolis"):
-        scene(course, "coriolis", name="four_bar_positions")
+        scene(
+            course, "coriolis", name="four_bar_positions", given=course["four_bar_positions"].variant(0).used
+        )
     with pytest.raises(BadCourse, match="names no driver"):
-        scene(course, name="ball_reducer", given={}).over_cycle()
+        scene(course, name="grashof", given={}).over_cycle()
+    with pytest.raises(WrongValue, match="impacts and clearances are not simulated"):
+        scene(course, "clearance")
     with pytest.raises(WrongValue, match="needs the effect 'inertia'"):
         scene(course).in_time(5.0, 1.0)
 
@@ -170,61 +178,148 @@ def test_dead_centres_are_rows_where_the_piston_stands_still(course):
     assert scene.in_time(0.0, 0.15, count=10).notes[-1] == "1 dead centre"
 
 
-def shaken(motion, units=2):
-    """The same motion on a processor that rounds otherwise: each quantity is off by some units in its last place."""
-    last, rng = np.finfo(float).eps, np.random.default_rng(0)
+# ---------------------------------------------------------------- what a scene calls for, and no more
 
-    def observe(name, value):
-        return value * (1 + last * rng.integers(-units, units + 1)) if isinstance(value, float) else value
 
-    motion.graph = motion.graph.observed(observe)
-    return motion
+def test_lengths_on_paper_and_constants_of_the_cycle_are_in_no_scene_unless_named(course):
+    slider = course["slider_crank"]
+    table = Scene(slider, slider.variant(0).used, ("position",)).over_cycle(12)
+    assert set(table.columns) == {"theta2", "theta3", "r1"}
+    assert not {"omega3", "r1_dot", "pv_a"} & set(table.evaluated)
+    quick = course["quick_return"]
+    given = quick.variant(0).used
+    table = Scene(quick, given, ("position",)).over_cycle(12)
+    assert not {"stroke", "alpha", "beta", "theta2_turns"} & {*table.columns, *table.evaluated}
+    shown = Scene(quick, given, ("position",), ("stroke",)).over_cycle(12)
+    assert np.ptp(shown.columns["stroke"]) == 0
+    assert shown.columns["stroke"][0] == quick.solve(**given, only="stroke")["stroke"]
+
+
+def test_a_constant_that_is_named_is_computed_once(course, monkeypatch):
+    quick = course["quick_return"]
+    seen = []
+    solve = type(quick).solve
+
+    def watched(self, *, only=None, **given):
+        seen.append((only, max(np.size(v) for v in given.values() if not isinstance(v, tuple))))
+        return solve(self, only=only, **given)
+
+    scene = Scene(quick, quick.variant(0).used, ("position",), ("stroke",))
+    monkeypatch.setattr(type(quick), "solve", watched)
+    scene.over_cycle(12)
+    assert [size for only, size in seen if "stroke" in only] == [1]
 
 
 @pytest.mark.parametrize(
-    "effects", [("inertia",), ("load", "gravity", "inertia"), ("load", "inertia", "friction")]
+    "name", ["three_loop_shaper", "quick_return_shaper", "quick_return_whitworth", "havens_planetary"]
 )
-@pytest.mark.parametrize("speed", [0.0, 30.0])
-def test_an_acceleration_does_not_hang_on_a_last_bit(course, effects, speed):
-    """Least where it goes through 0 and the terms of the torque cancel: there all that is left is rounding."""
-    scene = torque_scene(course, *effects)
-    plain, other = _Motion(scene, 0.0), shaken(_Motion(scene, 0.0))
-    angles = np.radians(np.arange(0.0, 361.0, 10.0)).tolist()
-    found = [plain.acceleration(angle, speed) for angle in angles]
-    crossed = [k for k in range(36) if found[k] * found[k + 1] < 0]
-    zeros = [bisect(plain.acceleration, angles[k], angles[k + 1], (speed,), xtol=1e-15) for k in crossed]
-    assert zeros or (effects == ("inertia",) and not speed), "at rest and without a load it is 0 everywhere"
-    for angle in angles + zeros:
-        found = plain.acceleration(angle, speed)
-        allowed = plain.rounding(angle, speed, found) / plain.inertia(angle)
-        assert other.acceleration(angle, speed) == pytest.approx(found, abs=allowed)
+def test_coriolis_is_there_wherever_a_body_slides_on_one_that_turns(course, name):
+    """The acceleration of the pin is that of the guide's point, the sliding one, and Coriolis: by differences."""
+    exercise = course[name]
+    scene = Scene(exercise, exercise.variant(0).used, ("coriolis",))
+    (column,) = [c for c in scene.over_cycle(8).columns if c.startswith("a_coriolis")]
+    slide = next(s for s in scene.linkage.slides if scene.linkage.coordinates[s.on] != -1)
+    step, q, speed = 1e-4, np.radians(45.0), scene._speed
+    stance = scene.pose(q + step * np.array([-1.0, 0.0, 1.0]))
+    seen = (stance.place(slide.of) - stance.origins[slide.on]) * np.conj(stance.headings[slide.on])
+    turned = stance.turns[slide.on]
+    sliding = (seen[2] - seen[0]).real / (2 * step) * speed
+    rate = np.angle(np.exp(1j * (turned[2] - turned[0]))) / (2 * step) * speed
+    found = scene.over_cycle(8).columns[column][1]
+    assert found == pytest.approx(2 * rate * sliding * 1000, rel=1e-5)
 
 
-@pytest.mark.parametrize("short", [1e-9, 1.0])
-def test_a_drive_that_nothing_balances_is_not_taken_for_rounding(course, short):
-    """A torque that is never negative, and a drive that is, be it ever so little."""
-    motion = _Motion(torque_scene(course, "inertia"), -short)
-    motion.graph = motion.graph.replacing(Replacement(("torque",), lambda torque: abs(torque)))
-    for angle in range(0, 360, 30):
-        with pytest.raises(Undefined, match=f"no acceleration balances the drive at {angle} degrees"):
-            motion.acceleration(np.radians(angle), 30.0)
+@pytest.mark.parametrize("name", ["quick_return_offset", "quick_return_whitworth", "quick_return_shaper"])
+def test_rams_have_an_acceleration(course, name):
+    exercise = course[name]
+    given = exercise.variant(0).used
+    table = Scene(exercise, given, ("velocity", "acceleration")).over_cycle(7200)
+    step = np.radians(0.05) / given["omega2"]
+    slope = (table.columns["v_C"][2:] - table.columns["v_C"][:-2]) / (2 * step)
+    size = np.abs(slope).max()
+    np.testing.assert_allclose(table.columns["a_C_x"][1:-1], slope, atol=1e-4 * size)
 
 
-@pytest.mark.parametrize("friction", [0.5, 1.2, 1.5])
-def test_strong_friction_balances_wherever_a_balance_exists(course, friction):
-    """Against the one root that a search over all accelerations brackets; where corrections by the frictionless inertia
-    lead away from it, the guide does not jam."""
-    given = {**course[TORQUE].variant(0).used, "f": friction}
-    scene = Scene(course[TORQUE], given, ("load", "inertia", "friction"))
-    motion = _Motion(scene, 3.0)
-    far = 10.0 ** np.arange(-3, 9)
-    tried = [*-far[::-1], *far]
-    for angle in np.radians(np.arange(0.5, 360.0, 15.0)).tolist():
+def test_the_advantage_is_shown_over_a_turn(course):
+    for name, shown in (("mechanical_advantage", "mechanical_advantage"), ("four_bar_motion", "advantage")):
+        exercise = course[name]
+        given = exercise.variant(0).used
+        table = Scene(exercise, given, ("advantage", "velocity")).over_cycle(36)
+        assert np.isfinite(table.columns[shown]).sum() >= 35
+    ratio = abs(given["omega2"] / table.columns["omega4"])
+    np.testing.assert_allclose(table.columns["advantage"], ratio, rtol=1e-12)
 
-        def lacking(value, angle=angle):
-            return motion.drive - motion.effort(angle, 12.0, value, scene._own)
 
-        signs = np.sign([lacking(value) for value in tried])
-        (change,) = np.flatnonzero(signs[1:] != signs[:-1])
-        root = bisect(lacking, tried[change], tried[change + 1], xtol=1e-9, rtol=1e-14)
-        assert motion.acceleration(angle, 12.0) == pytest.approx(root, rel=1e-9, abs=1e-7)
+def test_a_mechanism_in_space_is_simulated_by_the_points_that_its_solution_moves(course):
+    ball = course["ball_reducer"]
+    variant = ball.variant(0)
+    table = Scene(ball, variant.used, ("position", "velocity")).over_cycle(24)
+    radius = variant.used["R"] + variant.used["r"]
+    np.testing.assert_allclose(np.hypot(table.columns["x_O_3"], table.columns["y_O_3"]), radius, rtol=1e-12)
+    assert {"omega", "phi_dot", "v_O3"} <= set(table.columns)
+
+
+def test_the_plan_says_what_is_left_out_and_what_is_not(course):
+    shaper = course["three_loop_shaper"]
+    given = shaper.variant(0).used
+    light = dict(plan(Scene(shaper, given, ("load",), (), Added(loads=(Load("G", force=10.0),)))))
+    assert "no acceleration" in light
+    assert not [line for line in light if "equilibrium" in line or "friction" in line]
+    heavy = dict(
+        plan(
+            Scene(
+                shaper, given, ("load", "inertia", "friction"), ("reaction D",),
+                Added({"8": Weighed(3.0)}, (Load("G", force=10.0),), {"G": 0.1}),
+            )
+        )
+    )  # fmt: skip
+    assert "equilibrium of 7 bodies, 21 equations an instant" in heavy
+    assert "friction by iteration at G" in heavy
+    assert heavy["second derivatives of the bodies' angles"] == "the effect inertia"
+
+
+def test_without_a_question_about_joints_no_equilibrium_is_set_up(course, monkeypatch):
+    def refused(self):
+        raise AssertionError("no joint was asked for")
+
+    monkeypatch.setattr(Equilibrium, "matrix", property(refused))
+    monkeypatch.setattr(Stance, "bends", property(refused))
+    shaper = course["three_loop_shaper"]
+    added = Added({"8": Weighed(3.0)}, (Load("G", force=10.0),))
+    Scene(shaper, shaper.variant(0).used, ("load", "gravity"), (), added).over_cycle(12)
+
+
+def test_a_budget_says_what_a_scene_could_do_without_and_what_it_lacks(course):
+    """A light ram under a heavy load: its inertia does not matter; the friction of its slide does."""
+    shaper = course["quick_return_shaper"]
+    given = {**shaper.variant(0).used, "omega2": 1.0}
+    data = Added({"6": Weighed(0.001)}, (Load("C", force=800.0, against=True),), {"C": 0.3})
+    scene = Scene(shaper, given, ("load", "inertia"), (), data)
+    found = budget(scene, lambda one: one.over_cycle(90))
+    by_effect = {worth.effect: worth for worth in found.worths}
+    full = scene.over_cycle(90).columns["drive_torque"]
+    bare = scene.without("load").over_cycle(90).columns["drive_torque"]
+    (change,) = by_effect["load"].changes
+    assert change.largest == np.abs(full - bare).max()
+    assert change.rms == pytest.approx(np.sqrt(np.mean((full - bare) ** 2)), rel=1e-12)
+    said = " ".join(found.said())
+    assert "could do without inertia" in said
+    assert "lacks friction, for which it has data" in said
+    assert "gravity is left out, rightly" in said
+    assert "without load" not in said
+
+
+def test_an_effect_without_data_is_told(course):
+    exercise = course["four_bar_motion"]
+    table = Scene(exercise, exercise.variant(0).used, ("load", "gravity", "friction")).over_cycle(6)
+    assert [note.split(":")[0] for note in table.notes] == ["load", "gravity", "friction"]
+    assert (table.columns["drive_torque"] == 0).all()
+
+
+def test_what_joints_bear_at_rest_under_friction_is_left_empty(course):
+    exercise = course["slider_crank_torque"]
+    given = {**exercise.variant(0).used, "omega2": 0.0, "alpha2": 0.0, "theta2": 0.0}
+    scene = Scene(exercise, given, ("inertia", "friction"), ("reaction B",))
+    table = scene.in_time(0.0, 0.1, count=4)
+    assert "stays" in " ".join(table.notes)
+    assert np.isnan(table.columns["N_B"]).all()

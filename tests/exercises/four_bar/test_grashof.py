@@ -41,3 +41,33 @@ def test_lengths_in_other_units_and_in_arrays():
 def test_a_bar_has_a_length():
     with pytest.raises(WrongValue, match="positive"):
         EXERCISE.solve(r1=100, r2=0, r3=50, r4=60)
+
+
+@pytest.mark.parametrize(
+    ("bars", "kind"),
+    [
+        ((100.0, 50.0, 70.0, 80.0), "change-point"),
+        ((100.00000000000001, 50.0, 70.0, 80.0), "triple-rocker"),
+        ((99.99999999999999, 50.0, 70.0, 80.0), "crank-rocker"),
+        ((100.0, 50.0, 70.0, 80.00000000000001), "crank-rocker"),
+        # 0.1 + 0.6 is 0.3 + 0.4, whatever their doubles are; a last digit more, and it is not.
+        ((0.3, 0.1, 0.4, 0.6), "change-point"),
+        ((0.3, 0.1, 0.4, 0.6000000000000001), "triple-rocker"),
+        ((0.3, 0.1, 0.4, 0.5999999999999999), "crank-rocker"),
+        ((0.1234567, 0.0234567, 0.1, 0.2), "change-point"),
+        ((0.6, 0.1, 0.2, 0.3), "impossible"),
+        ((0.6, 0.1, 0.2, 0.30000000000000004), "triple-rocker"),
+        ((1e-20, 1e15, 1e15, 1e-20), "change-point"),
+        ((2e-20, 1e15, 1e15, 1e-20), "rocker-crank"),
+    ],
+)
+def test_the_last_digit_decides(bars, kind):
+    given = dict(zip(("r1", "r2", "r3", "r4"), bars, strict=True))
+    assert EXERCISE.solve(**given, only="linkage_type")["linkage_type"] == kind
+    positions = coursework.open_course()["four_bar_positions"]
+    assert positions.solve(**given, only="linkage_type")["linkage_type"] == kind
+    row = {
+        name: np.array([value, other])
+        for (name, value), other in zip(given.items(), (40, 90, 80, 100), strict=True)
+    }
+    assert EXERCISE.solve(**row, only="linkage_type")["linkage_type"].tolist() == [kind, "double-crank"]

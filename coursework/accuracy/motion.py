@@ -1,0 +1,312 @@
+"""Accuracy of motion in time: what a tolerance, a fixed step or a table costs, and what it leaves.
+
+One small interface: a *method* is a function of a scene, an effort and a duration that yields a :class:`Run` for each of its
+settings. What stands in :data:`METHODS` is measured, with friction and without.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.accuracy.study import Study
+from coursework.accuracy.timing import Times, times_of
+from coursework.course.exercise import CourseExercise
+from coursework.motion.scenes import INERTIA, Scene
+
+FRICTION = "friction"
+FREE, RUBBING = "without friction", "with friction"
+_RTOLS = tuple(10.0**-k for k in range(3, 13))
+_ROUNDS = 3
+
+
+class Run(NamedTuple):
+    """One motion by one method: where its driver stands at the end, degrees, not reduced, and how fast it turns there.
+
+    ``again`` runs it once more, to be timed; ``build`` is how many seconds were spent before the first run.
+    """
+
+    method: str
+    setting: float
+    angle: float
+    speed: float
+    again: Callable[[], Any]
+    build: float | None = None
+
+
+@dataclass(frozen=True)
+class MotionRow:
+    """``error`` in radians of the driver at the end of the motion."""
+
+    method: str
+    setting: float
+    place: str
+    times: Times
+    error: float
+    build: float | None = None
+
+
+Method = Callable[[Scene, float, float, bool], Iterator[Run]]
+
+
+def by_tolerance(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
+    """The scene's own integration, at each relative tolerance."""
+    driver = scene.driver
+    tolerances = _RTOLS[:: 3 if quick else 1]
+    # With friction each digit costs so much that a quick look stops halfway.
+    for rtol in tolerances[:2] if quick and FRICTION in scene.effects else tolerances:
+
+        def run(rtol: float = rtol) -> Any:
+            # The state at the end is all that is compared.
+            return scene.in_time(effort, duration, rtol=rtol, count=1).columns
+
+        columns = run()
+        yield Run("integration", rtol, columns[driver.angle][-1], columns[driver.speed][-1], run)
+
+
+def by_steps(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
+    """The classical Runge-Kutta method at fixed steps, the mechanism computed anew at each of its four stages."""
+    counts = (50, 100, 200, 400, 800)[: 3 if quick else None]
+    for steps in counts[:2] if quick and FRICTION in scene.effects else counts:
+        rate = _Acceleration(scene, effort)
+
+        def run(steps: int = steps, rate: _Acceleration = rate) -> np.ndarray:
+            return runge_kutta(rate, rate.start, duration, steps)
+
+        angle, speed = run()
+        yield Run("steps", steps, float(np.degrees(angle)), float(speed), run)
+
+
+def by_table(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
+    """The same at fine steps, the coefficients of the motion from a table of the cycle by Fourier interpolation."""
+    for nodes in (32, 64) if quick else (16, 32, 64, 128):
+        start = time.perf_counter()
+        rate = _Tabulated(_Acceleration(scene, effort), nodes)
+        build = time.perf_counter() - start
+
+        def run(rate: _Tabulated = rate) -> np.ndarray:
+            return runge_kutta(rate, rate.start, duration, 800)
+
+        angle, speed = run()
+        yield Run("cycle_table", nodes, float(np.degrees(angle)), float(speed), run, build)
+
+
+METHODS: tuple[Method, ...] = (by_tolerance, by_steps, by_table)
+
+
+def motion_rows(exercise: CourseExercise, study: Study, quick: bool) -> Iterator[MotionRow]:
+    """Every method at each of its settings: without friction against the energy integral, with friction against the
+    tightest tolerance there is."""
+    assert study.motion is not None
+    motion = study.motion
+    given = {**study.given, **motion.given}
+    yield from _measured(
+        _Exact(Scene(exercise, given, (INERTIA,)), motion.effort, motion.duration), FREE, quick
+    )
+    if FRICTION in exercise.solution.graph.effects():
+        scene = Scene(exercise, given, (INERTIA, FRICTION))
+        yield from _measured(_Tightest(scene, motion.effort, motion.duration, quick), RUBBING, quick)
+
+
+def _measured(right: _Right, place: str, quick: bool) -> Iterator[MotionRow]:
+    for method in METHODS:
+        if place == RUBBING and method is by_table:
+            continue  # what friction takes is no function of the angle alone
+        for run in method(right.scene, right.effort, right.duration, quick):
+            samples = []
+            for _ in range(_ROUNDS):
+                start = time.perf_counter()
+                run.again()
+                samples.append(time.perf_counter() - start)
+            yield MotionRow(run.method, run.setting, place, times_of(samples), right.error(run), run.build)
+
+
+# --------------------------------------------------------------------------- right
+
+
+class _Right:
+    """Where the driver rightly stands at the end of a motion."""
+
+    def __init__(self, scene: Scene, effort: float, duration: float) -> None:
+        self.scene, self.effort, self.duration = scene, effort, duration
+
+    def error(self, run: Run) -> float:
+        raise NotImplementedError
+
+
+class _Exact(_Right):
+    """By the energy integral: how late the end of a run is, times its speed."""
+
+    def __init__(self, scene: Scene, effort: float, duration: float) -> None:
+        super().__init__(scene, effort, duration)
+        self.integral = EnergyIntegral(scene, effort)
+        self._there: tuple[float, Any] | None = None
+
+    def error(self, run: Run) -> float:
+        if self._there is None:
+            # The whole way is integrated once, to the end of the first run; the others end beside it.
+            self._there = run.angle, self.integral.time(self.integral.start_angle, run.angle)
+        last, spent = self._there
+        late = spent + self.integral.time(last, run.angle) - self.duration
+        return abs(run.speed * float(late))
+
+
+class _Tightest(_Right):
+    """By the scene's own integration at a tolerance beyond those that are measured."""
+
+    def __init__(self, scene: Scene, effort: float, duration: float, quick: bool) -> None:
+        super().__init__(scene, effort, duration)
+        self.rtol = 1e-10 if quick else 1e-13
+
+    def error(self, run: Run) -> float:
+        return abs(float(np.radians(run.angle - self._angle)))
+
+    @property
+    def _angle(self) -> float:
+        if not hasattr(self, "_kept"):
+            table = self.scene.in_time(self.effort, self.duration, rtol=self.rtol, count=1)
+            self._kept = float(table.columns[self.scene.driver.angle][-1])
+        return self._kept
+
+
+class EnergyIntegral:
+    """When a mechanism of one degree of freedom reaches an angle under a constant effort: many digits.
+
+    Its kinetic energy grows by the work of the drive, and is half the generalised inertia times the speed
+    squared: so t = integral of sqrt(I / (2 E)) over the angle, piece by piece of the turn.
+    """
+
+    def __init__(self, scene: Scene, effort: float) -> None:
+        import mpmath
+
+        self.context = mpmath.MPContext()
+        self.context.dps = 20
+        self.driver = scene.driver
+        self.graph = scene.exercise.solution.graph.textbook
+        mpf = self.context.mpf
+        given = _given(scene)
+        self.start_angle = given.pop(self.driver.angle)
+        self.start = self._radians(self.start_angle)
+        self.speed, self.effort = mpf(given.pop(self.driver.speed)), mpf(effort)
+        given.pop(self.driver.acceleration, None)
+        self.fixed = {n: mpf(v) if isinstance(v, float) else v for n, v in given.items()}
+        self.energy = self._inertia(self.start) * self.speed**2 / 2
+
+    def _inertia(self, angle: Any) -> Any:
+        at = {self.driver.angle: self.context.degrees(angle), self.driver.speed: self.context.mpf(0)}
+        pulls = [
+            self.graph.evaluate(
+                (self.driver.effort,),
+                {**self.fixed, **at, self.driver.acceleration: self.context.mpf(a)},
+                (INERTIA,),
+            )[self.driver.effort]
+            for a in (0, 1)
+        ]
+        return pulls[1] - pulls[0]
+
+    def time(self, start: float, end: float) -> Any:
+        """Seconds from one angle to another, in degrees and not reduced."""
+        start, end = self._radians(start), self._radians(end)
+
+        def slowness(angle: Any) -> Any:
+            energy = self.energy + self.effort * (angle - self.start)
+            return self.context.sqrt(self._inertia(angle) / (2 * energy))
+
+        pieces = int(abs(end - start) / (self.context.pi / 4)) + 1
+        return self.context.quad(slowness, self.context.linspace(start, end, pieces + 1))
+
+    def _radians(self, degrees: float) -> Any:
+        return self.context.mpf(degrees) * self.context.pi / 180
+
+
+def _given(scene: Scene) -> dict[str, Any]:
+    exercise = scene.exercise
+    known = {
+        **exercise.intake.defaults,
+        **{n: exercise.intake.value(n, v) for n, v in scene.given.items()},
+    }
+    return {n: v for n, v in known.items() if n in exercise.quantity_names}
+
+
+# ------------------------------------------------------------------------- methods
+
+
+class _Acceleration:
+    """The driver's acceleration at an angle and a speed under a constant effort, from the exercise's own formulas.
+
+    The effort is linear in the acceleration: two evaluations give what is asked.
+    """
+
+    def __init__(self, scene: Scene, effort: float) -> None:
+        self.driver, self.effects = scene.driver, scene.effects
+        self.graph = scene.exercise.solution.graph
+        self.effort = effort
+        self.given = _given(scene)
+        self.start = np.array([np.radians(self.given[self.driver.angle]), self.given[self.driver.speed]])
+
+    def efforts(self, angles: Any, speeds: Any) -> tuple[Any, Any]:
+        """What the drive must supply at rest of its speed, and for each unit of acceleration."""
+        shape = np.broadcast_shapes(np.shape(angles), np.shape(speeds))
+        given = {
+            **self.given,
+            self.driver.angle: np.broadcast_to(np.degrees(angles), shape)[..., None],
+            self.driver.speed: np.broadcast_to(speeds, shape)[..., None],
+            self.driver.acceleration: np.array([0.0, 1.0]),
+        }
+        found = self.graph.evaluate((self.driver.effort,), given, self.effects)[self.driver.effort]
+        return found[..., 0], found[..., 1] - found[..., 0]
+
+    def __call__(self, state: np.ndarray) -> np.ndarray:
+        held, inertia = self.efforts(state[0], state[1])
+        # Where friction acts, the effort bends in the acceleration: a secant or two set it right.
+        found = (self.effort - held) / inertia
+        return np.array([state[1], self._refined(state, found) if "friction" in self.effects else found])
+
+    def _refined(self, state: np.ndarray, guess: float) -> float:
+        for _ in range(4):
+            at = np.array([guess, guess + 1e-3])
+            given = {
+                **self.given, self.driver.angle: np.full(2, np.degrees(state[0])), self.driver.speed: np.full(2, state[1]),
+                self.driver.acceleration: at,
+            }  # fmt: skip
+            pull = self.graph.evaluate((self.driver.effort,), given, self.effects)[self.driver.effort]
+            guess += (self.effort - pull[0]) / ((pull[1] - pull[0]) / 1e-3)
+        return guess
+
+
+class _Tabulated:
+    """The same from tables over the cycle: inertia, and what the square of the speed costs, as Fourier series."""
+
+    def __init__(self, whole: _Acceleration, nodes: int) -> None:
+        self.effort, self.start = whole.effort, whole.start
+        at = np.arange(nodes) * (2 * np.pi / nodes)
+        still, inertia = whole.efforts(at, 0.0)
+        turning, _ = whole.efforts(at, 1.0)
+        self.orders = np.fft.rfftfreq(nodes, 1 / nodes)
+        rows = np.stack([still, turning - still, inertia])
+        self.series = np.fft.rfft(rows, axis=-1) / nodes
+        self.series[:, 1:] *= 2
+        if nodes % 2 == 0:
+            self.series[:, -1] /= 2
+
+    def __call__(self, state: np.ndarray) -> np.ndarray:
+        still, square, inertia = (self.series * np.exp(1j * self.orders * state[0])).real.sum(axis=-1)
+        return np.array([state[1], (self.effort - still - square * state[1] ** 2) / inertia])
+
+
+def runge_kutta(
+    rate: Callable[[np.ndarray], np.ndarray], start: np.ndarray, duration: float, steps: int
+) -> np.ndarray:
+    """The state at the end of so many equal steps of the classical method of fourth order."""
+    state, h = np.array(start, dtype=float), duration / steps
+    for _ in range(steps):
+        first = rate(state)
+        second = rate(state + h / 2 * first)
+        third = rate(state + h / 2 * second)
+        fourth = rate(state + h * third)
+        state = state + h / 6 * (first + 2 * second + 2 * third + fourth)
+    return state

@@ -1,0 +1,212 @@
+"""One line an exercise: what it keeps of its digits, at what cost, and what vouches for that."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+from typing import Any
+
+from coursework.accuracy.conditioning import ALLOWED, unavoidable
+from coursework.accuracy.hard_places import VANISHING, HardPlace
+from coursework.accuracy.measuring import (
+    checked,
+    compare,
+    needs_mpmath,
+    right_values,
+    usual_sizes,
+)
+from coursework.accuracy.reference import twinned
+from coursework.accuracy.subject import Places, Subject, numbers_of, one_by_one, together
+from coursework.accuracy.timing import Times, interleaved
+from coursework.course.exercise import CourseExercise
+from coursework.errors import BadCourse, CourseworkError
+
+_TIMED = 10_000
+_RIGHT = 2e-15  #: relative: right to the last digits
+
+
+@dataclass(frozen=True)
+class Line:
+    """What is measured of one exercise; errors in the parts that :class:`~coursework.accuracy.measuring.Row` says.
+
+    ``lack`` of the equation that vouches for the reference, in parts of its terms; None where none is stated. At the hard
+    places two errors: the solver's and the textbook formula's;
+    ``beyond`` is the solver's largest error there over eight times what is unavoidable at the same place, so that more
+    than 1 is a digit that could be kept. ``wrong`` tells of formulas that contradict the stated equations: nothing is
+    measured then. ``lacking`` are quantities whose formulas cannot be followed in many digits.
+    """
+
+    exercise: str
+    quantities: int
+    places: int = 0
+    wrong: str = ""
+    lacking: tuple[str, ...] = ()
+    lack: float | None = None
+    in_doubles: bool = False
+    vouched: int = 0
+    generic: float | None = None
+    generic_textbook: float | None = None
+    hard: float | None = None
+    hard_textbook: float | None = None
+    hard_textbook_failed: int = 0
+    beyond: float = 0.0
+    place: dict[str, Any] | None = None
+    stable_ns: Times | None = None
+    textbook_ns: Times | None = None
+
+    def as_json(self) -> dict[str, Any]:
+        return asdict(self)
+
+
+def overview(exercise: CourseExercise, *, quick: bool = False) -> Line | None:
+    """The line of an exercise; None where it asks for no number.
+
+    Raises
+    ------
+    BadInput
+        mpmath is not installed.
+    """
+    needs_mpmath()
+    if not numbers_of(exercise):
+        return None
+    subject = Subject(exercise)
+    try:
+        closing = checked(subject)
+    except BadCourse as fault:
+        return Line(exercise.name, len(subject.numbers), wrong=str(fault))
+    if not subject.reference.wanted:
+        return Line(exercise.name, 0, lacking=subject.reference.lacking)
+    return _Survey(subject, quick).line(closing)
+
+
+class _Survey:
+    def __init__(self, subject: Subject, quick: bool) -> None:
+        self.subject, self.quick = subject, quick
+        self.wanted = subject.reference.wanted
+        graph = subject.exercise.solution.graph
+        self.graphs = {"stable": graph, "textbook": twinned(graph.textbook)}
+
+    def line(self, closing: Any) -> Line:
+        compared = self.subject.generic(40 if self.quick else 200)
+        reference = right_values(self.subject, compared, self.wanted)
+        scales = usual_sizes(self.subject, self.wanted, reference)
+        generic = {
+            way: compare(self.subject, self._values(way, compared), reference, scales)[0]
+            for way in self.graphs
+        }
+        times = self._times()
+        return Line(
+            self.subject.exercise.name,
+            len(self.wanted),
+            len(self.subject.hard),
+            lacking=self.subject.reference.lacking,
+            lack=closing and closing.lack,
+            in_doubles=bool(closing and closing.in_doubles),
+            vouched=len(closing.held & set(self.wanted)) if closing else 0,
+            generic=generic["stable"],
+            generic_textbook=generic["textbook"],
+            **self._hard(scales),
+            stable_ns=times[0],
+            textbook_ns=times[1],
+        )
+
+    def _hard(self, scales: dict[str, float]) -> dict[str, Any]:
+        """The largest errors over all hard places, and the place where the solver's is largest."""
+        found: dict[str, Any] = {}
+        for place in self.subject.hard:
+            own = self._at(place, dict.fromkeys(scales, 0.0) if place.kind == VANISHING else scales)
+            if own is None:
+                continue
+            if own["beyond"] > found.get("beyond", -1.0):
+                found["place"] = _told(place)
+            for name, value in own.items():
+                if value is not None:
+                    found[name] = max(found.get(name, 0), value)
+        return found
+
+    def _at(self, place: HardPlace, scales: dict[str, float]) -> dict[str, Any] | None:
+        places = together(list(place.approach(place.distances(self.quick))))
+        reference = right_values(self.subject, places, self.wanted)
+        solver, textbook = (self._values(way, places) for way in self.graphs)
+        names = [n for n in self.wanted if self._is_same_case(n, solver, reference)]
+        if not names:
+            return None
+        scales = {n: scales[n] for n in names}
+        error, _, _ = compare(self.subject, solver, reference, scales)
+        of_formula, failed, _ = compare(self.subject, textbook, reference, scales)
+        return {
+            "hard": error,
+            "hard_textbook": of_formula,
+            "hard_textbook_failed": failed,
+            "beyond": self._beyond(places, reference, names, solver),
+        }
+
+    def _is_same_case(self, name: str, solver: dict[str, Any], reference: dict[str, list[Any]]) -> bool:
+        """Whether the formula is of the case that the solver finds: so far off, at the farthest place, no rounding is."""
+        first = {name: reference[name][:1]}
+        error, failed, count = compare(
+            self.subject,
+            {name: _entry(solver.get(name), 0)},
+            first,
+            {name: abs(float(first[name][0] or 1.0))},
+        )
+        return bool(count) and not failed and (error or 0.0) < 1e-6
+
+    def _beyond(
+        self, places: Places, reference: dict[str, list[Any]], names: Sequence[str], solver: dict[str, Any]
+    ) -> float:
+        """The largest of the solver's errors, each in eight times what is unavoidable where it is made."""
+        worst = 0.0
+        for i, place in enumerate(one_by_one(places)):
+            doubtful = {}
+            for name in names:
+                own = {name: reference[name][i : i + 1]}
+                error, _, _ = compare(self.subject, {name: _entry(solver.get(name), i)}, own, {name: 0.0})
+                if error and error > _RIGHT:
+                    doubtful[name] = error
+            # What is right to the last digits needs no conditioning.
+            values = {name: reference[name][i] for name in doubtful}
+            least = unavoidable(self.subject.reference, place, values) if doubtful else {}
+            for name, error in doubtful.items():
+                size = abs(float(values[name])) or 1.0
+                worst = max(worst, error * size / (ALLOWED * least[name]) if least[name] else math.inf)
+        return worst
+
+    def _values(self, way: str, places: Places) -> dict[str, Any]:
+        found: dict[str, Any] = {}
+        for name in self.wanted:
+            try:
+                found |= self.graphs[way].evaluate((name,), places, self.subject.effects)
+            except CourseworkError:
+                continue
+        return found
+
+    def _times(self) -> Sequence[Times]:
+        timed = self.subject.generic(_TIMED)
+        calls = [partial(self._together, way, timed) for way in self.graphs]
+        at_least, rounds = (1e-3, 5) if self.quick else (2e-2, 9)
+        return [t.per(_TIMED) for t in interleaved(calls, at_least, rounds=rounds)]
+
+    def _together(self, way: str, places: Places) -> Any:
+        return self.graphs[way].evaluate(self.wanted, places, self.subject.effects)
+
+
+def _entry(values: Any, i: int) -> Any:
+    """One entry of an answer, as an array of one."""
+    import numpy as np
+
+    if values is None:
+        return np.array([np.nan])
+    return np.asarray(values)[i : i + 1] if np.ndim(values) else np.array([values])
+
+
+def _told(place: HardPlace) -> dict[str, Any]:
+    return {
+        "moved": place.moved,
+        "tuned": place.tuned,
+        "kind": place.kind,
+        "quantity": place.quantity,
+        "given": dict(place.given),
+    }

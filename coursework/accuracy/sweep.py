@@ -1,0 +1,148 @@
+"""The way to every hard place of an exercise, and how far the solver's answers lie off there."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from coursework.accuracy.conditioning import ALLOWED, difference, unavoidable
+from coursework.accuracy.hard_places import DISTANCES, TURNS, HardPlace, Terrain, hard_places
+from coursework.accuracy.reference import Reference
+from coursework.course.exercise import CourseExercise
+from coursework.errors import CannotAssemble, CourseworkError, Undefined
+
+_FAR = 1e-2  #: in parts of the scale
+WHOLE_TURNS = (0.0, 1e3, 1e6, 1e9)
+ASIDE = (0.0, 1e-7, 1e-9)  #: off what is tuned, in parts of its value
+
+
+@dataclass(frozen=True)
+class Miss:
+    """An answer that is farther off than eight times what the last digits of the data explain, or that lacks."""
+
+    quantity: str
+    given: Mapping[str, Any]
+    place: HardPlace
+    distance: float
+    aside: float
+    error: float | None  #: in the quantity's unit; None where the solver has no answer
+    relative: float | None  #: in parts of the right value
+    times: float | None  #: as many times what is unavoidable
+
+    def told(self) -> str:
+        moved, tuned = self.place.moved, self.place.tuned
+        where = ", ".join(f"{n} = {self.given[n]!r}" for n in filter(None, (moved, tuned)))
+        rest = ", ".join(f"{n}={v}" for n, v in self.given.items() if n not in (moved, tuned))
+        if self.error is None:
+            return f"{self.quantity}: no answer at {where} ({rest})"
+        return f"{self.quantity}: off by {self.relative:.1e} relative, {self.times:.1e} x conditioning, at {where} ({rest})"
+
+
+def misses(
+    exercise: CourseExercise, wanted: Sequence[str], *, distances: Sequence[float] = DISTANCES, most: int = 8
+) -> Iterator[Miss]:
+    """Where the solver's answers are worse than their conditioning, on the way to each hard place."""
+    reference = Reference(exercise, wanted)
+    for place in hard_places(exercise, reference.wanted, most):
+        for aside in ASIDE if place.tuned else ASIDE[:1]:
+            yield from _on_the_way(reference, place, distances, aside)
+    yield from _after_turns(reference)
+
+
+def _after_turns(reference: Reference) -> Iterator[Miss]:
+    """After whole turns of an angle, a place is what it was."""
+    terrain = Terrain(reference.exercise, reference.wanted)
+    base = terrain.bases[0]
+    for name in terrain.angles:
+        if terrain.turns(name):
+            place = HardPlace(base, name, 360.0, TURNS, name)
+            yield from _along(reference, place, 0.0, [(n, place.at(n)) for n in WHOLE_TURNS])
+
+
+def _on_the_way(
+    reference: Reference, place: HardPlace, distances: Sequence[float], aside: float
+) -> Iterator[Miss]:
+    for side in place.sides:
+        way = [(d, place.at(side * d, aside)) for d in distances]
+        way = [(d, given) for d, given in way if _has_lengths(reference, given)]
+        if way:
+            yield from _along(reference, place, aside, way)
+
+
+def _along(
+    reference: Reference, place: HardPlace, aside: float, way: Sequence[tuple[float, Mapping[str, Any]]]
+) -> Iterator[Miss]:
+    """From far to near on one side: what the solver answers somewhere on the way it must answer all the way."""
+    found = solved(reference, [given for _, given in way])
+    answers = {n for n, values in found.items() if np.isfinite(values).any()}
+    other: set[str] = set()
+    for i, (distance, given) in enumerate(way):
+        right = {n: v for n, v in reference.at(given).items() if v is not None and n in answers - other}
+        off = {n: _off(reference, n, found[n][i], v) for n, v in right.items()}
+        if distance >= _FAR:
+            # So far from the place no rounding explains this: the formula is of another case of the mechanism.
+            other |= {n for n, error in off.items() if error > 1e-6 * _largest(right[n])}
+        # What is right to the last digits needs no conditioning.
+        doubtful = {
+            n: right[n]
+            for n, error in off.items()
+            if n not in other and not error <= 1e-15 * abs(float(right[n]))
+        }
+        allowed = unavoidable(reference, given, doubtful) if doubtful else {}
+        for name in doubtful:
+            error = off[name]
+            if error != error:
+                if not _is_judged(reference, name, given):
+                    yield Miss(name, given, place, distance, aside, None, None, None)
+            elif error > ALLOWED * allowed[name]:
+                size = abs(float(right[name])) or 1.0
+                yield Miss(name, given, place, distance, aside, error, error / size, error / allowed[name])
+
+
+def _is_judged(reference: Reference, name: str, given: Mapping[str, Any]) -> bool:
+    """Whether the solver says in words that the quantity does not exist there."""
+    known = {**reference.exercise.intake.defaults, **given}
+    known = {n: v for n, v in known.items() if n in reference.exercise.quantity_names}
+    try:
+        reference.exercise.solution.graph.evaluate((name,), known, reference.effects)
+    except (CannotAssemble, Undefined):
+        return True
+    return False
+
+
+def _largest(right: Any) -> float:
+    return max(abs(float(right)), 1e-9)
+
+
+def _has_lengths(reference: Reference, given: Mapping[str, Any]) -> bool:
+    """Whether no given quantity that must be positive is not."""
+    specs = reference.exercise.spec.given
+    return all(given[n] > 0 for n, s in specs.items() if s.positive and n in given)
+
+
+def _off(reference: Reference, name: str, value: float, right: Any) -> float:
+    if not np.isfinite(value):
+        return float("nan")
+    return float(abs(difference(reference, name, reference.mp.mpf(float(value)), right)))
+
+
+def solved(reference: Reference, places: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
+    """The solver's own answers, all places in one call."""
+    exercise = reference.exercise
+    known = [{**exercise.intake.defaults, **given} for given in places]
+    given = {
+        n: v if isinstance(v, str) else np.array([float(k[n]) for k in known])
+        for n, v in known[0].items()
+        if n in exercise.quantity_names
+    }
+    found = {}
+    for name in reference.wanted:
+        try:
+            value = exercise.solution.graph.evaluate((name,), given, reference.effects)[name]
+            found[name] = np.broadcast_to(np.asarray(value, dtype=float), (len(places),))
+        except CourseworkError:
+            found[name] = np.full(len(places), np.nan)
+    return found

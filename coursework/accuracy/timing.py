@@ -1,0 +1,72 @@
+"""How long calls take: rounds in which every call has its turn, so that a busy machine is busy for all of them."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+WIDE = 0.6  #: a spread, in parts of the median, from which on times are not compared
+ALIKE = 1.75  #: times whose ratio is smaller are alike, whatever their spreads
+_ROUNDS = 9
+_LEAST_ROUNDS = 3
+
+
+@dataclass(frozen=True)
+class Times:
+    """Seconds of a call: the median of the rounds, and the quartiles."""
+
+    median: float
+    low: float
+    high: float
+    rounds: int
+
+    @property
+    def spread(self) -> float:
+        return (self.high - self.low) / self.median
+
+    def per(self, count: int) -> Times:
+        return Times(self.median / count, self.low / count, self.high / count, self.rounds)
+
+
+def overlap(a: Any, b: Any) -> bool:
+    """Whether two times cannot be told apart: their quartiles overlap, or they are nearly the same."""
+    fast, slow = sorted((a, b), key=lambda t: t.median)
+    return slow.low <= fast.high or slow.median < ALIKE * fast.median
+
+
+def interleaved(
+    calls: Sequence[Callable[[], Any]], at_least: float, budget: float = math.inf, rounds: int = _ROUNDS
+) -> list[Times]:
+    """The times of some calls, each repeated within a round for ``at_least`` so many seconds.
+
+    Every call has at least three rounds; one that takes longer than ``budget`` in all has no more than these.
+    """
+    repeats, once = [], []
+    for call in calls:
+        call()  # what is made at the first call is not timed
+        start = time.perf_counter()
+        call()
+        once.append(max(time.perf_counter() - start, 1e-9))
+        repeats.append(max(1, math.ceil(at_least / once[-1])))
+    samples: list[list[float]] = [[] for _ in calls]
+    for n in range(rounds):
+        # Each round begins with another call.
+        for i in (*range(n % len(calls), len(calls)), *range(n % len(calls))):
+            if n >= _LEAST_ROUNDS and once[i] * rounds > budget:
+                continue
+            start = time.perf_counter()
+            for _ in range(repeats[i]):
+                calls[i]()
+            samples[i].append((time.perf_counter() - start) / repeats[i])
+    return [times_of(own) for own in samples]
+
+
+def times_of(samples: Sequence[float]) -> Times:
+    """Median and quartiles of some measurements, seconds."""
+    low, median, high = (float(np.quantile(samples, part)) for part in (0.25, 0.5, 0.75))
+    return Times(median, low, high, len(samples))

@@ -1,0 +1,125 @@
+"""The numeric core as a textbook has it: what formulas that call the core are computed by in many digits.
+
+A solution may call the core in a formula itself, for a triangle's side or a linkage's pose. The core computes with
+floats alone, and by ways that this room is to judge; so in a reference its functions are replaced by these *twins*: the
+law of cosines, two circles that meet, nothing that is clever. They take floats, arrays and followed numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+
+from coursework import degrees
+from coursework.kinematics.angles import Degrees
+from coursework.kinematics.dyads import side_of
+
+
+def _degrees_of(angle: Any) -> Any:
+    """A heading in degrees; the start of what lies between two directions is exact in many digits anyway."""
+    if not isinstance(angle, Degrees):
+        raise TypeError("a twin takes angles in degrees")
+    return angle.angle
+
+
+def third_side(one: Any, other: Any, angle: Any) -> Any:
+    return degrees.sqrt(one**2 + other**2 - 2 * one * other * degrees.cos(_degrees_of(angle)))
+
+
+def corner(near: Any, other: Any, opposite: Any) -> Any:
+    return np.radians(degrees.acos((near**2 + other**2 - opposite**2) / (2 * near * other)))
+
+
+def corner_beside(one: Any, other: Any, angle: Any, third: Any) -> Any:
+    return corner(one, third, other)
+
+
+class FourBar:
+    """Angles and rates of a four-bar by the two circles on which B lies."""
+
+    def __init__(self, ground: Any, crank: Any, coupler: Any, rocker: Any, mode: Any = "open") -> None:
+        self.lengths = ground, crank, coupler, rocker
+        self.side = side_of(mode) if isinstance(mode, str) or np.asarray(mode).dtype.kind == "U" else mode
+
+    def at(self, crank_angle: Any) -> _Pose:
+        d, a, b, c = self.lengths
+        crank = degrees.polar(a, _degrees_of(crank_angle))
+        line = d - crank
+        squared = abs(line) ** 2
+        along = (squared + b**2 - c**2) / (2 * squared)
+        across = degrees.sqrt(b**2 / squared - along**2)
+        coupler = line * (along + 1j * self.side * across)
+        return _Pose(crank, coupler, crank + coupler - d)
+
+
+class _Pose:
+    """The vectors of a four-bar at one crank angle; rates by their projections."""
+
+    def __init__(self, crank: Any, coupler: Any, rocker: Any) -> None:
+        self._crank, self._coupler, self._rocker = crank, coupler, rocker
+        area = _cross(rocker, coupler)
+        self.coupler_angle, self.rocker_angle = (np.radians(degrees.angle(v)) for v in (coupler, rocker))
+        self.coupler_ratio = _cross(crank, rocker) / area
+        self.rocker_ratio = _cross(crank, coupler) / area
+        pull = crank + self.coupler_ratio**2 * coupler - self.rocker_ratio**2 * rocker
+        self.coupler_gain = -_dot(pull, rocker) / area
+        self.rocker_gain = -_dot(pull, coupler) / area
+
+
+class SliderCrank:
+    def __init__(self, crank: Any, rod: Any, offset: Any) -> None:
+        self.lengths = crank, rod, offset
+
+    def run(self, crank_angle: Any) -> Any:
+        crank, rod, offset = self.lengths
+        return degrees.sqrt(rod**2 - (offset - crank * degrees.sin(_degrees_of(crank_angle))) ** 2)
+
+
+def _cross(u: Any, v: Any) -> Any:
+    return u.real * v.imag - u.imag * v.real
+
+
+def _dot(u: Any, v: Any) -> Any:
+    return u.real * v.real + u.imag * v.imag
+
+
+_CORE = "coursework.kinematics."
+_TWINS: dict[str, Any] = {f.__name__: f for f in (third_side, corner, corner_beside, FourBar, SliderCrank)}
+
+
+class Twinned:
+    """The functions of a course with the core's functions replaced by their twins."""
+
+    def __init__(self) -> None:
+        self._spaces: dict[int, dict[str, Any]] = {}
+        self._made: dict[int, Any] = {}
+
+    def __call__(self, function: Any) -> Callable[..., Any]:
+        if not isinstance(function, FunctionType):
+            return function
+        if id(function) not in self._made:
+            space = self._space(function)
+            made = FunctionType(
+                function.__code__, space, function.__name__, function.__defaults__, function.__closure__
+            )
+            made.__kwdefaults__ = function.__kwdefaults__
+            self._made[id(function)] = made
+        return self._made[id(function)]
+
+    def _space(self, function: FunctionType) -> dict[str, Any]:
+        names = function.__globals__
+        if id(names) not in self._spaces:
+            space = self._spaces[id(names)] = dict(names)
+            package = (function.__module__ or "").partition(".")[0]
+            space |= {name: self._seen(value, package) for name, value in names.items()}
+        return self._spaces[id(names)]
+
+    def _seen(self, value: Any, package: str) -> Any:
+        home = getattr(value, "__module__", None) or ""
+        if home.startswith(_CORE):
+            return _TWINS.get(getattr(value, "__name__", ""), value)
+        is_own = isinstance(value, FunctionType) and home.partition(".")[0] == package != "coursework"
+        return self(value) if is_own else value

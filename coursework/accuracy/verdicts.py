@@ -1,0 +1,124 @@
+"""What the figures say in words: sentences that stay the same when the figures are measured again.
+
+No time stands in a sentence, and none is called shorter than another unless the quartiles are apart and their ratio is
+plain. Errors are the same in every run, and may be told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import pairwise
+from typing import Any
+
+from coursework.accuracy.measuring import DATA, GENERIC, HARD, Row
+from coursework.accuracy.timing import WIDE, overlap
+
+LIMITS = (1e-3, 1e-6, 1e-12)
+_REFERENCES = ("mpmath", DATA)
+
+Words = Mapping[str, Any]
+
+
+def cheapest(rows: Iterable[Row]) -> list[Row]:
+    """The rows whose times cannot be told from the shortest, shortest first; none where that one spreads widely."""
+    by_time = sorted(rows, key=lambda row: row.median)
+    if not by_time or is_busy(by_time[:1]):
+        return []
+    return [row for row in by_time if overlap(by_time[0], row)]
+
+
+def is_busy(rows: Iterable[Row]) -> bool:
+    """Whether the times of one and the same way spread so widely that nothing can be compared."""
+    return any((row.high - row.low) / row.median > WIDE for row in rows if row.median)
+
+
+class Rows:
+    """Rows of one kind, looked up by family, place and setting."""
+
+    def __init__(self, rows: Sequence[Row]) -> None:
+        self.rows = rows
+
+    def of(self, family: str, place: str = GENERIC) -> list[Row]:
+        found = [r for r in self.rows if r.family == family and r.place == place]
+        return sorted(found, key=lambda r: (r.setting is not None, r.setting))
+
+    def answered(self, family: str, place: str = GENERIC) -> list[Row]:
+        """Those that have an answer somewhere, and so an error."""
+        return [r for r in self.of(family, place) if r.max_error is not None]
+
+    def one(self, family: str, place: str = GENERIC) -> Row | None:
+        found = self.of(family, place)
+        return found[0] if found else None
+
+    def within(self, limit: float, places: Sequence[str]) -> list[Row]:
+        """The generic rows of the ways that keep below a limit at all of these places; references left out."""
+        found = []
+        for row in self.rows:
+            if row.place != places[0] or row.family in _REFERENCES:
+                continue
+            own = [r for r in self.rows if r.method == row.method and r.place in places]
+            kept = all(not r.failed and r.max_error is not None and r.max_error <= limit for r in own)
+            if kept and {r.place for r in own} == set(places):
+                found.append(row)
+        return found
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Generic places, and hard ones where there are such."""
+        return (GENERIC, HARD) if any(r.place == HARD for r in self.rows) else (GENERIC,)
+
+
+def enough(rows: Rows, said: Words, name: Any, number: Any) -> list[str]:
+    """For some errors the cheapest ways that keep below them everywhere; limits of one answer together."""
+    told: dict[tuple[str, str], list[float]] = {}
+    for limit in LIMITS:
+        for key, methods in _answers(rows, said, name, limit):
+            told.setdefault((key, methods), []).append(limit)
+    reading = said["reading"]
+    return [
+        reading[key].format(limit=_and([number(limit) for limit in limits], said), methods=methods)
+        for (key, methods), limits in told.items()
+    ]
+
+
+def _answers(rows: Rows, said: Words, name: Any, limit: float) -> list[tuple[str, str]]:
+    """What is to be said of one limit: the sentence, and the methods that it names."""
+    everywhere = rows.within(limit, rows.places)
+    best = cheapest(everywhere)
+    if everywhere and not best:
+        return [("busy", "")]
+    found = [("nowhere_below", "")]
+    if best:
+        found = [("everywhere_alike" if best[1:] else "everywhere", listed(best, said, name))]
+    if better := _cheaper_at_generic_places(rows, limit, best):
+        found.append(("generic_only", listed(better, said, name)))
+    return found
+
+
+def _cheaper_at_generic_places(rows: Rows, limit: float, best: Sequence[Row]) -> list[Row]:
+    """Ways that would do at generic places alone, clearly cheaper than the best that do everywhere."""
+    generic = cheapest(rows.within(limit, (GENERIC,)))
+    return [] if {row.method for row in best} & {row.method for row in generic} else generic
+
+
+def listed(rows: Sequence[Row], said: Words, name: Any) -> str:
+    """Methods by name: in an order of their own, since their times are no order."""
+    return _and(sorted(f"*{name(row)}*" for row in rows), said)
+
+
+def _and(words: Sequence[str], said: Words) -> str:
+    return str(said["reading"]["and"]).join([", ".join(words[:-1]), words[-1]]) if words[1:] else words[0]
+
+
+def paid_after(row: Row, stable: Row | None) -> float | None:
+    """How many uses pay for the making of a table; None where it is not clearly cheaper than the solver."""
+    if row.build_ns is None or stable is None or overlap(row, stable) or row.median > stable.median:
+        return None
+    return row.build_ns / (stable.median - row.median)
+
+
+def halves(rows: Sequence[Row]) -> bool:
+    """Whether each step of Newton's method halves the error and no more, as it does where two solutions meet."""
+    return len(rows) > 1 and all(
+        a.max_error and b.max_error and 0.3 < b.max_error / a.max_error < 0.7 for a, b in pairwise(rows)
+    )

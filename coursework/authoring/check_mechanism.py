@@ -1,0 +1,87 @@
+"""The promises about a stated mechanism: one degree of freedom, loops that close, rates that are those of the solution."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from coursework.authoring.check_report import Report
+from coursework.course.variant import Variant
+from coursework.errors import CourseworkError
+from coursework.mechanics.statement import GROUND, Mechanism
+from coursework.motion.scenes import Scene
+from coursework.structure.joints import FRAME, Counts, JointGraph
+
+TRIED = 20  #: variants
+_CLOSES = 1e-9  #: of the largest distance
+_AGREES = 1e-7  #: of the largest rate
+
+
+def check_mechanism(drawn: Sequence[Variant], report: Report) -> None:
+    """Joints hold together what they should in every variant, and their rates are the solution's own."""
+    exercise = drawn[0].exercise
+    mechanism = exercise.solution.mechanism
+    if mechanism is None:
+        return
+    counted = counts(mechanism)
+    if not counted.w == mechanism.mobility == 1:
+        report.fail(
+            f"MECHANISM: {counted.n} bodies, {counted.b} pins and slides and {counted.h} gears leave {counted.w} degrees of "
+            "freedom; a driver moves 1"
+        )
+        return
+    for variant in drawn[:TRIED]:
+        report.counts["mechanisms closed"] += 1
+        for why in faults(variant):
+            report.fail(f"seed {variant.seed}: MECHANISM: {why}")
+
+
+def counts(mechanism: Mechanism) -> Counts:
+    """What the joint graph counts of it: bodies, pairs, degrees of freedom."""
+    number = {GROUND: FRAME, **{name: k for k, name in enumerate(mechanism.names, start=FRAME + 1)}}
+    joints: list[dict[str, Any]] = []
+    for pin in mechanism.pins:
+        joints.append({"between": [number[pin.on], number[pin.of]], "kind": "revolute"})
+    for slide in mechanism.slides:
+        joints.append({"between": [number[slide.on], number[slide.of]], "kind": "prismatic"})
+    for gear in mechanism.gears:
+        joints.append({"between": [number[gear.first], number[gear.second]], "kind": "higher"})
+    return JointGraph.of(joints).counts
+
+
+def faults(variant: Variant) -> Iterator[str]:
+    """What does not agree in a variant: a pin that is not met, a rate that is another than the solution's."""
+    exercise = variant.exercise
+    scene = Scene(exercise, variant.used)
+    try:
+        angle = np.radians([exercise.driver_angle(variant.used)])
+        stance = scene.pose(angle, by_joints=True)
+    except CourseworkError as fault:
+        yield str(fault)
+        return
+    size = float(np.max(np.abs(stance.origins)))
+    if not stance.gap[0] <= _CLOSES * size:
+        yield f"the pins of a loop miss each other by {1000 * stance.gap[0]:.3g} mm"
+        return
+    yield from _other_rates(variant, scene, stance)
+
+
+def _other_rates(variant: Variant, scene: Scene, stance: Any) -> Iterator[str]:
+    exercise = variant.exercise
+    speed = float(variant.used.get(scene.driver.speed, 0.0)) if scene.driver.speed else 0.0
+    if not speed:
+        return
+    named = {
+        angle: pair[0] for loop in exercise.solution.loops.values() for angle, pair in loop.rates.items()
+    }
+    largest = abs(speed) * max(1.0, float(np.nanmax(np.abs(stance.rates))))
+    for number, body in enumerate(scene.mechanism.bodies):
+        rate = named.get(body.angle) if isinstance(body.angle, str) else None
+        if rate is None or rate in variant.used:
+            continue
+        stated = exercise.solve(**variant.used, only=rate, effects=variant.effects)[rate]
+        found = float(stance.rates[number, 0]) * speed
+        if not abs(found - stated) <= _AGREES * largest:
+            yield f"body {body.name} turns at {found:.6g} rad/s by its joints, and {rate} = {stated:.6g}"

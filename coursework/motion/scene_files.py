@@ -1,0 +1,384 @@
+"""Scenes as files: TOML, every value with its unit.
+
+::
+
+    exercise = "three_loop_shaper"
+    seed = 7
+    effects = ["load", "inertia", "friction"]
+    show = ["drive_torque", "reaction D"]
+
+    [bodies.8]
+    mass = "12 kg"
+
+    [[loads]]
+    on = "G"
+    force = "800 N"
+    against = "motion"
+    during = "working stroke"
+
+    [friction]
+    G = 0.12
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+from coursework.course.course import Course
+from coursework.course.exercise import CourseExercise
+from coursework.errors import BadInput, CourseworkError, nearest
+from coursework.mechanics.loads import STROKES
+from coursework.mechanics.statement import Load, Place
+from coursework.mechanics.wrenches import GRAVITY
+from coursework.motion.added import Added, Flywheel, Motor, Weighed
+from coursework.motion.effects import REFUSED, check_effect, refusal
+from coursework.motion.scenes import Scene
+from coursework.reading.numbers import read_number
+from coursework.reading.units import same_dimension
+from coursework.system.toml_lines import line_of
+
+_KEYS = (
+    "exercise", "seed", "given", "effects", "over", "steps", "drive", "duration", "show", "gravity", "bodies", "loads",
+    "friction", "slides", "flywheel",
+)  # fmt: skip
+_STEPS = 360
+
+Path_ = tuple[str | int, ...]
+
+
+@dataclass(frozen=True)
+class SceneFile:
+    """A scene, and how it is run: over a cycle of so many steps, or in time under a drive."""
+
+    name: str
+    scene: Scene
+    steps: int = _STEPS
+    drive: Motor | None = None
+    duration: float = 1.0
+
+
+def read_scene(path: Path, course: Course) -> SceneFile:
+    """Read a scene's file.
+
+    Raises
+    ------
+    BadInput
+        It cannot be read, or says what makes no sense: with the line, and the nearest right name.
+    """
+    try:
+        text = path.read_text("utf-8-sig")
+        table = tomllib.loads(text)
+    except OSError as fault:
+        raise BadInput(f"the scene {path} cannot be read: {fault.strerror or fault}") from fault
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
+        raise BadInput(f"{path}: {fault}") from fault
+    return _Reader(path, text, table, course).scene_file()
+
+
+class _Reader:
+    """Reads the tables of one file; what it refuses it tells with the line."""
+
+    def __init__(self, path: Path, text: str, table: Mapping[str, Any], course: Course) -> None:
+        self.path, self.text, self.table, self.course = path, text, table, course
+
+    def refused(self, at: Path_, why: str) -> BadInput:
+        line = line_of(self.text, at)
+        return BadInput(f"{self.path}{f', line {line}' if line else ''}: {why}")
+
+    def scene_file(self) -> SceneFile:
+        self._only(self.table, _KEYS, ())
+        exercise = self._exercise()
+        run: dict[str, Any] = {}
+        drive = self._drive()
+        if drive is not None:
+            run = {"drive": drive, "duration": self._amount(("duration",), "s", 1.0)}
+        elif "duration" in self.table:
+            raise self.refused(("duration",), 'a duration needs a drive: drive = { torque = "5 N*m" }')
+        return SceneFile(self.path.stem, self._scene(exercise), self._steps(), **run)
+
+    def _scene(self, exercise: CourseExercise) -> Scene:
+        effects, show = (self._words(key) for key in ("effects", "show"))
+        for number, effect in enumerate(effects):
+            self._told(("effects",), check_effect, effect, exercise)
+            if effect in effects[:number]:
+                raise self.refused(("effects",), f"the effect {effect!r} is named twice")
+        given = self._given(exercise)
+        added = self._added(exercise)
+        scene = self._told(("exercise",), Scene, exercise, given, effects, (), added)
+        for name in show:
+            self._told(("show",), Scene, exercise, given, effects, (name,), added)
+        self._check_names(scene)
+        return Scene(exercise, given, effects, show, added)
+
+    def _check_names(self, scene: Scene) -> None:
+        """Look every name up that the mechanism has to know, whichever effects are called."""
+        mechanism = scene.exercise.solution.mechanism
+        if mechanism is None:
+            return
+        for name in self._table(("bodies",)):
+            self._known(("bodies", name), "body", name, mechanism.names)
+            if isinstance(centre := self._at(("bodies", name, "centre")), str):
+                self._known(("bodies", name, "centre"), "point", centre, tuple(mechanism.body(name).places))
+        known = (*mechanism.points, *mechanism.names)
+        for number, load in enumerate(self._loads_listed):
+            on = str(load.get("on", ""))
+            self._known(("loads", number, "on"), "point or body", on, known)
+            if "body" in load:
+                self._known(("loads", number, "body"), "body", str(load["body"]), mechanism.holders(on))
+        slides = [slide.at for slide in mechanism.slides]
+        for name in self._table(("slides",)):
+            self._known(("slides", name), "slide", name, slides)
+        for name, value in scene.added.friction.items():
+            own = Scene(scene.exercise, scene.given, ("friction",), (), Added(friction={name: value}))
+            self._told(("friction", name), getattr, own, "forces")
+
+    def _told(self, at: Path_, function: Any, *arguments: Any) -> Any:
+        """What a function gives; what it refuses, with the line."""
+        try:
+            return function(*arguments)
+        except BadInput:
+            raise
+        except CourseworkError as fault:
+            raise self.refused(at, str(fault)) from fault
+
+    def _known(self, at: Path_, kind: str, name: str, known: Sequence[str]) -> None:
+        if name not in known:
+            raise self.refused(at, f"no {kind} {name!r}{nearest(name, known)}")
+
+    # -------------------------------------------------------------------- values
+
+    def _only(self, table: Mapping[str, Any], known: Sequence[str], at: Path_) -> None:
+        for key in table:
+            if key in REFUSED:
+                raise self.refused((*at, key), refusal(key))
+            if key not in known:
+                raise self.refused((*at, key), f"no key {key!r}{nearest(key, known)}")
+
+    def _at(self, at: Path_) -> Any:
+        """What stands at a path; None where nothing does."""
+        found: Any = self.table
+        for part in at:
+            try:
+                found = found[part]
+            except (KeyError, IndexError, TypeError):
+                return None
+        return found
+
+    def _table(self, at: Path_) -> Mapping[str, Any]:
+        found = self._at(at)
+        if found is None:
+            return {}
+        if not isinstance(found, Mapping):
+            raise self.refused(at, f"{at[-1]} is a table; found {found!r}")
+        return found
+
+    def _words(self, key: str) -> tuple[str, ...]:
+        found = self.table.get(key, [])
+        if not isinstance(found, list) or not all(isinstance(word, str) for word in found):
+            raise self.refused((key,), f'{key} is a list of words: ["…", "…"]; found {found!r}')
+        return tuple(found)
+
+    def _amount(self, at: Path_, unit: str, otherwise: Any = None) -> Any:
+        """A number in a unit; a bare number is in that unit already."""
+        found = self._at(at)
+        return otherwise if found is None else self._number(at, found, unit)
+
+    def _number(self, at: Path_, found: Any, unit: str) -> float:
+        if isinstance(found, (int, float)) and not isinstance(found, bool) and math.isfinite(found):
+            return float(found)
+        reading = read_number(found, unit) if isinstance(found, str) else None
+        if reading is not None and reading.status == "read" and len(reading.values) == 1:
+            return reading.values[0]
+        kind = "" if unit == "1" else f" in {unit}"
+        raise self.refused(at, f"{at[-1]} is a number{kind}; found {found!r}")
+
+    # -------------------------------------------------------------------- tables
+
+    def _exercise(self) -> CourseExercise:
+        name = self.table.get("exercise")
+        if not isinstance(name, str):
+            raise BadInput(
+                f'{self.path} names no exercise; write exercise = "…": {", ".join(self.course.names[:4])}, …'
+            )
+        self._known(("exercise",), "exercise", name, self.course.names)
+        return self.course[name]
+
+    def _given(self, exercise: CourseExercise) -> dict[str, Any]:
+        """The values of a variant, with those that the file names instead."""
+        seed = self.table.get("seed", 0)
+        found = dict(self._told(("seed",), exercise.variant, seed).used)
+        for name, value in self._table(("given",)).items():
+            if name not in exercise.spec.given:
+                raise self.refused(
+                    ("given", name),
+                    f"{exercise.name} has no given quantity {name!r}{nearest(name, exercise.spec.given)}",
+                )
+            found[name] = self._told(("given", name), exercise.intake.value, name, value)
+        return found
+
+    def _steps(self) -> int:
+        steps = self.table.get("steps", _STEPS)
+        if isinstance(steps, bool) or not isinstance(steps, int) or steps < 1:
+            raise self.refused(("steps",), f"steps is a whole number from 1 on; found {steps!r}")
+        if self.table.get("over", "cycle") != "cycle":
+            raise self.refused(("over",), f'over is "cycle"; found {self.table["over"]!r}')
+        return steps
+
+    def _drive(self) -> Motor | None:
+        if "drive" not in self.table:
+            return None
+        self._only(self._table(("drive",)), ("torque", "no_load_speed"), ("drive",))
+        torque = self._amount(("drive", "torque"), "N*m")
+        if torque is None:
+            raise self.refused(("drive",), 'a drive has a torque: drive = { torque = "5 N*m" }')
+        speed = self._amount(("drive", "no_load_speed"), "rad/s")
+        if speed == 0:
+            raise self.refused(("drive", "no_load_speed"), "the speed at which no torque is left is not 0")
+        return Motor(torque, speed)
+
+    def _added(self, exercise: CourseExercise) -> Added:
+        bodies = {name: self._body(name) for name in self._table(("bodies",))}
+        loads = tuple(self._load(number, exercise) for number in range(len(self._loads_listed)))
+        friction = {name: self._friction(name) for name in self._table(("friction",))}
+        lengths = {}
+        for name in self._table(("slides",)):
+            self._only(self._table(("slides", name)), ("length",), ("slides", name))
+            lengths[name] = self._amount(("slides", name, "length"), "mm", 0.0)
+        return Added(bodies, loads, friction, lengths, self._flywheel(), self._gravity())
+
+    def _body(self, name: str) -> Weighed:
+        at = ("bodies", name)
+        self._only(self._table(at), ("mass", "inertia", "centre"), at)
+        centre: Any = self._at((*at, "centre"))
+        if isinstance(centre, list) and len(centre) == 2:
+            x, y = (self._number((*at, "centre"), value, "mm") for value in centre)
+            centre = complex(x, y)
+        elif centre is not None and not isinstance(centre, str):
+            raise self.refused(
+                (*at, "centre"), f'centre is a point, or ["x mm", "y mm"] in the body; found {centre!r}'
+            )
+        mass, inertia = self._amount((*at, "mass"), "kg"), self._amount((*at, "inertia"), "kg*m^2")
+        for key, value in (("mass", mass), ("inertia", inertia)):
+            if value is not None and value < 0:
+                raise self.refused((*at, key), f"{key} is not negative; found {value:g}")
+        return Weighed(mass, inertia, centre)
+
+    @property
+    def _loads_listed(self) -> list[Mapping[str, Any]]:
+        found = self.table.get("loads", [])
+        if not isinstance(found, list) or not all(isinstance(load, Mapping) for load in found):
+            raise self.refused(("loads",), "loads are tables: [[loads]]")
+        return found
+
+    def _load(self, number: int, exercise: CourseExercise) -> Load:
+        at: Path_ = ("loads", number)
+        own = self._loads_listed[number]
+        self._only(own, ("on", "body", "force", "moment", "angle", "against", "during", "by", "table"), at)
+        if "on" not in own:
+            raise self.refused(at, 'a load acts on something: on = "C"')
+        kind = "moment" if "moment" in own else "force"
+        if own.get("against", "motion") != "motion":
+            raise self.refused((*at, "against"), f'against is "motion"; found {own["against"]!r}')
+        during = str(own.get("during", "always"))
+        if during not in STROKES:
+            raise self.refused(
+                (*at, "during"),
+                f"during is one of {', '.join(STROKES)}; found {during!r}{nearest(during, STROKES)}",
+            )
+        values: dict[str, Place] = {kind: self._size(at, kind, exercise)}
+        if "angle" in own:
+            values["angle"] = self._amount((*at, "angle"), "deg")
+        by = str(own.get("by", ""))
+        body = str(own.get("body", ""))
+        pairs = self._pairs(at, kind, by, exercise)
+        return Load(
+            str(own["on"]), against="against" in own, during=during, by=by, table=pairs, body=body, **values
+        )
+
+    def _size(self, at: Path_, kind: str, exercise: CourseExercise) -> Place:
+        """A number, or a quantity of the exercise by its name."""
+        found, unit = self._at((*at, kind)), {"force": "N", "moment": "N*m"}[kind]
+        if found is None:
+            if self._at((*at, "table")) is None:
+                raise self.refused(
+                    at, 'a load says how large it is: force = "800 N", moment = "5 N*m", or table = […]'
+                )
+            return 0.0
+        if isinstance(found, str) and found in exercise.spec.given:
+            if not same_dimension(exercise.units.get(found, "1"), unit):
+                raise self.refused(
+                    (*at, kind), f"{found} is in {exercise.units.get(found, '1')}, a {kind} in {unit}"
+                )
+            return found
+        return self._number((*at, kind), found, unit)
+
+    def _pairs(
+        self, at: Path_, kind: str, by: str, exercise: CourseExercise
+    ) -> tuple[tuple[float, float], ...]:
+        listed, unit = self._at((*at, "table")), {"force": "N", "moment": "N*m"}[kind]
+        if listed is None:
+            return ()
+        if by and by not in exercise.quantity_names:
+            raise self.refused((*at, "by"), f"no quantity {by!r}{nearest(by, exercise.quantity_names)}")
+        if (
+            not isinstance(listed, list)
+            or len(listed) < 2
+            or not all(isinstance(p, list) and len(p) == 2 for p in listed)
+        ):
+            raise self.refused(
+                (*at, "table"),
+                f'a table lists pairs: [["0 deg", "0 N"], ["90 deg", "200 N"]]; found {listed!r}',
+            )
+        place = exercise.units.get(by, "deg") if by else "deg"
+        found = [
+            (self._number((*at, "table"), x, place), self._number((*at, "table"), y, unit)) for x, y in listed
+        ]
+        if any(b[0] <= a[0] for a, b in pairwise(found)):
+            raise self.refused(
+                (*at, "table"), "a table goes upwards: each first value is larger than the one before"
+            )
+        return tuple(found)
+
+    def _friction(self, name: str) -> Any:
+        at: Path_ = ("friction", name)
+        found = self._at(at)
+        if not isinstance(found, Mapping):
+            return self._coefficient(at, found)
+        self._only(found, ("coefficient", "radius"), at)
+        coefficient = self._coefficient((*at, "coefficient"), found.get("coefficient"))
+        radius = self._amount((*at, "radius"), "mm")
+        return coefficient if radius is None else (coefficient, radius)
+
+    def _coefficient(self, at: Path_, found: Any) -> float:
+        value = self._number(at, found, "1")
+        if value < 0:
+            raise self.refused(at, f"a coefficient of friction is not negative; found {value:g}")
+        return value
+
+    def _flywheel(self) -> Flywheel | None:
+        if "flywheel" not in self.table:
+            return None
+        at: Path_ = ("flywheel",)
+        self._only(self._table(at), ("inertia", "unevenness"), at)
+        inertia, unevenness = self._amount((*at, "inertia"), "kg*m^2"), self._amount((*at, "unevenness"), "1")
+        if (inertia is None) == (unevenness is None):
+            raise self.refused(at, 'a flywheel has inertia = "2 kg*m^2", or unevenness = 0.02')
+        for key, value in (("inertia", inertia), ("unevenness", unevenness)):
+            if value is not None and value <= 0:
+                raise self.refused((*at, key), f"{key} is above 0; found {value:g}")
+        return Flywheel(inertia, unevenness)
+
+    def _gravity(self) -> complex:
+        at: Path_ = ("gravity",)
+        if "gravity" not in self.table:
+            return -1j * GRAVITY
+        self._only(self._table(at), ("acceleration", "angle"), at)
+        size = self._amount((*at, "acceleration"), "m/s^2", GRAVITY)
+        return cmath.rect(size, math.radians(self._amount((*at, "angle"), "deg", -90.0)))

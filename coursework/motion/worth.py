@@ -1,0 +1,185 @@
+"""What each effect of a scene is worth: the time it costs, and what leaving it out changes of what is shown."""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coursework.errors import CourseworkError, WrongValue
+from coursework.motion.effects import FORCES
+from coursework.motion.scenes import Scene, Table
+
+TOLERANCE = 0.01  #: of an output's largest value: a smaller change is one that a scene could do without
+_ROUNDS = 7
+
+Run = Callable[[Scene], Table]
+
+
+@dataclass(frozen=True)
+class Change:
+    """How far an output moves: its largest and its root mean square change, in its unit, and as parts of the output's
+    largest and root mean square value."""
+
+    output: str
+    unit: str
+    largest: float
+    rms: float
+    largest_part: float
+    rms_part: float
+
+
+@dataclass(frozen=True)
+class Worth:
+    """One effect: seconds that it costs of the scene's, and what leaving it out changes, output by output.
+
+    ``needed``: why the scene does not run without it; empty where it does.
+    """
+
+    effect: str
+    seconds: float
+    spread: float
+    changes: tuple[Change, ...]
+    needed: str = ""
+
+    @property
+    def most(self) -> Change | None:
+        """The output that it changes most."""
+        return max(self.changes, key=lambda change: change.largest_part, default=None)
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The effects of a scene with their worth, the time of all of them, and those that it lacks."""
+
+    seconds: float
+    worths: tuple[Worth, ...]
+    lacking: tuple[Worth, ...]
+    tolerance: float
+
+    def said(self) -> Iterator[str]:
+        """What it says in plain words."""
+        limit = f"{100 * self.tolerance:g} %"
+        for worth in self.worths:
+            most = worth.most
+            if worth.needed or worth.effect not in FORCES:
+                continue
+            if most is None or most.largest_part == 0:
+                yield f"{worth.effect} changes nothing here: the scene has no data for it, or asks nothing that it moves"
+            elif most.largest_part <= self.tolerance:
+                yield (
+                    f"the scene could do without {worth.effect}: nothing shown changes by more than {limit} "
+                    f"({most.output} by {100 * most.largest_part:.2g} %)"
+                )
+        for worth in self.lacking:
+            most = worth.most
+            if most is not None and most.largest_part > self.tolerance:
+                yield (
+                    f"the scene lacks {worth.effect}, for which it has data: {most.output} would change by up to "
+                    f"{most.largest:.3g} {most.unit} ({100 * most.largest_part:.2g} %)"
+                )
+            elif most is not None:
+                yield f"{worth.effect} is left out, rightly at {limit}: it would change nothing shown by more"
+
+
+def budget(scene: Scene, run: Run, tolerance: float = TOLERANCE) -> Budget:
+    """The worth of every effect of a scene; ``run`` runs one, over a cycle or in time.
+
+    Raises
+    ------
+    WrongValue
+        A scene that calls for no effect, or a tolerance that is not above 0.
+    """
+    if not scene.effects:
+        raise WrongValue("a budget is of effects: name some, --effects load,inertia,friction")
+    if not tolerance > 0:
+        raise WrongValue(f"a tolerance is above 0, 0.01 for 1 %; found {tolerance:g}")
+    whole = run(scene)
+    others, needed = _others(scene, run, scene.effects)
+    times = _times({"": scene, **others}, run)
+    worths = [_worth(e, scene, others.get(e), whole, run, times, needed.get(e, "")) for e in scene.effects]
+    return Budget(statistics.median(times[""]), tuple(worths), tuple(_lacking(scene, run, whole)), tolerance)
+
+
+def _others(scene: Scene, run: Run, effects: Sequence[str]) -> tuple[dict[str, Scene], dict[str, str]]:
+    """The scene without each effect, and why it does not run without some."""
+    found, needed = {}, {}
+    for effect in effects:
+        try:
+            other = scene.without(effect)
+            run(other)
+        except CourseworkError as fault:
+            needed[effect] = str(fault)
+        else:
+            found[effect] = other
+    return found, needed
+
+
+def _times(scenes: Mapping[str, Scene], run: Run) -> dict[str, list[float]]:
+    """Seconds of each scene, in rounds that run all of them in turn."""
+    found: dict[str, list[float]] = {name: [] for name in scenes}
+    for _ in range(_ROUNDS):
+        for name, scene in scenes.items():
+            fresh = replace(scene)  # what a scene remembers of its mechanism is part of its time
+            start = time.perf_counter()
+            run(fresh)
+            found[name].append(time.perf_counter() - start)
+    return found
+
+
+def _worth(
+    effect: str, scene: Scene, other: Scene | None, whole: Table, run: Run, times: Mapping[str, Sequence[float]], needed: str
+) -> Worth:  # fmt: skip
+    if other is None:
+        return Worth(effect, float("nan"), float("nan"), (), needed)
+    differences = [all_of_it - without for all_of_it, without in zip(times[""], times[effect], strict=True)]
+    quartiles = statistics.quantiles(differences, n=4)
+    changes = tuple(_changes(whole, run(other)))
+    return Worth(effect, statistics.median(differences), quartiles[2] - quartiles[0], changes)
+
+
+def _changes(whole: Table, other: Table) -> Iterator[Change]:
+    """Of every output that both show, at the instants of both."""
+    kept, there = (~_dead(table) for table in (whole, other))
+    for name, values in whole.columns.items():
+        if name in ("t", "dead_centre") or name not in other.columns or name == next(iter(whole.columns)):
+            continue
+        own, changed = values[kept], other.columns[name][there]
+        if own.shape == changed.shape:
+            yield _change(name, whole.units[name], own, changed)
+
+
+def _dead(table: Table) -> np.ndarray:
+    first = next(iter(table.columns.values()))
+    return table.columns.get("dead_centre", np.zeros(len(first))) > 0
+
+
+def _change(name: str, unit: str, own: np.ndarray, changed: np.ndarray) -> Change:
+    apart = np.abs(changed - own)
+    if unit == "deg":
+        apart = np.abs(apart - 360.0 * np.rint(apart / 360.0))
+    size = (float(np.nanmax(np.abs(own), initial=0.0)), _rms(own))
+    largest, rms = float(np.nanmax(apart, initial=0.0)), _rms(apart)
+    parts = [
+        change / of if of else float(change > 0) for change, of in zip((largest, rms), size, strict=True)
+    ]
+    return Change(name, unit, largest, rms, *parts)
+
+
+def _rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.nanmean(np.square(values)))) if np.isfinite(values).any() else 0.0
+
+
+def _lacking(scene: Scene, run: Run, whole: Table) -> Iterator[Worth]:
+    """Effects for which the scene has data and which it does not call, where it shows forces or moves in time."""
+    for effect in scene.with_data():
+        if effect in scene.effects:
+            continue
+        try:
+            added = run(replace(scene, effects=(*scene.effects, effect)))
+        except CourseworkError:
+            continue
+        yield Worth(effect, float("nan"), float("nan"), tuple(_changes(whole, added)))

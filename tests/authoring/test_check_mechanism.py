@@ -1,0 +1,66 @@
+"""The check of a stated mechanism: what every exercise keeps, and that a slip in a statement is found."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+import coursework
+from coursework.authoring.check_mechanism import check_mechanism, counts
+from coursework.authoring.check_report import Report
+from coursework.mechanics import Body, Mechanism, Slide
+
+COURSE = coursework.open_course()
+STATED = [n for n in COURSE if COURSE[n].solution.mechanism is not None]
+
+
+def failures(name, mechanism=None, variants=3):
+    own = COURSE[name]
+    exercise = object.__new__(type(own))  # a copy is the course's own: what is replaced must stay here
+    exercise.__dict__.update(own.__dict__)
+    if mechanism is not None:
+        exercise.__dict__["solution"] = dataclasses.replace(exercise.solution, mechanism=mechanism)
+    report = Report(name)
+    check_mechanism(exercise.variants(range(variants)), report)
+    return report.failures
+
+
+@pytest.mark.parametrize("name", STATED)
+def test_every_statement_agrees_with_its_joint_graph_and_its_solution(name):
+    assert failures(name, variants=10) == []
+
+
+def test_every_driven_exercise_states_its_mechanism():
+    assert [n for n in COURSE if COURSE[n].spec.driver is not None and n not in STATED] == []
+
+
+def test_a_slip_in_a_statement_is_found():
+    stated = COURSE["four_bar_motion"].solution.mechanism
+    two, three, four = stated.bodies
+    longer = dataclasses.replace(three, points={"B": lambda r3: 1.01 * r3})
+    assert (
+        "miss each other"
+        in failures("four_bar_motion", dataclasses.replace(stated, bodies=(two, longer, four)))[0]
+    )
+    free = dataclasses.replace(stated, bodies=(two, three, dataclasses.replace(four, points={})))
+    assert "leave 3 degrees of freedom" in failures("four_bar_motion", free)[0]
+
+
+def test_a_slide_along_another_line_turns_bodies_otherwise():
+    stated = COURSE["slider_crank"].solution.mechanism
+    tilted = dataclasses.replace(stated, slides=(Slide("B", "4", along=10.0),))
+    assert "omega3 = " in failures("slider_crank", tilted)[0]
+
+
+def test_counts_are_those_of_the_joint_graph():
+    double = Mechanism(
+        {"D": 0, "O": 1j},
+        (
+            Body("2", "a", "O", {"A": 1}), Body("3", "b", "A", {"B": 1}), Body("4", "c", "D", {"B": 1}),
+            Body("5", "d", "B", {"P": 1}), Body("6", 0, "P"),
+        ),
+        (Slide("P", "6"),),
+    )  # fmt: skip
+    found = counts(double)
+    assert (found.n, found.b, found.h, found.w, found.gamma) == (5, 7, 0, 1, 2)

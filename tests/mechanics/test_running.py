@@ -1,0 +1,301 @@
+"""Motions in time: energy, sticking and leaving, motors, limits; against closed forms and an independent integration."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import coursework
+from coursework.errors import Undefined, WrongValue
+from coursework.mechanics.statement import Load
+from coursework.mechanics.turn_table import TURN, TurnTable
+from coursework.motion.added import Added, Flywheel, Motor, Weighed
+from coursework.motion.scenes import Scene
+
+COURSE = coursework.open_course()
+FOUR_BAR = {
+    "r1": 200.0,
+    "r2": 60.0,
+    "r3": 180.0,
+    "r4": 140.0,
+    "theta2": 0.0,
+    "omega2": 0.0,
+    "alpha2": 0.0,
+    "mode": "open",
+}
+#: A crank that is a pendulum: the other bodies have no mass.
+PENDULUM = {"2": Weighed(mass=2.0, inertia=0.01, centre=complex(60.0))}
+INERTIA = 0.01 + 2.0 * 0.06**2
+
+
+def pendulum(theta2, omega2=0.0, effects=("gravity", "inertia"), **added):
+    given = {**FOUR_BAR, "theta2": theta2, "omega2": omega2}
+    return Scene(COURSE["four_bar_motion"], given, effects, (), Added(bodies=PENDULUM, **added))
+
+
+def weight_torque(theta2):
+    return 2.0 * 9.81 * 0.06 * math.cos(math.radians(theta2))
+
+
+def test_a_pendulum_swings_as_one_does():
+    """Against the equation of the pendulum, integrated on its own."""
+    table = pendulum(20.0).in_time(0.0, 2.0, count=50)
+    alone = solve_ivp(
+        lambda t, y: [y[1], -2.0 * 9.81 * 0.06 * math.cos(y[0]) / INERTIA], (0, 2.0), [math.radians(20.0), 0.0],
+        rtol=1e-12, atol=1e-12, dense_output=True,
+    )  # fmt: skip
+    found = np.radians(table.columns["theta2"])
+    np.testing.assert_allclose(found, alone.sol(table.columns["t"])[0], atol=1e-7)
+    assert table.balance < 1e-7
+
+
+def test_a_constant_torque_on_a_flywheel_alone_gives_a_constant_acceleration():
+    scene = Scene(
+        COURSE["four_bar_motion"],
+        {**FOUR_BAR, "omega2": 3.0},
+        ("flywheel",),
+        (),
+        Added(flywheel=Flywheel(inertia=0.5)),
+    )
+    table = scene.in_time(2.0, 1.0, count=10)
+    t = table.columns["t"]
+    np.testing.assert_allclose(table.columns["omega2"], 3.0 + 4.0 * t, rtol=1e-12)
+    np.testing.assert_allclose(
+        np.radians(table.columns["theta2"]), 3.0 * t + 2.0 * t**2, rtol=1e-9, atol=1e-9
+    )
+
+
+def test_a_motor_runs_up_to_where_its_line_meets_the_load():
+    """A load of a constant moment on the crank: T (1 - w / w0) = M, approached exponentially."""
+    data = Added(loads=(Load("2", moment=4.0, against=True),), flywheel=Flywheel(inertia=0.2))
+    scene = Scene(COURSE["four_bar_motion"], FOUR_BAR, ("load", "flywheel"), (), data)
+    table = scene.in_time(Motor(10.0, 20.0), 3.0, count=30)
+    last = 20.0 * (1 - 4.0 / 10.0)
+    rate = 10.0 / (20.0 * 0.2)
+    np.testing.assert_allclose(
+        table.columns["omega2"], last * (1 - np.exp(-rate * table.columns["t"])), atol=1e-6
+    )
+
+
+def test_at_rest_it_stays_while_the_drive_is_within_what_holds_it():
+    """A journal of f r = 1.5 mm bears the weight of the crank: it holds as long as |drive - weight's torque| <= f r m g."""
+    held = 0.3 * 0.005 * 2.0 * 9.81
+    friction = {"O": (0.3, 5.0)}
+    for theta2 in (-90.0, 30.0, 80.0, 200.0):
+        for excess, way in ((0.999, 0), (-0.999, 0), (1.001, 1), (-1.001, -1)):
+            scene = pendulum(theta2, effects=("gravity", "inertia", "friction"), friction=friction)
+            drive = weight_torque(theta2) + excess * held
+            running = scene.running(Motor(drive))
+            low, high = running.holding(math.radians(theta2))
+            assert (low, high) == pytest.approx(
+                (weight_torque(theta2) - held, weight_torque(theta2) + held), abs=1e-12
+            )
+            table = scene.in_time(drive, 0.5, count=20)
+            moved = table.columns["theta2"][-1] - theta2
+            assert np.sign(round(moved, 9)) == way
+            assert ("comes to rest at t = 0 s and stays" in " ".join(table.notes)) == (way == 0)
+
+
+def test_a_run_with_friction_ends_and_says_when():
+    """Without a drive the crank comes to rest, within what friction can hold there, and stays for the rest of the run."""
+    exercise = COURSE["slider_crank_torque"]
+    scene = Scene(exercise, exercise.variant(0).used, ("gravity", "inertia", "friction"))
+    table = scene.in_time(0.0, 6.0)
+    (note,) = [note for note in table.notes if "comes to rest" in note]
+    rest = float(note.split("t = ")[1].split(" s")[0])
+    after = table.columns["t"] > rest
+    assert 0 < rest < 6
+    assert after.sum() > 100
+    assert (table.columns["omega2"][after] == 0).all()
+    assert np.ptp(table.columns["theta2"][after]) == 0
+    low, high = scene.running(Motor(0.0)).holding(math.radians(table.columns["theta2"][-1]))
+    assert low <= 0 <= high
+    assert table.balance < 1e-6
+
+
+def test_energy_is_lost_to_friction_alone():
+    """Kinetic and potential energy, from positions and speeds, fall by the work of the friction force, summed apart."""
+    exercise = COURSE["slider_crank_torque"]
+    given = {**exercise.variant(1).used, "omega2": 20.0}
+    scene = Scene(
+        exercise, given, ("gravity", "inertia", "friction"), ("kinetic_energy", "reaction B", "velocity B")
+    )
+    table = scene.in_time(0.0, 0.4, count=4000)
+    columns = table.columns
+    stance = scene.pose(np.radians(columns["theta2"]))
+    height = sum(
+        m.mass * (stance.origins[m.body] + m.centre * stance.headings[m.body]).imag
+        for m in scene.linkage.masses
+    )
+    energy = columns["kinetic_energy"] + 9.81 * height
+    lost = np.concatenate(
+        [[0], np.cumsum(np.diff(columns["t"]) * _middle(columns["T_B"] * columns["v_B_x"] / 1000))]
+    )
+    assert energy[0] - energy[-1] > 1.0
+    np.testing.assert_allclose(energy - energy[0], lost, atol=2e-4 * (energy[0] - energy[-1]))
+
+
+def _middle(values):
+    return 0.5 * (values[1:] + values[:-1])
+
+
+@pytest.mark.parametrize(
+    "name", ["slider_crank_torque", "four_bar_motion", "three_loop_shaper", "quick_return_shaper"]
+)
+@pytest.mark.parametrize("friction", [False, True])
+def test_the_table_moves_as_the_equations_themselves(name, friction):
+    """The acceleration read from the table, beside that for which the equilibrium of all bodies gives the drive."""
+    exercise = COURSE[name]
+    mechanism = exercise.solution.mechanism
+    rubs = {s.at: 0.1 for s in mechanism.slides} if friction else {}
+    rubs |= {mechanism.pins[0].at: (0.1, 6.0)} if friction else {}
+    data = Added(
+        {b: Weighed(1.5, 0.02) for b in mechanism.names}, (Load(mechanism.bodies[-1].at, force=90.0),), rubs
+    )
+    effects = ("load", "gravity", "inertia", *(["friction"] if friction else []))
+    scene = Scene(exercise, exercise.variant(0).used, effects, (), data)
+    running = scene.running(Motor(3.0))
+    for angle in (0.4, 1.9, 4.1, 5.5):
+        for way in (1, -1):
+            found = running.acceleration(angle, way * 6.0, way)
+            effort = scene.forces.over(np.array([angle]), np.array([way * 6.0]), np.array([found])).effort[0]
+            inertia = float(running.table.at(angle)[0])
+            assert effort == pytest.approx(3.0, abs=1e-9 * (3.0 + inertia * abs(found)))
+
+
+def test_strong_friction_balances_wherever_a_balance_exists():
+    """Where corrections by the frictionless inertia lead away from the balance, the guide does not jam."""
+    exercise = COURSE["slider_crank_torque"]
+    for strength in (0.5, 1.2, 1.5):
+        given = {**exercise.variant(0).used, "f": strength}
+        scene = Scene(exercise, given, ("load", "inertia", "friction"))
+        running = scene.running(Motor(3.0))
+        for angle in np.radians(np.arange(0.5, 360.0, 15.0)).tolist():
+            found = running.acceleration(angle, 12.0, 1)
+            effort = scene.forces.over(np.array([angle]), np.array([12.0]), np.array([found])).effort[0]
+            assert effort == pytest.approx(3.0, abs=1e-9 * (3 + abs(found)))
+
+
+def test_where_the_guide_jams_the_angle_is_told():
+    exercise = COURSE["slider_crank_torque"]
+    given = {**exercise.variant(0).used, "f": 3.0, "omega2": 12.0}
+    with pytest.raises(Undefined, match=r"jams at .* degrees"):
+        Scene(exercise, given, ("load", "inertia", "friction")).in_time(3.0, 2.0)
+
+
+def test_a_load_on_the_working_stroke_works_on_that_stroke_alone():
+    exercise = COURSE["quick_return_shaper"]
+    given = exercise.variant(0).used
+    load = Load("C", force=500.0, against=True, during="working stroke")
+    scene = Scene(exercise, given, ("load", "position"), (), Added(loads=(load,)))
+    count = 3600
+    table = scene.over_cycle(count)
+    effort = table.columns["drive_torque"] * np.sign(scene._speed)
+    works = effort > 1e-9
+    longer = exercise.solve(**given, only="alpha")["alpha"] / 360
+    assert works[:-1].mean() == pytest.approx(longer, abs=2 / count)
+    np.testing.assert_allclose(effort[~works], 0.0, atol=1e-9)
+    # The work of a turn is the force over the stroke.
+    stroke = exercise.solve(**given, only="stroke")["stroke"] / 1000
+    assert effort[:-1].mean() * 2 * math.pi == pytest.approx(500.0 * stroke, rel=1e-3)
+
+
+def test_a_working_stroke_that_is_as_long_as_the_other_is_refused():
+    given = {
+        "r2": 30.0,
+        "r3": 90.0,
+        "e": 0.0,
+        "theta2": 20.0,
+        "omega2": 2.0,
+        "alpha2": 0.0,
+        "kv": 1.0,
+        "ka": 1.0,
+    }
+    load = Load("B", force=10.0, against=True, during="working stroke")
+    with pytest.raises(WrongValue, match="both take as long; say during = 'forward'"):
+        Scene(COURSE["slider_crank"], given, ("load",), (), Added(loads=(load,))).over_cycle(12)
+
+
+def test_loads_by_table_follow_their_angle_or_their_position():
+    given = {**FOUR_BAR, "omega2": 2.0}
+    by_angle = Load("2", moment=0.0, table=((0.0, 0.0), (90.0, 6.0), (270.0, 0.0)))
+    scene = Scene(COURSE["four_bar_motion"], given, ("load",), (), Added(loads=(by_angle,)))
+    effort = scene.over_cycle(8).columns["drive_torque"]
+    np.testing.assert_allclose(effort, [0.0, -3.0, -6.0, -4.5, -3.0, -1.5, 0.0, 0.0, 0.0], atol=1e-12)
+    crank = {
+        "r2": 30.0,
+        "r3": 90.0,
+        "e": 0.0,
+        "theta2": 20.0,
+        "omega2": 2.0,
+        "alpha2": 0.0,
+        "kv": 1.0,
+        "ka": 1.0,
+    }
+    spring = Load("B", by="r1", table=((60.0, 600.0), (120.0, 0.0)))
+    scene = Scene(COURSE["slider_crank"], crank, ("load", "position", "velocity"), (), Added(loads=(spring,)))
+    columns = scene.over_cycle(36).columns
+    power = (120.0 - columns["r1"]) * 10.0 * columns["r1_dot"] / 1000
+    np.testing.assert_allclose(columns["drive_torque"] * 2.0, -power, atol=1e-9)
+
+
+def test_a_flywheel_is_sized_for_its_unevenness():
+    """And keeps it: the motion in time under the mean torque stays within the band, by the linear theory."""
+    exercise = COURSE["quick_return_shaper"]
+    given = {**exercise.variant(0).used, "omega2": 5.0}
+    load = Load("C", force=300.0, against=True, during="working stroke")
+    data = Added(loads=(load,), flywheel=Flywheel(unevenness=0.05))
+    scene = Scene(exercise, given, ("load", "flywheel"), (), data)
+    # The excess energy, by a fine sum of the work alone.
+    count = 200_000
+    q = (np.arange(count) + 0.5) * (TURN / count)
+    effort = scene.without("flywheel").forces.over(q, np.full(count, 5.0), np.zeros(count)).effort
+    stored = np.cumsum(effort.mean() - effort) * (TURN / count)
+    assert scene.excess_energy == pytest.approx(np.ptp(stored), rel=1e-3)
+    table = scene.in_time(scene.mean_torque, 4.0, count=4000)
+    speed = table.columns["omega2"]
+    assert np.ptp(speed) / speed.mean() == pytest.approx(0.05, rel=0.05)
+
+
+def test_dead_centres_are_rows_where_the_output_stands_still():
+    exercise = COURSE["three_loop_shaper"]
+    mechanism = exercise.solution.mechanism
+    data = Added({b: Weighed(1.0, 0.05) for b in mechanism.names})
+    scene = Scene(exercise, {**exercise.variant(0).used, "omega2": 12.0}, ("inertia", "velocity"), (), data)
+    table = scene.in_time(0.0, 1.0, count=50)
+    dead = table.columns["dead_centre"] == 1
+    assert dead.sum() >= 3
+    assert np.abs(table.columns["x8_dot"][dead]).max() < 1e-5 * np.abs(table.columns["x8_dot"]).max()
+
+
+def test_a_run_that_would_not_end_is_told(monkeypatch):
+    monkeypatch.setattr("coursework.mechanics.running.MOST_STEPS", 500)
+    with pytest.raises(Undefined, match="takes more than 500 evaluations"):
+        pendulum(20.0).in_time(5.0, 100.0)
+
+
+def test_a_mechanism_that_does_not_turn_fully_moves_without_a_table():
+    """A double rocker: no table around the turn, the equations themselves; its energy is kept."""
+    given = {**FOUR_BAR, "r1": 200.0, "r2": 150.0, "r3": 120.0, "r4": 100.0, "theta2": 40.0}
+    scene = Scene(COURSE["four_bar_motion"], given, ("gravity", "inertia"), (), Added(bodies=PENDULUM))
+    running = scene.running(Motor(0.0))
+    assert running.table.steps == 0
+    table = scene.in_time(0.5 * weight_torque(40.0), 0.05, count=10)
+    assert table.balance < 1e-7
+
+
+def test_a_table_of_the_turn_is_good_to_rounding():
+    def functions(q):
+        return np.array([np.cos(q) + 0.3 * np.sin(5 * q), 1 / (1.05 + np.cos(q)), np.full_like(q, 3.0)])
+
+    table = TurnTable(functions)
+    q = np.random.default_rng(0).uniform(-40, 40, 5000)
+    right = functions(q)
+    size = np.abs(right).max(axis=1)
+    assert (np.abs(table.over(q) - right).max(axis=1) < 2e-14 * size).all()
+    np.testing.assert_allclose(table.over(q[:20]).T, [table.at(x) for x in q[:20]], rtol=1e-14)
+    assert TurnTable(lambda q: np.array([np.where(np.sin(q) > 0, 1.0, np.nan)])).steps == 0
+    assert TurnTable(lambda q: np.array([np.abs(np.sin(q))])).steps == 0

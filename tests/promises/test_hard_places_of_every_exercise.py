@@ -1,0 +1,81 @@
+"""On the way to every hard place of every exercise the solver errs by no more than the last digits of the data explain.
+
+The places are found from the formulas (:mod:`coursework.accuracy.hard_places`), the right values have eighty digits, and
+what is unavoidable is the condition number times the last digit: an error may be eight times that.
+"""
+
+from __future__ import annotations
+
+import pytest
+from sweeps import slow
+
+import coursework
+from coursework.accuracy.reference import Reference
+from coursework.accuracy.subject import numbers_of
+from coursework.accuracy.sweep import misses
+
+COURSE = coursework.open_course()
+NUMERIC = [name for name in COURSE.names if numbers_of(COURSE[name])]
+
+#: What is known to lose digits, until its formula is mended: quantities by exercise.
+KNOWN_LOSSES = {
+    "acceleration_polygon": {"bb_t", "alpha3", "alpha4"},  # a frame far shorter than the other bars
+    "quick_return": {
+        "stroke",  # a crank far shorter than the other bars
+        "omega4", "omega5", "v_C", "a_C", "mechanical_advantage",  # a flat triangle OAB
+        "theta2", "theta3", "theta4", "theta5", "xC", "omega3",  # theta1 after many whole turns
+    },
+    "slider_extras": {"omega5"},  # a change point
+    "slotted_mechanism": {"rA_ddot", "alpha4", "a_tangential", "a_radial"},  # the block beside O4
+    "three_loop_shaper": {
+        "omega5", "d5_dot", "omega7", "x8_dot", "alpha5", "d5_ddot", "alpha7", "x8_ddot",  # after many whole turns
+    },
+    "two_loop_linkage": {"theta6", "theta7", "omega6", "omega7", "alpha6", "alpha7"},  # beta after many whole turns
+}  # fmt: skip
+QUICK = (1e-2, 1e-4, 1e-6, 1e-8)
+
+
+def lost(name, **how):
+    known = KNOWN_LOSSES.get(name, set())
+    return [
+        m.told() for m in misses(COURSE[name], numbers_of(COURSE[name]), **how) if m.quantity not in known
+    ]
+
+
+@pytest.mark.parametrize("name", NUMERIC)
+def test_no_digit_is_lost_on_the_way_to_the_hardest_places(name):
+    assert not lost(name, distances=QUICK, most=2)
+
+
+@slow
+@pytest.mark.parametrize("name", NUMERIC)
+def test_no_digit_is_lost_on_the_way_to_any_hard_place(name):
+    assert not lost(name)
+
+
+@pytest.mark.parametrize("name", NUMERIC)
+def test_the_reference_closes_the_equations_that_are_stated_besides(name):
+    """Loops, their derivatives and the residual, at eighty digits, or in doubles where they take those alone."""
+    exercise = COURSE[name]
+    reference = Reference(exercise, numbers_of(exercise))
+    assert not reference.lacking
+    closing = reference.closing(exercise.variant(seed).given for seed in range(3))
+    assert closing is not None
+    assert closing.is_closed, closing
+
+
+def test_a_formula_that_loses_digits_is_caught(monkeypatch):
+    """The textbook formula in the place of the stable one."""
+    exercise = COURSE["four_bar_motion"]
+    monkeypatch.setattr(type(exercise.solution.graph), "evaluate", _textbook(exercise.solution.graph))
+    told = lost("four_bar_motion", distances=QUICK, most=2)
+    assert any("omega4" in line for line in told)
+
+
+def _textbook(graph):
+    textbook, plain = graph.textbook, type(graph).evaluate
+
+    def evaluate(self, *args, **options):
+        return plain(textbook if self is graph else self, *args, **options)
+
+    return evaluate
