@@ -81,6 +81,11 @@ def three_loops(v):
     }
 
 
+def toggle_press(v):
+    """As seen from O the crank pin, from D the others: neither pivot moves."""
+    return {"a": polar(v["r2"], v["theta2"]), "b": polar(v["r4"], v["theta4"]), "c": 1j * v["yC"]}
+
+
 #: The given angle that moves the mechanism, its crank's angle, the quantities that place it, its points.
 PLACES = {
     "slider_crank": ("theta2", "theta2", ("p", "q"), crank_rod("b")),
@@ -92,6 +97,7 @@ PLACES = {
     "mechanical_advantage": ("theta2", "theta2", ("theta3",), four_bar),
     "slider_extras": ("theta2", "theta2", ("theta3", "r6"), slider_extras),
     "quick_return": ("angle_OAB", "theta2", ("theta2", "theta3", "theta5"), quick_return),
+    "toggle_press": ("phi", "theta2", ("theta2", "theta4", "yC"), toggle_press),
     "slotted_mechanism": ("theta2", "theta2", ("rA", "theta4"), slotted),
     "quick_return_whitworth": ("theta2", "theta2", ("rA", "theta4", "xC"), slotted_ram),
     "quick_return_shaper": ("theta2", "theta2", ("rA", "theta4", "xC"), slotted_ram),

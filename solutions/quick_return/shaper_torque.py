@@ -98,23 +98,46 @@ def power(mean_torque, omega2):
     return mean_torque * omega2
 
 
-def _excess_of_speed(angle, r1, r2, r4, r5, h):
+def _ram(theta, r1, r2, r4, r5, h):
+    """First and second derivative of xC by the crank angle, mm per radian, at degrees of it."""
+    x, y = r2 * cos(theta), r1 + r2 * sin(theta)
+    arm = sqrt(x**2 + y**2)
+    across, up = x / arm, y / arm
+    rate = r2 * (r2 + r1 * sin(theta)) / arm**2
+    gain = r1 * across * (1 - 2 * rate) / arm
+    p = h - r4 * up
+    q = sqrt((r5 - p) * (r5 + p))
+    rod_rate = -rate * r4 * across / q
+    rod_gain = (p * rod_rate**2 - r4 * (gain * across - rate**2 * up)) / q
+    second = -r4 * (gain * up + rate**2 * across) - p * rod_gain - q * rod_rate**2
+    return -rate * r4 * up - rod_rate * p, second
+
+
+def _excess_of_speed(theta, r1, r2, r4, r5, h):
     """How far the ram goes to the left per radian of the crank, beyond the average over a turn."""
-    crank = r2 * np.exp(1j * angle)
-    arm = 1j * r1 + crank
-    squared = dot(arm, arm)
-    pin = r4 * arm / np.sqrt(squared)
-    rise = h - pin.imag
-    run = np.sqrt((r5 - rise) * (r5 + rise))
-    rate = dot(crank, arm) / squared
-    return rate * (pin.imag - pin.real * rise / run) - r4 * r2 / (pi * r1)
+    return -_ram(theta, r1, r2, r4, r5, h)[0] - r4 * r2 / (pi * r1)
+
+
+def _crossing(low, high, *lengths):
+    """Where the torque equals its mean, between a crank angle where it is less and one where it is more: halved, then by
+    Newton's steps."""
+    for _ in range(10):
+        middle = 0.5 * (low + high)
+        is_less = _excess_of_speed(middle, *lengths) < 0
+        low, high = np.where(is_less, middle, low)[()], np.where(is_less, high, middle)[()]
+    theta = 0.5 * (low + high)
+    for _ in range(7):
+        theta = theta + from_radians(_excess_of_speed(theta, *lengths) / _ram(theta, *lengths)[1])
+    return theta
 
 
 def _crossings(r1, r2, r4, r5, h, _turn):
     """The two crank angles at which the torque equals its mean, degrees from -90 to 270, along a last axis."""
     lengths = np.broadcast_arrays(r1, r2, r4, r5, h)
     flat = [np.ravel(np.asarray(length, dtype=float)) for length in lengths]
-    found = from_radians(turning_points(_excess_of_speed, flat))
+    found = from_radians(
+        turning_points(lambda angle, *given: _excess_of_speed(from_radians(angle), *given), flat)
+    )
     found = np.sort((found + 90) % 360 - 90, axis=-1).reshape(*lengths[0].shape, -1)
     two = (np.isfinite(found).sum(axis=-1) == 2) & np.isfinite(_one_way(_turn))
     if np.ndim(two) == 0 and not two:
@@ -125,14 +148,16 @@ def _crossings(r1, r2, r4, r5, h, _turn):
     return np.where(two[..., None], found[..., :2], np.nan)
 
 
-def theta_rise(_crossings):
+@stable(lambda _crossings: _crossings[..., 0][()])
+def theta_rise(r1, r2, r4, r5, h):
     """Where the torque rises above its mean, and the flywheel begins to give."""
-    return _crossings[..., 0][()]
+    return _crossing(-90.0, 90.0, r1, r2, r4, r5, h)
 
 
-def theta_fall(_crossings):
+@stable(lambda _crossings: _crossings[..., 1][()])
+def theta_fall(r1, r2, r4, r5, h):
     """Where it falls below, and the flywheel begins to store."""
-    return _crossings[..., 1][()]
+    return _crossing(270.0, 90.0, r1, r2, r4, r5, h)
 
 
 def theta4_rise(r1, r2, theta_rise):
@@ -243,7 +268,7 @@ def figure(r1, r2, r4, r5, h, F, mean_torque, theta_rise, theta_fall):
     """The torque over a turn, its mean, and the work that the flywheel gives."""
 
     def needed(theta):
-        beyond = F / 1000 * _excess_of_speed(np.radians(theta), r1, r2, r4, r5, h)
+        beyond = F / 1000 * _excess_of_speed(theta, r1, r2, r4, r5, h)
         return np.maximum(mean_torque + beyond, 0)
 
     turn, above = np.linspace(-90, 270, 361), np.linspace(theta_rise, theta_fall, 61)
