@@ -87,7 +87,7 @@ def _digits_table(course: Course, lines: Sequence[Line], told: Words, lang: str)
         )
         for line in lines
     ]
-    return Table(tuple(heads), tuple(rows), (False, *[True] * 7))
+    return Table(tuple(heads), tuple(rows), (False, *[True] * 7), told["caption"])
 
 
 def _digits(error: float | None) -> int:

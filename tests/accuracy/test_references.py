@@ -75,7 +75,7 @@ def test_a_wrong_formula_is_caught_and_not_called_exact(own_course, capsys, righ
 
 
 def test_what_no_loop_holds_the_residual_holds(own_course):
-    """The residual alone, without loops: at eighty digits too."""
+    """The residual alone, without loops: at a hundred digits too."""
     exercise = spoilt(own_course, 'LOOPS = {"loop_1"', '_LOOPS = {"loop_1"')
     closing = Reference(exercise, ("rA", "theta4", "alpha4")).closing([exercise.variant(0).given])
     assert closing.is_closed

@@ -1,6 +1,6 @@
 """On the way to every hard place of every exercise the solver errs by no more than the last digits of the data explain.
 
-The places are found from the formulas (:mod:`coursework.accuracy.hard_places`), the right values have eighty digits, and
+The places are found from the formulas (:mod:`coursework.accuracy.hard_places`), the right values have a hundred digits, and
 what is unavoidable is the condition number times the last digit: an error may be eight times that.
 """
 
@@ -55,7 +55,7 @@ def test_no_digit_is_lost_on_the_way_to_any_hard_place(name):
 
 @pytest.mark.parametrize("name", NUMERIC)
 def test_the_reference_closes_the_equations_that_are_stated_besides(name):
-    """Loops, their derivatives and the residual, at eighty digits, or in doubles where they take those alone."""
+    """Loops, their derivatives and the residual, at a hundred digits, or in doubles where they take those alone."""
     exercise = COURSE[name]
     reference = Reference(exercise, numbers_of(exercise))
     assert not reference.lacking
