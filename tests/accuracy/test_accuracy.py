@@ -93,7 +93,7 @@ def test_a_tighter_tolerance_integrates_better(rows, place):
 def test_motion_by_tolerance_is_as_exact_as_it_is_told_to_be(rows):
     own = [r for r in rows["slider_crank_torque"] if (r.family, r.place) == ("integration", FREE)]
     assert own[0].max_error > 1e-5
-    assert own[-1].max_error < 1e-9
+    assert own[-1].max_error < 1e-7
 
 
 def test_equal_steps_gain_about_the_fourth_power_of_their_number(rows):

@@ -10,6 +10,7 @@ import pytest
 from sweeps import slow
 
 import coursework
+from coursework.accuracy.hard_places import hard_places
 from coursework.accuracy.reference import Reference
 from coursework.accuracy.subject import numbers_of
 from coursework.accuracy.sweep import misses
@@ -62,6 +63,20 @@ def test_the_reference_closes_the_equations_that_are_stated_besides(name):
     closing = reference.closing(exercise.variant(seed).given for seed in range(3))
     assert closing is not None
     assert closing.is_closed, closing
+
+
+@pytest.mark.parametrize("name", [n for n in NUMERIC if COURSE[n].solution.loops])
+def test_the_reference_closes_the_loops_at_hard_places_too(name):
+    """Forty digits are left of a hundred where the textbook formulas lose most."""
+    exercise = COURSE[name]
+    reference = Reference(exercise, numbers_of(exercise))
+    found = []
+    for place in hard_places(exercise, reference.wanted, 4):
+        for distance in (1e-3, 1e-12):
+            lacks = reference.lacks(place.at(place.sides[0] * distance))
+            found += [lack for equation, lack in lacks.items() if equation.startswith("loop")]
+    assert len(found) >= 4
+    assert max(found) < 1e-40
 
 
 def test_a_formula_that_loses_digits_is_caught(monkeypatch):
