@@ -83,7 +83,7 @@ def _rate_charts(rows: Rows, place: str, said: Words) -> tuple[Chart, ...]:
     levels = {
         _method(r, said): (ends, [max(_measured(r), _LEAST)] * 2)
         for r in others
-        if r.family not in ("differences", "mpmath")
+        if r.family not in ("differences", "mpmath", DATA)
     }
     heading = said["chart_rates"].format(said["places"][place])
     return charts_of({**_series(differences, said, _set), **levels}, heading, said["step"], said)

@@ -7,7 +7,7 @@ what is unavoidable is the condition number times the last digit: an error may b
 from __future__ import annotations
 
 import pytest
-from sweeps import slow
+from sweeps import sampled, slow
 
 import coursework
 from coursework.accuracy.hard_places import hard_places
@@ -43,7 +43,7 @@ def lost(name, **how):
     ]
 
 
-@pytest.mark.parametrize("name", NUMERIC)
+@pytest.mark.parametrize("name", sampled(NUMERIC))
 def test_no_digit_is_lost_on_the_way_to_the_hardest_places(name):
     assert not lost(name, distances=QUICK, most=2)
 
@@ -65,7 +65,7 @@ def test_the_reference_closes_the_equations_that_are_stated_besides(name):
     assert closing.is_closed, closing
 
 
-@pytest.mark.parametrize("name", [n for n in NUMERIC if COURSE[n].solution.loops])
+@pytest.mark.parametrize("name", sampled(n for n in NUMERIC if COURSE[n].solution.loops))
 def test_the_reference_closes_the_loops_at_hard_places_too(name):
     """Forty digits are left of a hundred where the textbook formulas lose most."""
     exercise = COURSE[name]
