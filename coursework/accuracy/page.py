@@ -11,7 +11,7 @@ from coursework.accuracy.hard_places import HardPlace
 from coursework.accuracy.measuring import DATA, GENERIC, HARD, Row
 from coursework.accuracy.motion import FREE, RUBBING
 from coursework.accuracy.subject import ACCELERATION, MOTION, OTHER, POSITION, RATE, Subject
-from coursework.accuracy.verdicts import Rows, Words, cheapest, enough, halves, is_busy, listed, paid_after
+from coursework.accuracy.verdicts import Rows, Words, cheapest, enough, halves, listed, paid_after
 from coursework.course.course import Course
 from coursework.figures.charts import lacking, scatter
 from coursework.language.numbers import significant, unit_text
@@ -133,7 +133,7 @@ def _read_motion(rows: Sequence[Row], where: str, said: Words) -> list[str]:
         good = [r for r in rows if _measured(r) <= limit]
         best = cheapest(good)
         key = "motion_none" if not good else "motion_alike" if best[1:] else "motion_best"
-        if good and not best:
+        if good and Rows(rows).is_busy:
             return [*found, reading["busy"]]
         methods = listed(best, said, lambda r: _method(r, said)) if best else ""
         found.append(reading[key].format(limit=number(limit), place=where, methods=methods))
@@ -205,7 +205,7 @@ def _read_positions(rows: Rows, said: Words) -> list[str]:
             reading["solver"].format(error=_error(solver[0], said), hard=_error(hard_solver[0], said))
         )
     tables = rows.of("table")
-    if tables and stable and not is_busy([*tables, stable]):
+    if tables and stable and not rows.is_busy:
         pays = any(paid_after(row, stable) is not None for row in tables)
         found.append(reading["table_pays" if pays else "table_never"])
     if newton and rows.one("mpmath"):
