@@ -28,6 +28,7 @@ from coursework.motion.added import Added, Motor, Weighed
 from coursework.motion.scenes import Scene
 
 COURSE = coursework.open_course()
+CLOCK = time.process_time  #: so that what else runs on the machine does not count
 
 # ------------------------------------------------------------------------ effects
 
@@ -72,7 +73,7 @@ def driven_mechanisms() -> Iterator[tuple[Any, Mechanism]]:
 
 def effects() -> None:
     print(
-        f"### Effect by effect\n\nA turn in {STEPS:,} steps, {ROUNDS} rounds, the scenes of a row in turn.\n"
+        f"### Effect by effect\n\nA turn in {STEPS:,} steps; time of the processor, {ROUNDS} rounds, the scenes of a row in turn.\n"
     )
     times, counts = {}, {}
     for exercise, mechanism in driven_mechanisms():
@@ -84,17 +85,27 @@ def effects() -> None:
         }
         name = exercise.name if mechanism.slides else f"{exercise.name} (pins)"
         counts[name] = [str(len(s.over_cycle(4).evaluated)) for s in scenes.values()]
-        times[name] = times_in_turn({c: partial(s.over_cycle, STEPS) for c, s in scenes.items()}, ROUNDS)
+        times[name] = times_in_turn(
+            {c: partial(s.over_cycle, STEPS) for c, s in scenes.items()}, ROUNDS, CLOCK
+        )
     heads = tuple(CASES)
     print_table(
         ("ns a step: least (median)", *heads),
         [(n, *(f"{least(t):.0f} ({middle(t):.0f})" for t in own.values())) for n, own in times.items()],
     )
     print_table(
-        ("× positions: median", *heads),
-        [(n, *(f"{median_ratio(t, own['position']):.1f}" for t in own.values())) for n, own in times.items()],
+        ("× positions, median (quantities)", *heads),
+        [
+            (
+                n,
+                *(
+                    f"{median_ratio(t, own['position']):.1f} ({count})"
+                    for t, count in zip(own.values(), counts[n], strict=True)
+                ),
+            )
+            for n, own in times.items()
+        ],
     )
-    print_table(("quantities evaluated", *heads), [(n, *own) for n, own in counts.items()])
 
 
 def least(times: list[float]) -> float:
@@ -126,9 +137,9 @@ def forces() -> None:
     }
     print(
         f"### Forces beside the linear solve\n\n`{exercise.name}`, {len(mechanism.bodies)} bodies, {', '.join(FORCES)}, "
-        f"{ANGLES:,} angles, {ROUNDS} rounds.\n"
+        f"{ANGLES:,} angles; time of the processor, {ROUNDS} rounds.\n"
     )
-    times = times_in_turn(called, ROUNDS)
+    times = times_in_turn(called, ROUNDS, CLOCK)
     bare = next(iter(times.values()))
     print_table(
         ("", "µs an angle, least", "median", "× the bare solve, median of rounds"),
@@ -210,7 +221,7 @@ def motion() -> None:
         "the error is that of the driver's angle at the end, in degrees.\n"
     )
     for missing in (name for name in ("exudyn", "sympy") if not find_spec(name)):
-        print(f"Without {missing}, which is not installed: pip install {missing}\n")
+        print(f"{missing} is not installed, so its rows are left out: pip install {missing}\n")
     for case in MOTIONS:
         of_case(case)
 
@@ -222,7 +233,7 @@ def of_case(case: Case) -> None:
     reference = Quadrature(scene.linkage, case.shape, scene.given, *stated).end(DURATION, math.radians(near))
     ways = {**own_ways(scene), **rival_ways(scene, stated)}
     errors = {name: abs(way() - math.degrees(reference)) for name, way in ways.items()}
-    times = times_in_turn(ways, MOTION_ROUNDS, time.process_time)
+    times = times_in_turn(ways, MOTION_ROUNDS, CLOCK)
     rows = [(n, f"{min(t):.3f}", f"{statistics.median(t):.3f}", f"{errors[n]:.1e}") for n, t in times.items()]
     turns = math.degrees(reference) / 360
     print_table((f"{case.exercise}: {turns:.1f} turns", "s, least", "median", "error, degrees"), rows)
@@ -253,9 +264,9 @@ def own_ways(scene: Scene) -> dict[str, Callable[[], float]]:
 def rival_ways(scene: Scene, stated: tuple[float, float, float]) -> dict[str, Callable[[], float]]:
     found: dict[str, Callable[[], float]] = {}
     if find_spec("sympy"):
-        began = time.process_time()
+        began = CLOCK()
         kane = Kane(scene, *stated)
-        print(f"sympy derives and writes its functions once: {time.process_time() - began:.2f} s\n")
+        print(f"sympy derives and writes its functions once: {CLOCK() - began:.2f} s\n")
         for rtol in TOLERANCES:
             found[f"sympy, KanesMethod, solve_ivp DOP853, {rtol:g}"] = in_degrees(kane.end, DURATION, rtol)
     if find_spec("exudyn"):
