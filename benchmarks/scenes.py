@@ -73,7 +73,8 @@ def driven_mechanisms() -> Iterator[tuple[Any, Mechanism]]:
 
 def effects() -> None:
     print(
-        f"### Effect by effect\n\nA turn in {STEPS:,} steps; time of the processor, {ROUNDS} rounds, the scenes of a row in turn.\n"
+        f"### Effect by effect\n\nA turn in {STEPS:,} steps; time of the processor, {ROUNDS} rounds, the scenes of "
+        "a row in turn.\n"
     )
     times, counts = {}, {}
     for exercise, mechanism in driven_mechanisms():
