@@ -35,7 +35,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coursework.errors import BadCourse, CourseworkError, nearest, unknown
-from coursework.mechanics.statement import Mechanism, parameters
+from coursework.mechanics.statement import Mechanism
 from coursework.quantities.error_kinds import PRICES
 from coursework.quantities.graph import Graph, Node, Replacement
 from coursework.quantities.loops import Loop, quantities, stated
@@ -373,7 +373,7 @@ def _mechanism(source: str, module: ModuleType, graph: Graph) -> Mechanism | Non
     if not isinstance(mechanism, Mechanism):
         raise BadCourse(f"{source}: MECHANISM is a Mechanism(…); found {str(mechanism)[:60]}")
     known = graph.names | graph.leaves
-    for name in (*mechanism.angles, *(n for place in mechanism.unfolded() for n in parameters(place))):
+    for name in mechanism.angles:  # what places are given by may be data that no formula takes
         if name not in known:
             raise BadCourse(f"{source}: MECHANISM names no quantity by {name!r}{nearest(name, known)}")
     return mechanism

@@ -17,7 +17,8 @@ import numpy as np
 from coursework.accuracy.study import Study
 from coursework.accuracy.timing import Times, times_of
 from coursework.course.exercise import CourseExercise
-from coursework.motion.scenes import INERTIA, Scene
+from coursework.motion.scenes import Scene
+from coursework.motion.staged import INERTIA
 
 FRICTION = "friction"
 FREE, RUBBING = "without friction", "with friction"

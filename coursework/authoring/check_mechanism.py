@@ -10,6 +10,7 @@ import numpy as np
 from coursework.authoring.check_report import Report
 from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
+from coursework.mechanics.rates import Stance
 from coursework.mechanics.statement import GROUND, Mechanism
 from coursework.motion.scenes import Scene
 from coursework.structure.joints import FRAME, Counts, JointGraph
@@ -17,6 +18,7 @@ from coursework.structure.joints import FRAME, Counts, JointGraph
 TRIED = 20  #: variants
 _CLOSES = 1e-9  #: of the largest distance
 _AGREES = 1e-7  #: of the largest rate
+_STEP = 1e-4  #: radians, of differences
 
 
 def check_mechanism(drawn: Sequence[Variant], report: Report) -> None:
@@ -66,9 +68,25 @@ def faults(variant: Variant) -> Iterator[str]:
         yield f"the pins of a loop miss each other by {1000 * stance.gap[0]:.3g} mm"
         return
     yield from _other_rates(variant, scene, stance)
+    yield from _other_shifts(scene, stance, float(angle[0]), size)
 
 
-def _other_rates(variant: Variant, scene: Scene, stance: Any) -> Iterator[str]:
+def _other_shifts(scene: Scene, stance: Stance, angle: float, size: float) -> Iterator[str]:
+    """Free bodies that go otherwise than their joints let them: their rates beside differences of their places."""
+    if not scene.linkage.free:
+        return
+    near = scene.pose(angle + _STEP * np.array([-1.0, 1.0]), by_joints=True)
+    for own in scene.linkage.free:
+        slope = (near.origins[own, 1] - near.origins[own, 0]) / (2 * _STEP)
+        if not abs(slope - stance.origin_rates[own, 0]) <= 1e-6 * size:
+            name = scene.mechanism.names[own]
+            yield (
+                f"body {name} goes otherwise than its slides let it: its origin by {slope * 1000:.4g} mm a radian of the "
+                f"driver, its joints by {stance.origin_rates[own, 0] * 1000:.4g}"
+            )
+
+
+def _other_rates(variant: Variant, scene: Scene, stance: Stance) -> Iterator[str]:
     exercise = variant.exercise
     speed = float(variant.used.get(scene.driver.speed, 0.0)) if scene.driver.speed else 0.0
     if not speed:

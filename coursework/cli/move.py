@@ -116,7 +116,7 @@ def _scene_file(course: Any, exercise: str, told: dict[str, Any], typed: set[str
                 raise WrongValue(f"{exercise} says what the scene is; leave --{name} out, or write it there")
         return read_scene(Path(exercise), course)
     one = course[exercise]
-    given = {**one.variant(told["seed"]).used, **settings_given(told["settings"])}
+    given = {**one.variant(told["seed"]).given, **settings_given(told["settings"])}
     scene = Scene(one, given, split_list(told["effects"]), tuple(told["show"]))
     if told["drive"] is None:
         if told["duration"] is not None:

@@ -102,16 +102,24 @@ class Linkage:
 
     @cached_property
     def unknown_angles(self) -> tuple[str, ...] | None:
-        """The quantities of the coordinates from 1 on; None where one is a wheel's, which has none."""
+        """The quantities of the coordinates from 1 on; None where one is a wheel's, which has none, or a free body's."""
+        if self.free:
+            return None
         bodies = zip(self.mechanism.bodies, self.coordinates, strict=False)
         names = {own: body.angle for body, own in bodies if own > 0}
         found = [names[k] for k in range(1, self.unknowns + 1)]
         return tuple(map(str, found)) if all(isinstance(n, str) for n in found) else None
 
+    @cached_property
+    def free(self) -> dict[int, int]:
+        """The bodies whose origins no pin holds, and the first of the two coordinates that place each."""
+        bodies = [k for k, body in enumerate(self.mechanism.bodies) if body.origin is not None]
+        return {body: max(self.coordinates) + 1 + 2 * number for number, body in enumerate(bodies)}
+
     @property
     def unknowns(self) -> int:
         """How many coordinates follow from the driver's angle."""
-        return max(self.coordinates)
+        return max(self.coordinates) + 2 * len(self.free)
 
     @cached_property
     def constant_turns(self) -> np.ndarray:
@@ -134,9 +142,13 @@ class Linkage:
 
     @cached_property
     def origins(self) -> tuple[Held, ...]:
-        """Where the frame of each body has its origin: on a body before it, or on the ground."""
+        """Where the frame of each body has its origin: on a body before it, or on the ground; a free body's on the
+        ground, from where it is shifted."""
         found = []
         for k, body in enumerate(self.mechanism.bodies):
+            if body.origin is not None:
+                found.append(Held(-1, 0j))
+                continue
             before = [h for h in self.mechanism.holders(body.at) if self.index[h] < k]
             found.append(self.held(body.at, before[0]))
         return tuple(found)

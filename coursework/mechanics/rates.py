@@ -8,7 +8,7 @@ linear system of nearly parallel bars loses.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cached_property
 from typing import TypeAlias
 
@@ -32,15 +32,24 @@ class Stance:
         The angle of each body and of the ground, radians, shape ``(bodies + 1, n)``; what never matters is 0.
     stated
         The exercise's own rates; by the joints alone without.
+    shifts
+        Where the origins of free bodies lie, by body, metres, shape ``(n,)``.
 
     Lengths are in metres and complex, x to the right and y up; derivatives are by the driver's angle in radians, each
     computed when it is first asked for. NaN where the mechanism does not close or stands in a dead point.
     """
 
-    def __init__(self, linkage: Linkage, turns: np.ndarray, stated: Stated | None = None) -> None:
+    def __init__(
+        self,
+        linkage: Linkage,
+        turns: np.ndarray,
+        stated: Stated | None = None,
+        shifts: Mapping[int, np.ndarray] | None = None,
+    ) -> None:
         self.linkage = linkage
         self.turns = turns
         self._stated = stated
+        self._shifts = shifts or {}
 
     @property
     def count(self) -> int:
@@ -62,7 +71,7 @@ class Stance:
         """Where the frames lie; the ground's at 0."""
         found = np.zeros(self.turns.shape, dtype=complex)
         for body, held in enumerate(self.linkage.origins):
-            found[body] = found[held.body] + self.arm(held)
+            found[body] = found[held.body] + self.arm(held) + self._shifts.get(body, 0.0)
         return found
 
     def arm(self, held: Held) -> np.ndarray:
@@ -85,6 +94,8 @@ class Stance:
         found = np.zeros((bodies, self.linkage.unknowns + 1, n), dtype=complex)
         for body, held in enumerate(self.linkage.origins):
             found[body] = self._partial(held, found)
+            if (first := self.linkage.free.get(body)) is not None:
+                found[body, first], found[body, first + 1] = 1.0, 1j
         return found
 
     def _partial(self, held: Held, origins: np.ndarray) -> np.ndarray:
@@ -133,10 +144,20 @@ class Stance:
     @cached_property
     def rates(self) -> np.ndarray:
         """How fast each body turns, for one of the driver: shape ``(bodies + 1, n)``."""
+        return self._by_body(self._coordinate_rates)
+
+    @cached_property
+    def _coordinate_rates(self) -> np.ndarray:
+        """First derivatives of all coordinates, the driver's own among them."""
         unknown = self._stated(1) if self._stated else None
         if unknown is None:
             unknown = self._solved(-self._conditions[:, 0])
-        return self._by_body(np.concatenate([np.ones((1, self.count)), unknown]))
+        return np.concatenate([np.ones((1, self.count)), unknown])
+
+    def _shifted(self, body: int, coordinates: np.ndarray) -> np.ndarray | float:
+        """What the coordinates of a free body add to its origin's motion."""
+        first = self.linkage.free.get(body)
+        return 0.0 if first is None else coordinates[first] + 1j * coordinates[first + 1]
 
     def _by_body(self, coordinates: np.ndarray) -> np.ndarray:
         nothing = np.zeros(self.count)
@@ -148,6 +169,7 @@ class Stance:
         found = np.zeros(self.turns.shape, dtype=complex)
         for body, held in enumerate(self.linkage.origins):
             found[body] = found[held.body] + 1j * self.rates[held.body] * self.arm(held)
+            found[body] += self._shifted(body, self._coordinate_rates)
         return found
 
     def rate(self, held: Held) -> np.ndarray:
@@ -165,10 +187,15 @@ class Stance:
     @cached_property
     def bends(self) -> np.ndarray:
         """Second derivative of each body's angle by the driver's."""
+        return self._by_body(self._coordinate_bends)
+
+    @cached_property
+    def _coordinate_bends(self) -> np.ndarray:
+        """Second derivatives of all coordinates."""
         unknown = self._stated(2) if self._stated else None
         if unknown is None:
             unknown = self._bent()
-        return self._by_body(np.concatenate([np.zeros((1, self.count)), unknown]))
+        return np.concatenate([np.zeros((1, self.count)), unknown])
 
     def _bent(self) -> np.ndarray:
         """Second derivatives of the unknown coordinates by the joints."""
@@ -188,10 +215,12 @@ class Stance:
         rows += [np.zeros(self.count) for _ in self.linkage.gears]
         return self._solved(-np.array(rows)) if rows else np.zeros((0, self.count))
 
-    def _origin_bends(self, turning: np.ndarray) -> np.ndarray:
+    def _origin_bends(self, turning: np.ndarray, coordinates: np.ndarray | None = None) -> np.ndarray:
         found = np.zeros(self.turns.shape, dtype=complex)
         for body, held in enumerate(self.linkage.origins):
             found[body] = self._bend(held, found, turning)
+            if coordinates is not None:
+                found[body] += self._shifted(body, coordinates)
         return found
 
     def _bend(self, held: Held, origins: np.ndarray, turning: np.ndarray) -> np.ndarray:
@@ -201,7 +230,7 @@ class Stance:
     @cached_property
     def origin_bends(self) -> np.ndarray:
         """Second derivative of the frames' origins by the driver's angle."""
-        return self._origin_bends(self.bends)
+        return self._origin_bends(self.bends, self._coordinate_bends)
 
     def bend(self, held: Held) -> np.ndarray:
         """Second derivative of a place by the driver's angle."""

@@ -40,6 +40,9 @@ class Body:
         kg, and kg m^2 about the centre of mass; none unless told.
     centre
         The point that is its centre of mass; the origin of its frame unless told.
+    origin
+        For a body that slides alone hold, such as a Scotch yoke: where the origin of its frame lies in the ground's, mm, a
+        place that moves with the driver. ``at`` is then its own name of that point, which no other body holds.
     """
 
     name: str
@@ -49,6 +52,7 @@ class Body:
     mass: Place = 0.0
     inertia: Place = 0.0
     centre: str = ""
+    origin: Place | None = None
 
     @property
     def places(self) -> Mapping[str, Place]:
@@ -193,6 +197,16 @@ class Mechanism:
             f"MECHANISM: no body is turned by the driver's angle {angle!r}; it has {', '.join(self.angles)}"
         )
 
+    @property
+    def named(self) -> tuple[str, ...]:
+        """The quantities that places, masses, loads and friction are given by, each once."""
+        places = [*self.unfolded()]
+        for load in self.loads:
+            places += [load.force, load.moment, load.angle]
+        for given in self.friction.values():
+            places += given if isinstance(given, (tuple, list)) else (given,)
+        return tuple(dict.fromkeys(name for place in places for name in parameters(place)))
+
     def unfolded(self) -> Iterator[Place]:
         """Everything that a number must be found for."""
         yield from self.ground.values()
@@ -210,10 +224,13 @@ class Mechanism:
         yield from (f"two bodies are called {n!r}" for n in twice)
         known = set(self.ground)
         for body in self.bodies:
-            if body.at not in known:
+            if body.origin is not None:
+                if body.at in known:
+                    yield f"body {body.name!r} has an origin of its own, and {body.at!r} is a point of another body: a pin"
+            elif body.at not in known:
                 yield (
                     f"body {body.name!r} has its origin at {body.at!r}, which no body before it holds"
-                    f"{nearest(body.at, known)}"
+                    f"{nearest(body.at, known)}; a body that slides alone hold says where it is: Body(…, origin=…)"
                 )
             known |= set(body.places)
             if body.angle is None and body.points:

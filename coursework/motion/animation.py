@@ -88,7 +88,7 @@ class Animation(Reel):
     @property
     def _of_mechanism(self) -> Mapping[str, Moving]:
         """The moving points of the mechanism that the solution states."""
-        scene = Scene(self.variant.exercise, self.variant.used)
+        scene = Scene(self.variant.exercise, self.variant.given)
         return scene.moving_points(self.angles)
 
     @cached_property

@@ -223,7 +223,7 @@ class _Reader:
     def _given(self, exercise: CourseExercise) -> dict[str, Any]:
         """The values of a variant, with those that the file names instead."""
         seed = self.table.get("seed", 0)
-        found = dict(self._told(("seed",), exercise.variant, seed).used)
+        found = dict(self._told(("seed",), exercise.variant, seed).given)
         for name, value in self._table(("given",)).items():
             if name not in exercise.spec.given:
                 raise self.refused(

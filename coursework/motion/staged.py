@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 from coursework.course.exercise import CourseExercise
-from coursework.errors import BadCourse, WrongValue
+from coursework.errors import BadCourse, WrongValue, nearest
 from coursework.mechanics.evenness import Evenness
 from coursework.mechanics.forces import Forces
 from coursework.mechanics.friction import Contact, contacts
-from coursework.mechanics.linkage import Linkage
+from coursework.mechanics.linkage import MM, Linkage
 from coursework.mechanics.loads import Acting
 from coursework.mechanics.rates import Stance
-from coursework.mechanics.statement import Load, Mechanism, parameters
+from coursework.mechanics.statement import Load, Mechanism, number, parameters
 from coursework.model import Driver
 from coursework.motion.added import Added
 from coursework.motion.effects import ADVANTAGE, FORCES, KINEMATIC, check_effect, of_exercise
@@ -40,9 +40,9 @@ class Staged:
     added: Added = field(default_factory=Added)
 
     def __post_init__(self) -> None:
-        for number, effect in enumerate(self.effects):
+        for before, effect in enumerate(self.effects):
             check_effect(effect, self.exercise)
-            if effect in self.effects[:number]:
+            if effect in self.effects[:before]:
                 raise WrongValue(f"the effect {effect!r} is named twice")
         for name, value in self._accepted.items():
             if isinstance(value, np.ndarray):
@@ -157,21 +157,16 @@ class Staged:
     @cached_property
     def linkage(self) -> Linkage:
         mechanism = self.mechanism
-        places = [n for place in mechanism.unfolded() for n in parameters(place)]
-        places += [
-            n
-            for load in mechanism.loads
-            for p in (load.force, load.moment, load.angle)
-            for n in parameters(p)
-        ]
-        for given in mechanism.friction.values():
-            places += [
-                n for p in (given if isinstance(given, (tuple, list)) else (given,)) for n in parameters(p)
-            ]
         self._refuse_moving(mechanism)
-        wanted = tuple(n for n in dict.fromkeys(places) if n not in self.exercise.spec.given)
+        wanted = tuple(n for n in mechanism.named if n not in self.exercise.spec.given)
+        for name in wanted:
+            if name not in self.exercise.quantity_names:
+                known = {*self.exercise.quantity_names, *self.exercise.spec.given}
+                raise BadCourse(
+                    f"{self.exercise.solution.source}: MECHANISM names no quantity by {name!r}{nearest(name, known)}"
+                )
         values = self.exercise.solve(**self.given, only=wanted) if wanted else {}
-        values |= {n: self._accepted[n] for n in places if n in self._accepted}
+        values |= {n: self._accepted[n] for n in mechanism.named if n in self._accepted}
         linkage = Linkage(mechanism, values, self.driver.angle)
         linkage.check()
         return linkage
@@ -196,15 +191,20 @@ class Staged:
         """The mechanism at driver's angles, radians, shape ``(n,)``; its rates by the solution's own formulas where it
         has all of them, and by the joints where it has not, or where that is asked."""
         linkage = self.linkage
-        wanted = tuple(n for n in linkage.mechanism.angles if n != self.driver.angle)
+        bodies = linkage.mechanism.bodies
+        shifting = tuple(n for body in bodies if body.origin is not None for n in parameters(body.origin))
+        named = dict.fromkeys((*linkage.mechanism.angles, *shifting))
+        wanted = tuple(n for n in named if n != self.driver.angle and n not in self.exercise.spec.given)
         degrees = np.degrees(angles)
         found = self.exercise.solve(**self._driven(degrees), only=wanted) if wanted else {}
-        turned = {self.driver.angle: degrees, **found}
+        turned = {**self._accepted, self.driver.angle: degrees, **found}
         turns = np.repeat(linkage.constant_turns[:, None], len(angles), axis=1)
-        for number, body in enumerate(linkage.mechanism.bodies):
+        for own, body in enumerate(bodies):
             if isinstance(body.angle, str):
-                turns[number] = np.radians(turned[body.angle])
-        return Stance(linkage, turns, None if by_joints else partial(self._stated_rates, degrees))
+                turns[own] = np.radians(turned[body.angle])
+        origins = {own: origin for own in linkage.free if (origin := bodies[own].origin) is not None}
+        shifts = {own: np.broadcast_to(number(at, turned), angles.shape) * MM for own, at in origins.items()}
+        return Stance(linkage, turns, None if by_joints else partial(self._stated_rates, degrees), shifts)
 
     def _stated_rates(self, degrees: np.ndarray, order: int) -> np.ndarray | None:
         """First or second derivatives of the unknown angles by the driver's, as the solution's own rates give them."""

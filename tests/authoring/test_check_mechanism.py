@@ -7,8 +7,11 @@ import dataclasses
 import pytest
 
 import coursework
-from coursework.authoring.check_mechanism import check_mechanism, counts
+from coursework.authoring.check_mechanism import check_mechanism, counts, faults
 from coursework.authoring.check_report import Report
+from coursework.course.course import Course
+from coursework.course.folder import course_folder
+from coursework.course.variant import Variant
 from coursework.mechanics import Body, Mechanism, Slide
 
 COURSE = coursework.open_course()
@@ -64,3 +67,30 @@ def test_counts_are_those_of_the_joint_graph():
     )  # fmt: skip
     found = counts(double)
     assert (found.n, found.b, found.h, found.w, found.gamma) == (5, 7, 0, 1, 2)
+
+
+def test_a_free_body_goes_as_its_slides_let_it(tmp_path):
+    """A Scotch yoke in a course of its own, said rightly and with a slip."""
+    course = tmp_path / "own"
+    (course / "exercises").mkdir(parents=True)
+    (course / "solutions").mkdir()
+    (course / "exercises" / "course.toml").write_text('language = "en"\n[title]\nen = "Own"\n', "utf-8")
+    (course / "exercises" / "yoke.py").write_text(
+        "from coursework.model import Driver, Exercise, Part, drawn\n"
+        "EXERCISE = Exercise(given={'r': drawn(40, 90, unit='mm'), 'theta': drawn(10, 80, unit='deg'),"
+        " 'omega': drawn(2, 9, unit='rad/s')}, parts=(Part('x', unit='mm', points=1),),"
+        " driver=Driver('theta', 'omega'))\n", "utf-8",
+    )  # fmt: skip
+    for turn, found in (("cos", []), ("sin", ["goes otherwise than its slides let it"])):
+        (course / "solutions" / "yoke.py").write_text(
+            "from coursework.degrees import cos, sin\nfrom coursework.course.course import Course
+from coursework.course.folder import course_folder
+from coursework.course.variant import Variant
+from coursework.mechanics import Body, Mechanism, Slide\n"
+            "MECHANISM = Mechanism(ground={'O': 0}, bodies=(Body('2', 'theta', 'O', {'A': 'r'}), Body('3', 0, 'A'),"
+            " Body('4', 0, 'Y', origin='x')), slides=(Slide('A', '3', on='4', along=90.0), Slide('Y', '4')))\n"
+            f"def x(r, theta):\n    return r * {turn}(theta)\n", "utf-8",
+        )  # fmt: skip
+        told = list(faults(Course(course_folder(course), Variant)["yoke"].variant(0)))
+        assert [why for why in found if any(why in one for one in told)] == found
+        assert len(told) == len(found)

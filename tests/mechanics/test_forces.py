@@ -12,7 +12,7 @@ from coursework.mechanics import GROUND, Body, Gear, Load, Mechanism, Slide
 from coursework.mechanics.equilibrium import Equilibrium
 from coursework.mechanics.linkage import Held, Linkage
 from coursework.mechanics.rates import Stance
-from coursework.mechanics.wrenches import inertia_at_start, weight
+from coursework.mechanics.wrenches import inertia_at_rate, inertia_at_start, weight
 from coursework.motion.added import Added, Weighed
 from coursework.motion.scenes import Scene
 
@@ -272,3 +272,32 @@ def test_statements_that_cannot_be_are_refused():
         Mechanism({"O": 0}, (Body("2", "a", "Q"),))
     with pytest.raises(BadCourse, match="turned alike"):
         Mechanism({"O": 0}, (Body("2", "a", "O"), Body("3", "b", "O")), (Slide("O", "3", on="2"),))
+
+
+def test_a_body_that_slides_alone_hold_says_where_it_is():
+    """A Scotch yoke: x = r cos(theta); by hand its acceleration, and the torque r sin(theta) (m x'' + F)."""
+    r, speed, acceleration, force = 0.08, 5.0, 7.0, 40.0
+    mechanism = Mechanism(
+        ground={"O": 0},
+        bodies=(
+            Body("2", "theta", "O", {"A": "r"}),
+            Body("3", 0, "A"),
+            Body("4", 0, "Y", mass=3.0, origin="x"),
+        ),
+        slides=(Slide("A", "3", on="4", along=90.0), Slide("Y", "4")),
+    )
+    linkage = Linkage(mechanism, {"r": 1000 * r}, "theta")
+    linkage.check()
+    q = np.linspace(0.05, 6.2, 25)
+    stance = Stance(linkage, np.array([q, 0 * q, 0 * q, 0 * q]), shifts={2: r * np.cos(q)})
+    total = inertia_at_rate(stance) * speed**2 + inertia_at_start(stance) * acceleration
+    total.push(linkage.owner("Y"), -force)
+    x_ddot = -r * np.cos(q) * speed**2 - r * np.sin(q) * acceleration
+    by_hand = -r * np.sin(q) * (3.0 * x_ddot + force)
+    np.testing.assert_allclose(total.effort, by_hand, atol=1e-12)
+    equations = Equilibrium(stance)
+    unknowns = equations.under(total)[:, :, 0]
+    np.testing.assert_allclose(unknowns[:, equations.column("effort")], by_hand, atol=1e-12)
+    np.testing.assert_allclose(
+        unknowns[:, equations.column("A slide_n")], -(3.0 * x_ddot + force) * -1, atol=1e-11
+    )
