@@ -6,7 +6,6 @@ One small interface: a *method* is a function of a scene, an effort, a duration 
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
@@ -15,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.accuracy.study import Study
-from coursework.accuracy.timing import Times, times_of
+from coursework.accuracy.timing import Times, clock, times_of
 from coursework.course.exercise import CourseExercise
 from coursework.motion.scenes import Scene
 from coursework.motion.staged import INERTIA
@@ -82,9 +81,9 @@ def by_steps(scene: Scene, effort: float, duration: float, quick: bool) -> Itera
 def by_table(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
     """The same at fine steps, the coefficients of the motion from a table of the cycle by Fourier interpolation."""
     for nodes in (32, 64) if quick else (16, 32, 64, 128):
-        start = time.perf_counter()
+        start = clock()
         rate = _Tabulated(_Acceleration(scene, effort), nodes)
-        build = time.perf_counter() - start
+        build = clock() - start
         yield Run("cycle_table", nodes, partial(_ended, rate, duration, _FINE), build)
 
 
@@ -118,9 +117,9 @@ def _measured(right: _Right, place: str, quick: bool) -> Iterator[MotionRow]:
     ends = [(0.0, 0.0)] * len(runs)
     for _ in range(_ROUNDS):
         for i, run in enumerate(runs):
-            start = time.perf_counter()
+            start = clock()
             ends[i] = run.end()
-            samples[i].append(time.perf_counter() - start)
+            samples[i].append(clock() - start)
     for run, spent, end in zip(runs, samples, ends, strict=True):
         yield MotionRow(run.method, run.setting, place, times_of(spent), right.error(*end), run.build)
 

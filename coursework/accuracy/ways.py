@@ -8,7 +8,6 @@ Newton's method sets out, a difference of two positions.
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,6 +18,7 @@ import numpy as np
 from coursework.accuracy.closure import Closure
 from coursework.accuracy.reference import Reference, twinned
 from coursework.accuracy.subject import MOTION, POSITION, RATE, Places, Subject, one_by_one
+from coursework.accuracy.timing import clock
 
 __all__ = ["MOTION", "POSITION", "RATE", "Values", "Way", "ways"]
 
@@ -106,9 +106,9 @@ def _tables(subject: Subject, what: str, fixed: Mapping[str, Any]) -> Iterator[W
     if what == POSITION and subject.rate_of and subject.speed:
         _Turning(subject, fixed).table(8)  # what is loaded for the first one is no cost of a table
         for nodes in (64, 512, 4096):
-            start = time.perf_counter()
+            start = clock()
             table = _Turning(subject, fixed).table(nodes)
-            yield Way(POSITION, "table", table, nodes, build=time.perf_counter() - start)
+            yield Way(POSITION, "table", table, nodes, build=clock() - start)
 
 
 def _moved(subject: Subject, what: str, fixed: Mapping[str, Any]) -> Iterator[Way]:

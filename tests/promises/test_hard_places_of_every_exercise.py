@@ -27,7 +27,7 @@ KNOWN_LOSSES = {
         "theta2", "theta3", "theta4", "theta5", "xC", "omega3",  # theta1 after many whole turns
     },
     "slider_extras": {"omega5"},  # a change point
-    "slotted_mechanism": {"rA_ddot", "alpha4", "a_tangential", "a_radial"},  # the block beside O4
+    "slotted_mechanism": {"rA_ddot"},  # the block beside O4
     "three_loop_shaper": {
         "omega5", "d5_dot", "omega7", "x8_dot", "alpha5", "d5_ddot", "alpha7", "x8_ddot",  # after many whole turns
     },
