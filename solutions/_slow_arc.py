@@ -1,6 +1,6 @@
 """A wanted time ratio: what the slow stroke takes of a turn, and beyond half a turn."""
 
-from coursework.solution import formula, mistake
+from coursework.solution import formula, mistake, stable
 
 
 @formula(r"360^{\circ} \times \frac{<Q>}{1 + <Q>}")
@@ -9,6 +9,7 @@ def alpha(Q):
     return 360 * Q / (1 + Q)
 
 
+@stable(lambda Q: 180 * (Q - 1) / (Q + 1))
 def phi(alpha):
     return alpha - 180
 

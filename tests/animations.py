@@ -31,9 +31,9 @@ def animation(name, seed=1, lang="fr", effects=()):
 def points_at(exercise, given, angle):
     """The points that a solution moves, or those of its mechanism, the driver at an angle or at many, degrees."""
     solution = exercise.solution
-    given = {**given, **exercise.posed(given, angle)}
     if solution.motion is None:
         return Scene(exercise, given).moving_points(np.atleast_1d(angle))
+    given = {**given, **exercise.posed(given, angle)}
     graph = solution.graph.with_functions({"motion": solution.motion})
     known = {n: v for n, v in given.items() if n in graph.leaves or n in graph.quantities}
     return graph.evaluate(("motion",), known, exercise.spec.effects)["motion"]

@@ -150,7 +150,7 @@ class Terrain:
     def _may_be_nought(self, name: str) -> bool:
         spec = self.exercise.spec.given[name]
         low, high = self._drawn[name]
-        return self.unit(name) == "mm" and not spec.nonzero and low < 0 < high
+        return self.unit(name) != "deg" and not spec.nonzero and low < 0 < high
 
     def unit(self, name: str) -> str:
         return self.exercise.spec.given[name].unit
@@ -158,32 +158,31 @@ class Terrain:
     @cached_property
     def _drawn(self) -> dict[str, tuple[float, float]]:
         """The least and the largest value that is drawn of each, conditions or not."""
-        spec = self.exercise.spec
-        words = np.concatenate(
-            [draws._words(self.exercise.name, spec.version, s, 0, len(spec.given)) for s in range(32)]
-        )
-        values = draws.candidates(spec, words)
+        values = draws.first_candidates(self.exercise.name, self.exercise.spec, 512)
         return {n: (float(np.nanmin(values[n])), float(np.nanmax(values[n]))) for n in self.names}
 
     @cached_property
     def ranges(self) -> dict[str, tuple[float, float]]:
-        """Where each is sought: lengths in the range of all lengths, angles over a turn, the rest as drawn."""
-        lengths = [self._drawn[n] for n in self.names if self._is_length(n)]
-        low = min((low for low, _ in lengths), default=1.0) / 2
-        high = max((high for _, high in lengths), default=1.0) * 2
+        """Where each is sought: a size, a length say, in the range of all sizes of its unit, an angle over a turn."""
         found = {}
         for name, (least, largest) in self._drawn.items():
-            if self._is_length(name):
-                found[name] = (low, high)
-            elif self.unit(name) == "mm":
-                reach = max(high, abs(least), abs(largest))
-                found[name] = (-reach, reach)
-            elif self.unit(name) == "deg":
+            low, high = self._of_unit(self.unit(name))
+            if self.unit(name) == "deg":
                 # Off the quarters of the turn, so that what vanishes there changes sign between two points.
                 found[name] = (-183.7, 176.3) if self.turns(name) else (min(least, 0.0), max(largest, 180.0))
+            elif self._is_size(name):
+                found[name] = (low, high)
             else:
-                found[name] = (least, largest)
+                reach = max(high, abs(least), abs(largest))
+                found[name] = (-reach, reach) if least < 0 else (least, reach)
         return {n: r for n, r in found.items() if r[1] > r[0]}
+
+    def _of_unit(self, unit: str) -> tuple[float, float]:
+        """From half the least to twice the largest of the sizes of a unit; nothing where it has none."""
+        sizes = [self._drawn[n] for n in self.names if self.unit(n) == unit and self._is_size(n)]
+        return min((low for low, _ in sizes), default=0.0) / 2, max(
+            (high for _, high in sizes), default=0.0
+        ) * 2
 
     def turns(self, name: str) -> bool:
         """Whether an angle may be any, not one of a triangle."""
@@ -191,12 +190,16 @@ class Terrain:
         driver = self.exercise.spec.driver
         return largest - least >= 180 or least < 0 or (driver is not None and name == driver.angle)
 
-    def _is_length(self, name: str) -> bool:
-        return self.unit(name) == "mm" and self._drawn[name][0] > 0
+    def _is_size(self, name: str) -> bool:
+        """Whether it is always positive, and no angle: a length, a mass."""
+        return self.unit(name) != "deg" and self._drawn[name][0] > 0
 
     @property
-    def lengths(self) -> tuple[str, ...]:
-        return tuple(n for n in self.names if self._is_length(n))
+    def sizes(self) -> tuple[str, ...]:
+        """What may be far smaller than others of its unit."""
+        own = [n for n in self.names if self._is_size(n)]
+        units = [self.unit(n) for n in own]
+        return tuple(n for n in own if units.count(self.unit(n)) > 1)
 
     @property
     def angles(self) -> tuple[str, ...]:
@@ -209,9 +212,7 @@ class Terrain:
         """What a distance in one of the given quantities is counted in."""
         if self.unit(name) == "deg":
             return _ANGLE
-        if self.unit(name) == "mm":
-            return max((abs(given[n]) for n in self.names if self.unit(n) == "mm"), default=1.0)
-        return abs(given[name]) or 1.0
+        return max(abs(given[n]) for n in self.names if self.unit(n) == self.unit(name)) or 1.0
 
     # ------------------------------------------------------------------ margins
 
@@ -461,7 +462,7 @@ def _turning_points(terrain: Terrain) -> list[_Spot]:
     for base in terrain.bases:
         for moved in terrain.angles[:2]:
             for tuned in terrain.ranges:
-                if tuned != moved and terrain.unit(tuned) in ("mm", "deg"):
+                if tuned != moved:
                     spots += _touching(terrain, base, moved, tuned)
     return [zero for group in _alike(spots) for zero in _zoomed(terrain, group)]
 
@@ -572,7 +573,7 @@ def _vanishing(terrain: Terrain) -> list[_Spot]:
     """A length as small as one likes beside the others; an angle of a triangle that is flat."""
     base = terrain.bases[0]
     flat = [n for n in terrain.angles if not terrain.turns(n)]
-    ends = [(n, 0.0) for n in (*terrain.lengths, *flat)] + [(n, 180.0) for n in flat]
+    ends = [(n, 0.0) for n in (*terrain.sizes, *flat)] + [(n, 180.0) for n in flat]
     return [_Spot({**base, name: end}, name, (name, VANISHING, 0)) for name, end in ends]
 
 
@@ -603,7 +604,7 @@ def _ranked(terrain: Terrain, places: Sequence[HardPlace]) -> list[HardPlace]:
     weighed = sorted((replace(p, lost=_lost(terrain, p)) for p in places), key=lambda p: -p.lost)
     kept: dict[Any, list[HardPlace]] = {}
     for place in weighed:
-        own = kept.setdefault((place.kind, place.quantity, place.double), [])
+        own = kept.setdefault((place.kind, place.quantity, place.double and place.moved), [])
         if place.lost > _LOST and len(own) < _OF_A_SORT:
             own.append(place)
     return sorted((p for own in kept.values() for p in own), key=lambda p: -p.lost)

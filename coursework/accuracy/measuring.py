@@ -183,8 +183,8 @@ class _Trial:
         calls = [
             partial(_computed, way, _first(self.timed, count)) for way, count in zip(own, counts, strict=True)
         ]
-        at_least, budget = (1e-3, 0.05) if self.quick else (1e-2, 0.5)
-        found = interleaved(calls, at_least, budget, 5 if self.quick else 9)
+        at_least, budget = (1e-3, 0.05) if self.quick else (5e-3, 0.5)
+        found = interleaved(calls, at_least, budget, 15 if self.quick else 25)
         return [spent.per(count) for spent, count in zip(found, counts, strict=True)]
 
     def _hard_rows(

@@ -1,7 +1,7 @@
 """Accuracy of motion in time: what a tolerance, a fixed step or a table costs, and what it leaves.
 
-One small interface: a *method* is a function of a scene, an effort and a duration that yields a :class:`Run` for each of its
-settings. What stands in :data:`METHODS` is measured, with friction and without.
+One small interface: a *method* is a function of a scene, an effort, a duration and whether time is short, that yields a
+:class:`Run` for each of its settings. What stands in :data:`METHODS` is measured, with friction and without.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,19 +23,19 @@ FRICTION = "friction"
 FREE, RUBBING = "without friction", "with friction"
 _RTOLS = tuple(10.0**-k for k in range(3, 13))
 _ROUNDS = 3
+_FINE = 800  #: equal steps where a table makes each of them cheap
 
 
 class Run(NamedTuple):
-    """One motion by one method: where its driver stands at the end, degrees, not reduced, and how fast it turns there.
+    """One motion by one method at one setting.
 
-    ``again`` runs it once more, to be timed; ``build`` is how many seconds were spent before the first run.
+    ``end`` integrates it, each time anew, to where its driver stands at the end, degrees, not reduced, and how fast it turns
+    there, rad/s; ``build`` is how many seconds were spent before.
     """
 
     method: str
     setting: float
-    angle: float
-    speed: float
-    again: Callable[[], Any]
+    end: Callable[[], tuple[float, float]]
     build: float | None = None
 
 
@@ -56,29 +57,25 @@ Method = Callable[[Scene, float, float, bool], Iterator[Run]]
 def by_tolerance(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
     """The scene's own integration, at each relative tolerance."""
     driver = scene.driver
-    tolerances = _RTOLS[:: 3 if quick else 1]
-    # With friction each digit costs so much that a quick look stops halfway.
-    for rtol in tolerances[:2] if quick and FRICTION in scene.effects else tolerances:
+    # A quick look takes a few; with friction each digit costs so much that it stops halfway.
+    rubs = FRICTION in scene.effects
+    for rtol in _RTOLS[: 6 if rubs else 9 : 3] if quick else _RTOLS:
 
-        def run(rtol: float = rtol) -> Any:
+        def end(rtol: float = rtol) -> tuple[float, float]:
             # The state at the end is all that is compared.
-            return scene.in_time(effort, duration, rtol=rtol, count=1).columns
+            columns = scene.in_time(effort, duration, rtol=rtol, count=1).columns
+            return float(columns[driver.angle][-1]), float(columns[driver.speed][-1])
 
-        columns = run()
-        yield Run("integration", rtol, columns[driver.angle][-1], columns[driver.speed][-1], run)
+        yield Run("integration", rtol, end)
 
 
 def by_steps(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
-    """The classical Runge-Kutta method at fixed steps, the mechanism computed anew at each of its four stages."""
-    counts = (50, 100, 200, 400, 800)[: 3 if quick else None]
-    for steps in counts[:2] if quick and FRICTION in scene.effects else counts:
-        rate = _Acceleration(scene, effort)
-
-        def run(steps: int = steps, rate: _Acceleration = rate) -> np.ndarray:
-            return runge_kutta(rate, rate.start, duration, steps)
-
-        angle, speed = run()
-        yield Run("steps", steps, float(np.degrees(angle)), float(speed), run)
+    """The classical Runge-Kutta method at equal steps, the mechanism computed anew at each of its four stages."""
+    counts = (50, 100, 200, 400, 800)
+    most = len(counts) if not quick else 2 if FRICTION in scene.effects else 3
+    rate = _Acceleration(scene, effort)
+    for steps in counts[:most]:
+        yield Run("steps", steps, partial(_ended, rate, duration, steps))
 
 
 def by_table(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
@@ -87,19 +84,19 @@ def by_table(scene: Scene, effort: float, duration: float, quick: bool) -> Itera
         start = time.perf_counter()
         rate = _Tabulated(_Acceleration(scene, effort), nodes)
         build = time.perf_counter() - start
+        yield Run("cycle_table", nodes, partial(_ended, rate, duration, _FINE), build)
 
-        def run(rate: _Tabulated = rate) -> np.ndarray:
-            return runge_kutta(rate, rate.start, duration, 800)
 
-        angle, speed = run()
-        yield Run("cycle_table", nodes, float(np.degrees(angle)), float(speed), run, build)
+def _ended(rate: Any, duration: float, steps: int) -> tuple[float, float]:
+    angle, speed = runge_kutta(rate, rate.start, duration, steps)
+    return float(np.degrees(angle)), float(speed)
 
 
 METHODS: tuple[Method, ...] = (by_tolerance, by_steps, by_table)
 
 
 def motion_rows(exercise: CourseExercise, study: Study, quick: bool) -> Iterator[MotionRow]:
-    """Every method at each of its settings: without friction against the energy integral, with friction against the
+    """Every method at each of its settings, in rounds: without friction against the energy integral, with friction against the
     tightest tolerance there is."""
     assert study.motion is not None
     motion = study.motion
@@ -113,16 +110,18 @@ def motion_rows(exercise: CourseExercise, study: Study, quick: bool) -> Iterator
 
 
 def _measured(right: _Right, place: str, quick: bool) -> Iterator[MotionRow]:
-    for method in METHODS:
-        if place == RUBBING and method is by_table:
-            continue  # what friction takes is no function of the angle alone
-        for run in method(right.scene, right.effort, right.duration, quick):
-            samples = []
-            for _ in range(_ROUNDS):
-                start = time.perf_counter()
-                run.again()
-                samples.append(time.perf_counter() - start)
-            yield MotionRow(run.method, run.setting, place, times_of(samples), right.error(run), run.build)
+    # What friction takes is no function of the angle alone, and in no table.
+    methods = [m for m in METHODS if place == FREE or m is not by_table]
+    runs = [run for method in methods for run in method(right.scene, right.effort, right.duration, quick)]
+    samples: list[list[float]] = [[] for _ in runs]
+    ends = [(0.0, 0.0)] * len(runs)
+    for _ in range(_ROUNDS):
+        for i, run in enumerate(runs):
+            start = time.perf_counter()
+            ends[i] = run.end()
+            samples[i].append(time.perf_counter() - start)
+    for run, spent, end in zip(runs, samples, ends, strict=True):
+        yield MotionRow(run.method, run.setting, place, times_of(spent), right.error(*end), run.build)
 
 
 # --------------------------------------------------------------------------- right
@@ -134,7 +133,7 @@ class _Right:
     def __init__(self, scene: Scene, effort: float, duration: float) -> None:
         self.scene, self.effort, self.duration = scene, effort, duration
 
-    def error(self, run: Run) -> float:
+    def error(self, angle: float, speed: float) -> float:
         raise NotImplementedError
 
 
@@ -146,13 +145,13 @@ class _Exact(_Right):
         self.integral = EnergyIntegral(scene, effort)
         self._there: tuple[float, Any] | None = None
 
-    def error(self, run: Run) -> float:
+    def error(self, angle: float, speed: float) -> float:
         if self._there is None:
             # The whole way is integrated once, to the end of the first run; the others end beside it.
-            self._there = run.angle, self.integral.time(self.integral.start_angle, run.angle)
+            self._there = angle, self.integral.time(self.integral.start_angle, angle)
         last, spent = self._there
-        late = spent + self.integral.time(last, run.angle) - self.duration
-        return abs(run.speed * float(late))
+        late = spent + self.integral.time(last, angle) - self.duration
+        return abs(speed * float(late))
 
 
 class _Tightest(_Right):
@@ -160,10 +159,10 @@ class _Tightest(_Right):
 
     def __init__(self, scene: Scene, effort: float, duration: float, quick: bool) -> None:
         super().__init__(scene, effort, duration)
-        self.rtol = 1e-10 if quick else 1e-13
+        self.rtol = 1e-9 if quick else 1e-13
 
-    def error(self, run: Run) -> float:
-        return abs(float(np.radians(run.angle - self._angle)))
+    def error(self, angle: float, speed: float) -> float:
+        return abs(float(np.radians(angle - self._angle)))
 
     @property
     def _angle(self) -> float:

@@ -186,7 +186,7 @@ class _Survey:
     def _times(self) -> Sequence[Times]:
         timed = self.subject.generic(_TIMED)
         calls = [partial(self._together, way, timed) for way in self.graphs]
-        at_least, rounds = (1e-3, 5) if self.quick else (2e-2, 9)
+        at_least, rounds = (1e-3, 7) if self.quick else (1e-2, 11)
         return [t.per(_TIMED) for t in interleaved(calls, at_least, rounds=rounds)]
 
     def _together(self, way: str, places: Places) -> Any:

@@ -11,7 +11,7 @@ from coursework.accuracy.hard_places import HardPlace
 from coursework.accuracy.measuring import DATA, GENERIC, HARD, Row
 from coursework.accuracy.motion import FREE, RUBBING
 from coursework.accuracy.subject import ACCELERATION, MOTION, OTHER, POSITION, RATE, Subject
-from coursework.accuracy.verdicts import Rows, Words, cheapest, enough, halves, is_busy, listed, paid_after
+from coursework.accuracy.verdicts import Rows, Words, cheapest, enough, halves, listed, paid_after
 from coursework.course.course import Course
 from coursework.figures.charts import lacking, scatter
 from coursework.language.numbers import significant, unit_text
@@ -19,6 +19,7 @@ from coursework.language.words import words
 from coursework.sheets.report import Chart, Report, Section, Table
 
 _LEAST = 1e-20  #: what a chart shows of an error below
+_MANY_TIMES = 10
 _MOTION_LIMITS = (1e-3, 1e-6)
 
 
@@ -82,7 +83,7 @@ def _rate_charts(rows: Rows, place: str, said: Words) -> tuple[Chart, ...]:
     levels = {
         _method(r, said): (ends, [max(_measured(r), _LEAST)] * 2)
         for r in others
-        if r.family not in ("differences", "mpmath")
+        if r.family not in ("differences", "mpmath", DATA)
     }
     heading = said["chart_rates"].format(said["places"][place])
     return charts_of({**_series(differences, said, _set), **levels}, heading, said["step"], said)
@@ -132,7 +133,7 @@ def _read_motion(rows: Sequence[Row], where: str, said: Words) -> list[str]:
         good = [r for r in rows if _measured(r) <= limit]
         best = cheapest(good)
         key = "motion_none" if not good else "motion_alike" if best[1:] else "motion_best"
-        if good and not best:
+        if good and Rows(rows).is_busy:
             return [*found, reading["busy"]]
         methods = listed(best, said, lambda r: _method(r, said)) if best else ""
         found.append(reading[key].format(limit=number(limit), place=where, methods=methods))
@@ -187,7 +188,7 @@ def _paragraphs(sentences: Iterable[str]) -> str:
 
 
 def _read_positions(rows: Rows, said: Words) -> list[str]:
-    reading = said["reading"]
+    reading, stable = said["reading"], rows.one("stable")
     found = [" ".join(enough(rows, said, lambda row: _method(row, said), number))]
     found.append(" ".join(filter(None, (_read_hard(rows, said), _read_data(rows, said)))))
     newton, hard_newton = rows.of("newton"), rows.of("newton", HARD)
@@ -198,12 +199,13 @@ def _read_positions(rows: Rows, said: Words) -> list[str]:
         hard_error = _error(hard_newton[-1], said) if halves(hard_newton) else ""
         found.append(reading[key].format(errors=errors, hard=hard_error))
     solver, hard_solver = rows.of("fsolve"), rows.of("fsolve", HARD)
-    if solver and hard_solver:
+    costs_more = solver and stable and solver[0].low > _MANY_TIMES * stable.high
+    if costs_more and hard_solver:
         found.append(
             reading["solver"].format(error=_error(solver[0], said), hard=_error(hard_solver[0], said))
         )
-    tables, stable = rows.of("table"), rows.one("stable")
-    if tables and stable and not is_busy([*tables, stable]):
+    tables = rows.of("table")
+    if tables and stable and not rows.is_busy:
         pays = any(paid_after(row, stable) is not None for row in tables)
         found.append(reading["table_pays" if pays else "table_never"])
     if newton and rows.one("mpmath"):
@@ -226,12 +228,8 @@ def _read_data(rows: Rows, said: Words) -> str:
     data = rows.one(DATA, HARD)
     if data is None or not data.max_error:
         return ""
-    return said["reading"]["data"].format(_at_most_one(data.max_error, said))
-
-
-def _at_most_one(error: float, said: Words) -> str:
-    """An error of a whole value or more is one of the whole."""
-    return number(min(error, 1.0))
+    reading = said["reading"]
+    return str(reading["data_all"] if data.max_error >= 1 else reading["data"].format(number(data.max_error)))
 
 
 def _read_rates(rows: Rows, said: Words) -> list[str]:
@@ -334,7 +332,7 @@ def _error_cell(row: Row | None, said: Words) -> str:
     if row is None:
         return ""
     if row.family == DATA:
-        return _at_most_one(_measured(row), said)
+        return number(min(_measured(row), 1.0))  # more than the whole is the whole
     failed = said["failed"].format(row.failed, row.n) if row.failed and row.max_error is not None else ""
     return ", ".join(filter(None, (_error(row, said), failed)))
 

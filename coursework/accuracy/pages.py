@@ -11,7 +11,7 @@ from coursework.accuracy.overview import Line
 from coursework.accuracy.page import charts_of, no_charts, number, told_place
 from coursework.accuracy.paper import PLAIN, PaperRow, Share, total
 from coursework.accuracy.subject import Subject
-from coursework.accuracy.timing import WIDE, Times
+from coursework.accuracy.timing import Times, is_busy
 from coursework.accuracy.verdicts import Words
 from coursework.course.course import Course
 from coursework.language.words import words
@@ -52,17 +52,11 @@ def _short(course: Course, lines: Sequence[Line], without: Sequence[str], told: 
         f"{_titled(course, line, lang)} ({', '.join(line.lacking)})" for line in lines if line.lacking
     ]:
         found.append(told["lacking"].format(", ".join(lacking)))
-    if is_busy(right):
+    if is_busy(line.stable_ns for line in right if line.stable_ns):
         found.append(told["busy"])
     if without:
         found.append(told["without"].format(", ".join(course[name].title(lang) for name in without)))
     return "\n\n".join(found)
-
-
-def is_busy(lines: Sequence[Line]) -> bool:
-    """Whether the times of a third of the exercises or more spread widely."""
-    spreads = [line.stable_ns.spread for line in lines if line.stable_ns]
-    return 3 * sum(spread > WIDE for spread in spreads) >= max(1, len(spreads))
 
 
 def _titled(course: Course, line: Line, lang: str) -> str:
@@ -87,7 +81,7 @@ def _digits_table(course: Course, lines: Sequence[Line], told: Words, lang: str)
         )
         for line in lines
     ]
-    return Table(tuple(heads), tuple(rows), (False, *[True] * 7))
+    return Table(tuple(heads), tuple(rows), (False, *[True] * 7), told["caption"])
 
 
 def _digits(error: float | None) -> int:

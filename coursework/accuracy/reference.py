@@ -1,6 +1,6 @@
 """Values in many digits that something else vouches for.
 
-The textbook formulas of a solution are computed in eighty digits, of which they may lose some and be exact still. That a
+The textbook formulas of a solution are computed in a hundred digits, of which they may lose some and be exact still. That a
 formula is *right* no number of digits says. So what comes out is put into the equations that the solution states
 besides: the loops and their two derivatives in time, and ``residual``. All must close to forty digits.
 """
@@ -21,7 +21,7 @@ from coursework.errors import CourseworkError
 from coursework.quantities.graph import Graph
 from coursework.quantities.loops import Loop
 
-DIGITS = 80
+DIGITS = 100
 CLOSED = 1e-40  #: what equations may lack, in parts of their terms
 CLOSED_IN_DOUBLES = 1e-11  #: the same for an equation that takes plain floats alone
 _ROUNDED = 1e-15  #: what constants make that are rounded to doubles

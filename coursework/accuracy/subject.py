@@ -30,12 +30,18 @@ Places = dict[str, Any]  #: given values: arrays of one shape, texts
 
 
 def numbers_of(exercise: CourseExercise) -> tuple[str, ...]:
-    """The asked quantities that are numbers with digits; none where the course holds no solution."""
-    if not exercise.folder.has_solutions:
-        return ()
+    """The asked quantities that are numbers with digits; none of an exercise whose solution is not written yet.
+
+    Raises
+    ------
+    NoSolution
+        The course has none at all: it is a students' copy.
+    """
     try:
         known = exercise.quantity_names
     except NoSolution:
+        if not exercise.folder.has_solutions:
+            raise
         return ()
     asked = (p.quantity for p in exercise.spec.parts if p.kind in ("number", "angle"))
     return tuple(n for n in dict.fromkeys(asked) if n in known)

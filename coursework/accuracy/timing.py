@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-WIDE = 0.6  #: a spread, in parts of the median, from which on times are not compared
+WIDE = 0.25  #: a spread, in parts of the median, that an idle machine hardly makes
+MANY = 0.2  #: the share of wide spreads from which on no time of a page is compared
 ALIKE = 1.75  #: times whose ratio is smaller are alike, whatever their spreads
 _ROUNDS = 9
 _LEAST_ROUNDS = 3
@@ -31,6 +32,12 @@ class Times:
 
     def per(self, count: int) -> Times:
         return Times(self.median / count, self.low / count, self.high / count, self.rounds)
+
+
+def is_busy(times: Iterable[Any]) -> bool:
+    """Whether so many times spread widely that the machine had other work, and no time can be compared."""
+    spreads = [(t.high - t.low) / t.median for t in times if t.median]
+    return bool(spreads) and sum(spread > WIDE for spread in spreads) >= MANY * len(spreads)
 
 
 def overlap(a: Any, b: Any) -> bool:

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Any
 
 from coursework.accuracy.measuring import DATA, GENERIC, HARD, Row
-from coursework.accuracy.timing import WIDE, overlap
+from coursework.accuracy.timing import is_busy, overlap
 
 LIMITS = (1e-3, 1e-6, 1e-12)
 _REFERENCES = ("mpmath", DATA)
@@ -20,16 +20,9 @@ Words = Mapping[str, Any]
 
 
 def cheapest(rows: Iterable[Row]) -> list[Row]:
-    """The rows whose times cannot be told from the shortest, shortest first; none where that one spreads widely."""
+    """The rows whose times cannot be told from the shortest, shortest first."""
     by_time = sorted(rows, key=lambda row: row.median)
-    if not by_time or is_busy(by_time[:1]):
-        return []
     return [row for row in by_time if overlap(by_time[0], row)]
-
-
-def is_busy(rows: Iterable[Row]) -> bool:
-    """Whether the times of one and the same way spread so widely that nothing can be compared."""
-    return any((row.high - row.low) / row.median > WIDE for row in rows if row.median)
 
 
 class Rows:
@@ -63,6 +56,11 @@ class Rows:
         return found
 
     @property
+    def is_busy(self) -> bool:
+        """Whether the machine had other work while these were timed."""
+        return is_busy(row for row in self.rows if row.place != HARD and row.family not in _REFERENCES)
+
+    @property
     def places(self) -> tuple[str, ...]:
         """Generic places, and hard ones where there are such."""
         return (GENERIC, HARD) if any(r.place == HARD for r in self.rows) else (GENERIC,)
@@ -83,14 +81,14 @@ def enough(rows: Rows, said: Words, name: Any, number: Any) -> list[str]:
 
 def _answers(rows: Rows, said: Words, name: Any, limit: float) -> list[tuple[str, str]]:
     """What is to be said of one limit: the sentence, and the methods that it names."""
-    everywhere = rows.within(limit, rows.places)
-    best = cheapest(everywhere)
-    if everywhere and not best:
+    best = cheapest(rows.within(limit, rows.places))
+    if best and rows.is_busy:
         return [("busy", "")]
     found = [("nowhere_below", "")]
     if best:
         found = [("everywhere_alike" if best[1:] else "everywhere", listed(best, said, name))]
-    if better := _cheaper_at_generic_places(rows, limit, best):
+    better = [] if rows.is_busy else _cheaper_at_generic_places(rows, limit, best)
+    if better:
         found.append(("generic_only", listed(better, said, name)))
     return found
 

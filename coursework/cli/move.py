@@ -85,7 +85,12 @@ def simulate(
 
     A scene is a file, or an exercise with options; values that are not set are those of the variant of --seed.
     """
-    told_file = _scene_file(opened(context), exercise, told)
+    typed = {name for name in (*told, "tolerance") if _is_typed(context, name)}
+    if plan and budget:
+        raise WrongValue("--plan says what would be done, --budget does it; give one of them")
+    if "tolerance" in typed and not budget:
+        raise WrongValue("--tolerance is of --budget")
+    told_file = _scene_file(opened(context), exercise, told, typed)
     if plan:
         _tell_plan(told_file.scene, as_json)
     elif budget:
@@ -94,14 +99,19 @@ def simulate(
         _tell_table(told_file, out, decimal, as_json)
 
 
-def _scene_file(course: Any, exercise: str, told: dict[str, Any]) -> SceneFile:
+def _is_typed(context: click.Context, option: str) -> bool:
+    """Whether an option was given, and does not merely hold its default."""
+    return context.get_parameter_source(option) is click.core.ParameterSource.COMMANDLINE
+
+
+def _scene_file(course: Any, exercise: str, told: dict[str, Any], typed: set[str]) -> SceneFile:
     """The scene of a file, or that of the options."""
     from coursework.motion.scene_files import SceneFile, read_scene
     from coursework.motion.scenes import Scene
 
     if exercise.endswith(".toml"):
-        for option in ("effects", "settings", "show", "steps", "drive", "duration"):
-            if told[option]:
+        for option in ("effects", "settings", "show", "seed", "over", "steps", "drive", "duration"):
+            if option in typed:
                 name = "set" if option == "settings" else option
                 raise WrongValue(f"{exercise} says what the scene is; leave --{name} out, or write it there")
         return read_scene(Path(exercise), course)
@@ -112,6 +122,9 @@ def _scene_file(course: Any, exercise: str, told: dict[str, Any]) -> SceneFile:
         if told["duration"] is not None:
             raise WrongValue("--duration is of a motion in time: give its drive too, --drive torque=5")
         return SceneFile(exercise, scene, told["steps"] or 360)
+    for option in ("steps", "over"):
+        if option in typed:
+            raise WrongValue(f"--{option} is of a cycle; with --drive the motion is in time")
     return SceneFile(exercise, scene, drive=_drive(one, told["drive"]), duration=_seconds(told["duration"]))
 
 
@@ -135,23 +148,24 @@ def _run(told: SceneFile, scene: Scene) -> Table:
 
 def _tell_table(told: SceneFile, out: Path | None, decimal: str, as_json: bool) -> None:
     table = _run(told, told.scene)
-    rows = table.rows()
     if as_json:
         name = told.scene.exercise.name
-        print_json({"exercise": name, "evaluated": table.evaluated, "rows": rows, "notes": table.notes})
+        print_json(
+            {"exercise": name, "evaluated": table.evaluated, "rows": table.rows(), "notes": table.notes}
+        )
     else:
         click.echo(f"evaluated: {', '.join(table.evaluated)}")
         for note in table.notes:
             click.echo(f"note: {note}")
     if out is not None:
         stem = out / f"{told.name}-{'cycle' if told.drive is None else 'motion'}"
-        _write_rows(rows, stem, decimal)
+        _write_rows(table.rows(), stem, decimal)
         if not (bare := tell_lack_of_charts()):
             _write_plot(table, told.name, stem)
         if not as_json:
             click.echo(f"table: {stem}.csv" if bare else f"table and plot: {stem}.csv, .svg")
     elif not as_json:
-        shown_rows = rows[:: max(1, len(rows) // 12)]
+        shown_rows = table.rows(max(1, len(table) // 12))
         print_table([{h: _short_number(v) for h, v in row.items()} for row in shown_rows])
 
 

@@ -185,10 +185,15 @@ def _chunks(indices: np.ndarray, size: int) -> Iterator[np.ndarray]:
 
 def acceptance(name: str, exercise: Exercise, count: int = 4096) -> tuple[float, dict[str, float]]:
     """Share of candidates that are variants, and the share that each condition refuses."""
+    good, refused = kept(exercise, first_candidates(name, exercise, count))
+    return float(good.mean()), {condition: float(mask.mean()) for condition, mask in refused.items()}
+
+
+def first_candidates(name: str, exercise: Exercise, count: int) -> dict[str, np.ndarray]:
+    """The first candidates of the first seeds, at least so many, whether or not they are variants."""
     seeds = range(math.ceil(count / BLOCK))
     words = np.concatenate([_words(name, exercise.version, s, 0, len(exercise.given)) for s in seeds])
-    good, refused = kept(exercise, candidates(exercise, words))
-    return float(good.mean()), {condition: float(mask.mean()) for condition, mask in refused.items()}
+    return candidates(exercise, words)
 
 
 def population(exercise: Exercise, limit: int = 200_000) -> int | None:

@@ -153,7 +153,8 @@ class CourseExercise(Generic[V]):
         effects
             Optional effects that the request calls for.
         **given
-            Scalars, arrays that broadcast, or texts with a unit (``"0.2286 m"``). Any quantity may be
+            Scalars, arrays that broadcast, or texts with a unit (``"0.2286 m"``). The driver's angle and those of
+            the loops count modulo whole turns, which cost no digit. Any quantity may be
             given, also one that the graph could compute: then it is used as it is. A list of mappings, such
             as joints, is handed on as a tuple.
 

@@ -144,10 +144,14 @@ class Intake:
 def _within_a_turn(angle: Any) -> Any:
     """The same direction, without rounding, where whole turns would take digits from what is added to it."""
     if isinstance(angle, float):
-        return angle if abs(angle) <= 360 else math.remainder(angle, 360.0)
+        if abs(angle) <= 360:
+            return angle
+        rest = math.fmod(angle, 360.0)
+        return rest - 360.0 * round(rest / 360.0)
     if not np.size(angle) or max(np.max(angle), -np.min(angle)) <= 360:
         return angle
-    return np.where(abs(angle) <= 360, angle, np.fmod(angle, 360.0))
+    rest = np.fmod(angle, 360.0)
+    return np.where(abs(angle) <= 360, angle, rest - 360.0 * np.rint(rest / 360.0))
 
 
 def _structure(name: str, value: Any) -> Any:

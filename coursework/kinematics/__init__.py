@@ -13,7 +13,7 @@ function computes what it is asked for and nothing beyond: rates only when rates
 ``rocker_slider`` a slider moved by the rocker of a four-bar: where it turns back
 ``triangles``     sides and angles, of flat triangles too
 
-They rest on ``angles`` (crank angles as exact sines and cosines), ``margins`` and ``closing`` (by how
-much a loop closes, without rounding), ``vectors``, ``scaling`` (exact powers of two) and ``blocks`` (long
-arrays in pieces that fit the cache).
+They rest on ``angles`` (crank angles as exact sines and cosines), ``elementary`` (tangent and arctangent,
+fast on every processor), ``margins`` and ``closing`` (by how much a loop closes, without rounding),
+``vectors``, ``scaling`` (exact powers of two) and ``blocks`` (long arrays in pieces that fit the cache).
 """

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework import degrees
+from coursework.kinematics.elementary import tangent
 
 
 class Heading(NamedTuple):
@@ -65,30 +66,18 @@ class Degrees(NamedTuple):
     def _turned(function: Callable, slope: Callable, angle: Any, rest: Any) -> Any:
         return function(angle) + slope(angle) * rest if np.ndim(rest) or rest else function(angle)
 
-    @property
-    def half_squares(self) -> tuple[Any, Any, Any]:
-        """Of half the angle: cosine squared, sine squared, cosine times sine. One tangent for the three."""
+    def half_squares(self, scale: Any) -> tuple[Any, Any, Any]:
+        """Of half the angle, times a scale: cosine squared, sine squared, cosine times sine. One tangent for the three."""
         quarters = np.rint(np.multiply(self.angle, 1 / 180))
-        beyond = np.multiply(self.angle, 0.5) - 90.0 * quarters
+        beyond = np.multiply(self.angle, 0.5)
+        beyond -= 90.0 * quarters
         if np.ndim(self.rest) or self.rest:
             beyond = beyond + np.multiply(self.rest, 0.5)
-        tangent = np.tan(beyond * _DEGREE)
-        squared = tangent * tangent
-        cos_squared = 1 / (1 + squared)
-        sin_squared = squared * cos_squared
-        both = tangent * cos_squared
-        # A quarter more exchanges cosine and sine, and turns the sign of their product.
-        whole = quarters * 0.5
-        odd = whole != np.rint(whole)
-        if not np.any(odd):
-            return cos_squared, sin_squared, both
-        if np.all(odd):
-            return sin_squared, cos_squared, -both
-        return (
-            np.where(odd, sin_squared, cos_squared),
-            np.where(odd, cos_squared, sin_squared),
-            np.where(odd, -both, both),
-        )
+        beyond *= _DEGREE
+        slope = tangent(beyond)
+        squared = slope * slope
+        cos_squared = scale / (1 + squared)
+        return _quarters_on(quarters, cos_squared, squared * cos_squared, slope * cos_squared)
 
     @property
     def _half(self) -> Any:
@@ -96,6 +85,21 @@ class Degrees(NamedTuple):
 
 
 _DEGREE = math.pi / 180
+
+
+def _quarters_on(quarters: Any, cos_squared: Any, sin_squared: Any, both: Any) -> tuple[Any, Any, Any]:
+    """The same three, whole quarters of a turn later: each exchanges cosine and sine, and turns the product's sign."""
+    least = np.min(quarters, initial=np.inf)
+    if least == np.max(quarters, initial=-np.inf):
+        odd = least % 2 == 1
+        return (sin_squared, cos_squared, -both) if odd else (cos_squared, sin_squared, both)
+    odd = quarters - 2 * np.floor(0.5 * quarters)
+    even = 1 - odd
+    return (
+        even * cos_squared + odd * sin_squared,
+        even * sin_squared + odd * cos_squared,
+        (even - odd) * both,
+    )
 
 
 def heading_in_degrees(angle: Any) -> Degrees:

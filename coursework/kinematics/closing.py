@@ -35,8 +35,7 @@ class Sweep(NamedTuple):
 def sweep(angle: Any, w: Any) -> Sweep:
     """For radians or a heading; radians and degrees cost one tangent."""
     if isinstance(angle, Degrees):
-        cos_squared, sin_squared, both = angle.half_squares
-        return Sweep(w * cos_squared, w * sin_squared, w * both)
+        return Sweep(*angle.half_squares(w))
     if isinstance(angle, Heading):
         return Sweep(w * angle.half_cos**2, w * angle.half_sin**2, (0.5 * w) * angle.sin)
     tangent = np.tan(angle * 0.5)
@@ -99,7 +98,8 @@ def closing(stretched: Any, folded: Any, side: Any, swept: Sweep, direct: Any = 
         stretch = np.where(np.isnan(direct), stretch, direct)[()]
     product = stretch * fold
     if swept.cos is None:
-        determinant = side * np.sqrt(product)
+        determinant = np.sqrt(product)
+        determinant *= side
     else:
         root_p = np.where(stretched == 0, swept.cos, np.sqrt(stretch))
         root_q = np.where(folded == 0, swept.sin, np.sqrt(fold))
@@ -133,8 +133,15 @@ class Opening:
             cos_part = self._close.side * self._cos_p * np.where(self._flat_q, 0.0, swept.cos / self._root_q)
             sin_part = self._sin_q * np.where(self._flat_p, 0.0, swept.sin / self._root_p)
             return 0.5 * (self._of_fold * cos_part - self._of_stretch * sin_part)
-        change = self._of_fold * swept.cos_squared - self._of_stretch * swept.sin_squared
-        return change * (0.5 * self._inverse)
+        close = self._close
+        change = swept.cos_squared / close.fold
+        change *= close.folded
+        folding = swept.sin_squared / close.stretch
+        folding *= close.stretched
+        change -= folding
+        change *= self._inverse
+        change *= 0.5
+        return change
 
     @cached_property
     def second(self) -> Any:

@@ -28,7 +28,7 @@ from coursework.kinematics.closing import Closing, Opening, Sweep, closing, in_t
 from coursework.kinematics.dyads import out_of_reach, side_of
 from coursework.kinematics.margins import grashof_margins
 from coursework.kinematics.scaling import exponent_of, scaled
-from coursework.kinematics.vectors import direction
+from coursework.kinematics.vectors import direction_of
 from coursework.system.blocks import in_blocks
 
 
@@ -60,6 +60,8 @@ class _Linkage(NamedTuple):
     twice_frame: Any  # 2 (d^2 - a^2)
     twice_sides: Any  # 2 (b^2 - c^2)
     twice_bc: Any  # 2 b c
+    coupler_ground: Any  # 4 b d
+    rocker_ground: Any  # 4 c d
     squared_reach: Any  # (b + c)^2
     side: Any  # +1 open, -1 crossed
 
@@ -94,7 +96,9 @@ class FourBar:
         self.side = _side(mode)
         self.smooth = smooth
         self._exponent = exponent_of(*self.lengths)
-        self._linkage = _linkage(*self._scaled_lengths(), self.side)
+        # Of one shape, which everything computed from them has too.
+        given = (*self._scaled_lengths(), self.side)
+        self._linkage = _linkage(*(np.broadcast_arrays(*given) if any(map(np.ndim, given)) else given))
 
     @property
     def margins(self) -> tuple[Any, Any]:
@@ -262,11 +266,11 @@ class FourBarPose:
 
     @property
     def coupler_angle(self) -> Any:
-        return self._said("angles", 0)
+        return self._said("coupler_angle")
 
     @property
     def rocker_angle(self) -> Any:
-        return self._said("angles", 1)
+        return self._said("rocker_angle")
 
     @property
     def coupler_ratio(self) -> Any:
@@ -299,9 +303,10 @@ class FourBarPose:
         with np.errstate(all="ignore"):
             return self._checked(_transmission_angle(self._pose, None)[0])
 
-    def _said(self, name: str, link: int) -> Any:
+    def _said(self, name: str, link: int | None = None) -> Any:
         with np.errstate(all="ignore"):
-            return self._checked(getattr(self._pose, name)[link])
+            found = getattr(self._pose, name)
+            return self._checked(found if link is None else found[link])
 
     def _checked(self, value: Any) -> Any:
         if np.ndim(value):
@@ -362,6 +367,8 @@ def _linkage(d: Any, a: Any, b: Any, c: Any, side: Any) -> _Linkage:
         twice_frame=2 * (d - a) * (d + a),
         twice_sides=2 * (b - c) * (b + c),
         twice_bc=2 * b * c,
+        coupler_ground=4 * b * d,
+        rocker_ground=4 * c * d,
         squared_reach=(b + c) ** 2,
         side=side,
     )
@@ -385,17 +392,30 @@ class _Pose:
         """m = AD^2."""
         return self.linkage.gap * self.linkage.gap + self.swept.sin_squared
 
+    # Coupler and rocker turn from A -> D by the angles of X3 + i S and X4 + i S, of lengths
+    # 2 b AD and 2 c AD; where A lies on D the zero vector makes both directions NaN.
+
     @cached_property
+    def coupler_angle(self) -> Any:
+        return self._turned(self.of_coupler, self.linkage.coupler_ground)
+
+    @cached_property
+    def rocker_angle(self) -> Any:
+        return self._turned(self.of_rocker, self.linkage.rocker_ground)
+
+    def _turned(self, along: Any, length: Any) -> Any:
+        # Little is kept of what is soon used up: long arrays are to stay in the cache.
+        x, s = self.linkage.twice_ground * self.linkage.gap + self.swept.sin_squared, self.close.determinant
+        ahead = self.swept.both * s
+        across = self.swept.both * along
+        ahead += x * along
+        x *= s
+        x -= across
+        return direction_of(x, ahead, length * self.squared_line)
+
+    @property
     def angles(self) -> tuple[Any, Any]:
-        """Coupler and rocker turn from A -> D by the angles of X3 + i S and X4 + i S."""
-        t, s = self.linkage, self.close.determinant
-        # A -> D times 2 d is x - i y; where A lies on D the zero vector makes both directions NaN.
-        x, y = t.twice_ground * t.gap + self.swept.sin_squared, self.swept.both
-        along, across = x * s, y * s
-        return (
-            direction(along - y * self.of_coupler, x * self.of_coupler + across),
-            direction(along - y * self.of_rocker, x * self.of_rocker + across),
-        )
+        return self.coupler_angle, self.rocker_angle
 
     # Derivatives of both angles by the crank angle. The direction of A -> D has the derivative
     # (a^2 - a d cos)/m, and coupler and rocker turn against it at rho X4/(2 m) and rho X3/(2 m), where rho
@@ -404,21 +424,28 @@ class _Pose:
 
     @cached_property
     def first(self) -> tuple[Any, Any]:
-        common = (self.swept.sin_squared - self.linkage.twice_crank_gap) * self._half
-        along = self._opening.rho * self._half
-        return common + along * self.of_rocker, common + along * self.of_coupler
+        common = self.swept.sin_squared - self.linkage.twice_crank_gap
+        common *= self._half
+        return self._apart(common, self._opening.rho * self._half)
 
     @cached_property
     def second(self) -> tuple[Any, Any]:
-        return self._common + self._along * self.of_rocker, self._common + self._along * self.of_coupler
+        return self._apart(self._excess() * self._swing(), self._opening.first * self._half)
+
+    def _apart(self, common: Any, along: Any) -> tuple[Any, Any]:
+        """Of coupler and rocker, which turn with A -> D and against it."""
+        coupler, rocker = along * self.of_rocker, along * self.of_coupler
+        coupler += common
+        rocker += common
+        return coupler, rocker
 
     @cached_property
     def third(self) -> tuple[Any, Any]:
+        swing, excess, first = self._swing(), self._excess(), self._opening.first
         turning = 0.5 * (self.swept.cos_squared - self.swept.sin_squared)
-        pull = self._swing * self.linkage.twice_sides * self._opening.first
-        common = self._half * (turning * self._excess - pull) - 4 * self._swing * self._common
-        both = self._opening.second * self._half - 2 * self._swing * self._along
-        apart = self._swing * self._opening.first
+        apart = swing * first
+        common = self._half * (turning * excess - apart * self.linkage.twice_sides) - 4 * swing**2 * excess
+        both = self._opening.second * self._half - 2 * apart * self._half
         return common + both * self.of_rocker - apart, common + both * self.of_coupler + apart
 
     def derivatives(self, order: int) -> tuple:
@@ -433,21 +460,14 @@ class _Pose:
     def _half(self) -> Any:
         return 0.5 / self.squared_line
 
-    @cached_property
     def _swing(self) -> Any:
         return self.swept.both * self._half
 
-    @cached_property
     def _excess(self) -> Any:
-        return (self.linkage.twice_frame - self.linkage.twice_sides * self._opening.rho) * self._half
-
-    @cached_property
-    def _common(self) -> Any:
-        return self._swing * self._excess
-
-    @cached_property
-    def _along(self) -> Any:
-        return self._opening.first * self._half
+        excess = -self.linkage.twice_sides * self._opening.rho
+        excess += self.linkage.twice_frame
+        excess *= self._half
+        return excess
 
 
 def _angles(pose: _Pose, _: Any) -> tuple[Any, Any]:

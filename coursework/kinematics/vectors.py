@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from coursework.kinematics.elementary import arctangent
 from coursework.kinematics.scaling import exponent_of, scaled
 
 
@@ -36,6 +37,38 @@ def direction(y: Any, x: Any) -> Any:
     if np.min(found, initial=math.inf) > -math.pi:
         return found
     return np.where(found == -math.pi, math.pi, found)
+
+
+def direction_of(y: Any, x: Any, length: Any) -> Any:
+    """The same of a vector whose length is known, by the tangent of half the angle: arrays are faster still.
+
+    Arrays that are given are used up.
+    """
+    if np.min(x, initial=0.0) >= 0:
+        length += x
+        return _twice_arctangent(y, length)
+    # Behind the y axis it is half a turn, on the side of y, less the angle from the other end of the x axis.
+    beyond = np.copysign(math.pi, y + 0.0)
+    if np.max(x, initial=0.0) <= 0:
+        length -= x
+        beyond -= _twice_arctangent(y, length)
+    else:
+        ways = np.copysign(1.0, x)
+        length += np.abs(x)
+        beyond *= 0.5 - 0.5 * ways
+        ways *= _twice_arctangent(y, length)
+        beyond += ways
+    if np.min(beyond, initial=0.0) > -math.pi:
+        return beyond
+    return np.where(beyond == -math.pi, math.pi, beyond)
+
+
+def _twice_arctangent(y: Any, x: Any) -> Any:
+    """Of y / x, between -1 and 1."""
+    y /= x
+    found = arctangent(y)
+    found *= 2
+    return found
 
 
 def components(r: Any, u: Any, v: Any) -> tuple[Any, Any]:

@@ -2,7 +2,7 @@
 
 The unknowns are the forces of the pins on the body that they are named for (x and y), of the slides on the sliding body
 (across the guide, to the left of its direction, and a moment), of the gears on the first wheel (along the common tangent,
-to the left of the line of centres), and the effort of the drive. Newtons and newton metres.
+to the left as seen from its centre), and the effort of the drive. Newtons and newton metres.
 """
 
 from __future__ import annotations
@@ -70,12 +70,15 @@ class Equilibrium:
     def _of_gears(self) -> list[Wrench]:
         found = []
         for gear in self.linkage.gears:
-            centres = [self.stance.origins[b] for b in (gear.first, gear.second)]
-            line = (centres[1] - centres[0]) / sum(gear.radii)
-            touching, tangent = gear.radii[0] * line, 1j * line
-            wrench = Wrench.none(self.stance).push_at(gear.first, touching, tangent)
-            found.append(wrench.push_at(gear.second, touching + centres[0] - centres[1], -tangent))
+            one, other = (self.stance.place(centre) for centre in gear.centres)
+            line = (other - one) / sum(gear.radii)
+            touching, tangent = one + gear.radii[0] * line, 1j * line
+            wrench = Wrench.none(self.stance).push_at(gear.first, self._arm(gear.first, touching), tangent)
+            found.append(wrench.push_at(gear.second, self._arm(gear.second, touching), -tangent))
         return found
+
+    def _arm(self, body: int, place: np.ndarray) -> np.ndarray:
+        return place - self.stance.origins[body]
 
     def _of_drive(self) -> Wrench:
         return Wrench.none(self.stance).turn(self.linkage.driven, 1.0)

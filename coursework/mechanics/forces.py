@@ -15,7 +15,7 @@ import numpy as np
 from coursework.mechanics.equilibrium import PIECE, Equilibrium
 from coursework.mechanics.friction import Contact, Rubbing
 from coursework.mechanics.linkage import Linkage
-from coursework.mechanics.loads import Acting, By, Strokes, strokes
+from coursework.mechanics.loads import Acting, Strokes, strokes
 from coursework.mechanics.rates import Stance
 from coursework.mechanics.wrenches import Wrench, inertia_at_rate, inertia_at_start, weight
 
@@ -50,7 +50,6 @@ class Forces:
     flywheel: float = 0.0
     loads: tuple[Acting, ...] = ()
     contacts: tuple[Contact, ...] = ()
-    by: By | None = None
 
     @property
     def needs_bends(self) -> bool:
@@ -78,19 +77,16 @@ class Forces:
         found = []
         for acting in self.loads:
             pace = acting.pace(stance)
-            forward, backward = (share_of_turn(way * pace) for way in (1.0, -1.0))
-            found.append(strokes(acting, forward, backward, 1))
+            found.append(strokes(acting, *(share_of_turn(way * pace) for way in (1.0, -1.0))))
         return tuple(found)
 
     def load_sizes(self, stance: Stance, driver: np.ndarray, way: np.ndarray | float) -> list[np.ndarray]:
         """How large each load is along its line, for the way the driver turns: +1, -1, 0 at rest."""
         found = []
         for acting, when in zip(self.loads, self.strokes, strict=True):
-            assert self.by is not None or not acting.load.by, "a scene says how positions are found"
-            sizes = acting.sizes(stance, driver, self.by or _no_position)
+            sizes = acting.sizes(driver)
             if acting.turns_over or when.way:
-                pace = np.sign(acting.pace(stance))
-                sizes = sizes * when.acts(pace) * (-pace * way if acting.turns_over else 1.0)
+                sizes = when.along(sizes, np.sign(acting.pace(stance)), way, against=acting.turns_over)
             found.append(sizes)
         return found
 
@@ -168,7 +164,3 @@ def share_of_turn(pace: np.ndarray) -> float:
 def _pieces(count: int, size: int) -> Iterator[slice]:
     for start in range(0, count, size):
         yield slice(start, start + size)
-
-
-def _no_position(name: str, stance: Stance) -> np.ndarray:
-    raise AssertionError(f"nothing says where {name} is")

@@ -21,7 +21,7 @@ import numpy as np
 from coursework.errors import WrongValue, unknown
 from coursework.mechanics.equilibrium import Equilibrium
 from coursework.mechanics.linkage import MM, Linkage, PinJoint, SlideJoint
-from coursework.mechanics.rates import Stance, solved
+from coursework.mechanics.rates import Stance, no_rounding, solved
 from coursework.mechanics.wrenches import Wrench
 
 _STEPS = 4  #: in which friction grows to what it is
@@ -45,10 +45,10 @@ class Contact:
         return wrench.turn(self.joint.of.body, -1.0).turn(self.joint.on.body, 1.0)
 
     def rate(self, stance: Stance) -> np.ndarray:
-        """How the joint moves for one of the driver: what rubs goes against it."""
+        """How the joint moves for one of the driver: what rubs goes against it. What is rounding is 0."""
         if isinstance(self.joint, SlideJoint):
-            return stance.sliding(self.joint)
-        return stance.rates[self.joint.of.body] - stance.rates[self.joint.on.body]
+            return no_rounding(stance.sliding(self.joint), stance.size)
+        return no_rounding(stance.rates[self.joint.of.body] - stance.rates[self.joint.on.body], 1.0)
 
 
 def contacts(linkage: Linkage, friction: Mapping[str, Any]) -> tuple[Contact, ...]:
@@ -72,10 +72,23 @@ def contacts(linkage: Linkage, friction: Mapping[str, Any]) -> tuple[Contact, ..
                 )
             if name not in pins:
                 raise unknown("pin", name, pins, "the mechanism")
-            size = float(linkage.number(given[0])) * float(linkage.number(given[1])) * MM
+            coefficient, radius = (float(linkage.number(value)) for value in given)
+            if coefficient < 0 or radius < 0:
+                raise WrongValue(
+                    f"the friction of pin {name} is not negative; found {coefficient:g} and {radius:g} mm"
+                )
+            size = coefficient * radius * MM
             found.append(Contact(pins[name], size, ({f"{name}_x": 1.0}, {f"{name}_y": 1.0})))
         elif f"{name} slide" in slides or name in slides:
-            found += _of_slide(slides.get(f"{name} slide") or slides[name], float(linkage.number(given)))
+            coefficient = float(linkage.number(given))
+            if coefficient < 0:
+                raise WrongValue(f"the friction of slide {name} is not negative; found {coefficient:g}")
+            found += _of_slide(slides.get(f"{name} slide") or slides[name], coefficient)
+        elif name in pins:
+            raise WrongValue(
+                f"{name} is a pin: its friction has the radius of its journal, too: "
+                f'{name} = {{ coefficient = {given}, radius = "10 mm" }}'
+            )
         else:
             raise unknown("slide", name, [n.removesuffix(" slide") for n in slides], "the mechanism")
     return tuple(contact for contact in found if contact.size)
@@ -128,6 +141,32 @@ class Rubbing:
         found[:, self.owner, np.arange(len(self.owner))] = share
         return found
 
+    def one(
+        self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray, near: np.ndarray | None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """What the contacts rub with at one instant, shape ``(contacts,)``, and the normal forces ``(k,)``.
+
+        ``strength``: coefficients with the signs of the motions; ``near``: the normal forces an instant ago, from which
+        Newton's method needs a step or two. Where it does not settle from them, friction grows from nothing.
+        """
+        normals = free if near is None else near
+        unit = np.eye(len(free))
+        for _ in range(8):
+            magnitudes = np.sqrt(np.bincount(self.owner, normals * normals, len(self.contacts)))
+            lacking = normals - free + spread @ (strength * magnitudes)
+            whose = magnitudes[self.owner]
+            slopes = np.divide(normals, whose, out=np.zeros(len(normals)), where=whose > 0)
+            slope = unit + (spread * strength)[:, self.owner] * slopes
+            size = np.abs(free).max() + np.abs(normals).max()
+            if np.abs(lacking).max() <= 1e-14 * size and np.linalg.det(slope) > 0:
+                return strength * magnitudes, normals
+            try:
+                normals = normals - np.linalg.solve(slope, lacking)
+            except np.linalg.LinAlgError:
+                break
+        grown, _ = self._grown(free[None], spread[None], strength[None])
+        return (strength * self.magnitudes(grown))[0], grown[0]
+
     def balanced(self, free: np.ndarray, spread: np.ndarray, sense: np.ndarray) -> np.ndarray:
         """What the contacts rub with, w, shape ``(n, contacts)``; NaN where the mechanism jams.
 
@@ -140,12 +179,19 @@ class Rubbing:
         sense
             Signs of the motions, ``(n, contacts)``.
         """
-        normals = free
-        for step in range(1, _STEPS + 1):
-            strength = sense * self.sizes * (step / _STEPS)
-            normals, good = self._settled(free, spread, strength, normals)
-            normals = np.where(good[:, None], normals, np.nan)
+        strength = sense * self.sizes
+        normals, _ = self._grown(free, spread, strength)
         return strength * self.magnitudes(normals)
+
+    def _grown(
+        self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """The normal forces as friction grows from nothing to its strength, NaN where it jams; and where it does not."""
+        normals, good = free, np.ones(len(free), dtype=bool)
+        for step in range(1, _STEPS + 1):
+            normals, good = self._settled(free, spread, strength * (step / _STEPS), normals)
+            normals = np.where(good[:, None], normals, np.nan)
+        return normals, good
 
     def _settled(
         self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray, start: np.ndarray

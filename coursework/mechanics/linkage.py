@@ -48,13 +48,15 @@ class SlideJoint(NamedTuple):
 
 
 class GearJoint(NamedTuple):
-    """A gear: two wheels, what carries their centres, their radii; the second one negative where it is toothed inside."""
+    """A gear: two wheels, what carries their centres, their radii; the second one negative where it is toothed inside;
+    the middles of the wheels."""
 
     name: str
     first: int
     second: int
     carrier: int
     radii: tuple[float, float]
+    centres: tuple[Held, Held]
 
 
 class Mass(NamedTuple):
@@ -171,16 +173,13 @@ class Linkage:
         for gear in self.mechanism.gears:
             first, second = (float(self.number(r)) * MM for r in gear.radii)
             one, other, carrier = (self.index[n] for n in (gear.first, gear.second, gear.carrier))
-            found.append(
-                GearJoint(
-                    f"{gear.first}/{gear.second}",
-                    one,
-                    other,
-                    carrier,
-                    (first, -second if gear.inner else second),
-                )
-            )
+            radii = (first, -second if gear.inner else second)
+            centres = (self._middle(gear.first, gear.centres[0]), self._middle(gear.second, gear.centres[1]))
+            found.append(GearJoint(f"{gear.first}/{gear.second}", one, other, carrier, radii, centres))
         return tuple(found)
+
+    def _middle(self, body: str, point: str) -> Held:
+        return self.held(point, body) if point else Held(self.index[body], 0j)
 
     @cached_property
     def masses(self) -> tuple[Mass, ...]:

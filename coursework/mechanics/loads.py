@@ -5,20 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from coursework.errors import WrongValue, unknown
 from coursework.mechanics.linkage import Held, Linkage
-from coursework.mechanics.rates import Stance
-from coursework.mechanics.statement import Load
+from coursework.mechanics.rates import Stance, no_rounding
+from coursework.mechanics.statement import Load, Place
 from coursework.mechanics.wrenches import Wrench
 
 STROKES = ("always", "working stroke", "return stroke", "forward", "backward")
 _EVEN = math.radians(0.05)  #: two strokes whose lengths differ by less are as long as each other
 
-By = Callable[[str, Stance], np.ndarray]  #: a position of the exercise over the instants, in its unit
+By = Callable[
+    [str, np.ndarray], np.ndarray
+]  #: a position of the exercise at driver's angles, radians, in its unit
 
 
 @dataclass(frozen=True)
@@ -27,29 +30,48 @@ class Acting:
 
     Its force is a *pull* of one newton (or one N m) along a line that goes on smoothly through the turn, times a size. Of a
     load against the motion the line is that of the motion, and its ``pace`` along it tells which way the pull goes.
+
+    Raises
+    ------
+    UnknownName
+        A point, a body or a stroke that there is not.
+    WrongValue
+        A force on a body, a moment on a point, a stroke of a point that goes along no line.
     """
 
     linkage: Linkage
     load: Load
+    by: By | None = None
 
     def __post_init__(self) -> None:
-        mechanism = self.linkage.mechanism
+        load, mechanism = self.load, self.linkage.mechanism
         known = (*mechanism.points, *mechanism.names)
-        if self.load.on not in known:
-            raise unknown("point or body", self.load.on, known, "the mechanism")
-        if self.load.during not in STROKES:
-            raise unknown("stroke", self.load.during, STROKES, f"the load on {self.load.on}")
-        if self.load.body and self.load.body not in mechanism.holders(self.load.on):
-            raise unknown(
-                "body", self.load.body, mechanism.holders(self.load.on), f"those that hold {self.load.on}"
+        if load.on not in known:
+            raise unknown("point or body", load.on, known, "the mechanism")
+        if load.during not in STROKES:
+            raise unknown("stroke", load.during, STROKES, f"the load on {load.on}")
+        if load.force and load.on not in mechanism.points:
+            raise WrongValue(
+                f"a force acts on a point, {load.on} is a body; points are {', '.join(mechanism.points)}"
+            )
+        if load.moment and load.on not in mechanism.names:
+            raise WrongValue(
+                f"a moment acts on a body, {load.on} is a point; bodies are {', '.join(mechanism.names)}"
+            )
+        if load.body and load.body not in mechanism.holders(load.on):
+            raise unknown("body", load.body, mechanism.holders(load.on), f"those that hold {load.on}")
+        if load.during != "always" and load.against and not self.is_moment and self._guide is None:
+            raise WrongValue(
+                f"{load.on} has no strokes: it neither slides on the ground nor turns about a fixed point; a load on it acts "
+                "always, or along an angle of its own"
             )
 
     @property
     def is_moment(self) -> bool:
         """Whether it turns a body."""
-        names = self.linkage.mechanism.names
-        return self.load.on in names and (
-            bool(self.load.moment) or self.load.on not in self.linkage.mechanism.points
+        mechanism = self.linkage.mechanism
+        return bool(self.load.moment) or (
+            self.load.on in mechanism.names and self.load.on not in mechanism.points
         )
 
     @property
@@ -58,9 +80,29 @@ class Acting:
         return self.load.against
 
     @property
-    def size(self) -> float:
-        """Newtons or newton metres, where no table says it."""
-        return float(self.linkage.number(self.load.moment if self.is_moment else self.load.force))
+    def _size(self) -> Place:
+        """Newtons or newton metres, where no table says it: a number, or a quantity that may move with the driver."""
+        return self.load.moment if self.is_moment else self.load.force
+
+    @property
+    def follows(self) -> str:
+        """The quantity that says how large it is over the turn; none where it is a number or goes by the driver's angle."""
+        if self.load.table:
+            return "" if self.is_by_angle else self.load.by
+        return self._size if isinstance(self._size, str) else ""
+
+    @cached_property
+    def constant(self) -> float | None:
+        """How large it is, where that is the same all over the turn."""
+        return None if self.load.table or self.follows else float(self.linkage.number(self._size))
+
+    def followed(self, driver: np.ndarray) -> np.ndarray:
+        """The values of what it follows at driver's angles, radians."""
+        return self._at(self.follows, driver)
+
+    def _at(self, name: str, driver: np.ndarray) -> np.ndarray:
+        assert self.by is not None  # who names quantities says how they are found
+        return np.broadcast_to(self.by(name, driver), np.shape(driver))
 
     @property
     def _held(self) -> Held:
@@ -68,22 +110,35 @@ class Acting:
         body = self.load.body or self.linkage.mechanism.holders(self.load.on)[-1]
         return self.linkage.held(self.load.on, body)
 
+    # ---------------------------------------------------------------------- line
+
+    @property
+    def _guide(self) -> complex | Held | None:
+        """The line that its point goes along: a direction, or the arm from a fixed point about which it turns."""
+        held = self._held
+        for slide in self.linkage.slides:
+            if slide.on == -1 and slide.of.body == held.body:
+                return slide.along
+        if held.body != -1 and self.linkage.origins[held.body].body == -1 and held.place:
+            return held
+        return None
+
     def _line(self, stance: Stance) -> np.ndarray | complex:
         """Of the pull: a unit vector."""
         if not self.load.against:
-            return complex(np.exp(1j * math.radians(self.linkage.number(self.load.angle))))
-        for slide in self.linkage.slides:
-            if (
-                slide.on == -1
-                and self.load.on in self.linkage.mechanism.body(self._name(slide.of.body)).places
-            ):
-                return slide.along
+            angle = self.load.angle
+            if isinstance(angle, str):
+                return np.exp(1j * np.radians(self._at(angle, stance.turns[self.linkage.driven])))
+            return complex(np.exp(1j * math.radians(self.linkage.number(angle))))
+        guide = self._guide
+        if isinstance(guide, Held):
+            arm = stance.arm(guide)
+            return 1j * arm / np.abs(arm)
+        if guide is not None:
+            return guide
         rate = stance.rate(self._held)
         with np.errstate(all="ignore"):
             return np.where(rate == 0, 0, rate / np.abs(rate))
-
-    def _name(self, body: int) -> str:
-        return self.linkage.mechanism.names[body]
 
     def pull(self, stance: Stance) -> Wrench:
         """One newton along the line, or one N m."""
@@ -92,44 +147,56 @@ class Acting:
         return Wrench.none(stance).push(self._held, self._line(stance))
 
     def pace(self, stance: Stance) -> np.ndarray:
-        """How fast what it acts on goes along the line, for one of the driver."""
+        """How fast what it acts on goes along the line, for one of the driver; what is rounding is 0."""
         if self.is_moment:
-            return stance.rates[self.linkage.index[self.load.on]]
-        line = self._line(stance)
-        return (np.conj(line) * stance.rate(self._held)).real
+            return no_rounding(stance.rates[self.linkage.index[self.load.on]], 1.0)
+        return no_rounding((np.conj(self._line(stance)) * stance.rate(self._held)).real, stance.size)
 
-    def sizes(self, stance: Stance, driver: np.ndarray, by: By) -> np.ndarray:
-        """How large it is at each instant, along the line; ``driver`` in radians."""
+    # ---------------------------------------------------------------------- size
+
+    @property
+    def is_by_angle(self) -> bool:
+        """Whether its table goes by the driver's angle."""
+        return bool(self.load.table) and self.load.by in ("", self.linkage.driver)
+
+    def sizes(self, driver: np.ndarray, here: np.ndarray | None = None) -> np.ndarray:
+        """How large it is at driver's angles, radians, along its line; ``here``: the values of what it follows, if known."""
+        if self.follows and here is None:
+            here = self._at(self.follows, driver)
         if not self.load.table:
-            return np.full(stance.count, self.size)
+            return np.full(np.shape(driver), float(self.linkage.number(self._size))) if here is None else here
         at, size = (np.array(column, dtype=float) for column in zip(*self.load.table, strict=True))
-        if self.load.by in ("", self.linkage.driver):
-            return np.interp(np.degrees(driver), at, size, period=360.0)
-        return np.interp(by(self.load.by, stance), at, size)
+        if here is not None:
+            return np.interp(here, at, size)
+        if at[-1] - at[0] < 360.0:  # straight on to the first value of the next turn
+            at, size = np.append(at, at[0] + 360.0), np.append(size, size[0])
+        return np.interp(at[0] + np.mod(np.degrees(driver) - at[0], 360.0), at, size)
 
     @property
     def knots(self) -> list[float]:
         """Driver's angles, radians, at which a table by the angle has a corner."""
-        if not self.load.table or self.load.by not in ("", self.linkage.driver):
-            return []
-        return [math.radians(at) for at, _ in self.load.table]
+        return [math.radians(at) for at, _ in self.load.table] if self.is_by_angle else []
 
 
 @dataclass(frozen=True)
 class Strokes:
-    """When a load acts: everywhere, or where what it acts on goes forward (+1) or backward (-1) along its line."""
+    """When a load acts: always (0), or where what it acts on goes forward (+1) or backward (-1) along its line.
+
+    ``really``: as it goes indeed, whichever way the driver turns; otherwise as it would with the driver turning forward.
+    """
 
     way: int = 0
+    really: bool = False
 
-    def acts(self, pace_sign: Any) -> Any:
-        """1 where it acts, for the sign of the pace with the driver turning forward."""
-        return np.ones_like(pace_sign) if not self.way else (pace_sign == self.way) * 1.0
+    def along(self, size: Any, pace: Any, driver_way: Any, *, against: bool) -> Any:
+        """A load's size along its line, for the sign of its pace with the driver turning forward, and the driver's way."""
+        if self.way:
+            size = size * ((pace * driver_way if self.really else pace) == self.way)
+        return -size * pace * driver_way if against else size
 
 
-def strokes(acting: Acting, forward: float, backward: float, driver_way: int) -> Strokes:
+def strokes(acting: Acting, forward: float, backward: float) -> Strokes:
     """When a load acts, for how much of the driver's turn (radians) its point goes forward and backward.
-
-    ``driver_way``: whether the driver turns forward (1) or backward (-1), as "forward" is seen by the point.
 
     Raises
     ------
@@ -140,7 +207,7 @@ def strokes(acting: Acting, forward: float, backward: float, driver_way: int) ->
     if during == "always":
         return Strokes()
     if during in ("forward", "backward"):
-        return Strokes(driver_way if during == "forward" else -driver_way)
+        return Strokes(1 if during == "forward" else -1, really=True)
     if abs(forward - backward) < _EVEN:
         raise WrongValue(
             f"the load on {acting.load.on} acts during the {during}, the longer one or the other: here both take as long; "

@@ -14,7 +14,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from coursework.mechanics.linkage import NONE, Held, Linkage, SlideJoint
+from coursework.mechanics.linkage import NONE, GearJoint, Held, Linkage, SlideJoint
 
 #: First (1) or second (2) derivatives of the unknown coordinates by the driver's angle, shape ``(unknowns, n)``, as an
 #: exercise's own formulas give them; None where they do not give all.
@@ -45,6 +45,12 @@ class Stance:
     @property
     def count(self) -> int:
         return self.turns.shape[1]
+
+    @cached_property
+    def size(self) -> float:
+        """The largest distance from the ground's origin to a body's, metres: what lengths are measured by."""
+        distances = np.abs(self.origins)
+        return float(np.max(distances[np.isfinite(distances)], initial=1e-9))
 
     @cached_property
     def headings(self) -> np.ndarray:
@@ -109,10 +115,10 @@ class Stance:
             moved[own] -= 1j * (self.place(slide.of) - self.origins[slide.on])
         return moved
 
-    def _rolling(self, gear: object) -> np.ndarray:
+    def _rolling(self, gear: GearJoint) -> np.ndarray:
         row = np.zeros((self.linkage.unknowns + 1, self.count))
-        first, second = gear.radii  # type: ignore[attr-defined]
-        for body, share in ((gear.first, first), (gear.second, second), (gear.carrier, -first - second)):  # type: ignore[attr-defined]
+        first, second = gear.radii
+        for body, share in ((gear.first, first), (gear.second, second), (gear.carrier, -first - second)):
             if (own := self.linkage.coordinates[body]) != NONE:
                 row[own] += share
         return row
@@ -208,6 +214,11 @@ class Stance:
         """By how much the pins that close the loops fail to meet, metres: rounding, where all is right."""
         gaps = [abs(self.place(p.of) - self.place(p.on)) for p in self.linkage.pins if p.closes]
         return np.max(gaps, axis=0) if gaps else np.zeros(self.count)
+
+
+def no_rounding(pace: np.ndarray, size: float) -> np.ndarray:
+    """A pace with nothing where it is no more than rounding beside the size of a mechanism, or 1 for a turning body."""
+    return np.where(np.abs(pace) > 1e-12 * size, pace, np.where(np.isnan(pace), np.nan, 0.0))
 
 
 def solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:

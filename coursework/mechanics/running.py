@@ -19,13 +19,17 @@ import numpy as np
 from coursework.errors import Undefined
 from coursework.mechanics.equilibrium import Equilibrium
 from coursework.mechanics.forces import Forces
-from coursework.mechanics.rates import Stance
 from coursework.mechanics.turn_table import TURN, TurnTable, Untabulated, tabulated
-from coursework.mechanics.wrenches import inertia_at_rate, inertia_at_start, weight
+from coursework.mechanics.wrenches import Wrench, inertia_at_rate, inertia_at_start, weight
 
 MOST_PHASES = 20_000
-MOST_STEPS = 2_000_000  #: evaluations of the equation of motion, before a run is called endless
+MOST_WORK = (
+    2_000_000  #: evaluations of the equation of motion, before a run is called endless: see ``Running.cost``
+)
+_FAR = 1e9  #: radians: beyond, an angle has not the digits to place a mechanism
 _SEARCH = 2048  #: places of the turn between which a pace may change its sign once
+_BEYOND = 1e-3  #: radians beyond a turning place, where paces have the signs that they keep
+_SAME = 1e-9  #: of a run: instants that are one
 
 Drive = Callable[[float], float]  #: N m, by the driver's speed in rad/s
 
@@ -72,12 +76,34 @@ class Motion:
 
     @property
     def dead_centres(self) -> np.ndarray:
-        return np.array(sorted({t for phase in self.phases for t in phase.dead}))
+        """When the output stands still on its way, each instant once."""
+        found = sorted(t for phase in self.phases for t in phase.dead)
+        apart = _SAME * max(self.phases[-1].end, 1e-300) if self.phases else 0.0
+        return np.array([t for k, t in enumerate(found) if not k or t - found[k - 1] > apart])
 
     @property
     def stuck(self) -> tuple[tuple[float, float], ...]:
         """When the mechanism stood still: start and end."""
         return tuple((p.start, p.end) for p in self.phases if p.way == 0)
+
+
+class _Rows:
+    """Where each of an equation's functions stands in its table."""
+
+    def __init__(self, forces: Forces, with_output: bool) -> None:
+        self.loads, self.contacts = len(forces.loads), len(forces.contacts)
+        self.wrenches = 3 + self.loads + self.contacts
+        self.normals = len(forces.rubbing.owner) if forces.contacts else 0
+        followed = [number for number, acting in enumerate(forces.loads) if acting.follows]
+        self.positions = {load: number for number, load in enumerate(followed)}
+        first = self.wrenches * (1 + self.normals)
+        self.paces = slice(first, first + self.loads + self.contacts)
+        self.first_position = self.paces.stop
+        self.output = self.first_position + len(self.positions) if with_output else None
+
+    def borne(self, values: np.ndarray) -> np.ndarray:
+        """Normal forces under each wrench, shape ``(wrenches, normals)``."""
+        return values[self.wrenches : self.paces.start].reshape(self.wrenches, self.normals)
 
 
 class Running:
@@ -90,8 +116,9 @@ class Running:
         self, forces: Forces, drive: Drive, output: Callable[[np.ndarray], np.ndarray] | None = None
     ) -> None:
         self.forces, self.drive, self.output = forces, drive, output
-        self.count_loads, self.count_contacts = len(forces.loads), len(forces.contacts)
-        self.evaluations = 0
+        self.rows = _Rows(forces, output is not None)
+        self.work = 0
+        self._near: np.ndarray | None = None  # the normal forces of an instant ago
 
     # ---------------------------------------------------------------------- table
 
@@ -100,62 +127,56 @@ class Running:
         """The functions of the angle that the equation needs."""
         return tabulated(self._functions)
 
-    def _functions(self, angles: np.ndarray) -> np.ndarray:
+    @cached_property
+    def cost(self) -> int:
+        """What an evaluation counts: several contacts are solved for, and without a table every body is posed anew."""
+        return (10 if self.rows.normals > 1 else 1) * (1 if self.table.steps else 50)
+
+    def _functions(self, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Inertia, its growth, gravity and unit loads: what each asks of the drive, then of the contacts; unit friction the
-        same; the paces."""
-        stance = self.forces.pose(angles)
+        same; the paces; the positions that loads go by. With the sizes of their terms."""
+        forces = self.forces
+        stance = forces.pose(angles)
         with np.errstate(all="ignore"):
-            wrenches = [
-                inertia_at_start(stance),
-                inertia_at_rate(stance),
-                weight(stance, self.forces.downwards),
-            ]
-            wrenches += [acting.pull(stance) for acting in self.forces.loads]
-            wrenches += [contact.rubs(stance) for contact in self.forces.contacts]
+            still = Wrench.none(stance)
+            wrenches = (
+                [inertia_at_start(stance), inertia_at_rate(stance)] if forces.inertia else [still, still]
+            )
+            wrenches.append(weight(stance, forces.downwards))
+            wrenches += [acting.pull(stance) for acting in forces.loads]
+            wrenches += [contact.rubs(stance) for contact in forces.contacts]
             rows = [wrench.effort for wrench in wrenches]
-            if self.forces.contacts:
+            sizes = [wrench.size for wrench in wrenches]
+            if forces.contacts:
                 equations = Equilibrium(stance)
-                reading = self.forces.rubbing.reading(equations)
-                read = np.einsum("ku,nuw->wkn", reading, equations.under(*wrenches))
+                under = equations.under(*wrenches)
+                read = np.einsum("ku,nuw->wkn", forces.rubbing.reading(equations), under)
                 rows += list(read.reshape(-1, len(angles)))
-            rows += self._paces(stance)
+                largest = np.nanmax(np.abs(under), axis=(0, 1), initial=0.0)
+                sizes += list(np.repeat(largest, self.rows.normals))
+            rows += [acting.pace(stance) for acting in forces.loads]
+            rows += [contact.rate(stance) for contact in forces.contacts]
+            rows += [forces.loads[number].followed(angles) for number in self.rows.positions]
             if self.output is not None:
                 rows.append(self.output(angles))
-        return np.array(rows)
-
-    def _paces(self, stance: Stance) -> list[np.ndarray]:
-        loads = [acting.pace(stance) for acting in self.forces.loads]
-        return loads + [contact.rate(stance) for contact in self.forces.contacts]
-
-    @cached_property
-    def _wrenches(self) -> int:
-        return 3 + self.count_loads + self.count_contacts
-
-    @cached_property
-    def _normals(self) -> int:
-        return len(self.forces.rubbing.owner) if self.forces.contacts else 0
-
-    def _parts(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Efforts, normal forces by wrench, and paces: of values of the table."""
-        n, k = self._wrenches, self._normals
-        paces = values[n * (1 + k) : n * (1 + k) + self.count_loads + self.count_contacts]
-        return values[:n], values[n : n * (1 + k)].reshape(n, k), paces
+        found = np.array(rows)
+        sizes += [max(stance.size, 1.0)] * (len(found) - len(sizes))
+        return found, np.array(sizes)
 
     # --------------------------------------------------------------- at an instant
 
-    def _sizes(self, angle: float, paces: np.ndarray, way: int) -> list[float]:
-        """The loads along their lines."""
+    def _sizes(self, angle: float, values: np.ndarray, signs: np.ndarray, way: int) -> list[float]:
+        """The loads along their lines, for the signs of their paces."""
         found = []
-        for acting, when, pace in zip(self.forces.loads, self.forces.strokes, paces, strict=False):
-            if acting.load.table:
-                where = np.array([angle])
-                size = float(acting.sizes(self.forces.pose(where), where, self.forces.by)[0])  # type: ignore[arg-type]
-            else:
-                size = acting.size
-            sign = math.copysign(1.0, pace) if pace else 0.0
-            if when.way and sign != when.way:
-                size = 0.0
-            found.append(-size * sign * way if acting.turns_over else size)
+        together = zip(self.forces.loads, self.forces.strokes, signs.tolist(), strict=False)
+        for number, (acting, when, sign) in enumerate(together):
+            size = acting.constant
+            if size is None:
+                here = (
+                    values[self.rows.first_position + self.rows.positions[number]] if acting.follows else None
+                )
+                size = float(acting.sizes(np.array(angle), here))
+            found.append(float(when.along(size, sign, way, against=acting.turns_over)))
         return found
 
     def acceleration(self, angle: float, speed: float, way: int, signs: np.ndarray | None = None) -> float:
@@ -170,29 +191,28 @@ class Running:
 
     def _balance(self, angle: float, speed: float, way: int, signs: np.ndarray | None) -> tuple[float, float]:
         """The acceleration, and what goes of the drive into the kinetic energy: per radian, without the inertia's."""
-        self.evaluations += 1
-        if self.evaluations > MOST_STEPS:
-            raise Undefined(
-                f"the motion takes more than {MOST_STEPS} evaluations of its equation, at {math.degrees(angle):.6g} degrees; "
-                "give a shorter duration or a looser tolerance"
-            )
+        self._count(angle)
         values = self.table.at(angle)
-        efforts: list[float] = values[: self._wrenches].tolist()
+        efforts: list[float] = values[: self.rows.wrenches].tolist()
         inertia = efforts[0] + self.forces.flywheel
         lacking = self.drive(speed) - efforts[2]
         if not inertia > 0:
+            where = f"{math.degrees(angle):.6g} degrees"
             raise Undefined(
-                f"no inertia resists at {math.degrees(angle):.6g} degrees, or the mechanism does not close"
+                f"the mechanism does not close at {where}"
+                if inertia != inertia
+                else f"no inertia resists at {where}"
             )
-        if not self.count_loads and not self.count_contacts:
+        if self.rows.wrenches == 3:
             return (lacking - efforts[1] * speed * speed) / inertia, lacking
-        paces = self._parts(values)[2] if signs is None else signs
-        sizes = self._sizes(angle, paces, way)
+        if signs is None:
+            signs = self.signs(angle, way)
+        sizes = self._sizes(angle, values, signs, way)
         for size, effort in zip(sizes, efforts[3:], strict=False):
             lacking -= size * effort
-        if self.count_contacts:
+        if self.rows.contacts:
             state = _Instant(angle, speed, way, lacking, inertia)
-            rubbed = self._rubbed(state, values, sizes, paces)
+            rubbed = self._rubbed(state, values, sizes, signs)
             if not math.isfinite(rubbed):
                 raise Undefined(
                     f"the mechanism jams at {math.degrees(angle) % 360:.6g} degrees of its driver: its friction grows "
@@ -201,88 +221,124 @@ class Running:
             lacking -= rubbed
         return (lacking - efforts[1] * speed * speed) / inertia, lacking
 
-    def _rubbed(self, at: _Instant, values: np.ndarray, sizes: Sequence[float], paces: np.ndarray) -> float:
+    def _count(self, angle: float) -> None:
+        if not abs(angle) < _FAR:
+            raise Undefined(
+                f"the driver's angle passes {_FAR:g} radians: it has no digits left to place the mechanism"
+            )
+        self.work += self.cost
+        if self.work > MOST_WORK:
+            raise Undefined(
+                f"the motion takes more than {MOST_WORK // self.cost} evaluations of its equation, by "
+                f"{math.degrees(angle):.6g} degrees; give a shorter duration"
+            )
+
+    def _rubbed(self, at: _Instant, values: np.ndarray, sizes: Sequence[float], signs: np.ndarray) -> float:
         """What friction asks of the drive, the acceleration being free; NaN where the mechanism jams."""
-        if self._normals == 1:
-            return self._rubbed_by_one(at, values.tolist(), sizes, float(paces[self.count_loads]))
-        efforts, normals, _ = self._parts(values)
-        first = 3 + self.count_loads
+        if self.rows.normals == 1:
+            return self._rubbed_by_one(at, values.tolist(), sizes, float(signs[self.rows.loads]))
+        efforts, normals = values[: self.rows.wrenches], self.rows.borne(values)
+        first = 3 + self.rows.loads
         start = (at.lacking - efforts[1] * at.speed**2) / at.inertia
         free = np.array([start, at.speed**2, 1.0, *sizes]) @ normals[:first]
         spread = -normals[first:].T + np.outer(normals[0], efforts[first:]) / at.inertia
-        sense = np.sign(paces[self.count_loads :]) * at.way
-        return float(efforts[first:] @ self._balanced(free, spread, sense))
+        strength = signs[self.rows.loads :] * at.way * self.forces.rubbing.sizes
+        rubs, self._near = self.forces.rubbing.one(free, spread, strength, self._near)
+        if not np.isfinite(self._near).all():
+            self._near = None
+        return float(efforts[first:] @ rubs)
 
     def _rubbed_by_one(
-        self, at: _Instant, values: Sequence[float], sizes: Sequence[float], pace: float
+        self, at: _Instant, values: Sequence[float], sizes: Sequence[float], sign: float
     ) -> float:
         """The same where one place rubs on one side or the other: in numbers, as most mechanisms have it."""
-        n, first = self._wrenches, 3 + self.count_loads
+        n, first = self.rows.wrenches, 3 + self.rows.loads
         efforts, normals = values[:n], values[n : 2 * n]
         start = (at.lacking - efforts[1] * at.speed**2) / at.inertia
         free = start * normals[0] + at.speed**2 * normals[1] + normals[2]
         for size, normal in zip(sizes, normals[3:], strict=False):
             free += size * normal
-        strength = (at.way if pace > 0 else -at.way if pace < 0 else 0) * self.forces.contacts[0].size
+        strength = sign * at.way * self.forces.contacts[0].size
         spread = -normals[first] + normals[0] * efforts[first] / at.inertia
         slope = 1.0 + spread * math.copysign(strength, strength * free)
         return efforts[first] * strength * abs(free) / slope if slope > 0 else math.nan
 
-    def _balanced(self, free: np.ndarray, spread: np.ndarray, sense: np.ndarray) -> np.ndarray:
-        """What the contacts rub with, at one instant."""
-        return self.forces.rubbing.balanced(free[None], spread[None], sense[None])[0]
-
     def holding(self, angle: float) -> tuple[float, float]:
         """The efforts between which the drive does not move the mechanism from rest, N m; infinite where it locks itself."""
-        found = []
-        for way in (-1, 1):
-            efforts, normals, paces = self._parts(self.table.at(angle))
-            sizes = self._sizes(angle, paces, way)
-            effort = float(efforts[2] + np.dot(sizes, efforts[3 : 3 + self.count_loads]))
-            if self.count_contacts:
-                first = 3 + self.count_loads
-                free = np.array([0.0, 0.0, 1.0, *sizes]) @ normals[:first]
-                rubs = self._balanced(free, -normals[first:].T, np.sign(paces[self.count_loads :]) * way)
-                rubbed = float(efforts[first:] @ rubs)
-                effort = effort + rubbed if math.isfinite(rubbed) else way * math.inf
-            found.append(effort)
-        return found[0], found[1]
+        low, high = (self._holding(angle, way) for way in (-1, 1))
+        return low, high
 
-    # ---------------------------------------------------------------------- phases
+    def _holding(self, angle: float, way: int) -> float:
+        values, signs = self.table.at(angle), self.signs(angle, way)
+        efforts, first = values[: self.rows.wrenches], 3 + self.rows.loads
+        sizes = self._sizes(angle, values, signs, way)
+        effort = float(efforts[2] + np.dot(sizes, efforts[3:first]))
+        if not self.rows.contacts:
+            return effort
+        normals = self.rows.borne(values)
+        free = np.array([0.0, 0.0, 1.0, *sizes]) @ normals[:first]
+        strength = signs[self.rows.loads :] * way * self.forces.rubbing.sizes
+        rubbed = float(efforts[first:] @ self.forces.rubbing.one(free, -normals[first:].T, strength, None)[0])
+        return effort + rubbed if math.isfinite(rubbed) else way * math.inf
+
+    # ---------------------------------------------------------------------- places
 
     @cached_property
     def turning_places(self) -> np.ndarray:
         """Angles of a turn, radians, where what rubs or is loaded turns back, or a load's table has a corner."""
-        knots = [np.mod(knot, TURN) for acting in self.forces.loads for knot in acting.knots]
+        knots = [float(np.mod(knot, TURN)) for acting in self.forces.loads for knot in acting.knots]
         rows = [
-            number
+            self.rows.paces.start + number
             for number, acting in enumerate(self.forces.loads)
             if acting.turns_over or acting.load.during != "always"
         ]
-        rows += range(self.count_loads, self.count_loads + self.count_contacts)
-        if not rows:
-            return np.array(sorted(knots))
-        grid = (np.arange(_SEARCH + 1) + 0.37) * (TURN / _SEARCH)
-        paces = np.array([self._parts(v)[2] for v in self.table.over(grid).T]).T
-        found = [self._zero(row, grid[k], grid[k + 1]) for row in rows for k in _changes(paces[row])]
-        return np.array(sorted({*knots, *(z % TURN for z in found)}))
+        rows += range(self.rows.paces.start + self.rows.loads, self.rows.paces.stop)
+        return np.array(sorted({*knots, *(zero for row in rows for zero in self._zeros(row))}))
 
-    def _zero(self, row: int, low: float, high: float) -> float:
+    @cached_property
+    def dead_places(self) -> np.ndarray:
+        """Angles of a turn, radians, where the output stands still."""
+        return np.array(self._zeros(self.rows.output) if self.rows.output is not None else [])
+
+    @cached_property
+    def _sampled(self) -> tuple[np.ndarray, np.ndarray]:
+        grid = (np.arange(_SEARCH + 1) + 0.37) * (TURN / _SEARCH)
+        return grid, self.table.over(grid)
+
+    def _zeros(self, row: int) -> list[float]:
+        """Where a function of the table changes its sign."""
         from scipy.optimize import brentq
 
-        return float(
-            brentq(lambda q: self._parts(self.table.at(q))[2][row], low, high, xtol=1e-15, rtol=1e-15)
-        )
+        grid, sampled = self._sampled
+        found = [
+            brentq(lambda q: float(self.table.at(q)[row]), grid[k], grid[k + 1], xtol=1e-15, rtol=1e-15)
+            for k in _changes(sampled[row])
+        ]
+        return sorted(float(np.mod(zero, TURN)) for zero in found)
 
-    def _next_place(self, angle: float, way: int) -> float:
-        """The next of the turning places, strictly beyond an angle."""
-        places = self.turning_places
+    @staticmethod
+    def _unrolled(places: np.ndarray, low: float, high: float) -> np.ndarray:
+        """The places of every turn between two angles, both left out."""
         if not len(places):
-            return way * math.inf
-        turn = math.floor(angle / TURN)
-        near = np.concatenate([places + (turn + k) * TURN for k in (-1, 0, 1)])
-        beyond = near[(near - angle) * way > 1e-9]
-        return float(beyond.min() if way > 0 else beyond.max())
+            return places
+        turns = np.arange(math.floor(low / TURN) - 1, math.floor(high / TURN) + 2)
+        found = np.sort((places[None, :] + TURN * turns[:, None]).ravel())
+        return found[(found > low + 1e-9) & (found < high - 1e-9)]
+
+    def next_place(self, angle: float, way: int) -> float:
+        """The next of the turning places, beyond an angle; infinitely far where there is none."""
+        ahead = (angle, angle + 1.01 * TURN) if way > 0 else (angle - 1.01 * TURN, angle)
+        beyond = self._unrolled(self.turning_places, *ahead)
+        return float(beyond[0] if way > 0 else beyond[-1]) if len(beyond) else way * math.inf
+
+    def signs(self, angle: float, way: int) -> np.ndarray:
+        """Signs of the paces just beyond an angle, the way that the driver turns: they stay to the next turning place."""
+        if not self.forces.loads and not self.forces.contacts:
+            return np.empty(0)
+        room = min(abs(self.next_place(angle, way) - angle) / 2, _BEYOND)
+        return np.sign(self.table.at(angle + way * room)[self.rows.paces])
+
+    # ---------------------------------------------------------------------- phases
 
     def run(self, angle: float, speed: float, duration: float, rtol: float = 1e-9) -> Motion:
         """The motion from an angle (radians) and a speed (rad/s), for a duration (s).
@@ -294,20 +350,21 @@ class Running:
         """
         motion = Motion()
         state, t = np.array([angle, speed, 0.0]), 0.0
-        self.evaluations = 0
+        self.work, self._near = 0, None
+        self._count(angle)
         scales = (rtol, rtol * max(1.0, abs(speed)), rtol * self._energy(angle, speed, duration))
         while t < duration:
             if len(motion.phases) > MOST_PHASES:
                 raise Undefined(f"the motion turns back more than {MOST_PHASES} times, by t = {t:.6g} s")
             way = self._way(state)
-            phase, state = (
-                self._rest(t, duration, state)
-                if way == 0
-                else self._stretch(t, duration, state, way, rtol, scales)
+            phase, after = (
+                self._stretch(t, duration, state, way, rtol, scales) if way else _rest(t, duration, state)
             )
+            if way and phase.end - t <= 1e-14 * duration and not state[1] and not after[1]:
+                phase, after = _rest(t, duration, state)  # it would go, and comes to nothing
             motion.phases.append(phase)
-            t = phase.end
-        motion.evaluations = self.evaluations
+            t, state = phase.end, after
+        motion.evaluations = self.work // self.cost
         return motion
 
     def _energy(self, angle: float, speed: float, duration: float) -> float:
@@ -319,17 +376,12 @@ class Running:
         """Which way a state moves on: 0 where it stays."""
         if state[1]:
             return 1 if state[1] > 0 else -1
-        low, high = self.holding(float(state[0]))
-        drive = self.drive(0.0)
+        angle, drive = float(state[0]), self.drive(0.0)
         if not self.forces.resists:
-            return 1 if self.acceleration(float(state[0]), 0.0, 1) >= 0 else -1
+            start = self.acceleration(angle, 0.0, 1)
+            return 1 if start > 0 else -1 if start < 0 else 0
+        low, high = self.holding(angle)
         return 1 if drive > high else -1 if drive < low else 0
-
-    @staticmethod
-    def _rest(t: float, duration: float, state: np.ndarray) -> tuple[Phase, np.ndarray]:
-        """Nothing changes at rest under a drive that depends on the speed alone."""
-        still = state.copy()
-        return Phase(t, duration, 0, lambda at: np.repeat(still[:, None], len(at), axis=1)), still
 
     def _stretch(
         self, t: float, duration: float, state: np.ndarray, way: int, rtol: float, scales: tuple[float, ...]
@@ -337,41 +389,58 @@ class Running:
         """On to the next turning place, to rest, or to the end."""
         from scipy.integrate import solve_ivp
 
-        resists = self.forces.resists
-        place = (
-            self._next_place(float(state[0]), way) if resists or len(self.turning_places) else way * math.inf
-        )
-        signs = self._signs(float(state[0]), place) if math.isfinite(place) else None
+        angle = float(state[0])
+        place, signs = self.next_place(angle, way), self.signs(angle, way)
 
         def derivative(_: float, y: np.ndarray) -> list[float]:
             acceleration, lacking = self._balance(y[0], y[1], way, signs)
             return [y[1], acceleration, lacking * y[1]]
 
-        events, ends = [], []
-        if self.output is not None:
-            events.append(lambda _, y: float(self.table.at(y[0])[-1]))
+        ends = [_ending(lambda _, y: y[1] * way, -1.0)]
         if math.isfinite(place):
             ends.append(_ending(lambda _, y: (y[0] - place) * way, 1.0))
-        if resists or math.isfinite(place):
-            ends.append(_ending(lambda _, y: y[1] * way, -1.0))
         solved = solve_ivp(
-            derivative, (t, duration), state, method="DOP853", rtol=rtol, atol=scales, dense_output=True,
-            events=[*events, *ends] or None,
+            derivative, (t, duration), state, method="DOP853", rtol=rtol, atol=scales, dense_output=True, events=ends
         )  # fmt: skip
         if solved.status < 0:
-            raise Undefined(f"the motion stops at t = {solved.t[-1]:.6g} s: {solved.message}")
+            raise Undefined(
+                f"the motion stops at t = {solved.t[-1]:.6g} s, at {math.degrees(solved.y[0, -1]):.6g} degrees: the "
+                "acceleration grows without bound, since hardly any inertia resists there; give the crank one"
+            )
         end, last = float(solved.t[-1]), solved.y[:, -1].copy()
         if solved.status == 1:
-            if math.isfinite(place) and len(solved.t_events[len(events)]):
-                last[0] = place
-            else:
-                last[1] = 0.0
-        dead = tuple(map(float, solved.t_events[0])) if events else ()
-        return Phase(t, end, way, solved.sol, dead), last
+            at_rest = bool(len(solved.t_events[0]))
+            last[1 if at_rest else 0] = 0.0 if at_rest else place
+        return Phase(t, end, way, solved.sol, self._dead(solved.sol, t, end, angle, float(last[0]))), last
 
-    def _signs(self, angle: float, place: float) -> np.ndarray:
-        """Signs of the paces between a place and the next turning place: as halfway between them."""
-        return np.sign(self._parts(self.table.at((angle + place) / 2))[2])
+    def _dead(
+        self, state: Callable[[float], np.ndarray], start: float, end: float, angle: float, last: float
+    ) -> tuple[float, ...]:
+        """When the driver passes the places where the output stands still, in a phase in which it never turns back."""
+        from scipy.optimize import brentq
+
+        low, high = min(angle, last), max(angle, last)
+        places = self._unrolled(self.dead_places, low - 2e-9, high + 2e-9)
+        found = []
+        for place in places:
+            before, after = (float(state(t)[0]) - place for t in (start, end))
+            if before * after < 0:
+                found.append(
+                    float(
+                        brentq(
+                            lambda t, p=place: float(state(t)[0]) - p, start, end, xtol=1e-15 * max(end, 1e-9)
+                        )
+                    )
+                )
+            elif abs(after) <= 1e-9 and abs(before) > 1e-9:
+                found.append(end)
+        return tuple(found)
+
+
+def _rest(t: float, duration: float, state: np.ndarray) -> tuple[Phase, np.ndarray]:
+    """Nothing changes at rest under a drive that depends on the speed alone."""
+    still = np.array([state[0], 0.0, state[2]])
+    return Phase(t, duration, 0, lambda at: np.repeat(still[:, None], len(at), axis=1)), still
 
 
 def _changes(values: np.ndarray) -> Iterator[int]:

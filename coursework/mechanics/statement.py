@@ -73,13 +73,15 @@ class Slide:
 @dataclass(frozen=True)
 class Gear:
     """Two round wheels that roll on each other without slip, their centres held by a carrier; ``inner``: the second
-    one's teeth are on its inside. ``radii`` in mm."""
+    one's teeth are on its inside. ``radii`` in mm. ``centres`` name the points in the middle of the wheels: the origins of
+    their frames unless told; a wheel that is fixed to the ground has to be told."""
 
     first: str
     second: str
     carrier: str
     radii: tuple[Place, Place]
     inner: bool = False
+    centres: tuple[str, str] = ("", "")
 
 
 @dataclass(frozen=True)
@@ -167,10 +169,6 @@ class Mechanism:
         return tuple(Pin(point, other, first) for point, (first, *others) in shared for other in others)
 
     @property
-    def joints(self) -> tuple[Pin | Slide | Gear, ...]:
-        return (*self.pins, *self.slides, *self.gears)
-
-    @property
     def mobility(self) -> int:
         """Degrees of freedom by the count of Chebyshev and Gruebler: 3 a body, less 2 a pin or slide, less 1 a gear."""
         return 3 * len(self.bodies) - 2 * (len(self.pins) + len(self.slides)) - len(self.gears)
@@ -218,6 +216,8 @@ class Mechanism:
                     f"{nearest(body.at, known)}"
                 )
             known |= set(body.places)
+            if body.angle is None and body.points:
+                yield f"body {body.name!r} has no angle: nothing says where its points {', '.join(body.points)} are"
             if body.centre and body.centre not in body.places:
                 yield f"the centre of body {body.name!r} is none of its points{nearest(body.centre, body.places)}"
         for slide in self.slides:
@@ -226,6 +226,11 @@ class Mechanism:
             for name in (gear.first, gear.second, gear.carrier):
                 if name not in (*self.names, GROUND):
                     yield f"a gear names the body {name!r}{nearest(name, self.names)}"
+            for name, centre in zip((gear.first, gear.second), gear.centres, strict=True):
+                if name == GROUND and not centre:
+                    yield "a wheel on the ground has its middle at a point: Gear(…, centres=(…, …)) names it"
+                elif centre and name not in self.holders(centre):
+                    yield f"the wheel {name} has no point {centre!r}"
 
     def _faults_of_slide(self, slide: Slide) -> Iterator[str]:
         for name in (slide.of, slide.on):

@@ -14,10 +14,12 @@ import numpy as np
 
 TURN = 2 * math.pi
 _FIRST, _MOST = 64, 8192  #: steps at which a series is tried
-_RUN_OUT = 1e-13  #: of a function's largest value: what the last third of its series may hold
+_RUN_OUT = 1e-13  #: of a function's size: what the last third of its series may hold
 _FINEST = 16384  #: steps of the polynomials
 
-Functions = Callable[[np.ndarray], np.ndarray]  #: from angles (n,) in radians to values (m, n)
+#: From angles (n,) in radians to values (m, n), and what each of the m is measured by: the size of the terms that it is made
+#: of, so that what is nothing but rounding counts as nothing.
+Functions = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
 class TurnTable:
@@ -28,18 +30,18 @@ class TurnTable:
     steps
         How many steps of the turn the series took; 0 where none was found.
     error
-        The largest of what the tails of the series hold, over each function's largest value.
+        The largest of what the tails of the series hold, over each function's size.
     """
 
     def __init__(self, functions: Functions) -> None:
         self.steps, self.error = 0, math.inf
         count = _FIRST
         while count <= _MOST:
-            values = functions(np.arange(count) * (TURN / count))
+            values, sizes = functions(np.arange(count) * (TURN / count))
             if not np.isfinite(values).all():
                 return
             series = np.fft.rfft(values, axis=1) / count
-            self.error = self._tail(series, values)
+            self.error = self._tail(series, np.maximum(sizes, np.abs(values).max(axis=1)))
             if self.error < _RUN_OUT:
                 self.steps = count
                 self._pieces(series)
@@ -47,8 +49,7 @@ class TurnTable:
             count *= 2
 
     @staticmethod
-    def _tail(series: np.ndarray, values: np.ndarray) -> float:
-        size = np.abs(values).max(axis=1)
+    def _tail(series: np.ndarray, size: np.ndarray) -> float:
         tail = np.abs(series[:, 2 * series.shape[1] // 3 :]).max(axis=1)
         return float(np.max(tail / np.where(size > 0, size, 1.0), initial=0.0))
 
@@ -106,10 +107,10 @@ class Untabulated:
         self._functions = functions
 
     def at(self, angle: float) -> np.ndarray:
-        return self._functions(np.array([angle]))[:, 0]
+        return self._functions(np.array([angle]))[0][:, 0]
 
     def over(self, angles: np.ndarray) -> np.ndarray:
-        return self._functions(angles)
+        return self._functions(angles)[0]
 
 
 def tabulated(functions: Functions) -> TurnTable | Untabulated:

@@ -54,6 +54,14 @@ class Wrench:
         power = (np.conj(self.forces) * self.stance.origin_rates).real + self.moments * self.stance.rates
         return -power.sum(axis=0)
 
+    @property
+    def size(self) -> float:
+        """What the effort could be, did its parts not cancel: forces on arms as long as the mechanism is large."""
+        stance = self.stance
+        reach = np.abs(stance.origin_rates) + stance.size * np.abs(stance.rates)
+        parts = np.abs(self.forces) * reach + np.abs(self.moments * stance.rates)
+        return float(np.nanmax(parts.sum(axis=0), initial=0.0))
+
     def __mul__(self, factor: np.ndarray | float) -> Wrench:
         return Wrench(self.stance, self.forces * factor, self.moments * factor)
 

@@ -30,6 +30,12 @@ class Flywheel:
     inertia: float | None = None
     unevenness: float | None = None
 
+    def __post_init__(self) -> None:
+        if self.unevenness is not None and not 0 < self.unevenness < 1:
+            raise WrongValue(f"an unevenness lies between 0 and 1, 0.02 for 2 %; found {self.unevenness:g}")
+        if self.inertia is not None and not 0 < self.inertia < 1e12:
+            raise WrongValue(f"the inertia of a flywheel is above 0; found {self.inertia:g} kg*m^2")
+
 
 @dataclass(frozen=True)
 class Motor:
@@ -38,6 +44,13 @@ class Motor:
 
     torque: float
     no_load_speed: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.no_load_speed is not None and not self.torque * self.no_load_speed > 0:
+            raise WrongValue(
+                "a motor turns the way that its torque pulls: torque and no_load_speed have one sign and are not 0; found "
+                f"{self.torque:g} N*m and {self.no_load_speed:g} rad/s"
+            )
 
     def at(self, speed: float) -> float:
         """The torque at a speed of the driver."""
@@ -81,6 +94,8 @@ class Added:
         for name, length in self.lengths.items():
             if name not in slides:
                 raise unknown("slide", name, slides, "the mechanism")
+            if length < 0:
+                raise WrongValue(f"the length of slide {name} is not negative; found {length:g}")
             slides[name] = dataclasses.replace(slides[name], length=length)
         return dataclasses.replace(
             mechanism,

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from coursework.errors import counted
 from coursework.motion import shown
 from coursework.motion.effects import ADVANTAGE, KINEMATIC
-from coursework.motion.scenes import INERTIA, Scene
+from coursework.motion.scenes import Scene
+from coursework.motion.staged import INERTIA
 
 
 def plan(scene: Scene) -> list[tuple[str, str]]:
@@ -40,31 +41,37 @@ def _of_mechanism(scene: Scene) -> Iterator[tuple[str, str]]:
     linkage, wanted = scene.linkage, ", ".join(scene.extra)
     angles = [n for n in linkage.mechanism.angles if n != scene.driver.angle]
     yield ", ".join(angles) or "the driver's angle", f"how the bodies stand: {wanted}"
-    kinds = [shown.what(name)[0] for name in scene.extra]
-    forces = any(not kind or kind == shown.REACTION for kind in kinds)
-    if forces or set(kinds) - {"position"}:
+    kinds = {shown.what(name)[0] for name in scene.extra}
+    forces = bool(kinds & {"", shown.REACTION})
+    bends = forces and INERTIA in scene.effects and bool(linkage.masses)
+    if forces or kinds - {"position"}:
         yield f"rates of the bodies ({counted(linkage.unknowns, 'unknown')})", "virtual power, velocities"
-    if "acceleration" in kinds or (forces and scene.forces.needs_bends):
-        why = "the effect inertia" if forces and scene.forces.needs_bends else "accelerations shown"
+    if "acceleration" in kinds or bends:
+        why = "the effect inertia" if bends else "accelerations shown"
         yield "second derivatives of the bodies' angles", why
     if forces:
         yield from _of_forces(scene, shown.REACTION in kinds)
 
 
 def _of_forces(scene: Scene, asked: bool) -> Iterator[tuple[str, str]]:
-    forces, bodies = scene.forces, len(scene.linkage.origins)
+    bodies = len(scene.linkage.origins)
+    for load in scene.mechanism.loads if "load" in scene.effects else ():
+        yield f"the load on {load.on}", "the effect load"
     yield "the drive's effort by virtual power", "forces are called"
-    if asked or forces.contacts:
+    if asked or scene.contacts:
         why = "reactions are shown" if asked else "friction follows what joints bear"
         yield f"equilibrium of {bodies} bodies, {3 * bodies} equations an instant", why
-    if forces.contacts:
-        names = dict.fromkeys(c.joint.name.removesuffix(" slide") for c in forces.contacts)
+    if scene.contacts:
+        names = dict.fromkeys(c.joint.name.removesuffix(" slide") for c in scene.contacts)
         yield f"friction by iteration at {', '.join(names)}", "the effect friction"
 
 
 def _left_out(scene: Scene) -> Iterator[tuple[str, str]]:
-    """What no effect of the scene needs."""
-    if "acceleration" not in scene.called and INERTIA not in scene.called and "coriolis" not in scene.called:
+    """What no effect of the scene, and nothing that it shows, needs."""
+    kinds = {shown.what(name)[0] for name in scene.extra}
+    bent = {"acceleration", "coriolis", INERTIA} & {*scene.called, *kinds}
+    own = scene.evaluated(scene.quantities)
+    if not bent and not set(own) & set(scene.accelerations):
         yield "no acceleration", "no effect needs one"
-    if not any(e not in (*KINEMATIC, ADVANTAGE) for e in scene.called):
+    if not kinds & {"", shown.REACTION} and not any(e not in (*KINEMATIC, ADVANTAGE) for e in scene.called):
         yield "no force", "no effect needs one"

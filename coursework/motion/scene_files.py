@@ -49,6 +49,7 @@ _KEYS = (
     "friction", "slides", "flywheel",
 )  # fmt: skip
 _STEPS = 360
+_EXAMPLES = {"drive": 'drive = { torque = "5 N*m" }', "gravity": 'gravity = { acceleration = "9.8 m/s^2" }'}
 
 Path_ = tuple[str | int, ...]
 
@@ -77,8 +78,10 @@ def read_scene(path: Path, course: Course) -> SceneFile:
         table = tomllib.loads(text)
     except OSError as fault:
         raise BadInput(f"the scene {path} cannot be read: {fault.strerror or fault}") from fault
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as fault:
-        raise BadInput(f"{path}: {fault}") from fault
+    except tomllib.TOMLDecodeError as fault:
+        raise BadInput(f'{path}: {fault}; a value with a unit is a text: mass = "3 kg"') from fault
+    except UnicodeDecodeError as fault:
+        raise BadInput(f"{path} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
     return _Reader(path, text, table, course).scene_file()
 
 
@@ -98,10 +101,16 @@ class _Reader:
         run: dict[str, Any] = {}
         drive = self._drive()
         if drive is not None:
-            run = {"drive": drive, "duration": self._amount(("duration",), "s", 1.0)}
+            run = {"drive": drive, "duration": self._duration()}
         elif "duration" in self.table:
             raise self.refused(("duration",), 'a duration needs a drive: drive = { torque = "5 N*m" }')
         return SceneFile(self.path.stem, self._scene(exercise), self._steps(), **run)
+
+    def _duration(self) -> float:
+        duration = self._amount(("duration",), "s", 1.0)
+        if not duration > 0:
+            raise self.refused(("duration",), f"a duration is above 0; found {duration:g} s")
+        return float(duration)
 
     def _scene(self, exercise: CourseExercise) -> Scene:
         effects, show = (self._words(key) for key in ("effects", "show"))
@@ -111,15 +120,18 @@ class _Reader:
                 raise self.refused(("effects",), f"the effect {effect!r} is named twice")
         given = self._given(exercise)
         added = self._added(exercise)
-        scene = self._told(("exercise",), Scene, exercise, given, effects, (), added)
+        self._check_names(exercise)
+        self._told(("exercise",), Scene, exercise, given, effects, (), added)
         for name in show:
             self._told(("show",), Scene, exercise, given, effects, (name,), added)
-        self._check_names(scene)
+        for name, value in added.friction.items():
+            own = Scene(exercise, given, ("friction",), (), Added(friction={name: value}))
+            self._told(("friction", name), getattr, own, "contacts")
         return Scene(exercise, given, effects, show, added)
 
-    def _check_names(self, scene: Scene) -> None:
+    def _check_names(self, exercise: CourseExercise) -> None:
         """Look every name up that the mechanism has to know, whichever effects are called."""
-        mechanism = scene.exercise.solution.mechanism
+        mechanism = exercise.solution.mechanism
         if mechanism is None:
             return
         for name in self._table(("bodies",)):
@@ -135,9 +147,6 @@ class _Reader:
         slides = [slide.at for slide in mechanism.slides]
         for name in self._table(("slides",)):
             self._known(("slides", name), "slide", name, slides)
-        for name, value in scene.added.friction.items():
-            own = Scene(scene.exercise, scene.given, ("friction",), (), Added(friction={name: value}))
-            self._told(("friction", name), getattr, own, "forces")
 
     def _told(self, at: Path_, function: Any, *arguments: Any) -> Any:
         """What a function gives; what it refuses, with the line."""
@@ -176,7 +185,8 @@ class _Reader:
         if found is None:
             return {}
         if not isinstance(found, Mapping):
-            raise self.refused(at, f"{at[-1]} is a table; found {found!r}")
+            example = f": {_EXAMPLES[str(at[-1])]}" if str(at[-1]) in _EXAMPLES else ""
+            raise self.refused(at, f"{at[-1]} is a table{example}; found {found!r}")
         return found
 
     def _words(self, key: str) -> tuple[str, ...]:
@@ -234,14 +244,17 @@ class _Reader:
     def _drive(self) -> Motor | None:
         if "drive" not in self.table:
             return None
+        for key in ("over", "steps"):
+            if key in self.table:
+                raise self.refused(
+                    (key,), f"{key} is of a cycle; with a drive the motion is in time: leave one out"
+                )
         self._only(self._table(("drive",)), ("torque", "no_load_speed"), ("drive",))
         torque = self._amount(("drive", "torque"), "N*m")
         if torque is None:
             raise self.refused(("drive",), 'a drive has a torque: drive = { torque = "5 N*m" }')
         speed = self._amount(("drive", "no_load_speed"), "rad/s")
-        if speed == 0:
-            raise self.refused(("drive", "no_load_speed"), "the speed at which no torque is left is not 0")
-        return Motor(torque, speed)
+        return self._told(("drive", "no_load_speed"), Motor, torque, speed)
 
     def _added(self, exercise: CourseExercise) -> Added:
         bodies = {name: self._body(name) for name in self._table(("bodies",))}
@@ -274,7 +287,9 @@ class _Reader:
     def _loads_listed(self) -> list[Mapping[str, Any]]:
         found = self.table.get("loads", [])
         if not isinstance(found, list) or not all(isinstance(load, Mapping) for load in found):
-            raise self.refused(("loads",), "loads are tables: [[loads]]")
+            raise self.refused(
+                ("loads",), "loads are a list of tables, each headed by [[loads]], in double brackets"
+            )
         return found
 
     def _load(self, number: int, exercise: CourseExercise) -> Load:
@@ -283,7 +298,8 @@ class _Reader:
         self._only(own, ("on", "body", "force", "moment", "angle", "against", "during", "by", "table"), at)
         if "on" not in own:
             raise self.refused(at, 'a load acts on something: on = "C"')
-        kind = "moment" if "moment" in own else "force"
+        self._refuse_idle(at, own)
+        kind = "moment" if "moment" in own or self._is_body(exercise, str(own["on"])) else "force"
         if own.get("against", "motion") != "motion":
             raise self.refused((*at, "against"), f'against is "motion"; found {own["against"]!r}')
         during = str(own.get("during", "always"))
@@ -301,6 +317,22 @@ class _Reader:
         return Load(
             str(own["on"]), against="against" in own, during=during, by=by, table=pairs, body=body, **values
         )
+
+    def _refuse_idle(self, at: Path_, own: Mapping[str, Any]) -> None:
+        """Refuse a key beside another that makes it idle."""
+        for key, other in (("force", "moment"), ("table", "force"), ("table", "moment"), ("angle", "against"),
+                           ("angle", "moment"), ("body", "moment")):  # fmt: skip
+            if key in own and other in own:
+                raise self.refused((*at, key), f"a load has {key} or {other}, not both")
+        if "by" in own and "table" not in own:
+            raise self.refused(
+                (*at, "by"), "by is what a table goes by; the load has none: table = [[…, …], […, …]]"
+            )
+
+    @staticmethod
+    def _is_body(exercise: CourseExercise, name: str) -> bool:
+        mechanism = exercise.solution.mechanism
+        return mechanism is not None and name in mechanism.names and name not in mechanism.points
 
     def _size(self, at: Path_, kind: str, exercise: CourseExercise) -> Place:
         """A number, or a quantity of the exercise by its name."""
@@ -344,6 +376,11 @@ class _Reader:
             raise self.refused(
                 (*at, "table"), "a table goes upwards: each first value is larger than the one before"
             )
+        if place == "deg" and found[-1][0] - found[0][0] > 360:
+            span = found[-1][0] - found[0][0]
+            raise self.refused(
+                (*at, "table"), f"a table by an angle spans a turn at most; found {span:g} deg"
+            )
         return tuple(found)
 
     def _friction(self, name: str) -> Any:
@@ -370,10 +407,9 @@ class _Reader:
         inertia, unevenness = self._amount((*at, "inertia"), "kg*m^2"), self._amount((*at, "unevenness"), "1")
         if (inertia is None) == (unevenness is None):
             raise self.refused(at, 'a flywheel has inertia = "2 kg*m^2", or unevenness = 0.02')
-        for key, value in (("inertia", inertia), ("unevenness", unevenness)):
-            if value is not None and value <= 0:
-                raise self.refused((*at, key), f"{key} is above 0; found {value:g}")
-        return Flywheel(inertia, unevenness)
+        return self._told(
+            (*at, "inertia" if unevenness is None else "unevenness"), Flywheel, inertia, unevenness
+        )
 
     def _gravity(self) -> complex:
         at: Path_ = ("gravity",)

@@ -12,9 +12,15 @@ import numpy as np
 from coursework.errors import CourseworkError, WrongValue
 from coursework.motion.effects import FORCES
 from coursework.motion.scenes import Scene, Table
+from coursework.motion.staged import FLYWHEEL
 
 TOLERANCE = 0.01  #: of an output's largest value: a smaller change is one that a scene could do without
-_ROUNDS = 7
+_ROUNDS, _FEWEST, _PATIENCE = (
+    7,
+    3,
+    10.0,
+)  #: rounds that are timed; fewer where all of them would take more seconds
+_ROUNDING = 1e-9  #: of the largest output of a unit: what is smaller is rounding
 
 Run = Callable[[Scene], Table]
 
@@ -67,7 +73,9 @@ class Budget:
             most = worth.most
             if worth.needed or worth.effect not in FORCES:
                 continue
-            if most is None or most.largest_part == 0:
+            if worth.effect == FLYWHEEL:
+                yield "flywheel evens out a motion in time; over a cycle at a constant rate it changes nothing"
+            elif most is None or most.largest_part == 0:
                 yield f"{worth.effect} changes nothing here: the scene has no data for it, or asks nothing that it moves"
             elif most.largest_part <= self.tolerance:
                 yield (
@@ -121,7 +129,10 @@ def _others(scene: Scene, run: Run, effects: Sequence[str]) -> tuple[dict[str, S
 def _times(scenes: Mapping[str, Scene], run: Run) -> dict[str, list[float]]:
     """Seconds of each scene, in rounds that run all of them in turn."""
     found: dict[str, list[float]] = {name: [] for name in scenes}
-    for _ in range(_ROUNDS):
+    started = time.perf_counter()
+    for number in range(_ROUNDS):
+        if number >= _FEWEST and time.perf_counter() - started > _PATIENCE * number / _ROUNDS:
+            break
         for name, scene in scenes.items():
             fresh = replace(scene)  # what a scene remembers of its mechanism is part of its time
             start = time.perf_counter()
@@ -144,12 +155,19 @@ def _worth(
 def _changes(whole: Table, other: Table) -> Iterator[Change]:
     """Of every output that both show, at the instants of both."""
     kept, there = (~_dead(table) for table in (whole, other))
+    largest: dict[str, float] = {}
+    for name, values in whole.columns.items():
+        largest[whole.units[name]] = max(largest.get(whole.units[name], 0.0), _largest(values))
     for name, values in whole.columns.items():
         if name in ("t", "dead_centre") or name not in other.columns or name == next(iter(whole.columns)):
             continue
         own, changed = values[kept], other.columns[name][there]
-        if own.shape == changed.shape:
-            yield _change(name, whole.units[name], own, changed)
+        if own.shape == changed.shape and _largest(own) > _ROUNDING * largest[whole.units[name]]:
+            yield _change(name, whole.units[name], own, changed, "t" not in whole.columns)
+
+
+def _largest(values: np.ndarray) -> float:
+    return float(np.nanmax(np.abs(values), initial=0.0))
 
 
 def _dead(table: Table) -> np.ndarray:
@@ -157,12 +175,12 @@ def _dead(table: Table) -> np.ndarray:
     return table.columns.get("dead_centre", np.zeros(len(first))) > 0
 
 
-def _change(name: str, unit: str, own: np.ndarray, changed: np.ndarray) -> Change:
+def _change(name: str, unit: str, own: np.ndarray, changed: np.ndarray, wraps: bool) -> Change:
     apart = np.abs(changed - own)
-    if unit == "deg":
+    if unit == "deg" and wraps:
         apart = np.abs(apart - 360.0 * np.rint(apart / 360.0))
-    size = (float(np.nanmax(np.abs(own), initial=0.0)), _rms(own))
-    largest, rms = float(np.nanmax(apart, initial=0.0)), _rms(apart)
+    size = (_largest(own), _rms(own))
+    largest, rms = _largest(apart), _rms(apart)
     parts = [
         change / of if of else float(change > 0) for change, of in zip((largest, rms), size, strict=True)
     ]

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import math
 import os
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 BLOCK = 32768  #: configurations computed together: what the calls cost and what the cache holds, in balance
-PIECE = 2 * BLOCK  #: the same where threads share the work, and would wait for each other at every call
+PIECE = BLOCK  #: the same of a request that goes from one quantity to the next
 
 
 def _keep_freed_memory() -> None:
@@ -80,10 +81,13 @@ def joined(
 ) -> dict[str, Any]:
     """What ``compute`` gives at each place, put together along the first axis; what is no array there stays.
 
-    Places are independent, and computed by as many threads as the process has processors: numpy lets them
-    run side by side. The result does not depend on their number.
+    Places are independent, and computed by as many threads as the process has processors where that is faster. The
+    result does not depend on their number.
     """
-    whole = {name: _with_length(value, length) for name, value in compute(places[0]).items()}
+    start = time.perf_counter()
+    first = compute(places[0])
+    alone = time.perf_counter() - start
+    whole = {name: _with_length(value, length) for name, value in first.items()}
     odd: list[tuple[str, slice, np.ndarray]] = []
 
     def put(place: slice, found: Mapping[str, Any]) -> None:
@@ -98,16 +102,8 @@ def joined(
     def fill(place: slice) -> None:
         put(place, compute(place))
 
-    threads = min(processors(), len(places))
-    if threads == 1 or len(places) < _PLACES_WORTH_THREADS:
-        for place in places:
-            fill(place)
-    else:
-        from concurrent.futures import ThreadPoolExecutor
-
-        with ThreadPoolExecutor(threads) as pool:
-            for _ in pool.map(fill, places):
-                pass
+    put(places[0], first)
+    _each(fill, places[1:], alone)
     # Texts of other lengths, say: the whole must hold them all.
     for name, place, value in odd:
         whole[name] = whole[name].astype(np.promote_types(whole[name].dtype, value.dtype))
@@ -115,7 +111,30 @@ def joined(
     return whole
 
 
-_PLACES_WORTH_THREADS = 4  #: below, starting the threads costs what they gain
+def _each(fill: Callable[[slice], None], places: Sequence[slice], alone: float) -> None:
+    """Each place once; long work by threads if the first few places are faster so than ``alone``, the seconds of one.
+
+    numpy lets threads run side by side while it computes and not between: a request of many short calls goes no faster by
+    two, nor does any while other processes take the processors.
+    """
+    threads = processors()
+    tried = 2 * threads
+    if threads == 1 or len(places) <= tried or alone * len(places) < _NOTICED:
+        for place in places:
+            fill(place)
+        return
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(threads) as pool:
+        start = time.perf_counter()
+        list(pool.map(fill, places[:tried]))
+        pays = time.perf_counter() - start < _PAYS * alone * tried
+        for _ in (pool.map if pays else map)(fill, places[tried:]):
+            pass
+
+
+_NOTICED = 0.2  #: seconds of work from which threads are tried at all: trying them costs some
+_PAYS = 0.85  #: share of the time of places one by one below which threads are worth while
 
 
 def processors() -> int:

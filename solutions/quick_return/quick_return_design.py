@@ -9,7 +9,7 @@ import numpy as np
 
 from coursework.degrees import asin, sqrt, tan
 from coursework.kinematics.slider_crank import SliderCrank
-from coursework.solution import Judged, formula, given, judge, mistake
+from coursework.solution import Judged, formula, given, judge, mistake, stable
 
 from .._slow_arc import *
 from ._in_line import _in_line
@@ -32,6 +32,7 @@ def side(mode):
     return np.where(mode == "inward", 1.0, -1.0)[()]
 
 
+@stable(lambda side, stroke, t: side * stroke * (1 - t) * (1 + t) / (sqrt(4 + 5 * t**2) + 3 * t))
 def e(side, stroke, r2, t):
     return side * (stroke**2 - 4 * r2**2) / (2 * stroke * t)
 

@@ -50,6 +50,13 @@ def test_an_instructors_exercise_takes_part_as_it_is(own_course):
     assert line.places > 3
 
 
+def test_a_students_copy_is_told_in_one_line(own_course, capsys):
+    shutil.rmtree(own_course / "solutions")
+    for arguments in ([], ["slotted_mechanism"], ["--paper"]):
+        assert run(["--course", str(own_course), "accuracy", *arguments]) == 2
+        assert "students' copy" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("right", "wrong", "equation"),
     [
@@ -75,7 +82,7 @@ def test_a_wrong_formula_is_caught_and_not_called_exact(own_course, capsys, righ
 
 
 def test_what_no_loop_holds_the_residual_holds(own_course):
-    """The residual alone, without loops: at eighty digits too."""
+    """The residual alone, without loops: at a hundred digits too."""
     exercise = spoilt(own_course, 'LOOPS = {"loop_1"', '_LOOPS = {"loop_1"')
     closing = Reference(exercise, ("rA", "theta4", "alpha4")).closing([exercise.variant(0).given])
     assert closing.is_closed

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from coursework.accuracy.measuring import GENERIC, HARD, Row
-from coursework.accuracy.timing import Times, interleaved, overlap
-from coursework.accuracy.verdicts import Rows, cheapest, enough, paid_after
+from coursework.accuracy.timing import Times, interleaved, is_busy, overlap
+from coursework.accuracy.verdicts import Rows, enough, paid_after
 from coursework.language.words import languages, words
 
 
@@ -91,7 +91,7 @@ def test_what_has_no_answer_somewhere_is_not_good_enough():
 
 
 def test_ways_whose_spreads_overlap_are_as_good_as_each_other():
-    rows = [row("stable", GENERIC, 40, 1e-16, spread=0.3), row("textbook", GENERIC, 55, 1e-16, spread=0.5)]
+    rows = [row("stable", GENERIC, 40, 1e-16, spread=0.2), row("textbook", GENERIC, 45, 1e-16, spread=0.2)]
     assert overlap(*rows)
     (line,) = told(rows)
     assert "as good as each other" in line
@@ -102,10 +102,15 @@ def test_ways_whose_spreads_overlap_are_as_good_as_each_other():
 
 
 def test_no_winner_is_named_on_a_busy_machine():
-    rows = [replace(r, ns_low=0.4 * r.median, ns_high=1.7 * r.median) for r in stored()]
-    assert cheapest([r for r in rows if r.place == GENERIC]) == []
+    """A fifth of the ways spread widely: no time is to be trusted then, not even one that does not."""
+    busy = {"single-", "table-64"}
+    rows = [
+        replace(r, ns_low=0.7 * r.median, ns_high=1.4 * r.median) if r.method in busy else r for r in stored()
+    ]
+    assert is_busy(r for r in rows if r.place == GENERIC)
     assert len(told(rows)) == 1
     assert "busy" in told(rows)[0]
+    assert not is_busy(r for r in stored() if r.place == GENERIC)
 
 
 def test_a_table_is_paid_by_what_it_saves():

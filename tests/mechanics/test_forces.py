@@ -7,9 +7,12 @@ import pytest
 from exact_mechanics import ExactMechanics
 
 import coursework
+from coursework.errors import BadCourse
+from coursework.mechanics import GROUND, Body, Gear, Load, Mechanism, Slide
 from coursework.mechanics.equilibrium import Equilibrium
-from coursework.mechanics.linkage import Held
-from coursework.mechanics.statement import Load
+from coursework.mechanics.linkage import Held, Linkage
+from coursework.mechanics.rates import Stance
+from coursework.mechanics.wrenches import inertia_at_start, weight
 from coursework.motion.added import Added, Weighed
 from coursework.motion.scenes import Scene
 
@@ -234,3 +237,38 @@ def test_the_effort_keeps_its_digits_beside_a_change_point(beside, side):
     # The driver's angle in radians is rounded once more than in degrees: the effort goes as 1 / distance there.
     allowed = 8 * np.finfo(float).eps * (1 + 180.0 / beside)
     assert found == pytest.approx(float(exact), rel=allowed)
+
+
+def test_a_ring_on_the_ground_bears_as_virtual_power_says():
+    """A pinion on a crank rolls inside a fixed ring whose centre is not the origin: rates by rolling, forces by both ways."""
+    mechanism = Mechanism(
+        ground={"O": 50 + 20j},
+        bodies=(Body("2", "theta2", "O", {"A": "r2"}), Body("3", None, "A", mass=2.0, inertia=0.01)),
+        gears=(
+            Gear(
+                "3", GROUND, carrier="2", radii=("r3", lambda r2, r3: r2 + r3), inner=True, centres=("A", "O")
+            ),
+        ),
+    )
+    linkage = Linkage(mechanism, {"r2": 60.0, "r3": 20.0}, "theta2")
+    linkage.check()
+    q = np.linspace(0.1, 6.0, 9)
+    stance = Stance(linkage, np.array([q, 0 * q, 0 * q]))
+    np.testing.assert_allclose(stance.rates[1], -60.0 / 20.0, rtol=1e-13)
+    total = weight(stance) + inertia_at_start(stance) * 3.0
+    total.turn(1, 0.7)
+    equations = Equilibrium(stance)
+    unknowns = equations.under(total)[:, :, 0]
+    np.testing.assert_allclose(unknowns[:, equations.column("effort")], total.effort, rtol=1e-11)
+
+
+def test_statements_that_cannot_be_are_refused():
+    wheel = Body("3", None, "O", {"G": 30.0})
+    with pytest.raises(BadCourse, match="has no angle: nothing says where its points G"):
+        Mechanism({"O": 0}, (Body("2", "a", "O"), wheel))
+    with pytest.raises(BadCourse, match="its middle at a point"):
+        Mechanism({"O": 0}, (Body("2", "a", "O"),), gears=(Gear("2", GROUND, "2", (1, 2)),))
+    with pytest.raises(BadCourse, match="no body before it holds"):
+        Mechanism({"O": 0}, (Body("2", "a", "Q"),))
+    with pytest.raises(BadCourse, match="turned alike"):
+        Mechanism({"O": 0}, (Body("2", "a", "O"), Body("3", "b", "O")), (Slide("O", "3", on="2"),))

@@ -96,7 +96,8 @@ def test_a_motion_in_time_has_a_drive_and_a_duration(course, write):
     )
     read = read_scene(write(text), course)
     assert read.duration == 0.5
-    assert read.drive == Motor(20.0, pytest.approx(300 * 2 * np.pi / 60))
+    assert isinstance(read.drive, Motor)
+    assert (read.drive.torque, read.drive.no_load_speed) == (20.0, pytest.approx(300 * 2 * np.pi / 60))
 
 
 WRONG = {
@@ -124,11 +125,11 @@ WRONG = {
     "[[loads]]\non = 'B'\nforce = 3\n[[loads]]\non = 'A'\nforce = 'r1'": ("line 7", "r1 is in mm"),
     "[[loads]]\non = 'B'\ntable = [[0, 1], [0, 2]]": ("line 4", "goes upwards"),
     "[[loads]]\non = 'B'\nbody = '2'\nforce = 1": ("line 4", "no body '2'"),
-    "[friction]\nB = 0.1": ("line 3", "no slide 'B'"),
+    "[friction]\nB = 0.1": ("line 3", "B is a pin: its friction has the radius"),
     "[friction]\nB = { coefficient = -0.1, radius = 3 }": ("line 3", "not negative"),
     "[slides.B]\nlength = 3": ("line 2", "no slide 'B'"),
     "[flywheel]\ninertia = 1\nunevenness = 0.1": ("line 2", 'inertia = "2 kg*m^2", or'),
-    "[flywheel]\nunevenness = 0": ("line 3", "above 0"),
+    "[flywheel]\nunevenness = 0": ("line 3", "between 0 and 1"),
     "[gravity]\nangel = 3": ("line 3", "did you mean 'angle'"),
 }
 

@@ -5,6 +5,7 @@ Against the formulas of its own solution in sixty digits; a new exercise is held
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from sixty_digits import SISTERS, Formulas
 from sweeps import sampled
@@ -57,6 +58,17 @@ def test_whole_turns_cost_no_digit(name):
             if own.found(change, quantity) is not None:
                 excess = own.excess(change, quantity, as_if={angle: own.given[angle]})
                 assert excess <= MOST, (quantity, change)
+
+
+def test_whole_turns_in_a_row_change_no_bit():
+    exercise = COURSE["three_loop_shaper"]
+    given = {n: v for n, v in exercise.variant(0).given.items() if n != "theta2"}
+    within = np.array([-170.5, -3.25, 0.0, 71.0, 180.0])
+    turned = within + 360.0 * np.array([-(10**9), 7, 10**6, 10**9, 2])
+    names = ("theta5", "omega5", "x8_ddot")
+    expected, found = (exercise.solve(**given, theta2=theta2, only=names) for theta2 in (within, turned))
+    for name in names:
+        assert found[name].tolist() == expected[name].tolist(), name
 
 
 OAB = [{"angle_OAB": near} for near in (1e-3, 1e-6, 1e-9, 180 - 1e-6)]

@@ -1,0 +1,54 @@
+"""How evenly a mechanism turns: the mean effort of a turn, what a flywheel has to store, and how large it must be."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from coursework.errors import Undefined
+
+
+@dataclass(frozen=True)
+class Evenness:
+    """The effort of a drive over a turn at a constant rate, N m, at equal steps, and that rate, rad/s.
+
+    Source: the energy that a drive of constant torque lacks and has in excess is kept by the flywheel; for a small
+    unevenness (largest - least speed) / mean speed it is J (mean speed)^2 times the unevenness.
+
+    Raises
+    ------
+    Undefined
+        The effort does not exist somewhere on the turn.
+    """
+
+    efforts: np.ndarray
+    speed: float
+
+    def __post_init__(self) -> None:
+        if (missing := np.isnan(self.efforts)).any():
+            at = 360.0 * np.flatnonzero(missing)[0] / len(self.efforts)
+            raise Undefined(
+                "a flywheel is sized over a whole turn; here the drive's effort does not exist at "
+                f"{int(missing.sum())} of {len(missing)} angles, first at {at:g} degrees"
+            )
+
+    @property
+    def mean_torque(self) -> float:
+        """Of the drive over a turn, N m."""
+        return float(np.mean(self.efforts))
+
+    @cached_property
+    def excess_energy(self) -> float:
+        """The largest that a flywheel stores and gives back over a turn at the mean torque, J."""
+        step = 2 * np.pi / len(self.efforts)
+        return float(np.ptp(np.cumsum(self.mean_torque - self.efforts) * step))
+
+    def inertia_for(self, unevenness: float) -> float:
+        """Of the flywheel that keeps an unevenness, kg m^2."""
+        return self.excess_energy / (unevenness * self.speed**2)
+
+    def unevenness_of(self, inertia: float) -> float:
+        """What a flywheel leaves."""
+        return self.excess_energy / (inertia * self.speed**2)

@@ -1,0 +1,272 @@
+"""What a scene shows: the exercise's quantities of its effects, and what the mechanism tells besides."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from coursework.errors import WrongValue
+from coursework.mechanics.forces import Borne, Forces
+from coursework.mechanics.linkage import MM, SlideJoint
+from coursework.mechanics.rates import Stance
+from coursework.motion import shown
+from coursework.motion.effects import ADVANTAGE, OF_FORCES
+from coursework.motion.staged import Staged
+from coursework.solution import Moving
+
+_PIECE = 1 << 16  #: instants whose points are computed together
+
+
+@dataclass(frozen=True)
+class Showing(Staged):
+    """A staged mechanism with what is to be seen of it."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in self.show:
+            self._check_shown(name)
+        if "coriolis" in self.effects and not self._of("coriolis"):
+            self._coriolis_points()
+
+    @property
+    def quantities(self) -> tuple[str, ...]:
+        """What the scene shows of the exercise's own quantities."""
+        wanted = [n for effect in self.called for n in self._of(effect)]
+        if self._graph_effects and not (self.has_own_data and self.exercise.solution.mechanism):
+            wanted += self._of(OF_FORCES)
+        wanted += [n for n in self.show if n in self.exercise.quantity_names]
+        return tuple(
+            n for n in dict.fromkeys(wanted) if n != self.driver.angle and n not in self.exercise.spec.given
+        )
+
+    def shown_by(self, effect: str) -> tuple[str, ...]:
+        """The exercise's quantities that an effect shows."""
+        return self._of(OF_FORCES if effect in self._graph_effects else effect)
+
+    @property
+    def accelerations(self) -> tuple[str, ...]:
+        """The exercise's quantities that the effect acceleration shows."""
+        return self._of("acceleration")
+
+    @property
+    def constants(self) -> frozenset[str]:
+        """Quantities shown that no effect moves: they are computed once."""
+        moving = {n for names in self._by_effect.values() for n in names}
+        if self.exercise.spec.driver is None or self.exercise.spec.driver.poses is None:
+            return frozenset()
+        return frozenset(n for n in self.show if n in self.exercise.quantity_names and n not in moving)
+
+    @cached_property
+    def extra(self) -> tuple[str, ...]:
+        """What is shown besides: of the drive, of points, of joints."""
+        named = [n for n in self.show if n not in self.exercise.quantity_names]
+        if (
+            self._forces_called
+            and self.exercise.solution.mechanism
+            and self.driver.effort not in self.quantities
+        ):
+            named.insert(0, "drive_torque")
+        if "coriolis" in self.effects and not self._of("coriolis"):
+            named += [f"coriolis {point}" for point in self._coriolis_points()]
+        if self.exercise.solution.mechanism:
+            named += self._of_what_the_solution_leaves_out()
+        elif "position" in self.called and not self._of("position"):
+            named += [f"position {point}" for point in self._moved_by_solution]
+        return tuple(dict.fromkeys(named))
+
+    @cached_property
+    def _moved_by_solution(self) -> tuple[str, ...]:
+        """The points that the solution's ``motion`` gives."""
+        solution = self.exercise.solution
+        if solution.motion is None:
+            return ()
+        graph = solution.graph.with_functions({"motion": solution.motion})
+        given = {**self._accepted, **self._driven(0.0), self.driver.angle: 0.0}
+        known = {n: v for n, v in given.items() if n in self.exercise.quantity_names | graph.leaves}
+        return tuple(graph.evaluate(("motion",), known, self._graph_effects)["motion"])
+
+    def _of_what_the_solution_leaves_out(self) -> list[str]:
+        """Velocities and accelerations of moving points, where the effect is called and no quantity tells it."""
+        points = [p for p in self.linkage.mechanism.points if p not in self.linkage.mechanism.ground]
+        return [
+            f"{effect} {point}"
+            for effect in ("velocity", "acceleration")
+            if effect in self.effects and not self._of(effect)
+            for point in points
+        ]
+
+    @cached_property
+    def _of_own_forces(self) -> frozenset[str]:
+        """The exercise's quantities that its own effects change."""
+        graph = self.exercise.solution.graph
+        return graph.descendants(graph.effects()) if graph.effects() else frozenset()
+
+    def _coriolis_points(self) -> tuple[str, ...]:
+        if self.exercise.solution.mechanism is None:
+            raise WrongValue(
+                f"{self.exercise.name} has no Coriolis term to show: its solution states no MECHANISM, and no "
+                "EFFECTS of coriolis"
+            )
+        points = tuple(s.name.removesuffix(" slide") for s in shown.turning_slides(self.linkage))
+        if not points:
+            raise WrongValue(f"{self.exercise.name} has no Coriolis term: no body slides on one that turns")
+        return points
+
+    def _check_shown(self, name: str) -> None:
+        if "," in name and shown.what(name)[1] not in self.exercise.quantity_names:
+            raise WrongValue(f"{name!r} names several things to show; name one at a time: --show A --show B")
+        if name in self.exercise.quantity_names:
+            if self.has_own_data and name in self._of_own_forces:
+                raise WrongValue(
+                    f"{name} follows from the exercise's own data, and the scene brings others: show drive_torque, "
+                    "'reaction B'"
+                )
+            return
+        if self.exercise.solution.mechanism is None:
+            kind, of = shown.what(name)
+            if kind not in ("position", "velocity", "acceleration") or of not in self._moved_by_solution:
+                self.mechanism  # noqa: B018  # is refused here
+            return
+        shown.check(name, self.linkage, self.exercise.solution.graph.quantities)
+
+    # --------------------------------------------------------------------- columns
+
+    def _exercise_columns(self, driven: Mapping[str, Any], shape: tuple[int, ...]) -> dict[str, np.ndarray]:
+        constants = self.constants
+        moving = tuple(n for n in self.quantities if n not in constants)
+        found = self.exercise.solve(**driven, only=moving, effects=self._graph_effects) if moving else {}
+        if constants:
+            found |= self.exercise.solve(**self.given, only=tuple(constants), effects=self._graph_effects)
+        if ADVANTAGE in self.effects and not self._of(ADVANTAGE):
+            found |= self._advantage(driven)
+        return {n: np.broadcast_to(found[n], shape) for n in dict.fromkeys([*self.quantities, *found])}
+
+    def _advantage(self, driven: Mapping[str, Any]) -> dict[str, Any]:
+        """Effort that comes out for effort that goes in: the driver's speed over that of its output."""
+        output = self.driver.output
+        if not output or not self.driver.speed:
+            raise WrongValue(f"{self.exercise.name}: its driver names no output, so no advantage is known")
+        speed = np.abs(np.asarray(self.exercise.solve(**driven, only=output)[output], dtype=float))
+        with np.errstate(divide="ignore"):
+            ratio = abs(self._speed) / speed
+        return {ADVANTAGE: np.where(speed > 0, ratio * (1000.0 if self._output_slides else 1.0), np.nan)}
+
+    @property
+    def _output_slides(self) -> bool:
+        return self.exercise.units.get(self.driver.output, "") == "mm/s"
+
+    def _extra_columns(
+        self, angles: np.ndarray, speed: np.ndarray, acceleration: np.ndarray
+    ) -> shown.Columns:
+        """What the mechanism tells, at driver's angles in radians."""
+        if not self.extra:
+            return {}
+        if self.exercise.solution.mechanism is None:
+            return self._points_of_solution(np.degrees(angles))
+        kinds = [(name, *shown.what(name)) for name in self.extra]
+        needs_joints = any(kind == shown.REACTION for _, kind, _ in kinds)
+        needs_forces = needs_joints or any(not kind for _, kind, _ in kinds)
+        points = [(kind, of) for _, kind, of in kinds if kind in shown.OF_POINTS]
+        moving = self._of_points(points, angles, speed, acceleration)
+        borne = self.forces.over(angles, speed, acceleration, joints=needs_joints) if needs_forces else None
+        found: shown.Columns = {}
+        for name, kind, of in kinds:
+            if kind == shown.REACTION and borne is not None:
+                found |= shown.of_joint(of, self.linkage, borne)
+            elif kind:
+                found |= moving[kind, of]
+            elif borne is not None:
+                found |= self._of_drive(name, borne, angles, speed)
+        return found
+
+    def _of_points(
+        self,
+        points: Sequence[tuple[str, str]],
+        angles: np.ndarray,
+        speed: np.ndarray,
+        acceleration: np.ndarray,
+    ) -> dict[tuple[str, str], shown.Columns]:
+        """The motions of points, by pieces of the instants, so that a long cycle takes no more memory than its columns."""
+        parts: list[dict[tuple[str, str], shown.Columns]] = []
+        for start in range(0, len(angles), _PIECE) if points else ():
+            piece = slice(start, start + _PIECE)
+            stance = self.pose(angles[piece])
+            parts.append({p: shown.of_point(*p, stance, speed[piece], acceleration[piece]) for p in points})
+        return {
+            point: {
+                name: (np.concatenate([part[point][name][0] for part in parts]), unit)
+                for name, (_, unit) in parts[0][point].items()
+            }
+            for point in points
+        }
+
+    def _points_of_solution(self, angle: np.ndarray) -> shown.Columns:
+        """The points that the solution itself moves: a mechanism in space states no bodies in a plane."""
+        solution = self.exercise.solution
+        assert solution.motion is not None  # without, there is nothing to show, and nothing is asked
+        graph = solution.graph.with_functions({"motion": solution.motion})
+        given = {**self._accepted, **self._driven(angle), self.driver.angle: angle}
+        known = {n: v for n, v in given.items() if n in self.exercise.quantity_names | graph.leaves}
+        points = graph.evaluate(("motion",), known, self._graph_effects)["motion"]
+        found: shown.Columns = {}
+        for kind, of in map(shown.what, self.extra):
+            found |= shown.of_moving(kind, of, points[of])
+        return found
+
+    def _of_drive(self, name: str, borne: Borne, angles: np.ndarray, speed: np.ndarray) -> shown.Columns:
+        if name == "drive_torque":
+            return {name: (borne.effort, "N*m")}
+        if name == "drive_power":
+            return {name: (borne.effort * speed, "W")}
+        inertia = self._moved().over(angles, 0 * speed, 0 * speed + 1.0).effort
+        return {name: (0.5 * inertia * speed**2, "J")}
+
+    def _moved(self) -> Forces:
+        """Inertia alone, with the flywheel that is called."""
+        return replace(self.forces, downwards=0j, inertia=True, loads=(), contacts=())
+
+    def moving_points(self, angle: np.ndarray) -> dict[str, Moving]:
+        """The points of the bodies at driver's angles, degrees: mm, mm/s, mm/s^2; rates where the driver has a speed."""
+        stance, linkage = self.pose(np.radians(angle)), self.linkage
+        points = [p for p in linkage.mechanism.points if p not in linkage.mechanism.ground]
+        sliding = {s.name.removesuffix(" slide"): s for s in shown.turning_slides(linkage)}
+        return {point: self._moving(point, stance, sliding.get(point)) for point in points}
+
+    def _moving(self, point: str, stance: Stance, slide: SlideJoint | None) -> Moving:
+        held = stance.linkage.owner(point)
+        place = stance.place(held) / MM
+        if not self.driver.speed:
+            return Moving(place)
+        speed, acceleration = self._speed, self._acceleration
+        with np.errstate(all="ignore"):
+            velocity = stance.rate(held) * speed / MM
+            bent = (stance.bend(held) * speed**2 + stance.rate(held) * acceleration) / MM
+            if slide is None:
+                return Moving(place, velocity, bent)
+            turning = 2j * stance.rates[slide.on] * speed**2 / MM
+            return Moving(place, velocity, bent, turning * stance.sliding(slide) * stance.direction(slide))
+
+    # ------------------------------------------------------------------------ told
+
+    def _evaluated(self) -> tuple[str, ...]:
+        wanted = [*self.quantities]
+        if self.extra and self.exercise.solution.mechanism:
+            wanted += [n for n in self.linkage.mechanism.angles if n in self.exercise.solution.graph.names]
+        return self.evaluated(wanted)
+
+    def evaluated(self, wanted: Sequence[str]) -> tuple[str, ...]:
+        """The quantities that are evaluated for some, in order."""
+        graph = self.exercise.solution.graph
+        names = {**self.exercise.intake.defaults, **self._driven(0.0)}
+        given = frozenset(names) & self.exercise.quantity_names
+        plan = graph.plan(tuple(dict.fromkeys(wanted)), given, self._graph_effects)
+        return tuple(name for name in plan if not name.startswith("_"))  # a hidden one is the solution's own
+
+    def _units(self, names: Sequence[str] | Mapping[str, Any]) -> dict[str, str]:
+        advantage = "1/m" if self._output_slides else "1"
+        known = {"t": "s", ADVANTAGE: advantage, self.driver.angle: "deg", **self.exercise.units}
+        return {n: known.get(n, "1") for n in names}

@@ -1,0 +1,314 @@
+"""A mechanism of the course on its stage: the exercise's numbers, the effects called for, the data that a scene adds, and
+what acts from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from coursework.course.exercise import CourseExercise
+from coursework.errors import BadCourse, WrongValue
+from coursework.mechanics.evenness import Evenness
+from coursework.mechanics.forces import Forces
+from coursework.mechanics.friction import Contact, contacts
+from coursework.mechanics.linkage import Linkage
+from coursework.mechanics.loads import Acting
+from coursework.mechanics.rates import Stance
+from coursework.mechanics.statement import Load, Mechanism, parameters
+from coursework.model import Driver
+from coursework.motion.added import Added
+from coursework.motion.effects import ADVANTAGE, FORCES, KINEMATIC, check_effect, of_exercise
+from coursework.quantities.loops import usual_rates
+
+INERTIA, FRICTION, FLYWHEEL = "inertia", "friction", "flywheel"
+_JUDGED = 3600  #: steps of the cycle over which a flywheel is sized
+
+
+@dataclass(frozen=True)
+class Staged:
+    """An exercise's mechanism with the effects and the data of a scene; see :class:`~coursework.motion.scenes.Scene`."""
+
+    exercise: CourseExercise
+    given: Mapping[str, Any]
+    effects: tuple[str, ...] = ()
+    show: tuple[str, ...] = ()
+    added: Added = field(default_factory=Added)
+
+    def __post_init__(self) -> None:
+        for number, effect in enumerate(self.effects):
+            check_effect(effect, self.exercise)
+            if effect in self.effects[:number]:
+                raise WrongValue(f"the effect {effect!r} is named twice")
+        for name, value in self._accepted.items():
+            if isinstance(value, np.ndarray):
+                raise WrongValue(f"a scene takes one value of {name}; found {value.size}")
+        if self._forces_called and not self._graph_effects:
+            self.mechanism  # noqa: B018  # is refused here where there is none
+
+    # -------------------------------------------------------------------- driver
+
+    @property
+    def driver(self) -> Driver:
+        """What drives the mechanism; a film's angle and speed, where the solution states one.
+
+        Raises
+        ------
+        BadCourse
+            The exercise names none.
+        """
+        driver, film = self.exercise.spec.driver, self.exercise.film
+        if driver is None and film is not None:
+            return Driver(film.angle, film.speed)
+        if driver is None:
+            raise BadCourse(f"{self.exercise.name} names no driver=Driver(…), so it cannot be simulated")
+        return driver
+
+    @cached_property
+    def _accepted(self) -> dict[str, Any]:
+        """The given values in canonical units, with the exercise's defaults."""
+        accepted = {n: self.exercise.intake.value(n, v) for n, v in self.given.items()}
+        return {**self.exercise.intake.defaults, **accepted}
+
+    @property
+    def has_own_data(self) -> bool:
+        """Whether the scene brings data that the exercise's own formulas of forces do not know of."""
+        return self.added.is_own or FLYWHEEL in self.effects
+
+    def _driven(self, angle: Any) -> dict[str, Any]:
+        """The given values with the driver at an angle, degrees."""
+        if self.exercise.spec.driver is None:
+            return dict(self.given)
+        return {**self.given, **self.exercise.posed(self._accepted, angle)}
+
+    def _value(self, name: str) -> float:
+        """A given value of the driver's; 0 where the exercise has none."""
+        return float(self._accepted.get(name, 0.0)) if name else 0.0
+
+    @property
+    def _speed(self) -> float:
+        return self._value(self.driver.speed)
+
+    @property
+    def _acceleration(self) -> float:
+        return self._value(self.driver.acceleration)
+
+    # ------------------------------------------------------------------- effects
+
+    @property
+    def _graph_effects(self) -> tuple[str, ...]:
+        """The effects called that the exercise's own formulas know."""
+        own = self.exercise.solution.graph.effects()
+        return tuple(e for e in self.effects if e in own)
+
+    @property
+    def _forces_called(self) -> bool:
+        return any(e in FORCES or e not in (*KINEMATIC, ADVANTAGE) for e in self.effects)
+
+    @cached_property
+    def _by_effect(self) -> Mapping[str, tuple[str, ...]]:
+        return of_exercise(self.exercise, self.driver)
+
+    def _of(self, effect: str) -> tuple[str, ...]:
+        return self._by_effect.get(effect, ())
+
+    @property
+    def called(self) -> tuple[str, ...]:
+        """The effects, positions where none is named."""
+        return self.effects or ("position",)
+
+    def with_data(self) -> tuple[str, ...]:
+        """The effects of forces for which there are data: masses, loads, friction, a flywheel."""
+        if self.exercise.solution.mechanism is None:
+            return self.exercise.solution.graph.effects()
+        mechanism, found = self.mechanism, []
+        if mechanism.loads:
+            found.append("load")
+        if self.linkage.masses:
+            found += [
+                e for e in ("gravity", INERTIA) if e == INERTIA or any(m.mass for m in self.linkage.masses)
+            ]
+        if contacts(self.linkage, mechanism.friction):
+            found.append(FRICTION)
+        return (*found, *(("flywheel",) if self.added.flywheel else ()))
+
+    # ------------------------------------------------------------------- mechanism
+
+    @cached_property
+    def mechanism(self) -> Mechanism:
+        """The mechanism with the data of the scene.
+
+        Raises
+        ------
+        BadCourse
+            The solution states none.
+        """
+        stated = self.exercise.solution.mechanism
+        if stated is None:
+            raise BadCourse(
+                f"{self.exercise.solution.source} states no MECHANISM = Mechanism(…): nothing says which bodies bear forces"
+            )
+        return self.added.to(stated)
+
+    @cached_property
+    def linkage(self) -> Linkage:
+        mechanism = self.mechanism
+        places = [n for place in mechanism.unfolded() for n in parameters(place)]
+        places += [
+            n
+            for load in mechanism.loads
+            for p in (load.force, load.moment, load.angle)
+            for n in parameters(p)
+        ]
+        for given in mechanism.friction.values():
+            places += [
+                n for p in (given if isinstance(given, (tuple, list)) else (given,)) for n in parameters(p)
+            ]
+        self._refuse_moving(mechanism)
+        wanted = tuple(n for n in dict.fromkeys(places) if n not in self.exercise.spec.given)
+        values = self.exercise.solve(**self.given, only=wanted) if wanted else {}
+        values |= {n: self._accepted[n] for n in places if n in self._accepted}
+        linkage = Linkage(mechanism, values, self.driver.angle)
+        linkage.check()
+        return linkage
+
+    def _refuse_moving(self, mechanism: Mechanism) -> None:
+        """Refuse places that move within their body.
+
+        Raises
+        ------
+        BadCourse
+            It names the quantity that the driver moves.
+        """
+        for place in mechanism.unfolded():
+            for name in parameters(place):
+                if name in self.moved:
+                    raise BadCourse(
+                        f"{self.exercise.solution.source}: MECHANISM places a point by {name}, which moves with "
+                        f"{self.driver.angle}: a place does not move within its body; where a body slides, state a Slide"
+                    )
+
+    def pose(self, angles: np.ndarray, *, by_joints: bool = False) -> Stance:
+        """The mechanism at driver's angles, radians, shape ``(n,)``; its rates by the solution's own formulas where it
+        has all of them, and by the joints where it has not, or where that is asked."""
+        linkage = self.linkage
+        wanted = tuple(n for n in linkage.mechanism.angles if n != self.driver.angle)
+        degrees = np.degrees(angles)
+        found = self.exercise.solve(**self._driven(degrees), only=wanted) if wanted else {}
+        turned = {self.driver.angle: degrees, **found}
+        turns = np.repeat(linkage.constant_turns[:, None], len(angles), axis=1)
+        for number, body in enumerate(linkage.mechanism.bodies):
+            if isinstance(body.angle, str):
+                turns[number] = np.radians(turned[body.angle])
+        return Stance(linkage, turns, None if by_joints else partial(self._stated_rates, degrees))
+
+    def _stated_rates(self, degrees: np.ndarray, order: int) -> np.ndarray | None:
+        """First or second derivatives of the unknown angles by the driver's, as the solution's own rates give them."""
+        names, driver = self._rates_by_name[order - 1], self.driver
+        if names is None or not driver.speed:
+            return None
+        rest = {driver.acceleration: 0.0} if driver.acceleration else {}
+        given: dict[str, Any] = {**self._driven(degrees), driver.speed: 1.0, **rest}
+        found = self.exercise.solve(**given, only=names) if names else {}
+        return np.array([np.broadcast_to(found[n], degrees.shape) for n in names]).reshape(
+            len(names), len(degrees)
+        )
+
+    @cached_property
+    def _rates_by_name(self) -> tuple[tuple[str, ...] | None, tuple[str, ...] | None]:
+        """The quantities of the unknown angles' rates, and of their accelerations; None where one is missing."""
+        angles, solution = self.linkage.unknown_angles, self.exercise.solution
+        known = frozenset(solution.graph.quantities)
+        of_loops = {n: pair for loop in solution.loops.values() for n, pair in loop.rates.items()}
+        if angles is None:
+            return None, None
+        pairs = [of_loops.get(n) or usual_rates(n, known) for n in angles]
+        first, second = (tuple(pair[order] for pair in pairs) for order in (0, 1))
+        return (first if known.issuperset(first) else None), (second if known.issuperset(second) else None)
+
+    # ---------------------------------------------------------------------- forces
+
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """What rubs, with the effect friction."""
+        return contacts(self.linkage, self.linkage.mechanism.friction) if FRICTION in self.effects else ()
+
+    @cached_property
+    def forces(self) -> Forces:
+        """What acts, of the effects called."""
+        called, linkage = self.effects, self.linkage
+        loads = linkage.mechanism.loads if "load" in called else ()
+        return Forces(
+            linkage,
+            self.pose,
+            self.added.gravity if "gravity" in called else 0j,
+            INERTIA in called,
+            self.flywheel if FLYWHEEL in called else 0.0,
+            tuple(Acting(linkage, self._followed(load), self._position) for load in loads),
+            self.contacts,
+        )
+
+    def _followed(self, load: Load) -> Load:
+        """A load with what it says of quantities: one that the driver moves is followed over the turn.
+
+        Raises
+        ------
+        WrongValue
+            It goes by what the driver's speed changes: a rate is no place.
+        """
+        for name in (load.by, *(n for p in (load.force, load.moment, load.angle) for n in parameters(p))):
+            if name in self._sped:
+                raise WrongValue(
+                    f"the load on {load.on} goes by {name}, which changes with the driver's speed; a load goes by an angle, a "
+                    "position, or against the motion"
+                )
+        return load
+
+    @cached_property
+    def _sped(self) -> frozenset[str]:
+        """The quantities that the driver's speed changes."""
+        rates = [n for n in (self.driver.speed, self.driver.acceleration) if n]
+        return self.exercise.solution.graph.descendants(rates) if rates else frozenset()
+
+    @cached_property
+    def moved(self) -> frozenset[str]:
+        """The quantities that the driver's angle moves."""
+        placing = {self.driver.angle}
+        if self.exercise.spec.driver is not None and self.exercise.spec.driver.poses is not None:
+            placing = set(self.exercise.posed(self._accepted, 0.0))
+        return self.exercise.solution.graph.descendants(placing)
+
+    def _position(self, name: str, angles: np.ndarray) -> np.ndarray:
+        """A quantity of the exercise at driver's angles, radians."""
+        degrees = np.degrees(angles)
+        return np.asarray(self.exercise.solve(**self._driven(degrees), only=name)[name])
+
+    # -------------------------------------------------------------------- flywheel
+
+    @cached_property
+    def evenness(self) -> Evenness:
+        """Of the turn at the given speed, held constant, without a flywheel."""
+        if not self._speed:
+            raise WrongValue(
+                f"a flywheel is sized for a speed: {self.driver.speed or 'it'} is 0 or not given"
+            )
+        angles, speed = np.arange(_JUDGED) * (2 * np.pi / _JUDGED), np.full(_JUDGED, self._speed)
+        without = replace(self, effects=tuple(e for e in self.effects if e != FLYWHEEL), show=())
+        return Evenness(without.forces.over(angles, speed, np.zeros(_JUDGED)).effort, self._speed)
+
+    @cached_property
+    def flywheel(self) -> float:
+        """Its moment of inertia, kg m^2; sized for the unevenness where that is what is said."""
+        wheel = self.added.flywheel
+        if wheel is None:
+            raise WrongValue(
+                "the effect 'flywheel' needs one: [flywheel] inertia = \"2 kg*m^2\", or unevenness = 0.02"
+            )
+        if wheel.inertia is not None:
+            return wheel.inertia
+        assert wheel.unevenness is not None  # one of the two is said
+        return self.evenness.inertia_for(wheel.unevenness)
