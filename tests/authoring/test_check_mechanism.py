@@ -83,10 +83,7 @@ def test_a_free_body_goes_as_its_slides_let_it(tmp_path):
     )  # fmt: skip
     for turn, found in (("cos", []), ("sin", ["goes otherwise than its slides let it"])):
         (course / "solutions" / "yoke.py").write_text(
-            "from coursework.degrees import cos, sin\nfrom coursework.course.course import Course
-from coursework.course.folder import course_folder
-from coursework.course.variant import Variant
-from coursework.mechanics import Body, Mechanism, Slide\n"
+            "from coursework.degrees import cos, sin\nfrom coursework.mechanics import Body, Mechanism, Slide\n"
             "MECHANISM = Mechanism(ground={'O': 0}, bodies=(Body('2', 'theta', 'O', {'A': 'r'}), Body('3', 0, 'A'),"
             " Body('4', 0, 'Y', origin='x')), slides=(Slide('A', '3', on='4', along=90.0), Slide('Y', '4')))\n"
             f"def x(r, theta):\n    return r * {turn}(theta)\n", "utf-8",

@@ -17,30 +17,11 @@ from coursework.accuracy.sweep import misses
 
 COURSE = coursework.open_course()
 NUMERIC = [name for name in COURSE.names if numbers_of(COURSE[name])]
-
-#: What is known to lose digits, until its formula is mended: quantities by exercise.
-KNOWN_LOSSES = {
-    "acceleration_polygon": {"bb_t", "alpha3", "alpha4"},  # a frame far shorter than the other bars
-    "quick_return": {
-        "stroke",  # a crank far shorter than the other bars
-        "omega4", "omega5", "v_C", "a_C", "mechanical_advantage",  # a flat triangle OAB
-        "theta2", "theta3", "theta4", "theta5", "xC", "omega3",  # theta1 after many whole turns
-    },
-    "slider_extras": {"omega5"},  # a change point
-    "slotted_mechanism": {"rA_ddot"},  # the block beside O4
-    "three_loop_shaper": {
-        "omega5", "d5_dot", "omega7", "x8_dot", "alpha5", "d5_ddot", "alpha7", "x8_ddot",  # after many whole turns
-    },
-    "two_loop_linkage": {"theta6", "theta7", "omega6", "omega7", "alpha6", "alpha7"},  # beta after many whole turns
-}  # fmt: skip
 QUICK = (1e-2, 1e-4, 1e-6, 1e-8)
 
 
 def lost(name, **how):
-    known = KNOWN_LOSSES.get(name, set())
-    return [
-        m.told() for m in misses(COURSE[name], numbers_of(COURSE[name]), **how) if m.quantity not in known
-    ]
+    return [miss.told() for miss in misses(COURSE[name], numbers_of(COURSE[name]), **how)]
 
 
 @pytest.mark.parametrize("name", sampled(NUMERIC))
