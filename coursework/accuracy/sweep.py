@@ -15,6 +15,7 @@ from coursework.course.exercise import CourseExercise
 from coursework.errors import CannotAssemble, CourseworkError, Undefined
 
 _FAR = 1e-2  #: in parts of the scale
+_LAST_BITS = 1e-9  #: in parts of the scale
 WHOLE_TURNS = (0.0, 1e3, 1e6, 1e9)
 ASIDE = (0.0, 1e-7, 1e-9)  #: off what is tuned, in parts of its value
 
@@ -95,22 +96,23 @@ def _along(
         for name in doubtful:
             error = off[name]
             if error != error:
-                if not _is_judged(reference, name, given):
+                if not _is_judged(reference, name, given, distance):
                     yield Miss(name, given, place, distance, aside, None, None, None)
             elif error > ALLOWED * allowed[name]:
                 size = abs(float(right[name])) or 1.0
                 yield Miss(name, given, place, distance, aside, error, error / size, error / allowed[name])
 
 
-def _is_judged(reference: Reference, name: str, given: Mapping[str, Any]) -> bool:
-    """Whether the solver says in words that the quantity does not exist there."""
-    known = {**reference.exercise.intake.defaults, **given}
-    known = {n: v for n, v in known.items() if n in reference.exercise.quantity_names}
+def _is_judged(reference: Reference, name: str, given: Mapping[str, Any], distance: float) -> bool:
+    """Whether the solver says in words that the quantity does not exist there, or whether a last bit decides it: so near to
+    the place, an answer that exists when it is asked for alone may be just out of reach when it is asked for with others.
+    """
+    known = reference.exercise.intake.values(given)
     try:
-        reference.exercise.solution.graph.evaluate((name,), known, reference.effects)
+        alone = reference.exercise.solution.graph.evaluate((name,), known, reference.effects)[name]
     except (CannotAssemble, Undefined):
         return True
-    return False
+    return distance < _LAST_BITS and bool(np.isfinite(alone))
 
 
 def _largest(right: Any) -> float:
@@ -138,10 +140,11 @@ def solved(reference: Reference, places: Sequence[Mapping[str, Any]]) -> dict[st
         for n, v in known[0].items()
         if n in exercise.quantity_names
     }
+    taken = exercise.intake.values(given)  # as every request is: angles reduced to one turn
     found = {}
     for name in reference.wanted:
         try:
-            value = exercise.solution.graph.evaluate((name,), given, reference.effects)[name]
+            value = exercise.solution.graph.evaluate((name,), taken, reference.effects)[name]
             found[name] = np.broadcast_to(np.asarray(value, dtype=float), (len(places),))
         except CourseworkError:
             found[name] = np.full(len(places), np.nan)
