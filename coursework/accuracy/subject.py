@@ -72,8 +72,8 @@ class Subject:
 
     @cached_property
     def wanted(self) -> tuple[str, ...]:
-        """All that is computed: what is asked, and what the loops find."""
-        return tuple(dict.fromkeys((*self.numbers, *self.unknowns)))
+        """All that is computed: what is asked, and what the loops find, with its rates."""
+        return tuple(dict.fromkeys((*self.numbers, *self.unknowns, *self.rate_of.values())))
 
     @cached_property
     def _terrain(self) -> Terrain:

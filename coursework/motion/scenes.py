@@ -245,7 +245,8 @@ class Scene(Showing):
         columns = {"t": t, **moved}
         columns |= {n: v for n, v in self._exercise_columns(posed, t.shape).items() if n != effort}
         units = {**self._units(columns), "speed": "rad/s", "acceleration": "rad/s^2"}
-        extra = self._extra_columns(angle, speed, acceleration)
+        # What starts from rest goes against friction and loads already: its way, at next to no speed.
+        extra = self._extra_columns(angle, np.where(speed == 0, 1e-150 * ways, speed), acceleration)
         extra |= (
             {"drive_torque": (np.array([motor.at(w) for w in speed]), "N*m")}
             if "drive_torque" in extra

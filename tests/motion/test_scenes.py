@@ -323,3 +323,15 @@ def test_what_joints_bear_at_rest_under_friction_is_left_empty(course):
     table = scene.in_time(0.0, 0.1, count=4)
     assert "stays" in " ".join(table.notes)
     assert np.isnan(table.columns["N_B"]).all()
+
+
+def test_a_start_from_rest_shows_the_forces_of_its_start(course):
+    """Row 0 bears its load and its friction, as the acceleration in it says."""
+    exercise = course["slider_crank_torque"]
+    given = {**exercise.variant(0).used, "omega2": 0.0, "alpha2": 0.0}
+    scene = Scene(exercise, given, ("load", "inertia", "friction"), ("reaction B",))
+    columns = scene.in_time(60.0, 0.02, count=200).columns
+    for name in ("R_B", "N_B", "T_B"):
+        size = np.abs(columns[name]).max()
+        assert abs(columns[name][0] - columns[name][1]) < 0.02 * size
+    assert abs(columns["T_B"][0]) > 1.0
