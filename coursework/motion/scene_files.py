@@ -2,7 +2,7 @@
 
 ::
 
-    exercise = "three_loop_shaper"
+    exercise = "my_shaper"
     seed = 7
     effects = ["load", "inertia", "friction"]
     show = ["drive_torque", "reaction D"]

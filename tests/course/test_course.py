@@ -18,7 +18,7 @@ from coursework.errors import (
     WrongUnit,
     WrongValue,
 )
-from coursework.motion.scenes import LEVELS
+from coursework.motion.effects import EFFECTS
 from coursework.rendering.renderer import renderer_of
 
 PACKAGE = Path(coursework.__file__).parent
@@ -73,7 +73,7 @@ def test_no_module_of_the_engine_names_an_exercise(course):
         if "_course" in path.parts or path == PACKAGE / "__init__.py":
             continue  # the course itself, and the docstring that shows one of its exercises
         text = path.read_text("utf-8")
-        for name in set(course.names) - set(LEVELS):  # a scene's effect may be called as an exercise is
+        for name in set(course.names) - set(EFFECTS):  # a scene's effect may be called as an exercise is
             assert not re.search(rf"""["']{name}["']""", text), f"{path.name} names {name}"
 
 
