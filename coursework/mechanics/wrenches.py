@@ -6,6 +6,7 @@ driver squared, and for one rad/s^2.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,17 +80,18 @@ def weight(stance: Stance, downwards: complex = -1j * GRAVITY) -> Wrench:
 
 def inertia_at_rate(stance: Stance) -> Wrench:
     """Inertia for a driver at a constant 1 rad/s."""
-    wrench = Wrench.none(stance)
-    for own in stance.linkage.masses:
-        held = Held(own.body, own.centre)
-        wrench.push(held, -own.mass * stance.bend(held)).turn(own.body, -own.inertia * stance.bends[own.body])
-    return wrench
+    return _inertia(stance, stance.bend, stance.bends)
 
 
 def inertia_at_start(stance: Stance) -> Wrench:
     """Inertia for a driver at rest that accelerates by 1 rad/s^2: its effort is the generalised inertia, kg m^2."""
+    return _inertia(stance, stance.rate, stance.rates)
+
+
+def _inertia(stance: Stance, motion: Callable[[Held], np.ndarray], turning: np.ndarray) -> Wrench:
+    """Against accelerations of places, and of the bodies' angles."""
     wrench = Wrench.none(stance)
     for own in stance.linkage.masses:
         held = Held(own.body, own.centre)
-        wrench.push(held, -own.mass * stance.rate(held)).turn(own.body, -own.inertia * stance.rates[own.body])
+        wrench.push(held, -own.mass * motion(held)).turn(own.body, -own.inertia * turning[own.body])
     return wrench
