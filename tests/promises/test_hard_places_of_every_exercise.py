@@ -35,7 +35,7 @@ def test_no_digit_is_lost_on_the_way_to_any_hard_place(name):
     assert not lost(name, most=4)
 
 
-@pytest.mark.parametrize("name", NUMERIC)
+@pytest.mark.parametrize("name", sampled(NUMERIC))
 def test_the_reference_closes_the_equations_that_are_stated_besides(name):
     """Loops, their derivatives and the residual, at a hundred digits, or in doubles where they take those alone."""
     exercise = COURSE[name]
