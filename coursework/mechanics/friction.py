@@ -164,7 +164,7 @@ class Rubbing:
                 normals = normals - np.linalg.solve(slope, lacking)
             except np.linalg.LinAlgError:
                 break
-        grown, _ = self._grown(free[None], spread[None], strength[None])
+        grown = self._grown(free[None], spread[None], strength[None])
         return (strength * self.magnitudes(grown))[0], grown[0]
 
     def balanced(self, free: np.ndarray, spread: np.ndarray, sense: np.ndarray) -> np.ndarray:
@@ -180,18 +180,15 @@ class Rubbing:
             Signs of the motions, ``(n, contacts)``.
         """
         strength = sense * self.sizes
-        normals, _ = self._grown(free, spread, strength)
-        return strength * self.magnitudes(normals)
+        return strength * self.magnitudes(self._grown(free, spread, strength))
 
-    def _grown(
-        self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """The normal forces as friction grows from nothing to its strength, NaN where it jams; and where it does not."""
-        normals, good = free, np.ones(len(free), dtype=bool)
+    def _grown(self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray) -> np.ndarray:
+        """The normal forces as friction grows from nothing to its strength, NaN where it jams."""
+        normals = free
         for step in range(1, _STEPS + 1):
             normals, good = self._settled(free, spread, strength * (step / _STEPS), normals)
             normals = np.where(good[:, None], normals, np.nan)
-        return normals, good
+        return normals
 
     def _settled(
         self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray, start: np.ndarray

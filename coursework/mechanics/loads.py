@@ -19,9 +19,8 @@ from coursework.mechanics.wrenches import Wrench
 STROKES = ("always", "working stroke", "return stroke", "forward", "backward")
 _EVEN = math.radians(0.05)  #: two strokes whose lengths differ by less are as long as each other
 
-By = Callable[
-    [str, np.ndarray], np.ndarray
-]  #: a position of the exercise at driver's angles, radians, in its unit
+#: A position of the exercise at driver's angles, radians, in its unit.
+By = Callable[[str, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)

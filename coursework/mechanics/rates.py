@@ -176,6 +176,16 @@ class Stance:
         """How a place moves, for one of the driver."""
         return self.origin_rates[held.body] + 1j * self.rates[held.body] * self.arm(held)
 
+    def acceleration(
+        self, held: Held, speed: np.ndarray | float, acceleration: np.ndarray | float
+    ) -> np.ndarray:
+        """Of a place, m/s^2, for the driver's speed and acceleration."""
+        return self.bend(held) * speed**2 + self.rate(held) * acceleration
+
+    def coriolis(self, slide: SlideJoint, speed: np.ndarray | float) -> np.ndarray:
+        """The Coriolis term of a slide's point, m/s^2, signed: to the left of the slide's direction."""
+        return 2 * self.rates[slide.on] * self.sliding(slide) * speed**2
+
     def sliding(self, slide: SlideJoint) -> np.ndarray:
         """How fast a slide goes along its direction, for one of the driver: signed."""
         under = self.place(slide.of) - self.origins[slide.on]

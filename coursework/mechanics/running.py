@@ -23,9 +23,8 @@ from coursework.mechanics.turn_table import TURN, TurnTable, Untabulated, tabula
 from coursework.mechanics.wrenches import Wrench, inertia_at_rate, inertia_at_start, weight
 
 MOST_PHASES = 20_000
-MOST_WORK = (
-    2_000_000  #: evaluations of the equation of motion, before a run is called endless: see ``Running.cost``
-)
+#: Evaluations of the equation of motion before a run is called endless: see ``Running.cost``.
+MOST_WORK = 2_000_000
 _FAR = 1e9  #: radians: beyond, an angle has not the digits to place a mechanism
 _SEARCH = 2048  #: places of the turn between which a pace may change its sign once
 _BEYOND = 1e-3  #: radians beyond a turning place, where paces have the signs that they keep
@@ -275,10 +274,9 @@ class Running:
         effort = float(efforts[2] + np.dot(sizes, efforts[3:first]))
         if not self.rows.contacts:
             return effort
-        normals = self.rows.borne(values)
-        free = np.array([0.0, 0.0, 1.0, *sizes]) @ normals[:first]
-        strength = signs[self.rows.loads :] * way * self.forces.rubbing.sizes
-        rubbed = float(efforts[first:] @ self.forces.rubbing.one(free, -normals[first:].T, strength, None)[0])
+        self._near = None
+        # At rest nothing accelerates, whatever is lacking: as with an inertia without end.
+        rubbed = self._rubbed(_Instant(angle, 0.0, way, 0.0, math.inf), values, sizes, signs)
         return effort + rubbed if math.isfinite(rubbed) else way * math.inf
 
     # ---------------------------------------------------------------------- places

@@ -90,17 +90,19 @@ class Added:
         for name in self.bodies:
             if name not in mechanism.names:
                 raise unknown("body", name, mechanism.names, "the mechanism")
-        slides = {slide.at: slide for slide in mechanism.slides}
+        known = [slide.at for slide in mechanism.slides]
         for name, length in self.lengths.items():
-            if name not in slides:
-                raise unknown("slide", name, slides, "the mechanism")
+            if name not in known:
+                raise unknown("slide", name, known, "the mechanism")
             if length < 0:
                 raise WrongValue(f"the length of slide {name} is not negative; found {length:g}")
-            slides[name] = dataclasses.replace(slides[name], length=length)
         return dataclasses.replace(
             mechanism,
             bodies=tuple(_weighed(body, self.bodies.get(body.name)) for body in mechanism.bodies),
-            slides=tuple(slides.values()),
+            slides=tuple(
+                dataclasses.replace(slide, length=self.lengths.get(slide.at, slide.length))
+                for slide in mechanism.slides
+            ),
             loads=(*mechanism.loads, *self.loads),
             friction={**mechanism.friction, **self.friction},
         )

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -68,10 +68,6 @@ class Scene(Showing):
     WrongValue
         An effect of which this mechanism has nothing.
     """
-
-    def without(self, effect: str) -> Scene:
-        """The same scene, less one effect; what it shows stays."""
-        return replace(self, effects=tuple(e for e in self.effects if e != effect))
 
     # ----------------------------------------------------------------------- cycle
 
@@ -188,10 +184,8 @@ class Scene(Showing):
 
     def _output_pace(self, angles: np.ndarray) -> np.ndarray:
         """Rate of the output per unit of the driver's speed: 0 at a dead centre."""
-        driver = self.driver
-        rest = {driver.acceleration: 0.0} if driver.acceleration else {}
-        given: dict[str, Any] = {**self._driven(np.degrees(angles)), driver.speed: 1.0, **rest}
-        return np.broadcast_to(self.exercise.solve(**given, only=driver.output)[driver.output], angles.shape)
+        output, given = self.driver.output, self._at_unit_speed(np.degrees(angles))
+        return np.broadcast_to(self.exercise.solve(**given, only=output)[output], angles.shape)
 
     def in_time(
         self, drive: Motor | float, duration: float, *, rtol: float = 1e-9, count: int = 500

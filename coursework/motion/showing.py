@@ -81,13 +81,17 @@ class Showing(Staged):
     @cached_property
     def _moved_by_solution(self) -> tuple[str, ...]:
         """The points that the solution's ``motion`` gives."""
+        return tuple(self._motion_of_solution(0.0))
+
+    def _motion_of_solution(self, angle: Any) -> Mapping[str, Moving]:
+        """The points that the solution's ``motion`` moves, at driver's angles, degrees; none without one."""
         solution = self.exercise.solution
         if solution.motion is None:
-            return ()
+            return {}
         graph = solution.graph.with_functions({"motion": solution.motion})
-        given = {**self._accepted, **self._driven(0.0), self.driver.angle: 0.0}
+        given = {**self._accepted, **self._driven(angle), self.driver.angle: angle}
         known = {n: v for n, v in given.items() if n in self.exercise.quantity_names | graph.leaves}
-        return tuple(graph.evaluate(("motion",), known, self._graph_effects)["motion"])
+        return graph.evaluate(("motion",), known, self._graph_effects)["motion"]
 
     def _of_what_the_solution_leaves_out(self) -> list[str]:
         """Velocities and accelerations of moving points, where the effect is called and no quantity tells it."""
@@ -206,12 +210,7 @@ class Showing(Staged):
 
     def _points_of_solution(self, angle: np.ndarray) -> shown.Columns:
         """The points that the solution itself moves: a mechanism in space states no bodies in a plane."""
-        solution = self.exercise.solution
-        assert solution.motion is not None  # without, there is nothing to show, and nothing is asked
-        graph = solution.graph.with_functions({"motion": solution.motion})
-        given = {**self._accepted, **self._driven(angle), self.driver.angle: angle}
-        known = {n: v for n, v in given.items() if n in self.exercise.quantity_names | graph.leaves}
-        points = graph.evaluate(("motion",), known, self._graph_effects)["motion"]
+        points = self._motion_of_solution(angle)
         found: shown.Columns = {}
         for kind, of in map(shown.what, self.extra):
             found |= shown.of_moving(kind, of, points[of])
@@ -244,11 +243,12 @@ class Showing(Staged):
         speed, acceleration = self._speed, self._acceleration
         with np.errstate(all="ignore"):
             velocity = stance.rate(held) * speed / MM
-            bent = (stance.bend(held) * speed**2 + stance.rate(held) * acceleration) / MM
+            bent = stance.acceleration(held, speed, acceleration) / MM
             if slide is None:
                 return Moving(place, velocity, bent)
-            turning = 2j * stance.rates[slide.on] * speed**2 / MM
-            return Moving(place, velocity, bent, turning * stance.sliding(slide) * stance.direction(slide))
+            return Moving(
+                place, velocity, bent, 1j * stance.coriolis(slide, speed) / MM * stance.direction(slide)
+            )
 
     # ------------------------------------------------------------------------ told
 

@@ -77,17 +77,14 @@ def of_point(kind: str, point: str, stance: Stance, speed: np.ndarray, accelerat
     """Two components and, of a rate, its length: mm, mm/s, mm/s^2, in the ground's frame."""
     if kind == "coriolis":
         (slide,) = (s for s in turning_slides(stance.linkage) if s.name.removesuffix(" slide") == point)
-        size = 2 * stance.rates[slide.on] * stance.sliding(slide) * speed**2 / MM
-        return {f"a_coriolis_{point}": (size, "mm/s^2")}
+        return {f"a_coriolis_{point}": (stance.coriolis(slide, speed) / MM, "mm/s^2")}
     held = stance.linkage.owner(point)
     if kind == "position":
         place = stance.place(held) / MM
         return {f"x_{point}": (place.real, "mm"), f"y_{point}": (place.imag, "mm")}
     if kind == "velocity":
         return _vector(f"v_{point}", stance.rate(held) * speed / MM, "mm/s")
-    return _vector(
-        f"a_{point}", (stance.bend(held) * speed**2 + stance.rate(held) * acceleration) / MM, "mm/s^2"
-    )
+    return _vector(f"a_{point}", stance.acceleration(held, speed, acceleration) / MM, "mm/s^2")
 
 
 def of_moving(kind: str, point: str, moving: Moving) -> Columns:

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
@@ -50,6 +50,10 @@ class Staged:
         if self._forces_called and not self._graph_effects:
             self.mechanism  # noqa: B018  # is refused here where there is none
 
+    def without(self, effect: str) -> Self:
+        """The same, less one effect; what it shows stays."""
+        return replace(self, effects=tuple(e for e in self.effects if e != effect))
+
     # -------------------------------------------------------------------- driver
 
     @property
@@ -84,6 +88,12 @@ class Staged:
         if self.exercise.spec.driver is None:
             return dict(self.given)
         return {**self.given, **self.exercise.posed(self._accepted, angle)}
+
+    def _at_unit_speed(self, angle: Any) -> dict[str, Any]:
+        """The same with the driver turning at a constant 1 rad/s: rates are then derivatives by its angle."""
+        driver = self.driver
+        rest = {driver.acceleration: 0.0} if driver.acceleration else {}
+        return {**self._driven(angle), driver.speed: 1.0, **rest}
 
     def _value(self, name: str) -> float:
         """A given value of the driver's; 0 where the exercise has none."""
@@ -208,12 +218,10 @@ class Staged:
 
     def _stated_rates(self, degrees: np.ndarray, order: int) -> np.ndarray | None:
         """First or second derivatives of the unknown angles by the driver's, as the solution's own rates give them."""
-        names, driver = self._rates_by_name[order - 1], self.driver
-        if names is None or not driver.speed:
+        names = self._rates_by_name[order - 1]
+        if names is None or not self.driver.speed:
             return None
-        rest = {driver.acceleration: 0.0} if driver.acceleration else {}
-        given: dict[str, Any] = {**self._driven(degrees), driver.speed: 1.0, **rest}
-        found = self.exercise.solve(**given, only=names) if names else {}
+        found = self.exercise.solve(**self._at_unit_speed(degrees), only=names) if names else {}
         return np.array([np.broadcast_to(found[n], degrees.shape) for n in names]).reshape(
             len(names), len(degrees)
         )
@@ -248,25 +256,31 @@ class Staged:
             self.added.gravity if "gravity" in called else 0j,
             INERTIA in called,
             self.flywheel if FLYWHEEL in called else 0.0,
-            tuple(Acting(linkage, self._followed(load), self._position) for load in loads),
+            tuple(self._acting(load) for load in loads),
             self.contacts,
         )
 
-    def _followed(self, load: Load) -> Load:
-        """A load with what it says of quantities: one that the driver moves is followed over the turn.
+    def _acting(self, load: Load) -> Acting:
+        """A load on the mechanism; a quantity of it that the driver moves is followed over the turn.
 
         Raises
         ------
         WrongValue
-            It goes by what the driver's speed changes: a rate is no place.
+            It goes by what the driver's speed changes, which is no place; or a function hides that it moves.
         """
+        for place in (load.force, load.moment, load.angle):
+            if callable(place) and self.moved.intersection(parameters(place)):
+                raise WrongValue(
+                    f"the load on {load.on} goes by a function of {', '.join(parameters(place))}, which the driver moves; make "
+                    "it a quantity of the solution, and name that"
+                )
         for name in (load.by, *(n for p in (load.force, load.moment, load.angle) for n in parameters(p))):
             if name in self._sped:
                 raise WrongValue(
                     f"the load on {load.on} goes by {name}, which changes with the driver's speed; a load goes by an angle, a "
                     "position, or against the motion"
                 )
-        return load
+        return Acting(self.linkage, load, self._position)
 
     @cached_property
     def _sped(self) -> frozenset[str]:
@@ -297,7 +311,7 @@ class Staged:
                 f"a flywheel is sized for a speed: {self.driver.speed or 'it'} is 0 or not given"
             )
         angles, speed = np.arange(_JUDGED) * (2 * np.pi / _JUDGED), np.full(_JUDGED, self._speed)
-        without = replace(self, effects=tuple(e for e in self.effects if e != FLYWHEEL), show=())
+        without = replace(self.without(FLYWHEEL), show=())
         return Evenness(without.forces.over(angles, speed, np.zeros(_JUDGED)).effort, self._speed)
 
     @cached_property

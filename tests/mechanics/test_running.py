@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 import coursework
 from coursework.errors import Undefined, WrongValue
-from coursework.mechanics.statement import Load
+from coursework.mechanics.statement import Body, Load, Mechanism, Slide
 from coursework.mechanics.turn_table import TURN, TurnTable
 from coursework.motion.added import Added, Flywheel, Motor, Weighed
 from coursework.motion.scenes import Scene
@@ -460,3 +460,16 @@ def test_a_load_follows_a_quantity_that_moves():
         Scene(
             COURSE["slider_crank"], given, ("load",), (), Added(loads=(Load("B", force="r1_dot"),))
         ).over_cycle(4)
+
+
+def test_a_function_that_the_driver_moves_is_not_frozen_in_a_load():
+    load = Load("B", force=lambda r1: 2 * r1)
+    scene = Scene(COURSE["slider_crank"], CRANK, ("load",), (), Added(loads=(load,)))
+    with pytest.raises(WrongValue, match="make it a quantity of the solution"):
+        scene.over_cycle(4)
+
+
+def test_two_slides_at_one_point_both_stay():
+    """A length that is given to a point is given to each of them."""
+    mechanism = Mechanism({"O": 0}, (Body("2", 0, "O"),), (Slide("O", "2"), Slide("O", "2", along=90.0)))
+    assert [slide.length for slide in Added(lengths={"O": 60.0}).to(mechanism).slides] == [60.0, 60.0]
