@@ -22,6 +22,7 @@ from coursework.language.words import languages, no_language
 from coursework.system.distribution import pip_install
 
 if TYPE_CHECKING:
+    from coursework.course.chapters import Chapter, Section
     from coursework.course.marking_rules import Rules
 
 UNTOLD = "fr"  #: the language of a course that states none, where nobody says another
@@ -91,7 +92,11 @@ class Folder:
     def _modules(self, kind: str) -> dict[str, Path]:
         """The modules of ``exercises`` or ``solutions`` by name; shared ones, whose names begin with an underscore, are none."""
         top = self.root / kind
-        topics = [p for p in sorted(top.glob("*/")) if p.is_dir() and not (p / "__init__.py").exists()]
+        topics = [
+            p
+            for p in sorted(top.glob("*/"))
+            if p.is_dir() and not (p / "__init__.py").exists() and p != self.lesson_place
+        ]
         found: dict[str, Path] = {}
         for folder in (top, *topics):
             files = [
@@ -220,7 +225,7 @@ class Folder:
     @property
     def study_order(self) -> tuple[str, ...]:
         """The exercises in the order in which they are proposed to who studies alone: those that the course states (``[study]``,
-        ``order``), then the others.
+        ``order``), then those of its chapters, then the others.
 
         Raises
         ------
@@ -232,7 +237,48 @@ class Folder:
             raise BadCourse(
                 f'{self._settings_file}: [study]: order = ["…"] names exercises of the course; found {told!r}'
             )
-        return tuple(dict.fromkeys([*map(str, told), *self.names]))
+        return tuple(dict.fromkeys([*map(str, told), *self.in_order]))
+
+    # ------------------------------------------------------------------- order
+
+    @property
+    def lessons(self) -> tuple[str, ...]:
+        """Names of the lessons, ``exercises/lessons/NAME.LANG.md``: those of the chapters in their order, then the others."""
+        return tuple(dict.fromkeys([*(n for c in self.chapters for n in c.lessons), *self._lessons]))
+
+    @property
+    def _lessons(self) -> list[str]:
+        return sorted({p.name.split(".")[0] for p in self.lesson_place.glob("*.*.md")})
+
+    @property
+    def lesson_place(self) -> Path:
+        """The folder of the lessons' texts, whether it is there or not."""
+        return self.root / "exercises" / "lessons"
+
+    @cached_property
+    def chapters(self) -> tuple[Chapter, ...]:
+        """The chapters that the course states (``[[chapters]]``); none where it states none.
+
+        Raises
+        ------
+        BadCourse
+            They are of another form, name what there is not, or place something before what it needs.
+        """
+        stated = self.settings.get("chapters", [])
+        if not stated:
+            return ()
+        from coursework.course.chapters import chapters
+
+        return chapters(stated, self.names, self._lessons, self.relative(self._settings_file))
+
+    @property
+    def in_order(self) -> tuple[str, ...]:
+        """The exercises in the order of the chapters, then the others in that of the alphabet."""
+        return tuple(dict.fromkeys([*(n for c in self.chapters for n in c.exercises), *self.names]))
+
+    def section_of(self, exercise: str) -> Section | None:
+        """The section of the chapters that an exercise belongs to."""
+        return next((s for c in self.chapters for s in c.sections if exercise in s.exercises), None)
 
     @property
     def install(self) -> str:
