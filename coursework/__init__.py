@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from coursework.system.distribution import VERSION
 
 if TYPE_CHECKING:
-    from coursework.api import Variant, open_course, show_motion, study
+    from coursework.api import Variant, mistakes, open_course, show_motion, study, worked
     from coursework.course.course import Course
     from coursework.errors import CannotAssemble, CourseworkError, NoSolution, Undefined, UnknownName
     from coursework.selfstudy.lessons import compare, plot
@@ -29,10 +29,12 @@ __all__ = [
     "UnknownName",
     "Variant",
     "compare",
+    "mistakes",
     "open_course",
     "plot",
     "show_motion",
     "study",
+    "worked",
 ]
 
 
@@ -40,10 +42,12 @@ _HOMES = {
     "Course": "course.course",
     "Variant": "api",
     "compare": "selfstudy.lessons",
+    "mistakes": "api",
     "open_course": "api",
     "plot": "selfstudy.lessons",
     "show_motion": "api",
     "study": "api",
+    "worked": "api",
 }
 
 

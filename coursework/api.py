@@ -14,8 +14,10 @@ if TYPE_CHECKING:
     from datetime import datetime
 
     from coursework.marking.mark import Marking
+    from coursework.markup.shown import Shown
     from coursework.rendering.displayed import DisplayedAnimation, DisplayedConstruction
     from coursework.selfstudy.session import StudySession
+    from coursework.selfstudy.worked import Worked
     from coursework.sheets.sheet import AnswerSheet, Handout, StudySheet
 
 
@@ -77,6 +79,81 @@ def study(
     return open_session(
         chosen, exercise, seed=seed, lang=lang, named=course, version=version, folder=folder, **told
     )
+
+
+def worked(
+    exercise: str,
+    *,
+    seed: int = 0,
+    lang: str | None = None,
+    level: int = 0,
+    parts: Sequence[str] = (),
+    course: str | Path | None = None,
+) -> Worked:
+    """A variant of an exercise as a worked example, as a notebook's cell shows it.
+
+    Parameters
+    ----------
+    exercise
+        Its name.
+    seed
+        Which variant.
+    lang
+        Language of all that is said; the course's own unless told.
+    level
+        0 tells the whole solution; 1, 2 and 3 leave the last question, a third and two thirds of them blank; 4 tells nothing but what
+        is asked. What is left is marked by ``check``.
+    parts
+        The ids of the questions that it is about; all unless told.
+    course
+        As for :func:`study`.
+
+    Raises
+    ------
+    UnknownName
+        No such exercise, language or part.
+    WrongValue
+        No such level.
+    NoSolution
+        The course folder has no solutions.
+    """
+    from coursework.selfstudy.worked import worked as example
+
+    chosen = _course_of(course, lang)
+    return example(chosen, exercise, seed, lang or chosen.folder.language, level, parts)
+
+
+def mistakes(
+    exercise: str, *names: str, seed: int = 0, lang: str | None = None, course: str | Path | None = None
+) -> Shown:
+    """What an exercise tells students who make its named mistakes, as a notebook's cell shows it.
+
+    Parameters
+    ----------
+    exercise
+        Its name.
+    names
+        Of the mistakes, as its solution names them.
+    seed
+        The variant whose numbers stand in the sentences.
+    lang, course
+        As for :func:`worked`.
+
+    Raises
+    ------
+    UnknownName
+        No such exercise, language or mistake.
+    """
+    from coursework.selfstudy.worked import mistakes as told
+
+    chosen = _course_of(course, lang)
+    return told(chosen, exercise, names, lang or chosen.folder.language, seed)
+
+
+def _course_of(course: str | Path | None, lang: str | None) -> Course[Variant]:
+    from coursework.selfstudy.session import course_folder
+
+    return open_course(course_folder(course, lang or UNTOLD))
 
 
 class Variant(numbers.Variant):

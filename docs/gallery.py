@@ -16,8 +16,10 @@ from pathlib import Path
 
 import coursework
 from coursework.api import Variant
+from coursework.course.chapters import Chapter
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
+from coursework.course.lessons import lesson_title
 from coursework.language.numbers import plain, with_unit
 from coursework.markup.markdown import html_inline, to_html
 from coursework.markup.mathml import to_mathml
@@ -35,7 +37,7 @@ LANGUAGE_NAMES = {"en": "English", "fr": "Français"}
 def pages(course: Course) -> Iterator[tuple[str, bytes]]:
     """Every file of the gallery: its name, its content."""
     yield "index.md", index(course).encode()
-    for name in course.names:
+    for name in course.folder.in_order:
         exercise = course[name]
         for lang in exercise.languages:
             sheet = renderer_of(course.folder).typst(exercise.variant(SEED, lang).handout())
@@ -79,24 +81,35 @@ def first_page(typst_source: str) -> bytes:
 
 
 def index(course: Course) -> str:
-    """All exercises at a glance, each a link to its page."""
-    cards = "\n".join(_card(course[name]) for name in course.names)
-    listed = "\n".join(course.names)
+    """All exercises at a glance, chapter by chapter in the order in which they are learnt, each a link to its page."""
+    listed = "\n".join(course.folder.in_order)
+    chapters = "\n".join(_chapter(course, chapter) for chapter in course.folder.chapters)
     return f"""# Gallery
 
-The {len(course.names)} exercises of the built-in course, each as variant {SEED} draws it. This page is made from the
-course at every build.
+The {len(course.names)} exercises of the built-in course, in the order in which they are learnt, each as variant {SEED} draws
+it. This page is made from the course at every build.
 
-```{{raw}} html
-<div class="gallery">
-{cards}
-</div>
-```
+{chapters}
 
 ```{{toctree}}
 :hidden:
 
 {listed}
+```
+"""
+
+
+def _chapter(course: Course, chapter: Chapter) -> str:
+    """A chapter's heading, its lessons, and a card an exercise."""
+    cards = "\n".join(_card(course[name]) for name in chapter.exercises)
+    lessons = ", ".join(f"*{lesson_title(course.folder, name, 'en')}*" for name in chapter.lessons)
+    said = f"Lessons: {lessons}.\n\n" if lessons else ""
+    return f"""## {chapter.number}. {chapter.title("en")}
+
+{said}```{{raw}} html
+<div class="gallery">
+{cards}
+</div>
 ```
 """
 

@@ -31,16 +31,21 @@ from coursework.errors import BadInput, MissingQuantity, WrongValue
 @json_option
 @click.pass_context
 def list_exercises(context: click.Context, as_json: bool) -> int:
-    """Say which exercises the course has; status 1 when one of them is broken."""
+    """Say which exercises the course has, in the order in which they are learnt; status 1 when one of them is broken."""
     from coursework.course.folder import course_folder
     from coursework.course.listing import listing
 
     folder = course_folder(context.obj)
     rows, faults = listing(folder, lambda name: _listed(opened(context)[name]))
+    rows = [{**row, **_place(folder, row["exercise"])} for row in rows]
     if as_json:
         print_json(rows)
     else:
-        print_table([{**r, "title": "\n".join(r["title"].values())} for r in rows])
+        for chapter in (*folder.chapters, None):
+            own = [r for r in rows if r["chapter"] == (chapter and chapter.number)]
+            print_table(
+                [_row(r) for r in own], f"{chapter.number}. {_titled(folder, chapter)}" if chapter else ""
+            )
         if not folder.names:
             click.echo("This course has no exercise yet.")
     for name, told in faults.items():
@@ -57,6 +62,27 @@ def _listed(exercise: Any) -> dict[str, Any]:
         "parts": sum(not part.by_request for part in exercise.spec.parts),
         "by_request": sum(part.by_request for part in exercise.spec.parts),
     }
+
+
+def _place(folder: Any, exercise: str) -> dict[str, Any]:
+    """Where an exercise stands in the chapters: nothing of one that stands in none."""
+    chapter = next((c for c in folder.chapters if exercise in c.exercises), None)
+    section = folder.section_of(exercise)
+    return {
+        "chapter": chapter and chapter.number,
+        "lesson": section.lesson if section else "",
+        "needs": list(section.needed(exercise)) if section else [],
+    }
+
+
+def _row(listed: dict[str, Any]) -> dict[str, Any]:
+    """A row of the table: the chapter stands above it, and the lesson is the first thing needed."""
+    told = {k: v for k, v in listed.items() if k not in ("chapter", "lesson")}
+    return {**told, "title": "\n".join(listed["title"].values()), "needs": "\n".join(listed["needs"])}
+
+
+def _titled(folder: Any, chapter: Any) -> str:
+    return " / ".join(chapter.title(lang) for lang in folder.languages)
 
 
 @click.command()

@@ -50,22 +50,22 @@ def lesson(
     context: click.Context, lessons: Sequence[str], lang: str, out: Path | None, overwrite: bool
 ) -> None:
     """Write the course's lessons as notebooks; without --out, list them."""
-    from coursework.making.lessons import lesson as lesson_notebook
-    from coursework.making.lessons import lessons as lesson_names
+    from coursework.course.lessons import lesson_file
     from coursework.system.writing import write_whole
+    from coursework.workbook.notebooks import lesson_notebook, notebook_name
 
     course = opened(context)
-    books = {
-        name: lesson_notebook(course.folder, name, lang) for name in lessons or lesson_names(course.folder)
-    }
+    asked = lessons or course.folder.lessons
+    for name in asked:
+        lesson_file(course.folder, name, lang)
     if out is None:
-        for name in books:
+        for name in asked:
             click.echo(name)
         return
-    paths = [out / f"{name}.{lang}.ipynb" for name in books]
-    _spare(paths, overwrite)
-    for path, book in zip(paths, books.values(), strict=True):
-        write_whole(path, book.encode("utf-8"))
+    paths = {name: out / notebook_name(name, lang) for name in asked}
+    _spare(list(paths.values()), overwrite)
+    for name, path in paths.items():
+        write_whole(path, lesson_notebook(course, name, lang).encode("utf-8"))
         click.echo(str(path))
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import importlib
 import itertools
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from pathlib import Path
 from types import ModuleType
@@ -357,8 +357,23 @@ class Folder:
             The file cannot be imported; the message names the file, the line and the fault.
         """
         home = self.home(kind, name)
-        source = self.source(kind, name)
         steps = (kind, name) if home is None else home.relative_to(self.root).with_suffix("").parts
+        return self._imported(steps, self.source(kind, name))
+
+    def lesson_module(self, name: str) -> ModuleType:
+        """Import the module that draws a lesson's figures, ``exercises/lessons/NAME.py``.
+
+        Raises
+        ------
+        BadCourse
+            There is none, or it cannot be imported.
+        """
+        path = self.lesson_place / f"{name}.py"
+        if not path.exists():
+            raise BadCourse(f"the lesson {name} draws no figures: there is no {self.relative(path)}")
+        return self._imported(path.relative_to(self.root).with_suffix("").parts, self.relative(path))
+
+    def _imported(self, steps: Sequence[str], source: str) -> ModuleType:
         dotted = ".".join((self._package, *steps)).removesuffix(".__init__")
         try:
             return importlib.import_module(dotted)

@@ -40,11 +40,11 @@ class _Kept(NamedTuple):
 
 
 def listing(folder: Folder, describe: Callable[[str], dict[str, Any]]) -> Listing:
-    """What ``describe`` says of each exercise by its name, in alphabetical order; it is asked where nothing was kept."""
+    """What ``describe`` says of each exercise by its name, in the order in which they are learnt; it is asked where nothing was kept."""
     begun = time.time_ns()
     known = _known(folder)
     said, faults = {}, {}
-    for name in folder.names:
+    for name in folder.in_order:
         try:
             said[name] = known.said[name] if name in known.said else describe(name)
         except CourseworkError as fault:

@@ -8,10 +8,10 @@ from typing import Any
 from coursework.course.builtin import builtin_root
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
+from coursework.course.lessons import taught_by
 from coursework.errors import BadCourse, Starved, nearest
 from coursework.making.issued import Issued
 from coursework.making.issuing import distinct_variants
-from coursework.making.lessons import taught_by
 from coursework.sheets.handout import handout
 from coursework.sheets.sheet import Lesson, Practice, Question
 

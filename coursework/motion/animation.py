@@ -14,14 +14,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from coursework.course.variant import Variant
 from coursework.errors import WrongValue, unknown
 from coursework.figures.moving import Arrow, Drawing, Key, Spot, drawing, extent
+from coursework.figures.moving_svg import moving_svg, still_svg
 from coursework.language.numbers import unit_text
 from coursework.language.words import words
 from coursework.markup.shown import Picture
@@ -179,33 +179,23 @@ class Animation(Reel):
 
     def svg(self) -> str:
         """The moving figure as SVG with no script; it stands still for who wants no motion."""
-        shown = self.drawing(self.effects)
-        width, height = (f"{x:.6g}" for x in shown.size)
-        times = self._key_times()
-        lines = []
-        for track in shown.tracks:
-            if not track.moves:
-                lines.append(track.svg(self.first))
-                continue
-            lines.append(track.svg(self.first, ' class="coursework-still"'))
-            lines.append(
-                track.svg(
-                    self.first,
-                    ' class="coursework-moving"',
-                    _animate(track, self.order, times, self.seconds),
-                )
-            )
-        return "\n".join([
-            f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
-            f'viewBox="0 0 {width} {height}" role="img" lang="{self.variant.lang}">',
-            f"<title>{escape(self.title)}</title>",
-            f"<desc>{escape(self.words)}</desc>",
-            "<style>.coursework-still{display:none}@media (prefers-reduced-motion:reduce)"
-            "{.coursework-still{display:inline}.coursework-moving{display:none}}</style>",
-            f'<rect width="{width}" height="{height}" fill="#fff"/>',
-            '<g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">', *lines, "</g>",
-            "</svg>\n",
-        ])  # fmt: skip
+        return moving_svg(
+            self.drawing(self.effects),
+            order=self.order,
+            first=self.first,
+            seconds=self.seconds,
+            times=self._key_times(),
+            title=self.title,
+            words=self.words,
+            lang=self.variant.lang,
+        )
+
+    def stills(self, count: int) -> tuple[str, ...]:
+        """So many instants of the cycle as SVG, evenly spread, the statement's first."""
+        shown, instants = self.drawing(self.effects), len(self.angles)
+        turned = [(self.first + round(k * instants / count)) % instants for k in range(count)]
+        said = {"title": self.title, "words": self.words, "lang": self.variant.lang}
+        return tuple(still_svg(shown, instant, **said) for instant in turned)
 
     def _key_times(self) -> str:
         """The same for SVG; nothing when they are evenly spread."""
@@ -215,15 +205,6 @@ class Animation(Reel):
 
     def _repr_html_(self) -> str:
         return Picture(self.svg(), self.words).html
-
-
-def _animate(track: Any, order: Sequence[int], times: str, seconds: float) -> str:
-    values = ";".join(track.value(k) for k in order)
-    timing = f' keyTimes="{times}"' if times else ""
-    loop = f'dur="{seconds:g}s" repeatCount="indefinite"{timing} values="{values}"'
-    if track.mark:
-        return f'<animateTransform attributeName="transform" type="translate" {loop}/>'
-    return f'<animate attributeName="d" {loop}/>'
 
 
 def _round_below(value: float) -> float:

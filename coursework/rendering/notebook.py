@@ -119,15 +119,27 @@ def _cells(text: str, identity: str) -> Iterator[dict[str, Any]]:
         yield _cell(f"{identity} {number}", *piece)
 
 
-def lesson(folders: Sequence[Path], name: str, text: str, lang: str, install: str) -> str:
+def lesson(
+    folders: Sequence[Path],
+    name: str,
+    text: str,
+    lang: str,
+    install: str,
+    pictures: Mapping[str, Mapping[str, str]],
+) -> str:
     """The notebook of a lesson: its Markdown as it is, its fences as code cells; before the first that imports the package, one that
-    says how to install it where it is missing."""
+    says how to install it where it is missing. ``pictures``, by name and type in base64, are attached to the cells that show them."""
     env = _environment(tuple(folders), lang)
     names = {"words": words(lang), "package": DISTRIBUTION, "install": install}
     guard = f"```python\n{render(env, '_import.md.j2', names)}\n```\n"
     first = next((f.start() for f in _FENCE.finditer(text) if "import coursework" in f[2]), None)
     whole = text if first is None else f"{text[:first]}{guard}\n{text[first:]}"
-    return _json(list(_cells(whole, f"{name} {lang}")), {"lesson": name, "lang": lang})
+    cells = list(_cells(whole, f"{name} {lang}"))
+    for cell in cells:
+        shown = {n: dict(p) for n, p in pictures.items() if f"(attachment:{n})" in "".join(cell["source"])}
+        if shown:
+            cell["attachments"] = shown
+    return _json(cells, {"lesson": name, "lang": lang})
 
 
 def _json(cells: list[dict[str, object]], about: dict[str, object]) -> str:

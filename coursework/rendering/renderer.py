@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -178,11 +178,14 @@ class Renderer:
 
         return notebook.study(self.template_folders, sheet)
 
-    def lesson(self, name: str, text: str, lang: str, install: str) -> str:
-        """A lesson's Markdown as a notebook (JSON, nbformat 4.5); ``install`` is the command that installs what it runs."""
+    def lesson(
+        self, name: str, text: str, lang: str, install: str, pictures: Mapping[str, Mapping[str, str]]
+    ) -> str:
+        """A lesson's Markdown as a notebook (JSON, nbformat 4.5); ``install`` is the command that installs what it runs,
+        ``pictures`` are attached to the cells that show them."""
         from coursework.rendering import notebook
 
-        return notebook.lesson(self.template_folders, name, text, lang, install)
+        return notebook.lesson(self.template_folders, name, text, lang, install, pictures)
 
     def report_html(self, report: Report) -> str:
         """A report as one web page that fetches nothing and runs no script."""

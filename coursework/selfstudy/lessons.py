@@ -20,12 +20,18 @@ _NEAR_ANGLE = 10.0  #: degrees
 _NEAR_ZERO = 0.02  #: where a tenth would be nothing
 
 
+class Compared(Shown):
+    """Predictions beside what came out; ``outcome`` is what came out alone, for who reads it on paper."""
+
+    outcome = ""
+
+
 def compare(
     predicted: Mapping[str, Any],
     found: Mapping[str, Any],
     lang: str = "fr",
     angles: Collection[str] = (),
-) -> Shown:
+) -> Compared:
     """Predictions beside what came out, as a notebook's cell shows them.
 
     Numbers agree within a tenth, angles within 10°, whole turns apart or not; texts and truths when they are the
@@ -57,7 +63,11 @@ def compare(
         if name not in found and not is_blank(guess):
             line = said["refused"]["lesson_name"].format(name=name, said=_told(guess, lang))
             lines.append(f"- ? {line} {would_do(lang, str(name), list(found))}")
-    return Shown(lang, "\n".join(lines))
+    shown = Compared(lang, "\n".join(lines))
+    shown.outcome = "\n".join(
+        f"- {name}{words(lang)['sheet']['colon']} {_told(value, lang)}" for name, value in found.items()
+    )
+    return shown
 
 
 def _agree(guess: Any, value: Any, is_angle: bool) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from coursework.course.builtin import builtin_root
+from coursework.course.lessons import taught_by
 from coursework.errors import Starved
 from coursework.making.issuing import distinct_variants
 from coursework.selfstudy import predictions
@@ -38,6 +39,7 @@ def study_sheet(variant: Variant, student: str = "") -> StudySheet:
         questions=_fresh_questions(variant),
         theory=theory(exercise),
         has_example=has_example(variant),
+        lessons=taught_by(exercise.folder, exercise.name, variant.lang),
     )
 
 

@@ -12,6 +12,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from coursework.course.lessons import Lesson as Lesson
+
 if TYPE_CHECKING:
     from coursework.figures import Figure, Picture
     from coursework.polygons.construction import Construction
@@ -142,15 +144,6 @@ class FeedbackLine:
 
 
 @dataclass(frozen=True)
-class Lesson:
-    """A lesson of the course that teaches what an exercise asks."""
-
-    name: str
-    title: str
-    sections: tuple[str, ...] = ()  #: their headings; none when the whole lesson does
-
-
-@dataclass(frozen=True)
 class Practice:
     """What to try after an exercise in which points were lost."""
 
@@ -201,3 +194,4 @@ class StudySheet:
     questions: tuple[Question, ...]  #: of the first fresh variant; none where there is no other variant
     theory: frozenset[str] = frozenset()  #: ids of questions that no other variant asks anew
     has_example: bool = False  #: whether the solution of another variant can be shown with blanks
+    lessons: tuple[Lesson, ...] = ()  #: that teach it

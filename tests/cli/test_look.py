@@ -12,9 +12,23 @@ import pytest
 def test_list_names_every_exercise(cli, course):
     status, out, _ = cli("list", "--json")
     assert status == 0
-    assert [e["exercise"] for e in json.loads(out)] == list(course.names)
+    assert [e["exercise"] for e in json.loads(out)] == list(course.folder.in_order)
     status, out, _ = cli("list")
     assert all(name in out for name in course.names)
+
+
+def test_list_follows_the_chapters_and_says_what_is_needed_first(cli, course):
+    rows = json.loads(cli("list", "--json")[1])
+    assert [r["chapter"] for r in rows] == sorted(r["chapter"] for r in rows)
+    assert "mobility" in next(r["needs"] for r in rows if r["exercise"] == "assour")
+    out = cli("list")[1]
+    places = [
+        out.index(f"{chapter.number}. {chapter.title('fr')}")
+        for chapter in course.folder.chapters
+        if chapter.exercises
+    ]
+    assert places == sorted(places)
+    assert out.index("vocabulary") < out.index("ball_reducer") < out.index("complex_chain")
 
 
 def test_show_prints_a_statement_in_either_language(cli):

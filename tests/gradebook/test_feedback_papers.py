@@ -15,6 +15,7 @@ from small_assignment import issue, write
 
 import coursework
 from coursework.cli import run
+from coursework.course.lessons import taught_by
 from coursework.errors import BadCourse, BadInput
 from coursework.gradebook.class_marking import marked
 from coursework.gradebook.feedback_form import Form, shows_solutions
@@ -27,7 +28,6 @@ from coursework.language.words import words
 from coursework.making import practice as practice_module
 from coursework.making.issued import Issued
 from coursework.making.issuing import distinct_variants
-from coursework.making.lessons import taught_by
 from coursework.making.practice import PracticeOf, unissued_seed
 from coursework.making.protection import worthy
 from coursework.marking.marking import mark

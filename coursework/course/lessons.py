@@ -1,30 +1,38 @@
-"""Lessons of a course: texts that become notebooks."""
+"""The lessons of a course, as its files name them: titles, headings, and which of them teach an exercise.
+
+A lesson is ``exercises/lessons/NAME.LANG.md``, Markdown whose first heading is its title, and whose numbered headings,
+``## 8. …``, are its sections.
+"""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from coursework.course.folder import Folder
 from coursework.errors import BadCourse, nearest, unknown
-from coursework.rendering.renderer import renderer_of
-from coursework.sheets.sheet import Lesson
+
+_FORM = 'NAME = { lesson = "mechanisms", sections = [1, 2] }'
+_SOURCE = "exercises/course.toml: [lessons]"
+_TITLE = re.compile(r"^# +(.+?) *$", re.MULTILINE)
+_SECTION = re.compile(r"^## +((\d+)\..*?) *$", re.MULTILINE)
 
 
-def lessons(folder: Folder) -> tuple[str, ...]:
-    """Names of the lessons, ``exercises/lessons/NAME.LANG.md``, in alphabetical order."""
-    return tuple(sorted({p.name.split(".")[0] for p in _place(folder).glob("*.*.md")}))
+@dataclass(frozen=True)
+class Lesson:
+    """A lesson of the course that teaches what an exercise asks."""
+
+    name: str
+    title: str
+    sections: tuple[str, ...] = ()  #: their headings; none when the whole lesson does
 
 
-def _place(folder: Folder) -> Path:
-    return folder.root / "exercises" / "lessons"
-
-
-def lesson(folder: Folder, name: str, lang: str) -> str:
-    """A lesson as a notebook (JSON).
+def lesson_file(folder: Folder, name: str, lang: str) -> Path:
+    """The text of a lesson in a language.
 
     Raises
     ------
@@ -33,27 +41,32 @@ def lesson(folder: Folder, name: str, lang: str) -> str:
     BadCourse
         The lesson is not written in this language.
     """
-    known = lessons(folder)
-    if name not in known:
-        raise unknown("lesson", name, known, folder.label)
-    path = _place(folder) / f"{name}.{lang}.md"
+    if name not in folder.lessons:
+        raise unknown("lesson", name, folder.lessons, folder.label)
+    path = folder.lesson_place / f"{name}.{lang}.md"
     if not path.exists():
         raise BadCourse(f"the lesson {name} has no text in {lang!r}: {path.name} is missing")
-    return renderer_of(folder).lesson(name, path.read_text("utf-8"), lang, folder.install)
+    return path
 
 
-# ------------------------------------------------------------------ what teaches
+def lesson_title(folder: Folder, name: str, lang: str) -> str:
+    """The title of a lesson; its name where it has none."""
+    path = lesson_file(folder, name, lang)
+    return _headings(path, path.stat().st_mtime_ns)[0]
 
-_FORM = 'NAME = { lesson = "mechanisms", sections = [1, 2] }'
-_TITLE = re.compile(r"^# +(.+?) *$", re.MULTILINE)
-_SECTION = re.compile(r"^## +((\d+)\..*?) *$", re.MULTILINE)
+
+def lesson_sections(folder: Folder, name: str, lang: str) -> Mapping[int, str]:
+    """The headings of a lesson's numbered sections, by number."""
+    path = lesson_file(folder, name, lang)
+    return _headings(path, path.stat().st_mtime_ns)[1]
 
 
 def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
-    """The lessons that teach an exercise, in a language: those that ``[lessons]`` of ``course.toml`` names for it.
+    """The lessons that teach an exercise, in a language: that of its section of the chapters, then those that ``[lessons]`` of
+    ``course.toml`` names for it.
 
     ``coriolis = { lesson = "mechanisms", sections = [8] }``, or a list of these; a bare ``"mechanisms"`` is a whole
-    lesson. Sections are told by the numbers of their headings, ``## 8. …``. A lesson that is not written in the
+    lesson. Sections are told by the numbers of their headings. A lesson that is not written in the
     language is left out.
 
     Raises
@@ -68,22 +81,28 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
     for name in stated:
         if name not in known:
             raise BadCourse(f"{_SOURCE} names no exercise {name!r}{nearest(name, known)}")
-    return tuple(_taught(folder, exercise, stated.get(exercise, []), lang))
+    section = folder.section_of(exercise)
+    own = stated.get(exercise, [])
+    listed = own if isinstance(own, list) else [own]
+    placed = [section.lesson] if section and section.lesson else []
+    if any(_named(one) in placed for one in listed):
+        placed = []  # it says which sections
+    return tuple(_taught(folder, exercise, [*placed, *listed], lang))
 
 
-_SOURCE = "exercises/course.toml: [lessons]"
+def _named(stated: Any) -> Any:
+    return stated.get("lesson") if isinstance(stated, Mapping) else stated
 
 
-def _taught(folder: Folder, exercise: str, stated: Any, lang: str) -> Iterator[Lesson]:
-    known = lessons(folder)
-    for one in stated if isinstance(stated, list) else [stated]:
+def _taught(folder: Folder, exercise: str, stated: list[Any], lang: str) -> Iterator[Lesson]:
+    for one in stated:
         table = {"lesson": one} if isinstance(one, str) else one
         if not isinstance(table, Mapping) or not {"lesson"} <= set(table) <= {"lesson", "sections"}:
             raise BadCourse(f"{_SOURCE}: {exercise}: write {_FORM}; found {one!r}")
         name = table["lesson"]
-        if name not in known:
-            raise BadCourse(f"{_SOURCE}: {exercise}: no lesson {name!r}{nearest(str(name), known)}")
-        path = _place(folder) / f"{name}.{lang}.md"
+        if name not in folder.lessons:
+            raise BadCourse(f"{_SOURCE}: {exercise}: no lesson {name!r}{nearest(str(name), folder.lessons)}")
+        path = folder.lesson_place / f"{name}.{lang}.md"
         if path.exists():
             title, headings = _headings(path, path.stat().st_mtime_ns)
             yield Lesson(name, title, _sections(exercise, name, table.get("sections", []), headings))

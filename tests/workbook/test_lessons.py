@@ -13,9 +13,9 @@ import coursework
 from coursework.cli import run
 from coursework.errors import BadCourse, UnknownName
 from coursework.language.words import languages
-from coursework.making.lessons import lesson, lessons
+from coursework.workbook.notebooks import lesson_notebook
 
-LESSONS = lessons(coursework.open_course().folder)
+LESSONS = coursework.open_course().folder.lessons
 
 
 @cache
@@ -23,7 +23,7 @@ def printed_by(course, name, lang):
     """What a lesson prints as it runs from top to bottom, run once."""
     from nbclient import NotebookClient
 
-    book = nbformat.reads(lesson(course.folder, name, lang), as_version=4)
+    book = nbformat.reads(lesson_notebook(course, name, lang), as_version=4)
     NotebookClient(book, timeout=120, kernel_name="python3").execute()
     return [o for cell in book.cells for o in cell.get("outputs", ()) if o.output_type == "stream"]
 
@@ -53,7 +53,7 @@ def test_a_lesson_computes_the_same_in_every_language(course, name):
         tree = ast.parse(source)
         return [type(node).__name__ for node in ast.walk(tree) if not isinstance(node, ast.JoinedStr)]
 
-    books = [json.loads(lesson(course.folder, name, lang)) for lang in languages()]
+    books = [json.loads(lesson_notebook(course, name, lang)) for lang in languages()]
     codes = [[shape("".join(c["source"])) for c in b["cells"] if c["cell_type"] == "code"] for b in books]
     assert all(code == codes[0] for code in codes)
 
@@ -67,11 +67,11 @@ def test_lessons_are_listed_and_written(tmp_path, capsys):
 
 def test_a_lesson_that_is_not_there_is_told(course, small_course):
     with pytest.raises(UnknownName, match="lesson"):
-        lesson(course.folder, "accurracy", "fr")
+        lesson_notebook(course, "accurracy", "fr")
     folder = small_course / "exercises" / "lessons"
     folder.mkdir()
     (folder / "rods.fr.md").write_text("# Bielles\n", "utf-8")
     own = coursework.open_course(small_course)
-    assert lessons(own.folder) == ("rods",)
+    assert own.folder.lessons == ("rods",)
     with pytest.raises(BadCourse, match="'en'"):
-        lesson(own.folder, "rods", "en")
+        lesson_notebook(own, "rods", "en")

@@ -1,0 +1,79 @@
+"""What moves as SVG: moving by itself, with no script, or standing still at an instant."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from html import escape
+
+from coursework.figures.moving import Drawing, Track
+
+
+def moving_svg(
+    shown: Drawing,
+    *,
+    order: Sequence[int],
+    first: int,
+    seconds: float,
+    title: str,
+    words: str,
+    lang: str,
+    times: str = "",
+) -> str:
+    """The drawing in motion; it stands still for who wants no motion.
+
+    Parameters
+    ----------
+    shown
+        The drawing at every instant.
+    order
+        The instants in the order in which they are shown; the last is the first again where the motion goes round.
+    first
+        The instant shown where nothing moves.
+    seconds
+        How long one round lasts.
+    title, words, lang
+        What it is called, what it shows, and the language of both, for who does not see it.
+    times
+        ``keyTimes`` of the order, where instants are not evenly spread.
+    """
+    lines = []
+    for track in shown.tracks:
+        if not track.moves:
+            lines.append(track.svg(first))
+            continue
+        moved = _animate(track, order, times, seconds)
+        lines.append(track.svg(first, ' class="coursework-still"'))
+        lines.append(track.svg(first, ' class="coursework-moving"', moved))
+    style = (
+        "<style>.coursework-still{display:none}@media (prefers-reduced-motion:reduce)"
+        "{.coursework-still{display:inline}.coursework-moving{display:none}}</style>"
+    )
+    return _whole(shown, lines, title, words, lang, style)
+
+
+def still_svg(shown: Drawing, instant: int, *, title: str, words: str, lang: str) -> str:
+    """The drawing at one instant."""
+    return _whole(shown, (track.svg(instant) for track in shown.tracks), title, words, lang)
+
+
+def _whole(shown: Drawing, lines: Iterable[str], title: str, words: str, lang: str, style: str = "") -> str:
+    width, height = (f"{x:.6g}" for x in shown.size)
+    return "\n".join([
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}mm" height="{height}mm" '
+        f'viewBox="0 0 {width} {height}" role="img" lang="{lang}">',
+        f"<title>{escape(title)}</title>",
+        f"<desc>{escape(words)}</desc>",
+        *filter(None, [style]),
+        f'<rect width="{width}" height="{height}" fill="#fff"/>',
+        '<g fill="none" stroke="#000" stroke-linecap="round" stroke-linejoin="round">', *lines, "</g>",
+        "</svg>\n",
+    ])  # fmt: skip
+
+
+def _animate(track: Track, order: Sequence[int], times: str, seconds: float) -> str:
+    values = ";".join(track.value(k) for k in order)
+    timing = f' keyTimes="{times}"' if times else ""
+    loop = f'dur="{seconds:g}s" repeatCount="indefinite"{timing} values="{values}"'
+    if track.mark:
+        return f'<animateTransform attributeName="transform" type="translate" {loop}/>'
+    return f'<animate attributeName="d" {loop}/>'

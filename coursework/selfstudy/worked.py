@@ -1,0 +1,182 @@
+"""Worked examples of a lesson: a drawn variant with its whole solution, then with blanks, then bare; and the mistakes to expect."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+from coursework.course.answer_keys import answer_keys
+from coursework.errors import BadCourse, WrongValue, unknown
+from coursework.language.words import words
+from coursework.marking.marking import mark as grade
+from coursework.markup.shown import Picture, Shown
+from coursework.rendering.views import chain_on_lines, offered
+from coursework.selfstudy import hints
+from coursework.selfstudy.answers import sentence_of, sign_of
+from coursework.selfstudy.examples import LEVELS, blanks, told_steps
+from coursework.sheets.answer_sheet import answer_sheet, answer_text
+from coursework.sheets.handout import handout
+
+if TYPE_CHECKING:
+    from coursework.course.course import Course
+    from coursework.course.variant import Variant
+    from coursework.model import Part
+    from coursework.sheets.sheet import Question, Step
+
+BARE = LEVELS  #: the level that tells nothing but what is asked
+
+
+class Worked(Shown):
+    """A worked example, as a cell shows it; :meth:`check` marks what was put into its blanks."""
+
+    def __init__(self, variant: Variant, level: int, parts: Sequence[Part]):
+        self.variant, self.level, self.parts, self.lang = variant, level, tuple(parts), variant.lang
+        self.left = self._left
+        super().__init__(variant.lang, *self._posed(), self._told())
+
+    @property
+    def _left(self) -> tuple[Part, ...]:
+        """The questions that are left to who reads."""
+        if self.level == BARE:
+            return self.parts
+        return blanks(self._asking, self.level) if self.level else ()
+
+    @property
+    def _keys(self) -> Mapping[str, str]:
+        return answer_keys(self.variant.parts)
+
+    def _posed(self) -> list[str | Picture]:
+        """The statement, the figure, the data, and what is asked."""
+        sheet, said = handout(self._asking), words(self.lang)["sheet"]
+        told = words(self.lang)["lesson"]["levels"]
+        head = told["whole" if not self.level else "bare" if self.level == BARE else "part"]
+        pieces: list[str | Picture] = [f"**{head}{said['colon']} {sheet.title}.** {sheet.statement}"]
+        if sheet.figure is not None:
+            pieces.append(Picture(sheet.figure.outlined_svg(), sheet.figure_alt))
+        pieces += [Picture(figure.outlined_svg(), alt) for figure, alt in sheet.more_figures]
+        given = ", ".join(hints._given(self.variant, g.name) for g in sheet.given)
+        if given:
+            pieces.append(f"**{said['data']}{said['colon']}** {given}.")
+        wanted = {part.id for part in self.parts}
+        asked = [self._asked(q) for q in sheet.questions if q.id in wanted]
+        numbered = [f"{k}. {one}" for k, one in enumerate(asked, 1)]
+        return [*pieces, "\n".join(numbered)]
+
+    def _asked(self, question: Question) -> str:
+        symbol = f"${question.symbol}$" if question.symbol else ""
+        unit = f" ({question.unit})" if question.unit else ""
+        cases = "".join(f"\n   - {label}" for _, label in offered(question))
+        prompt = " ".join(question.prompt.split())
+        return f"{prompt}{f' {symbol}{unit}' if symbol else ''}{cases}"
+
+    def _told(self) -> str:
+        """The solution, as far as it is told."""
+        if self.level == BARE:
+            return ""
+        title = f"**{words(self.lang)['lesson']['solution']}.**"
+        wanted = {part.quantity for part in self.parts}
+        if not self.level:
+            return "\n\n".join([title, *map(_step, _leading_to(self._asking, wanted))])
+        said = words(self.lang)["lesson"]
+        return f"{title}\n\n{told_steps(self._asking, self.level, self.left, self._keys, said)}"
+
+    @property
+    def _asking(self) -> Variant:
+        return self.variant.asking(self.parts)
+
+    @property
+    def right(self) -> tuple[str, ...]:
+        """The right answers to what is left, a line of Markdown each."""
+        questions = {q.id: q for q in handout(self.variant).questions}
+        values = self.variant.walk
+        return tuple(
+            self._right(questions[part.id], answer_text(self.variant, part, values)) for part in self.left
+        )
+
+    def _right(self, question: Question, text: str) -> str:
+        if question.symbol:
+            return f"${question.symbol}$ = {text}"
+        return f"{' '.join(question.prompt.split())} **{text}**"
+
+    def check(self, answers: Mapping[str, Any] | None = None, /, **named: Any) -> Shown:
+        """Mark answers to what is left, by the name of the question; what is blank is passed over.
+
+        Raises
+        ------
+        UnknownName
+            An answer to a question that is not left.
+        """
+        given = {**(answers or {}), **named}
+        by_key = {self._keys[part.id]: part.id for part in self.left}
+        for name in given:
+            if name not in by_key and name not in by_key.values():
+                raise unknown("question", name, tuple(by_key), self.variant.exercise.name)
+        asked = self.variant.asking(self.left)
+        marking = grade(asked, {by_key.get(name, name): answer for name, answer in given.items()})
+        lines = (
+            f"- {sign_of(mark)} `{self._keys[mark.part]}` — {sentence_of(asked, mark, '')}"
+            for mark in marking.values()
+            if mark.verdict != "missing"
+        )
+        return Shown(self.lang, "\n".join(lines))
+
+
+def _leading_to(variant: Variant, wanted: set[str]) -> list[Step]:
+    """The steps of the solution that lead to some quantities."""
+    steps = answer_sheet(variant, polygons=False).steps
+    graph = variant.exercise.solution.graph.textbook
+    needed = set(wanted)
+    for name in wanted & set(graph.names):
+        needed |= set(graph.ancestors((name,)))
+    return [step for step in steps if step.name in needed]
+
+
+def _step(step: Step) -> str:
+    return "\n\n".join(filter(None, [step.words, f"$${chain_on_lines(step)}$$" if step.value else ""]))
+
+
+def worked(
+    course: Course[Any], exercise: str, seed: int, lang: str, level: int, parts: Sequence[str]
+) -> Worked:
+    """A variant as a worked example.
+
+    Raises
+    ------
+    UnknownName
+        No such exercise, or a part that the variant does not ask.
+    WrongValue
+        No such level.
+    NoSolution
+        The course folder has no solutions.
+    """
+    if level not in range(BARE + 1):
+        raise WrongValue(f"a worked example has a level from 0, the whole, to {BARE}, bare; found {level!r}")
+    variant = course[exercise].variant(seed, lang)
+    variant.exercise.solution  # noqa: B018  what has none is refused here
+    by_id = {part.id: part for part in variant.parts}
+    for part in parts:
+        if part not in by_id:
+            raise unknown("part", part, tuple(by_id), f"{exercise}, variant {seed}")
+    return Worked(variant, level, [by_id[p] for p in parts] if parts else variant.parts)
+
+
+@lru_cache(maxsize=64)
+def _explained(exercise: Any, name: str, lang: str, seed: int) -> str:
+    if name not in exercise.solution.mistakes:
+        raise unknown("mistake", name, exercise.solution.mistakes, f"solution {exercise.name}")
+    section = exercise.variant(seed, lang).solution_text.sections.get(f"mistake {name}")
+    if section is None:
+        raise BadCourse(f"{exercise.name}: the solution's text has no section 'mistake {name}'")
+    return " ".join(section.text.split())
+
+
+def mistakes(course: Course[Any], exercise: str, names: Sequence[str], lang: str, seed: int) -> Shown:
+    """What an exercise tells students who make its named mistakes, a line each.
+
+    Raises
+    ------
+    UnknownName
+        No such exercise, or no such mistake of it.
+    """
+    return Shown(lang, "\n".join(f"- {_explained(course[exercise], name, lang, seed)}" for name in names))

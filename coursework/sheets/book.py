@@ -1,0 +1,123 @@
+"""What a workbook is made of: chapters, in each lessons and exercises.
+
+As in :mod:`coursework.sheets.sheet`, texts are Markdown with ``$LaTeX$``. Links lead to ``exercise:NAME`` and
+``lesson:NAME#SECTION``, and terms of the index to ``#index``: each back end puts its own places in their stead.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from coursework.figures import Figure, Picture
+    from coursework.sheets.sheet import AnswerSheet, Handout
+
+
+@dataclass(frozen=True)
+class Prose:
+    """Running text, Markdown."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Code:
+    """Code that is printed, and may be run where there is a machine."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Printed:
+    """What code has printed, letter by letter."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A drawing: a figure, or an SVG; ``stills`` are the instants that stand on paper for one that moves."""
+
+    said: str  #: what it shows, plain text
+    caption: str = ""  #: Markdown
+    figure: Figure | Picture | None = None
+    svg: str = ""
+    stills: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Later:
+    """Where an answer is asked that stands further on, by its number."""
+
+    number: int
+
+
+Piece: TypeAlias = Prose | Code | Printed | Drawn | Later
+
+
+@dataclass(frozen=True)
+class LessonText:
+    """A lesson as a book prints it."""
+
+    name: str
+    number: int  #: among the lessons of the course
+    lang: str
+    title: str
+    pieces: tuple[Piece, ...]
+    answers: tuple[tuple[int, tuple[Piece, ...]], ...]  #: by their numbers, which :class:`Later` names
+
+
+@dataclass(frozen=True)
+class Practised:
+    """An exercise of a book: the variant that the book prints, and its solution where the book has them."""
+
+    number: str  #: 2.3: the third exercise of the second chapter
+    handout: Handout
+    solution: AnswerSheet | None
+    lessons: tuple[tuple[str, str], ...] = ()  #: names and titles of the lessons that teach it
+
+
+@dataclass(frozen=True)
+class Section:
+    """A lesson and its exercises; one of the two may be missing."""
+
+    lesson: LessonText | None
+    exercises: tuple[Practised, ...]
+    title: str = ""  #: where there is no lesson
+
+
+@dataclass(frozen=True)
+class BookChapter:
+    number: int
+    title: str
+    sections: tuple[Section, ...]
+
+    @property
+    def exercises(self) -> tuple[Practised, ...]:
+        return tuple(one for section in self.sections for one in section.exercises)
+
+    @property
+    def lessons(self) -> tuple[LessonText, ...]:
+        return tuple(section.lesson for section in self.sections if section.lesson)
+
+
+@dataclass(frozen=True)
+class Book:
+    """A course as one book, in a language."""
+
+    lang: str
+    title: str
+    seed: int
+    chapters: tuple[BookChapter, ...]
+    solved: bool  #: whether the solutions stand at its end
+    terms: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  #: of the index: lessons by entry
+
+    @property
+    def exercises(self) -> tuple[Practised, ...]:
+        return tuple(one for chapter in self.chapters for one in chapter.exercises)
+
+    @property
+    def lessons(self) -> tuple[LessonText, ...]:
+        return tuple(one for chapter in self.chapters for one in chapter.lessons)

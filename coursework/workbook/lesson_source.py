@@ -1,0 +1,152 @@
+"""A lesson's file read: prose, cells, answers to questions, and pictures, in the order in which they stand.
+
+A lesson is Markdown. A ```` ```python ```` fence is a cell, with ``{tags=…}`` after the word; a ```` ```answer ```` fence is the answer to the question
+above it; a picture stands on a line of its own, ``![caption](figure:NAME)`` or ``![caption](exercise:NAME?seed=3)``. Links lead to
+``exercise:NAME``, ``lesson:NAME`` and ``lesson:NAME#3``, and ``[a term](#index "entry")`` is a term of the book's index.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from coursework.errors import BadCourse, nearest
+
+SHOWN, NOTEBOOK, STILL = "shown", "notebook", "still"
+#: What a cell's tags say: its code is printed; it stands in the notebook alone; its code is printed and not run for the book.
+TAGS = (SHOWN, NOTEBOOK, STILL)
+
+
+@dataclass(frozen=True)
+class Prose:
+    text: str
+
+
+@dataclass(frozen=True)
+class Cell:
+    """Code; ``line`` is that of its first line in the file."""
+
+    code: str
+    tags: tuple[str, ...]
+    line: int
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The answer to the question above it, Markdown."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Image:
+    """A picture on a line of its own: what it is, by ``kind`` and name, what is asked of it, and its caption."""
+
+    caption: str
+    kind: str  #: figure or exercise
+    name: str
+    asked: dict[str, str] = field(default_factory=dict)
+    line: int = 0
+
+
+Block: TypeAlias = Prose | Cell | Answer | Image
+
+_FENCE = re.compile(
+    r"^(```+)(\w*)[ \t]*(?:\{tags=([\w,-]+)\})?[ \t]*\n(.*?)^\1[ \t]*$", re.DOTALL | re.MULTILINE
+)
+_IMAGE = re.compile(r"^!\[(?P<caption>.*)\]\((?P<target>[^()\s]+)\)[ \t]*$", re.MULTILINE)
+_TARGET = re.compile(r"(figure|exercise):(\w+)(?:\?(\S*))?")
+
+
+def blocks(text: str, file: str) -> tuple[Block, ...]:
+    """The blocks of a lesson's text; ``file`` is what messages call it.
+
+    Raises
+    ------
+    BadCourse
+        A tag or a picture that is none.
+    """
+    found: list[Block] = []
+    end = 0
+    for fence in _FENCE.finditer(text):
+        if fence[2] not in ("python", "answer"):
+            continue
+        found += _prose(text, end, fence.start(), file)
+        if fence[2] == "answer":
+            found.append(Answer(fence[4].strip()))
+        else:
+            found.append(_cell(fence, text, file))
+        end = fence.end()
+    return (*found, *_prose(text, end, len(text), file))
+
+
+def _cell(fence: re.Match[str], text: str, file: str) -> Cell:
+    line = 2 + text.count("\n", 0, fence.start())
+    tags = tuple(fence[3].split(",")) if fence[3] else ()
+    for tag in tags:
+        if tag not in TAGS:
+            raise BadCourse(f"{file}, line {line - 1}: no tag {tag!r}{nearest(tag, TAGS)}")
+    return Cell(fence[4].rstrip("\n"), tags, line)
+
+
+def _prose(text: str, start: int, stop: int, file: str) -> Iterator[Block]:
+    end = start
+    for image in _IMAGE.finditer(text, start, stop):
+        yield from _words(text[end : image.start()])
+        yield _image(image, file, 1 + text.count("\n", 0, image.start()))
+        end = image.end()
+    yield from _words(text[end:stop])
+
+
+def _words(text: str) -> Iterator[Prose]:
+    if text.strip():
+        yield Prose(text.strip())
+
+
+def _image(image: re.Match[str], file: str, line: int) -> Image:
+    target = _TARGET.fullmatch(image["target"])
+    if target is None:
+        raise BadCourse(
+            f"{file}, line {line}: the picture {image['target']!r}: write figure:NAME, or exercise:NAME?seed=3"
+        )
+    pairs = (one.partition("=") for one in filter(None, (target[3] or "").split("&")))
+    return Image(image["caption"], target[1], target[2], {name: value for name, _, value in pairs}, line)
+
+
+# ------------------------------------------------------------------------ links
+
+_LINK = re.compile(
+    r"\[(?P<said>[^\[\]]+)\]\((?:(?P<kind>exercise|lesson):(?P<name>\w+)(?:#(?P<section>\d+))?|#index(?: \"(?P<entry>[^\"]*)\")?)\)"
+)
+_VERBATIM = re.compile(r"(```.*?```|`[^`\n]*`)", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Link:
+    """A link of a lesson: words, to an exercise or a lesson, or a term with its entry in the index."""
+
+    said: str
+    kind: str  #: exercise, lesson or term
+    name: str
+    section: int = 0
+
+
+def relinked(text: str, write: Callable[[Link], str]) -> str:
+    """The text with each of its links written anew; code is left as it is."""
+    pieces = _VERBATIM.split(text)
+    pieces[::2] = [_LINK.sub(lambda found: write(_link(found)), piece) for piece in pieces[::2]]
+    return "".join(pieces)
+
+
+def links(text: str) -> tuple[Link, ...]:
+    """The links of a text, in order."""
+    return tuple(_link(found) for piece in _VERBATIM.split(text)[::2] for found in _LINK.finditer(piece))
+
+
+def _link(found: re.Match[str]) -> Link:
+    said = " ".join(found["said"].split())
+    if found["kind"] is None:
+        return Link(said, "term", found["entry"] or said)
+    return Link(said, found["kind"], found["name"], int(found["section"] or 0))

@@ -1,0 +1,102 @@
+"""A lesson read, drawn and run: as a book prints it."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+from coursework.course.course import Course
+from coursework.course.lessons import lesson_file, lesson_sections, lesson_title
+from coursework.errors import BadCourse, nearest
+from coursework.sheets.book import Code, Later, LessonText, Piece, Prose
+from coursework.workbook import lesson_source as source
+from coursework.workbook.pictures import drawn
+from coursework.workbook.running import Session, Shows
+
+_TITLE = re.compile(r"\A# +[^\n]*\n*")
+
+
+def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
+    """A lesson with its pictures drawn and its cells run.
+
+    Raises
+    ------
+    UnknownName
+        No such lesson.
+    BadCourse
+        It is not written in this language, a cell raises, or a picture or a link leads nowhere.
+    """
+    path = lesson_file(course.folder, name, lang)
+    text = path.read_text("utf-8-sig")
+    check_links(course, name, lang)
+    made = _Lesson(course, name, lang, Session(course.folder.relative(path)))
+    for block in source.blocks(_TITLE.sub("", text), course.folder.relative(path)):
+        made.add(block)
+    number = 1 + course.folder.lessons.index(name)
+    title = lesson_title(course.folder, name, lang)
+    return LessonText(name, number, lang, title, tuple(made.pieces), tuple(made.answers))
+
+
+class _Lesson:
+    """The pieces of a lesson as they come."""
+
+    def __init__(self, course: Course[Any], name: str, lang: str, session: Session):
+        self._course, self._name, self._lang, self._session = course, name, lang, session
+        self.pieces: list[Piece] = []
+        self.answers: list[tuple[int, tuple[Piece, ...]]] = []
+
+    def add(self, block: source.Block) -> None:
+        match block:
+            case source.Prose():
+                self.pieces.append(Prose(block.text))
+            case source.Image():
+                self.pieces.append(drawn(self._course, self._name, block, self._lang))
+            case source.Answer():
+                self._later((Prose(block.text),))
+            case source.Cell():
+                self._cell(block)
+
+    def _cell(self, cell: source.Cell) -> None:
+        if source.NOTEBOOK in cell.tags:
+            return
+        if source.SHOWN in cell.tags or source.STILL in cell.tags:
+            self.pieces.append(Code(cell.code))
+        shown = Shows() if source.STILL in cell.tags else self._session.run(cell)
+        self.pieces += shown.now
+        if shown.later:
+            self._later(shown.later)
+
+    def _later(self, pieces: tuple[Piece, ...]) -> None:
+        number = 1 + len(self.answers)
+        self.pieces.append(Later(number))
+        self.answers.append((number, pieces))
+
+
+def check_links(course: Course[Any], name: str, lang: str) -> None:
+    """Stop at a link of a lesson that leads nowhere.
+
+    Raises
+    ------
+    BadCourse
+        It names an exercise, a lesson or a section that there is not.
+    """
+    folder = course.folder
+    path = lesson_file(folder, name, lang)
+    for link in source.links(path.read_text("utf-8-sig")):
+        if link.kind == "term":
+            continue
+        known = folder.names if link.kind == "exercise" else folder.lessons
+        if link.name not in known:
+            raise BadCourse(
+                f"{folder.relative(path)} links to the {link.kind} {link.name!r}, which there is not{nearest(link.name, known)}"
+            )
+        if link.section and link.section not in lesson_sections(folder, link.name, lang):
+            raise BadCourse(
+                f"{folder.relative(path)} links to section {link.section} of {link.name}, which it has not"
+            )
+
+
+def terms(course: Course[Any], name: str, lang: str) -> tuple[str, ...]:
+    """The entries of the index that a lesson's text has, each once."""
+    text = lesson_file(course.folder, name, lang).read_text("utf-8-sig")
+    return tuple(dict.fromkeys(link.name for link in source.links(text) if link.kind == "term"))

@@ -1,0 +1,106 @@
+"""A lesson as a notebook: its pictures in it, its answers folded away, its links to the notebooks beside it."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping
+from typing import Any
+
+from coursework.course.course import Course
+from coursework.course.lessons import lesson_file, lesson_sections, lesson_title
+from coursework.language.words import words
+from coursework.markup.markdown import to_notebook_markdown
+from coursework.rendering.renderer import renderer_of
+from coursework.sheets.book import Drawn
+from coursework.workbook import lesson_source as source
+from coursework.workbook.lessons import check_links
+from coursework.workbook.pictures import drawn
+
+_PPI = 150
+
+
+def notebook_name(name: str, lang: str) -> str:
+    """The file of a lesson's or an exercise's notebook."""
+    return f"{name}.{lang}.ipynb"
+
+
+def lesson_notebook(course: Course[Any], name: str, lang: str) -> str:
+    """A lesson as a notebook (JSON, nbformat 4.5).
+
+    Raises
+    ------
+    UnknownName
+        No such lesson.
+    BadCourse
+        It is not written in this language, or a picture or a link leads nowhere.
+    """
+    folder = course.folder
+    path = lesson_file(folder, name, lang)
+    check_links(course, name, lang)
+    pieces: list[str] = []
+    pictures: dict[str, Mapping[str, str]] = {}
+    for block in source.blocks(path.read_text("utf-8-sig"), folder.relative(path)):
+        if isinstance(block, source.Image):
+            shown = drawn(course, name, block, lang)
+            file = f"picture-{len(pictures) + 1}.{'svg' if shown.svg else 'png'}"
+            pictures[file] = _attached(shown)
+            pieces.append(_picture(file, shown, lang))
+        else:
+            pieces.append(_written(course, block, lang))
+    text = "\n\n".join([*pieces, *_practise(course, name, lang)]) + "\n"
+    return renderer_of(folder).lesson(name, text, lang, folder.install, pictures)
+
+
+def _written(course: Course[Any], block: source.Prose | source.Cell | source.Answer, lang: str) -> str:
+    if isinstance(block, source.Cell):
+        return f"```python\n{block.code}\n```"
+    text = to_notebook_markdown(_linked(course, block.text, lang), lang)
+    if isinstance(block, source.Answer):
+        return f"<details><summary>{words(lang)['lesson']['answer']}</summary>\n\n{text}\n\n</details>"
+    return text
+
+
+def _linked(course: Course[Any], text: str, lang: str) -> str:
+    """The text with links to the notebooks beside this one; terms in italics."""
+
+    def write(link: source.Link) -> str:
+        if link.kind == "term":
+            return f"*{link.said}*"
+        place = ""
+        if link.section:
+            place = "#" + lesson_sections(course.folder, link.name, lang)[link.section].replace(" ", "-")
+        return f"[{link.said}](<{notebook_name(link.name, lang)}{place}>)"
+
+    return source.relinked(text, write)
+
+
+def _attached(shown: Drawn) -> Mapping[str, str]:
+    """A picture by its type: what moves is SVG, which moves in a notebook as well."""
+    if shown.svg:
+        return {"image/svg+xml": base64.b64encode(shown.svg.encode()).decode()}
+    assert shown.figure is not None  # a picture is one or the other
+    return {"image/png": base64.b64encode(shown.figure.png(ppi=_PPI)).decode()}
+
+
+def _picture(file: str, shown: Drawn, lang: str) -> str:
+    said = shown.said.replace("[", "(").replace("]", ")").replace("\n", " ")
+    caption = to_notebook_markdown(shown.caption, lang)
+    return f"![{said}](attachment:{file})" + (f"\n\n*{caption}*" if caption else "")
+
+
+def _practise(course: Course[Any], name: str, lang: str) -> list[str]:
+    """The exercises of the lesson, each a link to its notebook."""
+    section = next((s for c in course.folder.chapters for s in c.sections if s.lesson == name), None)
+    if section is None or not section.exercises:
+        return []
+    lines = [f"- [{course[one].title(lang)}]({notebook_name(one, lang)})" for one in section.exercises]
+    command = f"coursework notebook {' '.join(section.exercises)} --lang {lang}"
+    return [f"## {words(lang)['lesson']['practise']}", "\n".join(lines), f"`{command}`"]
+
+
+def lesson_titles(course: Course[Any], exercise: str, lang: str) -> tuple[tuple[str, str], ...]:
+    """The lessons that teach an exercise: names and titles."""
+    section = course.folder.section_of(exercise)
+    if section is None or not section.lesson:
+        return ()
+    return ((section.lesson, lesson_title(course.folder, section.lesson, lang)),)

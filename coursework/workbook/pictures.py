@@ -1,0 +1,91 @@
+"""The pictures of a lesson: figures that its module draws, figures of exercises, and either in motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from coursework.course.course import Course
+from coursework.course.folder import Folder
+from coursework.errors import BadCourse, BadInput, UnknownName, WrongValue, nearest
+from coursework.figures import Figure, Picture
+from coursework.figures.moving import drawing
+from coursework.figures.moving_svg import moving_svg, still_svg
+from coursework.markup.markdown import plain_line
+from coursework.motion.animation import Animation
+from coursework.motion.reel import SECONDS
+from coursework.sheets.book import Drawn
+from coursework.workbook.lesson_source import Image
+
+STILLS = 4  #: instants of what moves that stand on paper
+_ASKED = ("seed", "motion", "count")
+
+
+def drawn(course: Course[Any], lesson: str, image: Image, lang: str) -> Drawn:
+    """A picture of a lesson.
+
+    Raises
+    ------
+    BadCourse
+        There is no such figure, or none of that exercise, or nothing of it moves.
+    """
+    try:
+        made = _of_lesson if image.kind == "figure" else _of_exercise
+        return made(course, lesson, image, lang)
+    except (BadInput, UnknownName, WrongValue) as fault:
+        raise BadCourse(f"the lesson {lesson}, line {image.line}: {fault}") from fault
+
+
+def _of_lesson(course: Course[Any], lesson: str, image: Image, lang: str) -> Drawn:
+    made = _call(course.folder, lesson, image.name)
+    said = plain_line(image.caption, lang)
+    if isinstance(made, (Figure, Picture)):
+        return Drawn(said, image.caption, figure=made)
+    if isinstance(made, Sequence) and made and all(isinstance(one, Figure) for one in made):
+        return _moving(made, said, image.caption, lang)
+    raise BadCourse(
+        f"the lesson {lesson}: {image.name}() gives a Figure, a Picture, or a list of Figures that follow one another; found {made!r}"
+    )
+
+
+def _call(folder: Folder, lesson: str, name: str) -> Any:
+    module = folder.lesson_module(lesson)
+    make = getattr(module, name, None)
+    if not callable(make):
+        known = [n for n, one in vars(module).items() if callable(one) and not n.startswith("_")]
+        raise BadCourse(f"the lesson {lesson}: no figure {name!r}{nearest(name, known)}")
+    return make()
+
+
+def _moving(frames: Sequence[Figure], said: str, caption: str, lang: str) -> Drawn:
+    """Figures that follow one another, the first after the last."""
+    shown, count = drawing([frame.elements for frame in frames]), len(frames)
+    told = {"title": said, "words": said, "lang": lang}
+    return Drawn(
+        said,
+        caption,
+        svg=moving_svg(shown, order=[*range(count), 0], first=0, seconds=SECONDS, **told),
+        stills=tuple(still_svg(shown, round(k * count / STILLS) % count, **told) for k in range(STILLS)),
+    )
+
+
+def _of_exercise(course: Course[Any], lesson: str, image: Image, lang: str) -> Drawn:
+    for name in image.asked:
+        if name not in _ASKED:
+            raise BadInput(f"nothing called {name!r} is asked of a picture{nearest(name, _ASKED)}")
+    seed = image.asked.get("seed", "0")
+    if not seed.isdecimal():
+        raise BadInput(f"the seed of a picture is a whole number; found {seed!r}")
+    variant = course[image.name].variant(int(seed), lang)
+    if "motion" in image.asked:
+        return moving(
+            Animation(variant, tuple(filter(None, image.asked["motion"].split(",")))), image.caption
+        )
+    if variant.figure is None:
+        raise BadInput(f"{image.name} has no figure")
+    return Drawn(variant.handout().figure_alt, image.caption, figure=variant.figure)
+
+
+def moving(animation: Animation, caption: str = "") -> Drawn:
+    """An exercise's mechanism in motion, and instants of it for paper."""
+    return Drawn(animation.words, caption, svg=animation.svg(), stills=animation.stills(STILLS))
