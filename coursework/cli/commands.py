@@ -21,16 +21,17 @@ COMMANDS = {
     "check": ("author", "check"),
     "demo": ("make", "demo"),
     "grade": ("mark", "grade"),
-    "lesson": ("make", "lesson"),
+    "lesson": ("teach", "lesson"),
     "list": ("look", "list_exercises"),
     "new": ("author", "new"),
-    "notebook": ("make", "notebook"),
+    "notebook": ("teach", "notebook"),
     "progress": ("study", "progress"),
     "report": ("mark", "report"),
     "show": ("look", "show"),
     "simulate": ("move", "simulate"),
     "solve": ("look", "solve"),
     "variant": ("look", "variant"),
+    "workbook": ("teach", "workbook"),
 }
 
 

@@ -1,4 +1,4 @@
-"""Commands that make what is handed out: build, notebook, lesson."""
+"""Commands that make what is handed out: build, demo."""
 
 from __future__ import annotations
 
@@ -19,10 +19,8 @@ from coursework.cli.options import (
     exercises_argument,
     known_formats,
     known_languages,
-    lang_option,
     opened,
     parts_option,
-    replace_option,
     seed_option,
     split_list,
     spoken,
@@ -35,105 +33,6 @@ from coursework.errors import BadInput, counted
 if TYPE_CHECKING:
     from coursework.course.course import Course
     from coursework.making.roster import Student
-
-
-# ----------------------------------------------------------------------- lesson
-
-
-@click.command()
-@click.argument("lessons", nargs=-1)
-@lang_option
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for the notebooks.")
-@replace_option
-@click.pass_context
-def lesson(
-    context: click.Context, lessons: Sequence[str], lang: str, out: Path | None, overwrite: bool
-) -> None:
-    """Write the course's lessons as notebooks; without --out, list them."""
-    from coursework.course.lessons import lesson_file
-    from coursework.system.writing import write_whole
-    from coursework.workbook.notebooks import lesson_notebook, notebook_name
-
-    course = opened(context)
-    asked = lessons or course.folder.lessons
-    for name in asked:
-        lesson_file(course.folder, name, lang)
-    if out is None:
-        for name in asked:
-            click.echo(name)
-        return
-    paths = {name: out / notebook_name(name, lang) for name in asked}
-    _spare(list(paths.values()), overwrite)
-    for name, path in paths.items():
-        write_whole(path, lesson_notebook(course, name, lang).encode("utf-8"))
-        click.echo(str(path))
-
-
-def _spare(paths: Sequence[Path], overwrite: bool) -> None:
-    """Notebooks that somebody may have written in are not replaced unasked."""
-    there = [] if overwrite else [path for path in paths if path.exists()]
-    if there:
-        told = str(there[0]) if len(there) == 1 else f"{there[0]} and {len(there) - 1} more"
-        exist = "exists" if len(there) == 1 else "exist"
-        raise BadInput(
-            f"{told} {exist} already, and may hold what somebody wrote; choose another --out, or --overwrite to "
-            "replace"
-        )
-
-
-# --------------------------------------------------------------------- notebook
-
-
-@click.command()
-@exercises_argument
-@seed_option
-@click.option(
-    "--lang",
-    "langs",
-    type=Lists(known_languages, unknown_language),
-    callback=spoken,
-    help=f"Languages of the notebooks: fr, en, or both as fr,en; unless told, {UNLESS_TOLD}.",
-)
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path, file_okay=False),
-    default="notebooks",
-    show_default=True,
-    help="Folder for the notebooks.",
-)
-@replace_option
-@click.pass_context
-def notebook(
-    context: click.Context,
-    exercises: Sequence[str],
-    seed: int,
-    langs: Sequence[str],
-    out: Path,
-    overwrite: bool,
-) -> None:
-    """Write self-study notebooks: predictions, instant feedback, hints, plots, fresh variants.
-
-    One for each exercise named, else for every exercise of the course.
-    """
-    from coursework.making.issuing import distinct_variants
-    from coursework.rendering.renderer import renderer_of
-    from coursework.system.writing import write_whole
-
-    course = opened(context)
-    wheel = course.folder.wheel
-    paths = {
-        (name, lang): out / f"{name}.{lang}.ipynb"
-        for name in exercise_names(course, exercises)
-        for lang in langs
-    }
-    _spare(list(paths.values()), overwrite)
-    for (name, lang), path in paths.items():
-        (variant,) = distinct_variants(course[name], seed, 1, lang)
-        write_whole(path, renderer_of(course.folder).study(variant.study_sheet()).encode("utf-8"))
-        click.echo(str(path))
-    if wheel is not None:
-        write_whole(out / wheel.name, wheel.read_bytes())
-        click.echo(str(out / wheel.name))
 
 
 # ------------------------------------------------------------------------ build

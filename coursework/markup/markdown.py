@@ -8,9 +8,11 @@ from __future__ import annotations
 
 import re
 import textwrap
+import unicodedata
 from collections.abc import Callable, Sequence
 from functools import cache, lru_cache
 from html import escape
+from typing import Any
 
 from markdown_it import MarkdownIt
 from markdown_it.renderer import RendererHTML
@@ -193,12 +195,34 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
         case "hr":
             return "#line(length: 100%, stroke: 0.4pt + luma(60%))\n\n"
         case "link":
-            return f"#link({typst_string(str(node.attrs['href']))})[{inside()}];"
+            return _typst_link(str(node.attrs["href"]), str(node.attrs.get("title", "")), inside())
         case "image":
             raise no_image(str(node.attrs.get("src", "")))
         case "table":
             return _typst_table(node, lang)
     raise BadStatement(f"the text holds a {node.type}, which a sheet cannot print")
+
+
+#: What a link leads to that is no link: a term of the index, whose entry is the link's title.
+INDEX = "#index"
+
+
+def _typst_link(href: str, title: str, inside: str) -> str:
+    if href == INDEX:
+        return f"#term({typst_string(title)}, {typst_string(sort_key(title))})[{inside}];"
+    place = f"label({typst_string(href[1:])})" if href.startswith("#") else typst_string(href)
+    return f"#link({place})[{inside}];"
+
+
+def sort_key(entry: str) -> str:
+    """What an entry of an index is sorted by: its letters without accents or capitals."""
+    plain = unicodedata.normalize("NFD", entry.casefold())
+    return "".join(char for char in plain if not unicodedata.combining(char))
+
+
+def anchor(entry: str) -> str:
+    """The place of a term in a page: its sort key in letters, digits and hyphens."""
+    return "term-" + re.sub(r"[^a-z0-9]+", "-", sort_key(entry)).strip("-")
 
 
 def _typst_table(node: SyntaxTreeNode, lang: str) -> str:
@@ -262,8 +286,18 @@ def _html_reader(lang: str) -> MarkdownIt:
     def image(renderer: RendererHTML, tokens: Sequence, at: int, *_: object) -> str:
         raise no_image(str(tokens[at].attrs.get("src", "")))
 
+    def link(renderer: RendererHTML, tokens: Sequence, at: int, options: Any, env: Any) -> str:
+        opening = next(t for t in reversed(tokens[: at + 1]) if t.type == "link_open")
+        if opening.attrs.get("href") != INDEX:
+            return renderer.renderToken(tokens, at, options, env)
+        if tokens[at].nesting != 1:
+            return "</dfn>"
+        return f'<dfn id="{anchor(str(opening.attrs.get("title", "")))}">'
+
     reader = MarkdownIt("commonmark", {"html": False}).enable("table")
     reader.use(dollarmath_plugin, allow_digits=True, double_inline=True)
+    reader.add_render_rule("link_open", link)
+    reader.add_render_rule("link_close", link)
     for name in ("math_block", "math_block_label", "math_inline_double"):
         reader.add_render_rule(name, formula(True))
     reader.add_render_rule("math_inline", formula(False))

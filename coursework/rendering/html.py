@@ -50,6 +50,8 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "typed": escape,
         "css": _css_string,
         "said": lambda text: escape(markup.plain_line(text, lang)),
+        "said_html": lambda text: markup.html_inline(text, lang),
+        "svg_image": svg_image,
     }
     env = environment(folders, lang, markup.html_text, filters)
     env.globals.update(script=partial(_script, env), digest=partial(_digest, env))
@@ -76,7 +78,12 @@ def construction(folders: Sequence[Path], drawn: Construction) -> str:
 
 def _drawing(figure: Figure | Picture | Beginning, alt: str) -> str:
     """The figure as an image inside the page, its letters as outlines: it looks the same everywhere."""
-    data = base64.b64encode(figure.outlined_svg().encode()).decode()
+    return svg_image(figure.outlined_svg(), alt)
+
+
+def svg_image(svg: str, alt: str) -> str:
+    """A drawing as an image inside the page."""
+    data = base64.b64encode(svg.encode()).decode()
     return f'<img src="data:image/svg+xml;base64,{data}" alt="{escape(alt)}">'
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from coursework.motion.animation import Animation
     from coursework.polygons.construction import Construction
     from coursework.rendering.papers import AnyPaper
+    from coursework.sheets.book import Book
     from coursework.sheets.paper import FeedbackPaper, Paper, SolutionPaper
     from coursework.sheets.report import Report
     from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout, StudySheet
@@ -129,6 +130,19 @@ class Renderer:
         return pdf.compile_booklet(
             papers.typst_source(self.template_folders, handed, self.paper), self.template_folders
         )
+
+    def book_pdf(self, book: Book, *, apart: bool = False) -> bytes:
+        """A book as a tagged PDF with contents and index; ``apart``: its solutions alone."""
+        from coursework.rendering import books, pdf
+
+        source = books.typst_source(self.template_folders, book, self.paper, apart=apart)
+        return pdf.compile_pdf(source, self.template_folders)
+
+    def book_pages(self, book: Book, *, solutions: bool = True) -> Mapping[str, Callable[[], str]]:
+        """A book as pages by their files, each a function that makes it; they fetch nothing and lead to one another."""
+        from coursework.rendering import books
+
+        return books.pages(self.template_folders, book, self.paper, solutions=solutions)
 
     def paper_html(self, paper: AnyPaper) -> str:
         """A paper, its solutions or its feedback as one web page that fetches nothing; the student's own runs the one

@@ -23,6 +23,15 @@ class Prose:
 
 
 @dataclass(frozen=True)
+class Head:
+    """A heading inside a lesson: ``level`` 1 for a section, 2 for a part of one; ``number`` of a numbered section, else 0."""
+
+    text: str  #: Markdown of a line, its number with it
+    level: int
+    number: int = 0
+
+
+@dataclass(frozen=True)
 class Code:
     """Code that is printed, and may be run where there is a machine."""
 
@@ -54,7 +63,7 @@ class Later:
     number: int
 
 
-Piece: TypeAlias = Prose | Code | Printed | Drawn | Later
+Piece: TypeAlias = Prose | Head | Code | Printed | Drawn | Later
 
 
 @dataclass(frozen=True)
@@ -111,7 +120,7 @@ class Book:
     title: str
     seed: int
     chapters: tuple[BookChapter, ...]
-    solved: bool  #: whether the solutions stand at its end
+    solved: bool  #: whether the solutions stand at its end, and its pages lead to them
     terms: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  #: of the index: lessons by entry
 
     @property

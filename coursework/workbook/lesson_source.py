@@ -8,7 +8,7 @@ above it; a picture stands on a line of its own, ``![caption](figure:NAME)`` or 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -113,40 +113,3 @@ def _image(image: re.Match[str], file: str, line: int) -> Image:
         )
     pairs = (one.partition("=") for one in filter(None, (target[3] or "").split("&")))
     return Image(image["caption"], target[1], target[2], {name: value for name, _, value in pairs}, line)
-
-
-# ------------------------------------------------------------------------ links
-
-_LINK = re.compile(
-    r"\[(?P<said>[^\[\]]+)\]\((?:(?P<kind>exercise|lesson):(?P<name>\w+)(?:#(?P<section>\d+))?|#index(?: \"(?P<entry>[^\"]*)\")?)\)"
-)
-_VERBATIM = re.compile(r"(```.*?```|`[^`\n]*`)", re.DOTALL)
-
-
-@dataclass(frozen=True)
-class Link:
-    """A link of a lesson: words, to an exercise or a lesson, or a term with its entry in the index."""
-
-    said: str
-    kind: str  #: exercise, lesson or term
-    name: str
-    section: int = 0
-
-
-def relinked(text: str, write: Callable[[Link], str]) -> str:
-    """The text with each of its links written anew; code is left as it is."""
-    pieces = _VERBATIM.split(text)
-    pieces[::2] = [_LINK.sub(lambda found: write(_link(found)), piece) for piece in pieces[::2]]
-    return "".join(pieces)
-
-
-def links(text: str) -> tuple[Link, ...]:
-    """The links of a text, in order."""
-    return tuple(_link(found) for piece in _VERBATIM.split(text)[::2] for found in _LINK.finditer(piece))
-
-
-def _link(found: re.Match[str]) -> Link:
-    said = " ".join(found["said"].split())
-    if found["kind"] is None:
-        return Link(said, "term", found["entry"] or said)
-    return Link(said, found["kind"], found["name"], int(found["section"] or 0))

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from typing import Any
 
 from coursework.course.course import Course
 from coursework.course.lessons import lesson_file, lesson_sections, lesson_title
 from coursework.errors import BadCourse, nearest
-from coursework.sheets.book import Code, Later, LessonText, Piece, Prose
+from coursework.markup.links import TERM, links
+from coursework.sheets.book import Code, Head, Later, LessonText, Piece, Prose
 from coursework.workbook import lesson_source as source
 from coursework.workbook.pictures import drawn
 from coursework.workbook.running import Session, Shows
 
 _TITLE = re.compile(r"\A# +[^\n]*\n*")
+_HEAD = re.compile(r"^(##+) +((?:(\d+)\.)?.*?) *$", re.MULTILINE)
 
 
 def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
@@ -48,7 +51,7 @@ class _Lesson:
     def add(self, block: source.Block) -> None:
         match block:
             case source.Prose():
-                self.pieces.append(Prose(block.text))
+                self.pieces += _parted(block.text)
             case source.Image():
                 self.pieces.append(drawn(self._course, self._name, block, self._lang))
             case source.Answer():
@@ -72,6 +75,18 @@ class _Lesson:
         self.answers.append((number, pieces))
 
 
+def _parted(text: str) -> Iterator[Piece]:
+    """Running text, its headings apart."""
+    end = 0
+    for head in _HEAD.finditer(text):
+        if before := text[end : head.start()].strip():
+            yield Prose(before)
+        yield Head(head[2], len(head[1]) - 1, int(head[3] or 0))
+        end = head.end()
+    if after := text[end:].strip():
+        yield Prose(after)
+
+
 def check_links(course: Course[Any], name: str, lang: str) -> None:
     """Stop at a link of a lesson that leads nowhere.
 
@@ -82,8 +97,8 @@ def check_links(course: Course[Any], name: str, lang: str) -> None:
     """
     folder = course.folder
     path = lesson_file(folder, name, lang)
-    for link in source.links(path.read_text("utf-8-sig")):
-        if link.kind == "term":
+    for link in links(path.read_text("utf-8-sig")):
+        if link.kind == TERM:
             continue
         known = folder.names if link.kind == "exercise" else folder.lessons
         if link.name not in known:
@@ -99,4 +114,4 @@ def check_links(course: Course[Any], name: str, lang: str) -> None:
 def terms(course: Course[Any], name: str, lang: str) -> tuple[str, ...]:
     """The entries of the index that a lesson's text has, each once."""
     text = lesson_file(course.folder, name, lang).read_text("utf-8-sig")
-    return tuple(dict.fromkeys(link.name for link in source.links(text) if link.kind == "term"))
+    return tuple(dict.fromkeys(link.name for link in links(text) if link.kind == TERM))

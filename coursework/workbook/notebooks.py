@@ -9,6 +9,7 @@ from typing import Any
 from coursework.course.course import Course
 from coursework.course.lessons import lesson_file, lesson_sections, lesson_title
 from coursework.language.words import words
+from coursework.markup.links import TERM, Link, relinked
 from coursework.markup.markdown import to_notebook_markdown
 from coursework.rendering.renderer import renderer_of
 from coursework.sheets.book import Drawn
@@ -63,15 +64,15 @@ def _written(course: Course[Any], block: source.Prose | source.Cell | source.Ans
 def _linked(course: Course[Any], text: str, lang: str) -> str:
     """The text with links to the notebooks beside this one; terms in italics."""
 
-    def write(link: source.Link) -> str:
-        if link.kind == "term":
+    def write(link: Link) -> str:
+        if link.kind == TERM:
             return f"*{link.said}*"
         place = ""
         if link.section:
             place = "#" + lesson_sections(course.folder, link.name, lang)[link.section].replace(" ", "-")
         return f"[{link.said}](<{notebook_name(link.name, lang)}{place}>)"
 
-    return source.relinked(text, write)
+    return relinked(text, write)
 
 
 def _attached(shown: Drawn) -> Mapping[str, str]:

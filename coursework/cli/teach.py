@@ -1,0 +1,203 @@
+"""Commands that make what is learnt from: lessons, self-study notebooks, the workbook."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import click
+
+from coursework.cli.options import (
+    UNLESS_TOLD,
+    Lists,
+    Whole,
+    exercise_names,
+    exercises_argument,
+    known_languages,
+    lang_option,
+    opened,
+    replace_option,
+    seed_option,
+    spoken,
+    tell,
+    unknown_language,
+)
+from coursework.cli.printing import progress_bar
+from coursework.errors import BadInput, counted
+
+# ----------------------------------------------------------------------- lesson
+
+
+@click.command()
+@click.argument("lessons", nargs=-1)
+@lang_option
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for the notebooks.")
+@replace_option
+@click.pass_context
+def lesson(
+    context: click.Context, lessons: Sequence[str], lang: str, out: Path | None, overwrite: bool
+) -> None:
+    """Write the course's lessons as notebooks; without --out, list them."""
+    from coursework.course.lessons import lesson_file
+    from coursework.system.writing import write_whole
+    from coursework.workbook.notebooks import lesson_notebook, notebook_name
+
+    course = opened(context)
+    asked = lessons or course.folder.lessons
+    for name in asked:
+        lesson_file(course.folder, name, lang)
+    if out is None:
+        for name in asked:
+            click.echo(name)
+        return
+    paths = {name: out / notebook_name(name, lang) for name in asked}
+    _spare(list(paths.values()), overwrite)
+    for name, path in paths.items():
+        write_whole(path, lesson_notebook(course, name, lang).encode("utf-8"))
+        click.echo(str(path))
+
+
+def _spare(paths: Sequence[Path], overwrite: bool) -> None:
+    """Notebooks that somebody may have written in are not replaced unasked."""
+    there = [] if overwrite else [path for path in paths if path.exists()]
+    if there:
+        told = str(there[0]) if len(there) == 1 else f"{there[0]} and {len(there) - 1} more"
+        exist = "exists" if len(there) == 1 else "exist"
+        raise BadInput(
+            f"{told} {exist} already, and may hold what somebody wrote; choose another --out, or --overwrite to "
+            "replace"
+        )
+
+
+# --------------------------------------------------------------------- notebook
+
+
+@click.command()
+@exercises_argument
+@seed_option
+@click.option(
+    "--lang",
+    "langs",
+    type=Lists(known_languages, unknown_language),
+    callback=spoken,
+    help=f"Languages of the notebooks: fr, en, or both as fr,en; unless told, {UNLESS_TOLD}.",
+)
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path, file_okay=False),
+    default="notebooks",
+    show_default=True,
+    help="Folder for the notebooks.",
+)
+@replace_option
+@click.pass_context
+def notebook(
+    context: click.Context,
+    exercises: Sequence[str],
+    seed: int,
+    langs: Sequence[str],
+    out: Path,
+    overwrite: bool,
+) -> None:
+    """Write self-study notebooks: predictions, instant feedback, hints, plots, fresh variants.
+
+    One for each exercise named, else for every exercise of the course.
+    """
+    from coursework.making.issuing import distinct_variants
+    from coursework.rendering.renderer import renderer_of
+    from coursework.system.writing import write_whole
+
+    course = opened(context)
+    wheel = course.folder.wheel
+    paths = {
+        (name, lang): out / f"{name}.{lang}.ipynb"
+        for name in exercise_names(course, exercises)
+        for lang in langs
+    }
+    _spare(list(paths.values()), overwrite)
+    for (name, lang), path in paths.items():
+        (variant,) = distinct_variants(course[name], seed, 1, lang)
+        write_whole(path, renderer_of(course.folder).study(variant.study_sheet()).encode("utf-8"))
+        click.echo(str(path))
+    if wheel is not None:
+        write_whole(out / wheel.name, wheel.read_bytes())
+        click.echo(str(out / wheel.name))
+
+
+# --------------------------------------------------------------------- workbook
+
+
+def _formats() -> tuple[str, ...]:
+    from coursework.workbook.writing import FORMATS
+
+    return FORMATS
+
+
+@click.command()
+@lang_option
+@click.option(
+    "--seed", type=Whole(0), default=0, show_default=True, help="Which book: each has its own variants."
+)
+@click.option("--chapters", default="", help="Numbers of the chapters wanted, as 1,2; all unless told.")
+@click.option("--formats", type=Lists(_formats), default="pdf,html,ipynb", show_default=True)
+@click.option(
+    "--solutions",
+    type=click.Choice(["end", "apart", "none"]),
+    default="end",
+    show_default=True,
+    help="Where the solutions stand: at the end, in a PDF and pages of their own, or nowhere.",
+)
+@click.option("--paper", type=click.Choice(["a4", "letter"]), default="a4", show_default=True)
+@click.option(
+    "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."
+)
+@click.option(
+    "--overwrite",
+    is_flag=True,
+    help="Replace what is there. Files that were changed are set aside, not lost.",
+)
+@click.pass_context
+def workbook(
+    context: click.Context,
+    lang: str,
+    seed: int,
+    chapters: str,
+    formats: Sequence[str],
+    solutions: str,
+    paper: str,
+    out: Path,
+    overwrite: bool,
+) -> None:
+    """Bind the whole course into a book: lessons and exercises in their order, as one PDF with contents, index and solutions, as
+    pages and as notebooks that lead to one another."""
+    from coursework.system.writing import write_tree
+    from coursework.workbook.binding import bound, pieces_of
+    from coursework.workbook.writing import files
+
+    course = opened(context)
+    wanted = _numbers(chapters)
+    with progress_bar("reading", pieces_of(course)) as advance:
+        book = bound(course, lang, seed, chapters=wanted, solved=solutions == "end", advance=advance)
+    made = list(files(course, book, formats, paper=paper, apart=solutions == "apart"))
+    with progress_bar("writing", len(made)) as advance:
+        notes = write_tree(out, made, advance, anew=overwrite)
+    tell(notes)
+    click.echo(
+        f"{counted(len(made), 'file')} in {out}: {', '.join(_first([str(file.path) for file in made]))}"
+    )
+
+
+def _numbers(told: str) -> tuple[int, ...]:
+    """The chapters asked for."""
+    found = [one.strip() for one in told.split(",") if one.strip()]
+    for one in found:
+        if not one.isdecimal():
+            raise BadInput(f"--chapters takes numbers, as 1,2; found {one!r}")
+    return tuple(map(int, found))
+
+
+def _first(paths: Sequence[str]) -> list[str]:
+    """What to open first, of each format."""
+    pages = [path for path in paths if path == "pages/index.html"]
+    notebooks = ["notebooks/"] if any(path.endswith(".ipynb") for path in paths) else []
+    return [*(path for path in paths if path.endswith(".pdf")), *pages, *notebooks]

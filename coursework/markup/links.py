@@ -1,0 +1,47 @@
+"""Links of a course's texts: to an exercise, to a lesson or a section of one, and terms of an index.
+
+``[the construction](exercise:two_circles)``, ``[positions](lesson:positions#3)``, ``[dead points](#index "dead point")``.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+
+_LINK = re.compile(
+    r"\[(?P<said>[^\[\]]+)\]\("
+    r"(?:(?P<kind>exercise|lesson):(?P<name>\w+)(?:#(?P<section>\d+))?|#index(?:\s+\"(?P<entry>[^\"]*)\")?)\)"
+)
+_VERBATIM = re.compile(r"(```.*?```|`[^`\n]*`)", re.DOTALL)
+
+TERM = "term"
+
+
+@dataclass(frozen=True)
+class Link:
+    """A link by its words: to an exercise or a lesson, or a term with its entry in the index."""
+
+    said: str
+    kind: str  #: exercise, lesson or term
+    name: str  #: of the exercise or lesson, or the entry
+    section: int = 0
+
+
+def relinked(text: str, write: Callable[[Link], str]) -> str:
+    """The text with each of its links written anew; code is left as it is."""
+    pieces = _VERBATIM.split(text)
+    pieces[::2] = [_LINK.sub(lambda found: write(_link(found)), piece) for piece in pieces[::2]]
+    return "".join(pieces)
+
+
+def links(text: str) -> tuple[Link, ...]:
+    """The links of a text, in order."""
+    return tuple(_link(found) for piece in _VERBATIM.split(text)[::2] for found in _LINK.finditer(piece))
+
+
+def _link(found: re.Match[str]) -> Link:
+    said = " ".join(found["said"].split())
+    if found["kind"] is None:
+        return Link(said, TERM, " ".join((found["entry"] or said).split()))
+    return Link(said, found["kind"], found["name"], int(found["section"] or 0))

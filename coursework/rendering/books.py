@@ -1,0 +1,176 @@
+"""A workbook as one PDF, and as pages that lead to one another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment
+from markupsafe import Markup
+
+from coursework.language.words import words
+from coursework.markup.links import TERM, Link, relinked
+from coursework.markup.markdown import INDEX, anchor, sort_key
+from coursework.rendering import html, pdf, views
+from coursework.rendering.environment import render
+from coursework.rendering.keeping import keeping
+from coursework.sheets.book import Book, LessonText, Piece, Practised
+
+_TALL = 78  #: mm that a drawing of a lesson takes at most
+
+# -------------------------------------------------------------------------- PDF
+
+
+def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apart: bool = False) -> str:
+    """The Typst source of a book; ``apart``: of its solutions alone."""
+    env = pdf.environment_of(tuple(folders), book.lang)
+    names = _of_book(book) | {"paper": paper, "apart": apart, "tall": _TALL}
+    names |= {"exercises": {one.handout.exercise: _exercise(env, one, "typ.j2") for one in book.exercises}}
+    names["pieces"] = partial(_typst_pieces, env, book)
+    body = Markup(render(env, "book.typ.j2", names))
+    # The parts of a paper are those of an exercise in a book.
+    return render(
+        env, "_page.typ.j2", names | {"bodies": [body], "printed": True, "heading": {"lang": book.lang}}
+    )
+
+
+def _of_book(book: Book) -> dict[str, Any]:
+    said = words(book.lang)
+    names = {one.name for one in book.lessons}
+    return {"book": book, "lang": book.lang, "words": said, "title": book.title, "lesson_names": names}
+
+
+def _exercise(env: Environment, one: Practised, end: str) -> dict[str, Any]:
+    """What the templates see of an exercise: its body, and that of its solution."""
+    names = views.context(one.handout, 1, numbered=False)
+    names["body"] = Markup(render(env, f"_sheet_body.{end}", names))
+    if one.solution is not None:
+        solved = views.context(one.solution, 1, numbered=False)
+        names["solution_body"] = Markup(render(env, f"_solution_body.{end}", solved))
+    return names
+
+
+def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequence[Piece]) -> Markup:
+    here = {one.handout.exercise for one in book.exercises}, {one.name for one in book.lessons}
+
+    def write(link: Link) -> str:
+        if link.kind == TERM:
+            return f'[{link.said}]({INDEX} "{link.name}")'
+        if link.name not in here[link.kind == "lesson"]:
+            return link.said
+        section = f"-{link.section}" if link.section else ""
+        return f"[{link.said}](#{link.kind}-{link.name}{section})"
+
+    names = _of_book(book) | {"lesson": lesson, "pieces": [_told(one) for one in pieces], "tall": _TALL}
+    names["relinked"] = lambda text: relinked(text, write)
+    return Markup(render(env, "_book_pieces.typ.j2", names))
+
+
+def _told(piece: Piece) -> dict[str, Any]:
+    """A piece with the word by which the templates tell it."""
+    return {"kind": type(piece).__name__.lower(), "piece": piece}
+
+
+# ------------------------------------------------------------------------ pages
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page of a book: its file, what it is called, and what stands on it."""
+
+    file: str
+    title: str
+    of: LessonText | Practised | None = None
+
+
+def pages(
+    folders: Sequence[Path], book: Book, paper: str = "a4", *, solutions: bool = True
+) -> dict[str, Callable[[], str]]:
+    """The pages of a book by their files, each a function that makes it: contents, lessons, exercises, the index, and solutions
+    where they are wanted. Each stands alone; those of exercises run the one script that keeps answers."""
+    env = html.environment_of(tuple(folders), book.lang)
+    found = list(_pages(book))
+    shared = _of_book(book) | {"paper": paper, "sheet": {"course": book.title}, "variant": ""}
+    shared |= {"files": {page.file for page in found}, "before": None, "after": None}
+    made: dict[str, Callable[[], str]] = {"terms.html": partial(_terms, env, book, shared)}
+    for place, page in enumerate(found):
+        around = {
+            "before": found[place - 1] if place else None,
+            "after": found[place + 1] if place + 1 < len(found) else None,
+        }
+        made[page.file] = partial(_page, env, book, page, shared | around)
+    if solutions:
+        for one in book.exercises:
+            if one.solution is not None:
+                made[f"solutions/{one.handout.exercise}.html"] = partial(_solution, env, one, shared)
+    return made
+
+
+def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
+    entries = sorted(book.terms.items(), key=lambda item: sort_key(item[0]))
+    listed = [
+        (entry, [(f"{name}.html#{anchor(entry)}", _title_of(book, name)) for name in lessons])
+        for entry, lessons in entries
+    ]
+    more = {"terms": listed, "title": words(book.lang)["book"]["index"]}
+    return render(env, "book_terms.html.j2", {**names, **more})
+
+
+def _solution(env: Environment, one: Practised, names: Mapping[str, Any]) -> str:
+    assert one.solution is not None  # only those that have one are asked for
+    own = views.context(one.solution) | {"one": one, "title": views.title(one.solution)}
+    return render(env, "book_solution.html.j2", {**names, **own})
+
+
+def _pages(book: Book) -> Iterator[Page]:
+    said = words(book.lang)["book"]
+    yield Page("index.html", said["contents"])
+    for chapter in book.chapters:
+        for section in chapter.sections:
+            if section.lesson:
+                yield Page(f"{section.lesson.name}.html", section.lesson.title, section.lesson)
+            for one in section.exercises:
+                yield Page(f"{one.handout.exercise}.html", f"{one.number} {one.handout.title}", one)
+
+
+def _title_of(book: Book, lesson: str) -> str:
+    return next(one.title for one in book.lessons if one.name == lesson)
+
+
+def _page(env: Environment, book: Book, page: Page, names: Mapping[str, Any]) -> str:
+    names = {**names, "page": page, "title": page.title}
+    if isinstance(page.of, LessonText):
+        shown = _html_pieces(env, book, page.of, names)
+        more = {"lesson": page.of, "shown": shown, "own": _own_exercises(book, page.of)}
+        return render(env, "book_lesson.html.j2", {**names, **more})
+    if isinstance(page.of, Practised):
+        sheet = page.of.handout
+        more = views.context(sheet) | {"one": page.of, "keeping": keeping([sheet], sheet.student, sheet.lang)}
+        return render(env, "book_exercise.html.j2", {**names, **more})
+    return render(env, "book_contents.html.j2", names)
+
+
+def _own_exercises(book: Book, lesson: LessonText) -> tuple[Practised, ...]:
+    sections = (s for c in book.chapters for s in c.sections)
+    return next((s.exercises for s in sections if s.lesson is lesson), ())
+
+
+def _html_pieces(env: Environment, book: Book, lesson: LessonText, names: Mapping[str, Any]) -> Markup:
+    met: set[str] = set()
+
+    def write(link: Link) -> str:
+        if link.kind == TERM:
+            first = link.name not in met
+            met.add(link.name)
+            return f'[{link.said}]({INDEX} "{link.name}")' if first else f"*{link.said}*"
+        file = f"{link.name}.html"
+        section = f"#section-{link.section}" if link.section else ""
+        return f"[{link.said}]({file}{section})" if file in names["files"] else link.said
+
+    answers = {number: [_told(one) for one in pieces] for number, pieces in lesson.answers}
+    told = {"lesson": lesson, "pieces": [_told(one) for one in lesson.pieces], "answers": answers}
+    told["relinked"] = lambda text: relinked(text, write)
+    return Markup(render(env, "_book_pieces.html.j2", {**names, **told}))

@@ -1,0 +1,118 @@
+"""A course bound into one book: its chapters, in each the lessons read and run, and a variant of each exercise."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+from coursework.course.chapters import Chapter
+from coursework.course.chapters import Section as Placed
+from coursework.course.course import Course
+from coursework.course.lessons import taught_by
+from coursework.errors import BadInput
+from coursework.language.words import words
+from coursework.making.issuing import distinct_variants
+from coursework.sheets.answer_sheet import answer_sheet
+from coursework.sheets.book import Book, BookChapter, Practised, Section
+from coursework.sheets.handout import handout
+from coursework.workbook.lessons import lesson_text, terms
+
+_FAR = 500_000  #: seeds away from those of a class and of self-study: a book prints its solutions
+_APART = 1_000  #: seeds between two books
+
+
+def bound(
+    course: Course[Any],
+    lang: str,
+    seed: int = 0,
+    *,
+    chapters: Sequence[int] = (),
+    solved: bool = True,
+    advance: Callable[[], object] = lambda: None,
+) -> Book:
+    """The book of a course.
+
+    Parameters
+    ----------
+    course
+        An open course. What stands in none of its chapters comes in one at the end.
+    lang
+        Language of the book.
+    seed
+        Which book: each has variants of its own, and none that a class or self-study is given.
+    chapters
+        The numbers of those that are wanted; all unless told.
+    solved
+        Whether the solutions stand at its end.
+    advance
+        Called after each lesson and exercise.
+
+    Raises
+    ------
+    BadInput
+        No such chapter.
+    BadCourse
+        A lesson cannot be read, drawn or run.
+    """
+    course.folder.check_speaks(lang)
+    found = tuple(_all_chapters(course, lang))
+    numbers = [chapter.number for chapter in found]
+    for number in chapters:
+        if number not in numbers:
+            raise BadInput(f"no chapter {number}; there is {', '.join(map(str, numbers)) or 'none'}")
+    wanted = [chapter for chapter in found if not chapters or chapter.number in chapters]
+    made = tuple(_chapter(course, chapter, lang, seed, advance) for chapter in wanted)
+    index = _index(course, [n for chapter in wanted for n in chapter.lessons], lang)
+    return Book(lang, course.folder.title(lang), seed, made, solved, index)
+
+
+def pieces_of(course: Course[Any]) -> int:
+    """How many lessons and exercises the whole book has."""
+    return len(course.folder.lessons) + len(course.folder.names)
+
+
+def _all_chapters(course: Course[Any], lang: str) -> Iterator[Chapter]:
+    """Those of the course, and one of what stands in none."""
+    folder = course.folder
+    yield from folder.chapters
+    lessons = [n for n in folder.lessons if not any(n in c.lessons for c in folder.chapters)]
+    exercises = [n for n in folder.names if folder.section_of(n) is None]
+    if lessons or exercises:
+        title = words(lang)["book"]["others"] if folder.chapters else folder.title(lang)
+        sections = (*(Placed(n, {}, (), {}) for n in lessons), Placed("", {}, tuple(exercises), {}))
+        yield Chapter(1 + len(folder.chapters), {lang: title}, sections)
+
+
+def _chapter(
+    course: Course[Any], chapter: Chapter, lang: str, seed: int, advance: Callable[[], object]
+) -> BookChapter:
+    sections = []
+    count = 0
+    for placed in chapter.sections:
+        lesson = lesson_text(course, placed.lesson, lang) if placed.lesson else None
+        if lesson:
+            advance()
+        exercises = []
+        for name in placed.exercises:
+            count += 1
+            exercises.append(_practised(course, name, lang, seed, f"{chapter.number}.{count}"))
+            advance()
+        title = "" if lesson else placed.titles.get(lang, "")
+        sections.append(Section(lesson, tuple(exercises), title))
+    return BookChapter(chapter.number, chapter.title(lang), tuple(sections))
+
+
+def _practised(course: Course[Any], name: str, lang: str, seed: int, number: str) -> Practised:
+    exercise = course[name]
+    (variant,) = distinct_variants(exercise, _FAR + _APART * seed, 1, lang)
+    taught = tuple((one.name, one.title) for one in taught_by(course.folder, name, lang))
+    solution = answer_sheet(variant) if course.folder.has_solutions else None
+    return Practised(number, handout(variant), solution, taught)
+
+
+def _index(course: Course[Any], lessons: Sequence[str], lang: str) -> dict[str, tuple[str, ...]]:
+    found: dict[str, tuple[str, ...]] = {}
+    for name in lessons:
+        for entry in terms(course, name, lang):
+            found[entry] = (*found.get(entry, ()), name)
+    return found
