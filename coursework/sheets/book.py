@@ -26,7 +26,7 @@ class Prose:
 class Head:
     """A heading inside a lesson: ``level`` 1 for a section, 2 for a part of one; ``number`` of a numbered section, else 0."""
 
-    text: str  #: Markdown of a line, its number with it
+    text: str  #: Markdown of a line, without its number
     level: int
     number: int = 0
 

@@ -16,7 +16,7 @@ from coursework.workbook.pictures import drawn
 from coursework.workbook.running import Session, Shows
 
 _TITLE = re.compile(r"\A# +[^\n]*\n*")
-_HEAD = re.compile(r"^(##+) +((?:(\d+)\.)?.*?) *$", re.MULTILINE)
+_HEAD = re.compile(r"^(##+) +(?:(\d+)\. +)?(.*?) *$", re.MULTILINE)
 
 
 def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
@@ -81,7 +81,7 @@ def _parted(text: str) -> Iterator[Piece]:
     for head in _HEAD.finditer(text):
         if before := text[end : head.start()].strip():
             yield Prose(before)
-        yield Head(head[2], len(head[1]) - 1, int(head[3] or 0))
+        yield Head(head[3], len(head[1]) - 1, int(head[2] or 0))
         end = head.end()
     if after := text[end:].strip():
         yield Prose(after)

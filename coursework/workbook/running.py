@@ -59,8 +59,10 @@ class Session:
                 f"{self._file}, line {self._line(fault, cell)}: {type(fault).__name__}: {fault}"
             ) from fault
         said = printed.getvalue().rstrip()
-        shown = shows(value)
-        return Shows((*([Printed(said)] if said else []), *shown.now), shown.later)
+        shown, told = shows(value), (Printed(said),) if said else ()
+        if isinstance(value, Compared):
+            return Shows((), (*told, *shown.later))  # what it prints would tell what is to be predicted
+        return Shows((*told, *shown.now), shown.later)
 
     def _line(self, fault: Exception, cell: Cell) -> int:
         own = [
