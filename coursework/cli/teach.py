@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from coursework.cli.options import (
+    DONE,
+    FOUND,
     UNLESS_TOLD,
     Lists,
     Whole,
@@ -25,6 +28,9 @@ from coursework.cli.options import (
 from coursework.cli.printing import progress_bar
 from coursework.errors import BadInput, counted
 
+if TYPE_CHECKING:
+    from coursework.course.course import Course
+
 # ----------------------------------------------------------------------- lesson
 
 
@@ -32,11 +38,14 @@ from coursework.errors import BadInput, counted
 @click.argument("lessons", nargs=-1)
 @lang_option
 @click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for the notebooks.")
+@click.option(
+    "--check", is_flag=True, help="Read, draw and run them in every language; status 1 when one fails."
+)
 @replace_option
 @click.pass_context
 def lesson(
-    context: click.Context, lessons: Sequence[str], lang: str, out: Path | None, overwrite: bool
-) -> None:
+    context: click.Context, lessons: Sequence[str], lang: str, out: Path | None, check: bool, overwrite: bool
+) -> int:
     """Write the course's lessons as notebooks; without --out, list them."""
     from coursework.course.lessons import lesson_file
     from coursework.system.writing import write_whole
@@ -46,15 +55,35 @@ def lesson(
     asked = lessons or course.folder.lessons
     for name in asked:
         lesson_file(course.folder, name, lang)
+    if check:
+        return _check_lessons(course, asked)
     if out is None:
         for name in asked:
             click.echo(name)
-        return
+        return DONE
     paths = {name: out / notebook_name(name, lang) for name in asked}
     _spare(list(paths.values()), overwrite)
     for name, path in paths.items():
         write_whole(path, lesson_notebook(course, name, lang).encode("utf-8"))
         click.echo(str(path))
+    return DONE
+
+
+def _check_lessons(course: Course, names: Sequence[str]) -> int:
+    from coursework.workbook.lessons import faults
+
+    found: list[str] = []
+    with progress_bar("checking", len(names)) as advance:
+        for name in names:
+            found += faults(course, name)
+            advance()
+    for fault in found:
+        click.echo(fault)
+    if not found:
+        click.echo(
+            f"{counted(len(names), 'lesson')} read, drawn and run in {', '.join(course.folder.languages)}"
+        )
+    return FOUND if found else DONE
 
 
 def _spare(paths: Sequence[Path], overwrite: bool) -> None:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from coursework.course.course import Course
 from coursework.course.lessons import lesson_file, lesson_sections, lesson_title
-from coursework.errors import BadCourse, nearest
+from coursework.errors import BadCourse, CourseworkError, counted, nearest
 from coursework.markup.links import TERM, links
 from coursework.sheets.book import Code, Head, Later, LessonText, Piece, Prose
 from coursework.workbook import lesson_source as source
@@ -32,7 +33,9 @@ def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
     path = lesson_file(course.folder, name, lang)
     text = path.read_text("utf-8-sig")
     check_links(course, name, lang)
-    made = _Lesson(course, name, lang, Session(course.folder.relative(path)))
+    # Beside the course's folder, which a cell so opens by its name.
+    session = Session(course.folder.relative(path), course.folder.root.parent)
+    made = _Lesson(course, name, lang, session)
     for block in source.blocks(_TITLE.sub("", text), course.folder.relative(path)):
         made.add(block)
     number = 1 + course.folder.lessons.index(name)
@@ -109,6 +112,29 @@ def check_links(course: Course[Any], name: str, lang: str) -> None:
             raise BadCourse(
                 f"{folder.relative(path)} links to section {link.section} of {link.name}, which it has not"
             )
+
+
+def faults(course: Course[Any], name: str) -> tuple[str, ...]:
+    """What is wrong with a lesson, in a sentence each: a language in which it cannot be read, drawn or run, and languages of which
+    one has other cells, pictures or answers than another."""
+    found, shapes = [], {}
+    for lang in course.folder.languages:
+        try:
+            text = lesson_file(course.folder, name, lang).read_text("utf-8-sig")
+            lesson_text(course, name, lang)
+        except CourseworkError as fault:
+            found.append(f"{name}, {lang}: {fault}")
+            continue
+        blocks = source.blocks(text, name)
+        shapes[lang] = [type(b).__name__ for b in blocks if not isinstance(b, source.Prose)]
+    if len({tuple(shape) for shape in shapes.values()}) > 1:
+        told = "; ".join(f"{lang}: {_counted(shape)}" for lang, shape in shapes.items())
+        found.append(f"{name} is not the same in every language: {told}")
+    return tuple(found)
+
+
+def _counted(shape: Sequence[str]) -> str:
+    return ", ".join(counted(n, kind.lower()) for kind, n in sorted(Counter(shape).items()))
 
 
 def terms(course: Course[Any], name: str, lang: str) -> tuple[str, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 from collections.abc import Mapping
 from typing import Any
+from urllib.parse import quote
 
 from coursework.course.course import Course
 from coursework.course.lessons import lesson_file, lesson_sections, lesson_title
@@ -69,8 +70,10 @@ def _linked(course: Course[Any], text: str, lang: str) -> str:
             return f"*{link.said}*"
         place = ""
         if link.section:
-            place = "#" + lesson_sections(course.folder, link.name, lang)[link.section].replace(" ", "-")
-        return f"[{link.said}](<{notebook_name(link.name, lang)}{place}>)"
+            place = "#" + quote(
+                lesson_sections(course.folder, link.name, lang)[link.section].replace(" ", "-")
+            )
+        return f"[{link.said}]({notebook_name(link.name, lang)}{place})"
 
     return relinked(text, write)
 

@@ -37,6 +37,10 @@ def drawn(course: Course[Any], lesson: str, image: Image, lang: str) -> Drawn:
 
 
 def _of_lesson(course: Course[Any], lesson: str, image: Image, lang: str) -> Drawn:
+    if not image.caption.strip():
+        raise BadInput(
+            f"the figure {image.name} has no caption, which tells what it shows to who does not see it"
+        )
     made = _call(course.folder, lesson, image.name)
     said = plain_line(image.caption, lang)
     if isinstance(made, (Figure, Picture)):

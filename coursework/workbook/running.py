@@ -8,6 +8,7 @@ import io
 import traceback
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from coursework.errors import BadCourse
@@ -31,10 +32,10 @@ class Shows:
 
 
 class Session:
-    """A lesson's cells, run one after another in one namespace, as in a notebook."""
+    """A lesson's cells, run one after another in one namespace, as in a notebook that stands in a folder."""
 
-    def __init__(self, file: str):
-        self._file = file
+    def __init__(self, file: str, folder: Path):
+        self._file, self._folder = file, folder
         self._names: dict[str, Any] = {"__name__": "__lesson__"}
 
     def run(self, cell: Cell) -> Shows:
@@ -50,7 +51,7 @@ class Session:
         last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
         printed, value = io.StringIO(), None
         try:
-            with contextlib.redirect_stdout(printed):
+            with contextlib.redirect_stdout(printed), contextlib.chdir(self._folder):
                 exec(compile(tree, self._file, "exec"), self._names)
                 if isinstance(last, ast.Expr):
                     value = eval(compile(ast.Expression(last.value), self._file, "eval"), self._names)
@@ -87,7 +88,7 @@ def shows(value: Any) -> Shows:
     if isinstance(value, Animation):
         return Shows((moving(value),))
     if isinstance(value, (Figure, Picture)):
-        return Shows((Drawn("", figure=value),))
+        return Shows((Drawn(type(value).__name__, figure=value),))
     return Shows((Printed(str(value)),))
 
 

@@ -1,0 +1,304 @@
+"""A course bound into a book: one PDF, pages, notebooks; what leads where, and what is given away."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import nbformat
+import pytest
+from pdf_text import page_texts
+
+import coursework
+from coursework.cli import run
+from coursework.errors import BadCourse, BadInput, UnknownName
+from coursework.rendering.renderer import renderer_of
+from coursework.workbook.binding import bound
+from coursework.workbook.lessons import faults, lesson_text
+from coursework.workbook.notebooks import lesson_notebook
+from coursework.workbook.writing import files
+
+CHAPTERS = """
+[[chapters]]
+title = { en = "Pins", fr = "Pivots" }
+
+[[chapters.sections]]
+lesson = "rods"
+exercises = ["crank_pin"]
+"""
+
+FIGURES = """
+from coursework.figures import Figure, link, pin
+
+
+def one_rod():
+    return Figure(link(0, 100), pin(0, "A"), pin(100, "B"))
+
+
+def turning_rod():
+    import cmath
+    return [Figure(link(0, 100 * cmath.exp(1j * k)), pin(0, "A")) for k in range(6)]
+"""
+
+LESSON = """# Rods & <pins>
+
+A [rod](#index "rod") is rigid; [rods](#index "rod") turn about an [étai](#index "étai").
+
+## What you will be able to do
+
+Nothing less.
+
+## 1. One rod
+
+![A rod $AB$](figure:one_rod)
+
+```python
+import coursework
+
+course = coursework.open_course("small")
+predicted = {"length": None}
+```
+
+```python
+print("told by the machine")
+coursework.compare(predicted, {"length": 120}, "LANG")
+```
+
+```python
+print("seen at once")
+coursework.worked("crank_pin", seed=3, lang="LANG", level=2, course="small")
+```
+
+```python {tags=notebook}
+raise SystemError("not for a book")
+```
+
+```python {tags=shown}
+x = 41 + 1
+x
+```
+
+```python {tags=still}
+undefined_name
+```
+
+![A rod that turns](figure:turning_rod)
+
+## 2. Two rods
+
+Back to [section one](lesson:rods#1), on to [the pin](exercise:crank_pin).
+
+**Question 1.** Is it?
+
+```answer
+It **is**, as $x = 42$.
+```
+"""
+
+
+@pytest.fixture
+def folder(small_course):
+    settings = small_course / "exercises/course.toml"
+    settings.write_text(settings.read_text("utf-8") + CHAPTERS, "utf-8")
+    lessons = small_course / "exercises/lessons"
+    lessons.mkdir()
+    (lessons / "rods.py").write_text(FIGURES, "utf-8")
+    for lang in ("en", "fr"):
+        (lessons / f"rods.{lang}.md").write_text(LESSON.replace("LANG", lang), "utf-8")
+    return small_course
+
+
+@pytest.fixture
+def small(folder):
+    return coursework.open_course(folder)
+
+
+def made(course, lang="en", **options):
+    book = bound(course, lang, options.pop("seed", 0), solved=options.pop("solved", True))
+    return {str(file.path): file.make() for file in files(course, book, **options)}
+
+
+def test_a_lesson_is_told_run_and_drawn(small):
+    told = lesson_text(small, "rods", "en")
+    said = [f"{type(p).__name__} {getattr(p, 'text', '')}" for p in told.pieces]
+    assert (told.title, told.number) == ("Rods & <pins>", 1)
+    assert "Head One rod" in said
+    assert "Printed seen at once" in said
+    assert "Printed 42" in said
+    assert "Code x = 41 + 1\nx" in said
+    assert "Code undefined_name" in said
+    assert "Printed told by the machine" not in said
+    assert [number for number, _ in told.answers] == [1, 2, 3]
+    (printed, outcome), (right,), (own,) = (pieces for _, pieces in told.answers)
+    assert printed.text == "told by the machine"
+    assert outcome.text == "- length: 120"
+    assert "$" in right.text
+    assert own.text == "It **is**, as $x = 42$."
+    still, moving = (p for p in told.pieces if type(p).__name__ == "Drawn" and p.said.startswith("A rod"))
+    assert still.figure is not None
+    assert len(moving.stills) == 4
+    assert "<animate" in moving.svg
+
+
+def test_a_lesson_leaves_nothing_behind(small, tmp_path, monkeypatch):
+    here = tmp_path / "here"
+    here.mkdir()
+    monkeypatch.chdir(here)
+    lesson_text(small, "rods", "en")
+    assert Path.cwd() == here
+    assert list(here.iterdir()) == []
+
+
+def test_the_pdf_has_contents_lessons_exercises_solutions_and_an_index(small):
+    text = page_texts(made(small, formats=["pdf"])["workbook.en.pdf"])
+    whole = "".join("".join(text).split())
+    assert "Contents" in text[1]
+    for part in (
+        "Chapter1.Pins",
+        "Lesson1.Rods&<pins>",
+        "Exercise1.1.",
+        "1.Onerod",
+        "Arodthatturns",
+        "Solutions",
+        "Indexofterms",
+    ):
+        assert part in whole, part
+    assert "notforabook" not in whole
+    assert whole.index("seenatonce") < whole.index("toldbythemachine")
+    # Sorted without accents: étai before rod, each with its page.
+    assert re.search(r"étai,\d+rod,\d+", whole[whole.rindex("Indexofterms") :])
+
+
+def test_the_same_course_language_and_seed_give_the_same_bytes(small):
+    first, second = made(small, "fr"), made(small, "fr")
+    assert first == second
+    other = made(small, "fr", seed=1)
+    assert other["pages/crank_pin.html"] != first["pages/crank_pin.html"]
+    assert other["pages/rods.html"] == first["pages/rods.html"]
+
+
+class _Pages(HTMLParser):
+    """The places that a page leads to, and those that it has."""
+
+    def __init__(self, page: str):
+        super().__init__()
+        self.hrefs, self.ids = [], []
+        self.feed(page)
+
+    def handle_starttag(self, tag, attrs):
+        named = dict(attrs)
+        self.hrefs += [named["href"]] if tag == "a" and "href" in named else []
+        self.ids += [named["id"]] if "id" in named else []
+
+
+@pytest.mark.parametrize("solutions", ["end", "none"])
+def test_every_link_of_the_pages_leads_to_a_place_that_is_there(small, solutions):
+    found = {
+        path.removeprefix("pages/"): _Pages(text.decode())
+        for path, text in made(small, formats=["html"], solved=solutions == "end").items()
+    }
+    assert {"index.html", "terms.html", "rods.html", "crank_pin.html"} <= set(found)
+    assert ("solutions/crank_pin.html" in found) is (solutions == "end")
+    for path, page in found.items():
+        assert len(set(page.ids)) == len(page.ids)
+        for href in page.hrefs:
+            file, _, place = href.partition("#")
+            target = path if not file else str(Path(path).parent / file).replace("solutions/../", "")
+            assert target in found, href
+            assert not place or place in found[target].ids, href
+
+
+def test_every_link_of_the_notebooks_leads_to_a_notebook_beside_it(small):
+    books = {path: nbformat.reads(text.decode(), 4) for path, text in made(small, formats=["ipynb"]).items()}
+    assert set(books) == {"notebooks/rods.en.ipynb", "notebooks/crank_pin.en.ipynb"}
+    links = {
+        link
+        for book in books.values()
+        for cell in book.cells
+        if cell.cell_type == "markdown"
+        for link in re.findall(r"\]\(([^()#]+\.ipynb)", cell.source)
+    }
+    assert links == {"rods.en.ipynb", "crank_pin.en.ipynb"}
+
+
+def test_a_notebook_holds_its_pictures_and_folds_its_answers(small):
+    cells = json.loads(lesson_notebook(small, "rods", "en"))["cells"]
+    pictures = [mime for cell in cells for p in cell.get("attachments", {}).values() for mime in p]
+    assert pictures == ["image/png", "image/svg+xml"]
+    png = next(p for cell in cells for p in cell.get("attachments", {}).values() if "image/png" in p)
+    assert base64.b64decode(png["image/png"])[:8] == b"\x89PNG\r\n\x1a\n"
+    text = "".join("".join(c["source"]) for c in cells if c["cell_type"] == "markdown")
+    assert "<details><summary>Answer</summary>\n\nIt **is**" in text
+    assert "#index" not in text
+    assert "Exercises of this lesson" in text
+
+
+def test_what_is_given_away_has_no_solution_where_they_stand_apart(small):
+    found = made(small, formats=["pdf", "html"], solved=False, apart=True)
+    assert set(found) >= {"workbook.en.pdf", "solutions.en.pdf", "solutions/crank_pin.html"}
+    assert "Solutions" not in "".join(page_texts(found["workbook.en.pdf"]))
+    assert "Solutions" in "".join(page_texts(found["solutions.en.pdf"]))
+    assert not any(b"solutions/" in text for path, text in found.items() if path.startswith("pages/"))
+
+
+def test_a_book_prints_no_variant_that_a_class_is_given(small):
+    book = bound(small, "en")
+    assert [one.handout.seed >= 500_000 for one in book.exercises] == [True]
+
+
+@pytest.mark.parametrize(
+    ("was", "now", "told"),
+    [
+        ("lesson:rods#1", "lesson:rods#7", "section 7 of rods"),
+        ("lesson:rods#1", "lesson:rod", "the lesson 'rod', which there is not; did you mean 'rods'"),
+        ("exercise:crank_pin)", "exercise:crank_pim)", "'crank_pim'"),
+        ("figure:one_rod", "figure:one_road", "no figure 'one_road'; did you mean 'one_rod'"),
+        ("x = 41 + 1", "x = 41 + y", "line 33: NameError"),
+        ("figure:turning_rod", "exercise:crank_pin?sed=1", "'sed'"),
+        ("![A rod that turns]", "![]", "line 41: the figure turning_rod has no caption"),
+        ("level=2", "level=9", "line 25: WrongValue"),
+    ],
+)
+def test_what_is_wrong_in_a_lesson_is_said_with_its_place(folder, was, now, told):
+    path = folder / "exercises/lessons/rods.en.md"
+    text = path.read_text("utf-8")
+    assert was in text
+    path.write_text(text.replace(was, now), "utf-8")
+    course = coursework.open_course(folder)
+    with pytest.raises(BadCourse) as caught:
+        lesson_text(course, "rods", "en")
+    assert told in str(caught.value)
+    assert len(faults(course, "rods")) == 1
+
+
+def test_lessons_that_differ_between_languages_are_told(folder, capsys):
+    path = folder / "exercises/lessons/rods.fr.md"
+    path.write_text(path.read_text("utf-8").partition("**Question")[0], "utf-8")
+    assert run(["--course", str(folder), "lesson", "--check"]) == 1
+    assert "rods is not the same in every language" in capsys.readouterr().out
+
+
+def test_the_command_writes_all_and_says_what_to_open(folder, tmp_path, capsys):
+    out = tmp_path / "book"
+    assert run(["--course", str(folder), "workbook", "--lang", "en", "--out", str(out)]) == 0
+    assert "workbook.en.pdf, pages/index.html, notebooks/" in capsys.readouterr().out
+    assert (out / "pages/solutions/crank_pin.html").exists()
+    assert run(["--course", str(folder), "workbook", "--chapters", "4", "--out", str(tmp_path / "b")]) == 2
+    assert "no chapter 4; there is 1" in capsys.readouterr().err
+
+
+def test_chapters_and_formats_that_are_none_are_refused(small):
+    with pytest.raises(BadInput, match="no chapter 3"):
+        bound(small, "en", chapters=[3])
+    with pytest.raises(UnknownName, match="format"):
+        list(files(small, bound(small, "en"), ["docx"]))
+
+
+def test_a_course_without_chapters_is_bound_as_well(small_course):
+    course = coursework.open_course(small_course)
+    (chapter,) = bound(course, "fr").chapters
+    assert [one.handout.exercise for one in chapter.exercises] == ["crank_pin"]
+    assert renderer_of(course.folder).book_pdf(bound(course, "fr"))[:5] == b"%PDF-"
