@@ -26,12 +26,12 @@ COURSE = coursework.open_course()
 every_page = pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
 every_exercise = pytest.mark.parametrize("name", COURSE.names)
 
-FENCE = re.compile(r"^```(\S*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+FENCE = re.compile(r"^(?P<ticks>`{3,})(\S*)\n(.*?)^(?P=ticks)$", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^()\s]+)\)")
 
 
 def blocks(page: Path, kind: str) -> list[str]:
-    return [body for name, body in FENCE.findall(page.read_text("utf-8")) if name == kind]
+    return [body for _, name, body in FENCE.findall(page.read_text("utf-8")) if name == kind]
 
 
 def anchors(page: Path) -> set[str]:
