@@ -78,7 +78,7 @@ def four_terms():
         angle_mark(0j, 0, 30, r"\theta", radius=30),
         point(0j, "O", toward=225),
         point(tip),
-        paper_mm=(110, 85),
+        paper_mm=(100, 60),
     )
 
 
@@ -98,7 +98,7 @@ def normal_and_tangential():
         rotation_arrow(0j, 60, 340, 372, r"\alpha"),
         pin(0j, "A", toward=225),
         pin(B, "B", toward=-30),
-        paper_mm=(100, 80),
+        paper_mm=(90, 62),
     )
 
 
@@ -197,7 +197,7 @@ def image_of_a_link():
 
 def where_coriolis_comes_from():
     """A guide a moment apart. On the left the sliding velocity has turned; on the right the radius has grown."""
-    return Figure(*_turned(0j), *_carried(175 + 0j), paper_mm=(150, 75))
+    return Figure(*_turned(0j), *_carried(175 + 0j), paper_mm=(130, 64))
 
 
 def _turned(at):
@@ -247,7 +247,7 @@ def _bead(turned):
     r, slide = 75 - 35 * np.cos(np.radians(turned)), 35 * np.sin(np.radians(turned))
     C = r * u
     return Figure(
-        circle(0j, 126, dashed=True),
+        circle(0j, 122, dashed=True),
         slot_link(0j, 122 * u),
         slider(C, turned),
         ground_pivot(0j),
@@ -310,7 +310,7 @@ def slotted_mechanism():
         vector(A, -110 * u, r"\vec V_{A/A_4}"),
         vector(A, (a - k) / 33, r"\vec a^c"),
         note(1.42 * A, "4"),
-        paper_mm=(90, 95),
+        paper_mm=(80, 76),
     )
 
 

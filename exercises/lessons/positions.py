@@ -55,7 +55,7 @@ def two_circles():
         pin(A, "A"),
         pin(first, "B_1"),
         point(second, "B_2"),
-        paper_mm=(120, 110),
+        paper_mm=(100, 72),
     )
 
 
@@ -117,7 +117,7 @@ def _third_step(at):
 
 def precision():
     """Two arcs, each a band as wide as the pencil's doubt: square to each other, then nearly tangent."""
-    return Figure(*_bands(0j, 90.0), *_bands(90 + 0j, 25.0), paper_mm=(130, 60))
+    return Figure(*_bands(0j, 90.0), *_bands(90 + 0j, 25.0), paper_mm=(110, 48))
 
 
 def _bands(at, mu):
@@ -198,7 +198,7 @@ def vector_as_a_complex_number():
         note(tip.real / 2 - 6j, r"r\,\mathrm{cos}\,\theta"),
         note(1j * tip.imag / 2 - 17, r"r\,\mathrm{sin}\,\theta"),
         angle_mark(0j, 0, 37, r"\theta", radius=30),
-        paper_mm=(80, 65),
+        paper_mm=(70, 52),
     )
 
 
@@ -238,7 +238,7 @@ def slotted_mechanism():
         line(O4, O4 + 75, dashed=True),
         angle_mark(O2, 0, 135, r"\theta_2"),
         angle_mark(O4, 0, angle(A), r"\theta_4"),
-        paper_mm=(80, 90),
+        paper_mm=(70, 75),
     )
 
 
@@ -255,7 +255,7 @@ def opposite_directions():
         angle_mark(0j, 0, -75.36, r"\theta_4 - 180°", radius=42),
         note(complex(85, -8), "x"),
         note(complex(8, 115), "y"),
-        paper_mm=(80, 85),
+        paper_mm=(60, 62),
     )
 
 
@@ -278,5 +278,5 @@ def line_and_unit_circle():
         angle_mark(0j, phi, phi + psi, r"\psi", radius=40),
         angle_mark(0j, phi, phi - psi, r"\psi", radius=52),
         note(1.16 * root * normal, "(a, b)"),
-        paper_mm=(95, 85),
+        paper_mm=(85, 70),
     )

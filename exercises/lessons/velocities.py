@@ -86,7 +86,7 @@ def four_cases():
         note(159 * along, "4"),
         note(C - 16j * along, "3"),
         rotation_arrow(0j, 98, 42, 58, r"\omega_4"),
-        paper_mm=(100, 70),
+        paper_mm=(90, 58),
     )
 
 
@@ -105,7 +105,7 @@ def two_points_of_a_body():
         rotation_arrow(polar(50.0, 350), 13, 200, 460, r"\omega"),
         point(A, "A", toward=220),
         point(B, "B", toward=-30),
-        paper_mm=(110, 80),
+        paper_mm=(100, 62),
     )
 
 
@@ -121,7 +121,7 @@ def quarter_turn():
         rotation_arrow(0j, 76, 34, 50, r"\omega"),
         point(0j, "A", toward=225),
         point(r, "B", toward=-30),
-        paper_mm=(80, 75),
+        paper_mm=(70, 60),
     )
 
 
@@ -137,7 +137,7 @@ def directions_before_the_drawing():
         note(B + 68 * across[1], r"\vec V_B"),
         angle_mark(O, 0, THETA2, r"\theta_2"),
         rotation_arrow(O, 40, 100, 140, r"\omega_2"),
-        paper_mm=(110, 75),
+        paper_mm=(100, 66),
     )
 
 
@@ -272,7 +272,7 @@ def radial_and_transverse():
         line(r + along, r + along + across, dashed=True),
         line(r + across, r + along + across, dashed=True),
         angle_mark(0j, 0, 35, r"\theta", radius=32),
-        paper_mm=(90, 80),
+        paper_mm=(80, 62),
     )
 
 
@@ -307,7 +307,7 @@ def coincident_points():
         point(p, "p_v"),
         point(a, "a"),
         point(own, "a_4"),
-        paper_mm=(130, 95),
+        paper_mm=(120, 78),
     )
 
 
@@ -334,7 +334,7 @@ def curved_slot():
         line(A, A + 75, dashed=True),
         angle_mark(A, 0, angle(-tangent), r"\tau", radius=58),
         note(K + polar(rho, 125) - 18, "4"),
-        paper_mm=(110, 85),
+        paper_mm=(100, 68),
     )
 
 
@@ -356,5 +356,5 @@ def cam():
         rotation_arrow(O, 30, 250, 310, r"\omega_2"),
         note(complex(8, face + 55), "3"),
         note(K + 25 - 10j, "2"),
-        paper_mm=(100, 85),
+        paper_mm=(90, 65),
     )
