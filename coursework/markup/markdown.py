@@ -158,9 +158,10 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
     def inside() -> str:
         return "".join(_typst(child, lang) for child in node.children)
 
-    def items(mark: str) -> str:
-        lines = (_typst(item, lang).strip() for item in node.children)
-        return "\n".join(f"{mark} " + textwrap.indent(line, "  ").lstrip() for line in lines) + "\n\n"
+    def items(mark: str, first: str = "") -> str:
+        marks = (first or mark, *[mark] * (len(node.children) - 1))
+        lines = (textwrap.indent(_typst(item, lang).strip(), "  ").lstrip() for item in node.children)
+        return "\n".join(f"{one} {line}" for one, line in zip(marks, lines, strict=True)) + "\n\n"
 
     match node.type:
         case "root" | "inline" | "list_item" | "thead" | "tbody":
@@ -187,7 +188,8 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
         case "bullet_list":
             return items("-")
         case "ordered_list":
-            return items("+")
+            start = int(node.attrs.get("start", 1))
+            return items("+", "" if start == 1 else f"{start}.")
         case "blockquote":
             return f"#remark[{inside().strip()}]\n\n"
         case "heading":

@@ -79,6 +79,13 @@ def test_markdown_reaches_every_back_end():
         assert word in plain
 
 
+def test_a_list_that_another_text_interrupts_goes_on_with_its_number():
+    text = "2. b\n3. c"
+    assert '<ol start="2">' in to_html(text, "en")
+    assert to_typst_markup(text, "en").split("\n") == ["2. b", "+ c"]
+    assert to_text(text, "en") == "2. b\n3. c"
+
+
 @pytest.mark.parametrize("tex", [r"\num{1.5}\ \mathrm{mm}", " a ", r"\{", "-1"])
 def test_a_formula_alone_is_written_as_in_a_text(tex):
     assert to_typst_markup(f"${tex}$", "fr") == to_typst_markup(f"${tex}$ et", "fr").removesuffix(" et")
