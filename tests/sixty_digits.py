@@ -24,6 +24,11 @@ SISTERS = {
     "acceleration_polygon": ("four_bar_motion", ("a_B", "alpha3", "alpha4"), {"alpha2": 0.0}),
     "velocity_polygon_slider": ("slider_crank", ("r1_dot", "omega3"), {"alpha2": 0.0, "e": 0.0}),
     "acceleration_polygon_slider": ("slider_crank", ("r1_ddot", "alpha3"), {"alpha2": 0.0, "e": 0.0}),
+    "two_circles": (
+        "four_bar_positions",
+        ("theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed"),
+        {},
+    ),
     "havens_construction": ("havens_planetary", ("omega3", "omega4"), {}),
 }
 

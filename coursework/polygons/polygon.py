@@ -29,7 +29,7 @@ from types import MappingProxyType
 
 from coursework.errors import BadCourse, unknown
 
-UNITS = {"velocity": "mm/s", "acceleration": "mm/s^2"}
+UNITS = {"velocity": "mm/s", "acceleration": "mm/s^2", "position": "mm"}
 _CLOSED = 1e-6  #: of the longest side: what two ways to one point may differ by
 
 
@@ -101,12 +101,12 @@ class Stage:
 
 @dataclass(frozen=True)
 class Polygon:
-    """A velocity or an acceleration polygon.
+    """A velocity or an acceleration polygon, or what is known of a mechanism drawn to scale.
 
     Parameters
     ----------
     kind
-        ``velocity`` (mm/s) or ``acceleration`` (mm/s^2).
+        ``velocity`` (mm/s), ``acceleration`` (mm/s^2) or ``position`` (mm).
     sides
         In the order of the construction. The pole is where the first of them starts.
     scale
