@@ -24,6 +24,12 @@ SISTERS = {
     "acceleration_polygon": ("four_bar_motion", ("a_B", "alpha3", "alpha4"), {"alpha2": 0.0}),
     "velocity_polygon_slider": ("slider_crank", ("r1_dot", "omega3"), {"alpha2": 0.0, "e": 0.0}),
     "acceleration_polygon_slider": ("slider_crank", ("r1_ddot", "alpha3"), {"alpha2": 0.0, "e": 0.0}),
+    "velocity_polygon_slotted": ("slotted_mechanism", ("rA_dot", "omega4"), {"alpha2": 0.0, "theta1": 90.0}),
+    "acceleration_polygon_slotted": (
+        "slotted_mechanism",
+        ("rA_ddot", "alpha4"),
+        {"alpha2": 0.0, "theta1": 90.0},
+    ),
     "two_circles": (
         "four_bar_positions",
         ("theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed"),
