@@ -82,7 +82,7 @@ def test_coriolis_on_the_wrong_side_is_told_and_costs_nothing_after_it():
         marking = variant.grade(answers)
         found = {n: marking[n].verdict for n in answers}
         assert found.pop("k") == "mistake:k_sense", variant.seed
-        assert "a" in found and set(found.values()) <= {"correct", "follow_through"}
+        assert set(found.values()) <= {"correct", "follow_through"}
         assert found["b"] == "follow_through"
         assert found["a"] == found["n"] == "correct"
 
