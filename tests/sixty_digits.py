@@ -30,6 +30,7 @@ SISTERS = {
         ("rA_ddot", "alpha4"),
         {"alpha2": 0.0, "theta1": 90.0},
     ),
+    "crank_shaper_drawn": ("quick_return_shaper", ("v_C", "alpha", "beta", "Q"), {}),
     "two_circles": (
         "four_bar_positions",
         ("theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed"),
