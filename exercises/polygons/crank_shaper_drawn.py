@@ -47,6 +47,10 @@ def ram(guided, r4, r5, h):
     return Ram(lever, rod, velocities, (a_D, normal, tangential, (a_D + normal + tangential).real))
 
 
+def crank_off_the_axes(theta2):
+    return theta2 % 90 >= 5
+
+
 def lever_swings_and_carries_P(r1, r2, r4):
     return (r2 < 0.6 * r1) & (r1 + r2 < 0.95 * r4)
 
@@ -123,6 +127,7 @@ EXERCISE = Exercise(
     helpers=(guided, ram),
     keep=(
         crank_turns_visibly,
+        crank_off_the_axes,
         lever_swings_and_carries_P,
         rod_reaches_with_room,
         rod_never_in_line_with_the_lever,

@@ -361,7 +361,7 @@ def _accelerations(bars, rates, scale=None):
     alpha4, gain = (terms.tangential / (1j * bars.arm)).real, (terms.sliding / bars.along).real
     alpha5 = (terms.rod_tangential / (1j * bars.rod)).real
     return polygon_of_accelerations(
-        crank_a("P_2", "CP", bars.crank, rates.omega2),
+        crank_a("P_2", "CP", bars.crank, rates.omega2, length="CP"),
         guide_a("P_2", "P_4", "OP", bars.arm, rates.omega4, alpha4, rates.sliding, gain, "OP", r"\omega_4"),
         (image("p_a", "d", r"\vec{a}_D", terms.of_D, ("p_a", "p_4"), r"\frac{OD}{OP}\,a_{P_4}"),),
         slider_a("E", "D", bars.rod, rates.omega5, alpha5, "DE", terms.of_E.real),
