@@ -1,9 +1,11 @@
 """What the drawn polygons share: parts, and the four-bar linkages and slider-cranks that make good drawings."""
 
+from typing import Any, NamedTuple
+
 import numpy as np
 
 from coursework.degrees import angle, polar
-from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider
+from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider, slot_link
 from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.language.numbers import significant
 from coursework.model import Part, chosen, drawn
@@ -154,3 +156,73 @@ def of_slider_crank(rod, r2, theta2):
     alpha3 = (crank.imag + omega3**2 * rod.imag) / rod.real
     tangential = 1j * alpha3 * rod
     return -crank, -(omega3**2) * rod, tangential, -crank - omega3**2 * rod + tangential
+
+
+# ------------------------------------------------------------------------ slotted guide
+
+
+class Guided(NamedTuple):
+    """A slotted mechanism at unit rate of the crank: vectors O2A and O4A; the rate of the guide and of the block
+    along it, and the rates of these at a constant rate of the crank."""
+
+    crank: Any
+    arm: Any
+    guide_rate: Any
+    sliding: Any
+    guide_gain: Any
+    sliding_gain: Any
+
+    @property
+    def along(self):
+        """Unit vector of the guide, away from O4."""
+        return self.arm / abs(self.arm)
+
+    @property
+    def velocities(self):
+        """Of A2, of A4 (the point of the guide), of A2 relative to A4; over omega2."""
+        return 1j * self.crank, 1j * self.guide_rate * self.arm, self.sliding * self.along
+
+    @property
+    def accelerations(self):
+        """Of A2; Coriolis; of A4, normal then tangential; relative, along the guide; over omega2 squared."""
+        return (
+            -self.crank,
+            2j * self.guide_rate * self.sliding * self.along,
+            -(self.guide_rate**2) * self.arm,
+            1j * self.guide_gain * self.arm,
+            self.sliding_gain * self.along,
+        )
+
+
+def guided(r1, r2, theta2):
+    """Of O2 at the height r1 above O4, the origin."""
+    crank = polar(r2, theta2)
+    arm = 1j * r1 + crank
+    along = arm / abs(arm)
+    guide_rate, sliding = dot(crank, arm) / abs(arm) ** 2, dot(1j * crank, along)
+    left = -crank + guide_rate**2 * arm - 2j * guide_rate * sliding * along
+    return Guided(crank, arm, guide_rate, sliding, dot(left, 1j * along) / abs(arm), dot(left, along))
+
+
+SLOTTED = {
+    "r1": drawn(100, 300, step=5, unit="mm"),
+    "r2": drawn(40, 250, step=5, unit="mm"),
+    "theta2": drawn(-175, 180, step=5, unit="deg"),
+    "omega2": drawn(-20, 20, unit="rad/s"),
+}
+
+
+def slotted_figure(guided, r1, r2, theta2):
+    O4, O2, A = 0j, 1j * r1, guided.arm
+    beyond = guided.along * (r1 + r2) * 1.1
+    return Figure(
+        slot_link(O4, beyond),
+        line(O4, O2, dashed=True, label="r_1"),
+        link(O2, A, label="r_2"),
+        slider(A, angle(A), label="A"),
+        pin(A),
+        ground_pivot(O4, "O_4"),
+        ground_pivot(O2, "O_2"),
+        line(O2, O2 + 0.6 * r2, dashed=True),
+        angle_mark(O2, 0, theta2, r"\theta_2"),
+    )

@@ -24,6 +24,18 @@ SISTERS = {
     "acceleration_polygon": ("four_bar_motion", ("a_B", "alpha3", "alpha4"), {"alpha2": 0.0}),
     "velocity_polygon_slider": ("slider_crank", ("r1_dot", "omega3"), {"alpha2": 0.0, "e": 0.0}),
     "acceleration_polygon_slider": ("slider_crank", ("r1_ddot", "alpha3"), {"alpha2": 0.0, "e": 0.0}),
+    "velocity_polygon_slotted": ("slotted_mechanism", ("rA_dot", "omega4"), {"alpha2": 0.0, "theta1": 90.0}),
+    "acceleration_polygon_slotted": (
+        "slotted_mechanism",
+        ("rA_ddot", "alpha4"),
+        {"alpha2": 0.0, "theta1": 90.0},
+    ),
+    "crank_shaper_drawn": ("quick_return_shaper", ("v_C", "alpha", "beta", "Q"), {}),
+    "two_circles": (
+        "four_bar_positions",
+        ("theta3_open", "theta4_open", "theta3_crossed", "theta4_crossed"),
+        {},
+    ),
     "havens_construction": ("havens_planetary", ("omega3", "omega4"), {}),
 }
 

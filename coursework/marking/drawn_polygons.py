@@ -71,30 +71,45 @@ class Asked(NamedTuple):
 
 def verdicts(answers: Answers, polygon: Polygon, asked: Asked) -> dict[str, Judged]:
     """A :class:`Judged` for each answer that can be judged."""
-    stated = float(answers[asked.scale]) if asked.scale in answers else None
-    points = {asked.points[i]: complex(*answers[i]) for i in asked.points if i in answers}
-    scale = stated if stated is not None and is_scale(polygon, stated) else None
-    if polygon.pole not in points or len(points) < 2:
+    scale = _stated(answers, polygon, asked)
+    found = drawn(answers, polygon, asked)
+    if found is None:
         if scale is None:
             return _right_reads(answers, polygon, asked)
         # Lengths alone: nothing is drawn, and they are what they should be or not.
         bare = judge_drawing(polygon, {polygon.pole: 0j}, scale)
         said = {asked.scale: Judged()} if bare.is_legible else {asked.scale: Judged(0.0, "too_small")}
         return said | _lengths(answers, bare, asked) | _reads(answers, bare, asked)
-    drawing = judge_drawing(polygon, points, scale)
-    upside_down = False
-    if scale is not None and is_scale(polygon, 1 / scale):
-        other = judge_drawing(polygon, points, 1 / scale)
-        upside_down = _fits(other) and not _fits(drawing)
-        drawing = other if upside_down else drawing
+    drawing, upside_down = found
     if not drawing.is_legible:
-        drawn = (*asked.points, *asked.lengths, asked.scale)
-        return {i: Judged(0.0, "too_small") for i in drawn if i in answers} | _reads(answers, drawing, asked)
-    said = {asked.scale: _of_scale(scale, upside_down, drawing)} if stated is not None else {}
+        of_it = (*asked.points, *asked.lengths, asked.scale)
+        return {i: Judged(0.0, "too_small") for i in of_it if i in answers} | _reads(answers, drawing, asked)
+    said = {asked.scale: _of_scale(scale, upside_down, drawing)} if asked.scale in answers else {}
     for part, point in asked.points.items():
         if part in answers:
             said[part] = _of_point(point, drawing, asked)
     return said | _lengths(answers, drawing, asked) | _reads(answers, drawing, asked)
+
+
+def drawn(answers: Answers, polygon: Polygon, asked: Asked) -> tuple[Drawing, bool] | None:
+    """The judged drawing of these answers, and whether its scale is stated upside down; None unless the pole and
+    another point are drawn."""
+    points = {asked.points[i]: complex(*answers[i]) for i in asked.points if i in answers}
+    if polygon.pole not in points or len(points) < 2:
+        return None
+    scale = _stated(answers, polygon, asked)
+    drawing = judge_drawing(polygon, points, scale)
+    if scale is not None and is_scale(polygon, 1 / scale):
+        other = judge_drawing(polygon, points, 1 / scale)
+        if _fits(other) and not _fits(drawing):
+            return other, True
+    return drawing, False
+
+
+def _stated(answers: Answers, polygon: Polygon, asked: Asked) -> float | None:
+    """The scale that the answers state, if it is one."""
+    scale = float(answers[asked.scale]) if asked.scale in answers else None
+    return scale if scale is not None and is_scale(polygon, scale) else None
 
 
 def _fits(drawing: Drawing) -> bool:

@@ -12,7 +12,7 @@ from coursework.polygons.pieces import (
     two_bars_a,
     two_bars_v,
 )
-from coursework.polygons.polygon import UNITS, Polygon, Side, Stage, normal, tangential, turning
+from coursework.polygons.polygon import UNITS, Polygon, Side, Stage, image, normal, tangential, turning
 
 __all__ = [
     "UNITS",
@@ -23,6 +23,7 @@ __all__ = [
     "crank_v",
     "guide_a",
     "guide_v",
+    "image",
     "normal",
     "polygon_of_accelerations",
     "polygon_of_velocities",

@@ -5,7 +5,7 @@ anywhere, and the scale may be any. Directions are absolute: a sheet that is tur
 
 What is judged is the construction, as somebody would with ruler and set-square: each vector by what must hold of
 it **from the student's own points**. A known vector has its length, its direction and its sense, and hangs on its
-point; a line of known direction passes through its point; a point found by two lines lies on both. So an error
+point; one in proportion to another is judged by the student's own; a line of known direction passes through its point; a point found by two lines lies on both. So an error
 costs the vector that it is made on, and nothing of what is drawn rightly from there.
 
 Each point may be off by ``tolerance`` mm, so a vector by twice that at its end, and a line by twice that across.
@@ -157,7 +157,7 @@ def judge_drawing(
         # The points before it, as drawn; one that is missing stands where it follows from those before it.
         here = {q: points.get(q, z) for q, z in ideal.items()}
         if len(sides) == 1:
-            ideal[point], fault = _known(point, sides[0], here, points, used, width)
+            ideal[point], fault = _known(point, sides[0], here, points, polygon, used, width)
         else:
             ideal[point], fault = _crossing(point, sides, here, points, polygon, used, width)
         if fault:
@@ -192,10 +192,10 @@ def ancestors(polygon: Polygon, point: str) -> frozenset[str]:
     while waiting:
         here = waiting.pop()
         for side in polygon.hangs.get(here, ()):
-            anchor = _anchor(side, here)
-            if anchor != polygon.pole and anchor not in found:
-                found.add(anchor)
-                waiting.append(anchor)
+            for before in (_anchor(side, here), *(side.image or ())):
+                if before != polygon.pole and before not in found:
+                    found.add(before)
+                    waiting.append(before)
     return frozenset(found)
 
 
@@ -214,17 +214,22 @@ def _known(
     side: Side,
     here: Mapping[str, complex],
     drawn: Mapping[str, complex],
+    polygon: Polygon,
     scale: float,
     width: float,
 ) -> tuple[complex, Fault | None]:
     """Where a vector of known length leads from the student's own point, and what is wrong with the one drawn."""
     anchor = _anchor(side, point)
-    right = (side.value if side.end == point else -side.value) / scale
-    ideal = here[anchor] + right
+    right, way = side.value / scale, 1 if side.end == point else -1
+    ratio = polygon.ratio(side)
+    own = (
+        right if ratio is None or side.image is None else ratio * (here[side.image[1]] - here[side.image[0]])
+    )
+    right, ideal = way * right, here[anchor] + way * own
     if point not in drawn:
         return ideal, Fault(MISSING)
-    kind = vector_fault(drawn[point] - here[anchor], right, width)
-    if not kind:
+    kind = vector_fault(drawn[point] - here[anchor], way * own, width)
+    if not kind or abs(drawn[point] - here[anchor] - right) <= width:
         return ideal, None
     for other in here:
         if other != anchor and abs(drawn[point] - here[other] - right) <= width:

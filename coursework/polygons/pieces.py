@@ -30,10 +30,12 @@ def crank_v(
     return (turning("p_v", A.lower(), A, line, vector, omega, rf"{length} \left|\omega_{number}\right|"),)
 
 
-def crank_a(A: str, line: str, vector: complex, omega: float, alpha: float = 0.0) -> Sides:
+def crank_a(
+    A: str, line: str, vector: complex, omega: float, alpha: float = 0.0, length: str = "r_2"
+) -> Sides:
     """The same; one that turns steadily has no tangential part."""
     a = A.lower()
-    square, growth = r"r_2\,\omega_2^2", r"r_2 \left|\alpha_2\right|"
+    square, growth = rf"{length}\,\omega_2^2", rf"{length} \left|\alpha_2\right|"
     if not alpha:
         return (Side("p_a", a, rf"\vec{{a}}_{{{A}}}", -(omega**2) * vector, rf"\parallel {line}", square),)
     return (

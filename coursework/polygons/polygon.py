@@ -29,7 +29,7 @@ from types import MappingProxyType
 
 from coursework.errors import BadCourse, unknown
 
-UNITS = {"velocity": "mm/s", "acceleration": "mm/s^2"}
+UNITS = {"velocity": "mm/s", "acceleration": "mm/s^2", "position": "mm"}
 _CLOSED = 1e-6  #: of the longest side: what two ways to one point may differ by
 
 
@@ -39,7 +39,8 @@ class Side:
 
     ``direction`` (``\perp AB``) and ``length`` (``r_2\,\omega_2``) are LaTeX of what is known before the drawing; an
     empty ``length`` is not known, and neither is an empty ``direction``. ``way``, a complex number of any
-    length, gives the line of a side of known direction where its value may vanish.
+    length, gives the line of a side of known direction where its value may vanish. ``image`` names the two points of
+    the polygon of which this side is the vector, in proportion, as a bar's images are: see :func:`image`.
     """
 
     start: str  #: name of an image point, as LaTeX: ``p_v``, ``a``, ``b'``, ``a_4``
@@ -49,9 +50,12 @@ class Side:
     direction: str = ""
     length: str = ""
     way: complex | None = None
+    image: tuple[str, str] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "value", complex(self.value))
+        if self.image and not self.length:
+            raise BadCourse(f"{self}: a side in proportion to another is known; state its length")
         if self.length and not self.direction:
             raise BadCourse(f"{self}: a side of known length is drawn in a known direction; state it")
         if not cmath.isfinite(self.value):
@@ -101,12 +105,12 @@ class Stage:
 
 @dataclass(frozen=True)
 class Polygon:
-    """A velocity or an acceleration polygon.
+    """A velocity or an acceleration polygon, or what is known of a mechanism drawn to scale.
 
     Parameters
     ----------
     kind
-        ``velocity`` (mm/s) or ``acceleration`` (mm/s^2).
+        ``velocity`` (mm/s), ``acceleration`` (mm/s^2) or ``position`` (mm).
     sides
         In the order of the construction. The pole is where the first of them starts.
     scale
@@ -166,6 +170,13 @@ class Polygon:
             for k, point in enumerate(stage.points)
         }
 
+    def ratio(self, side: Side) -> complex | None:
+        """Of a side to the vector that it is in proportion to; None unless it is, or where that vector vanishes."""
+        if side.image is None:
+            return None
+        of = self.points[side.image[1]] - self.points[side.image[0]]
+        return side.value / of if abs(of) > _CLOSED * self.size else None
+
     def side(self, start: str, end: str) -> Side:
         """The side from a point to another; UnknownName if there is none."""
         for side in self.sides:
@@ -184,6 +195,8 @@ class Polygon:
                 stages.append(Stage("result", (side,), ()))
                 continue
             anchor, target, way = self._hung(side, found)
+            if not all(name in found for name in side.image or ()):
+                raise BadCourse(f"{side}: {side.image} are not both found by the sides before it")
             there = found[anchor] + way * side.value
             if side.is_known:
                 found[target] = there
@@ -303,3 +316,12 @@ def tangential(
     return Side(
         start, end, rf"\vec{{a}}^t_{{{of}}}", 1j * alpha * vector, rf"\perp {line}", length, 1j * vector
     )
+
+
+def image(start: str, end: str, name: str, value: complex, of: tuple[str, str], length: str) -> Side:
+    r"""The image of one more point of a bar: the vector between two image points of it, in proportion.
+
+    ``of`` are these two points, ``length`` the proportion as LaTeX (``\frac{OD}{OP}\,p_v p_4``).
+    """
+    first, second = of
+    return Side(start, end, name, value, rf"\parallel {first} {second}", length, image=of)

@@ -1,0 +1,69 @@
+"""Acceleration polygon of a slotted mechanism whose velocities are known: the Coriolis term and its side (Figure 25)."""
+
+from coursework.model import Exercise
+
+from .._drawn import (
+    PAPER_MM,
+    SLOTTED,
+    all_long,
+    crank_turns_visibly,
+    guided,
+    known,
+    of_drawing,
+    slotted_figure,
+    told_angle,
+    told_number,
+)
+
+
+def vectors_are_long_enough_to_draw(guided):
+    """The normal one a ninth of the longest at least, the others two ninths."""
+    of_A2, coriolis, normal, tangential, sliding = guided.accelerations
+    others = (of_A2, coriolis, tangential, sliding)
+    return all_long(1 / 9, normal, *others) & all_long(2 / 9, *others)
+
+
+def tells(r1, r2, theta2, omega2):
+    pose = guided(r1, r2, theta2)
+    return {
+        "theta4": told_angle(pose.arm),
+        "rA": told_number(abs(pose.arm)),
+        "omega4": told_number(omega2 * pose.guide_rate),
+        "rA_dot": told_number(omega2 * pose.sliding),
+    }
+
+
+EXERCISE = Exercise(
+    given=SLOTTED,
+    helpers=(guided,),
+    keep=(crank_turns_visibly, vectors_are_long_enough_to_draw),
+    parts=(
+        known("known_c"),
+        known("known_s"),
+        known("known_n"),
+        known("known_t"),
+        of_drawing("ka", "mm/s^2/mm"),
+        of_drawing("p", kind="point"),
+        of_drawing("a", kind="point", points=2),
+        of_drawing("k", kind="point", points=3),
+        of_drawing("n", kind="point", points=2),
+        of_drawing("b", kind="point", points=3),
+        of_drawing("bk"),
+        of_drawing("nb_t"),
+        of_drawing("rA_ddot", "mm/s^2"),
+        of_drawing("alpha4", "rad/s^2"),
+    ),
+    figure=slotted_figure,
+    tells=tells,
+    drawing_mm=PAPER_MM,
+    symbols={
+        "ka": "k_a",
+        "p": "p_a",
+        "a": "a_2",
+        "n": "a_4'",
+        "b": "a_4",
+        "bk": "a_4 k",
+        "nb_t": "a_4' a_4",
+        "rA_ddot": r"\ddot r_A",
+    },
+)
