@@ -12,6 +12,7 @@ from coursework.reading.graphs import FRAME, Edge, Graph, bodies_of, edge, natur
 _STEPS = 20_000  #: of the search for names that fit
 _SPANNED = 64  #: ways in which shared pivots may be written as pairs that are tried
 _ROUNDS = 40  #: of exchanging names
+_STARTS = 8  #: of such rounds
 _CONTACTS = {
     "higher": ("higher", "point_contact", "line_contact"),
     "point_contact": ("higher", "point_contact"),
@@ -171,14 +172,23 @@ def names_that_fit(answer: Graph, reference: Graph, held: Mapping[str, str]) -> 
 
 
 def nearest_names(answer: Graph, reference: Graph, held: Mapping[str, str]) -> dict[str, str]:
-    """Names by which much of an answer is right: the best that exchanging two at a time leads to."""
+    """Names by which much of an answer is right: the best that exchanging two at a time leads to, from some starts."""
     mine, theirs = (_by_joints(graph) for graph in (answer, reference))
     free = [body for body in mine if body not in held]
     open_to = [body for body in theirs if body not in held.values()]
     open_to += [f"?{n}" for n in range(len(free) - len(open_to))]
+    starts = min(_STARTS, len(open_to) or 1)
+    tried = [_climbed(answer, reference, held, free, [*open_to[n:], *open_to[:n]]) for n in range(starts)]
+    return max(tried, key=lambda names: compare(renamed(answer, names), reference).share)
+
+
+def _climbed(
+    answer: Graph, reference: Graph, held: Mapping[str, str], free: Sequence[str], open_to: Sequence[str]
+) -> dict[str, str]:
     names = {**held, **dict(zip(free, open_to, strict=False))}
-    spare = open_to[len(free) :]
-    best = compare(renamed(answer, names), reference).share
+    spare = list(open_to[len(free) :])
+    first = compare(renamed(answer, names), reference)
+    best = 2 * first.right + first.halves
     for _ in range(_ROUNDS):
         better = next(_better(answer, reference, names, free, spare, best), None)
         if better is None:
@@ -193,15 +203,15 @@ def _better(
     names: dict[str, str],
     free: Sequence[str],
     spare: Sequence[str],
-    best: float,
-) -> Iterator[tuple[dict[str, str], float, list[str]]]:
+    best: int,
+) -> Iterator[tuple[dict[str, str], int, list[str]]]:
     """Names that two bodies exchange, or that one takes of those to spare, if more is right by them."""
     tried = [({**names, a: names[b], b: names[a]}, list(spare)) for a, b in combinations(free, 2)]
     tried += [({**names, a: new}, [*(s for s in spare if s != new), names[a]]) for a in free for new in spare]
     for other, left in tried:
-        share = compare(renamed(answer, other), reference).share
-        if share > best:
-            yield other, share, left
+        found = compare(renamed(answer, other), reference)
+        if (right := 2 * found.right + found.halves) > best:
+            yield other, right, left
 
 
 def _by_joints(graph: Graph) -> list[str]:
