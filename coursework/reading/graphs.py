@@ -176,7 +176,7 @@ _TUPLE = re.compile(
 )
 _PIECE = re.compile(
     r"(?P<times>(?:[*×]|\bx)\s*(?P<n>[2-9])\b|\b(?P<m>[2-9])\s*(?:[*×]|x\b))|(?P<stop>[;\n]|\.(?=\s|$))|(?P<comma>[,&+])"
-    r"|(?P<link>[-/])|(?P<name>[A-Za-z]{0,2}[0-9]+)|(?P<word>[^\W\d_]+)|(?P<rest>[:=()\[\]{}|'\"*.°→]|\s)"
+    r"|(?P<link>[-/])|(?P<name>[A-Za-z]{0,2}[0-9]+)|(?P<word>[^\W\d_]+)|(?P<rest>[:=()\[\]{}|'\"*.°→_]|\s)"
 )
 
 
