@@ -237,9 +237,15 @@ class Variant:
         """What a case is called, in this variant's language unless told."""
         lang = lang or self.lang
         label = self.exercise.texts.constants("exercises", lang).labels.get((quantity, case))
-        if label is not None:
+        if label is None:
+            label = self._engine_label(quantity, case, lang)
+        if label:
             return label
         return (self.text if lang == self.lang else self.in_language(lang).text).label(quantity, case)
+
+    def _engine_label(self, quantity: str, case: str, lang: str) -> str:
+        """What the engine calls a case of a part whose statement need not say it: a kind of joint."""
+        return next((p.sort.called(case, lang) for p in self.exercise.spec.parts if p.id == quantity), "")
 
     def told(self, mistake: str) -> str:
         """What to say to who made a named mistake."""

@@ -93,6 +93,7 @@ class Kind(ABC):
         None  #: on the sheet, of a part that states none; a part of another kind has no such room
     )
     has_rule: ClassVar[bool] = False  #: the sheet says how its points are counted
+    share_stands: ClassVar[bool] = False  #: a named mistake leaves at least the :meth:`share` that is right
 
     has_symbol: ClassVar[bool] = True  #: the quantity's symbol stands before the box
     is_called_by_symbol: ClassVar[bool] = (
@@ -191,7 +192,15 @@ class Kind(ABC):
         """Wrong values for a right one: just beyond what is accepted, and far from it; few cases have one other."""
         return ()
 
+    def remarks(self, part: Stated, value: Any, reference: Any, lang: str) -> Iterator[tuple[str, str]]:
+        """What is told besides of an answer that nothing explains: sentences, each with what fills its ``{list}``."""
+        yield from ()
+
     # ----------------------------------------------------------------- printing
+
+    def called(self, case: str, lang: str) -> str:
+        """What the engine calls a case for which the statement of this kind of part has no word; nothing if it must."""
+        return ""
 
     def words(self, value: Any, label: Callable[[str], str]) -> str:
         """A reference in words, Markdown, where it is no formula; ``label`` calls its cases."""

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from coursework.course.answer_key import Key
 from coursework.language.words import listed, quoted, words
@@ -49,14 +49,31 @@ def mark_wrong(
     if named:
         for trace in (trace for e in named for trace in e.traces):
             before.paid.setdefault(trace, part.id)
-        shares = {e.verdict: _share(key, e, in_other_case="slip:other_case" in matches) for e in named}
+        least = 0.0
+        if part.sort.share_stands:
+            least = part.sort.share(part, reading.values[index], key.reference[judged_by.quantity])
+        shares = {
+            e.verdict: max(least, _share(key, e, in_other_case="slip:other_case" in matches)) for e in named
+        }
         verdict = max(shares, key=shares.__getitem__)  # where nothing tells which, the one that costs least
         said = _told(variant, part, judged_by, named, read, before)
         return made(verdict, shares[verdict], read_as, said, matches)
-    share = part.sort.share(part, reading.values[index], key.reference[judged_by.quantity])
+    value, reference = reading.values[index], key.reference[judged_by.quantity]
+    share = part.sort.share(part, value, reference)
+    more = [Said(*remark) for remark in _remarks(variant, part, value, reference)]
     if share > 0:
-        return made("partial", share, read_as, say(variant, part, "partial", read=read), matches)
-    return made("wrong", 0.0, read_as, _told_wrong(variant, part, read, before), matches)
+        mark = made("partial", share, read_as, say(variant, part, "partial", read=read), matches)
+    else:
+        mark = made("wrong", 0.0, read_as, _told_wrong(variant, part, read, before), matches)
+    return mark._replace(told=(*mark.told, *more))
+
+
+def _remarks(
+    variant: Variant, part: Part, value: Any, reference: Any
+) -> Iterator[tuple[str, dict[str, str]]]:
+    """What its kind tells of an answer that nothing explains, with what fills each sentence."""
+    for sentence, told in part.sort.remarks(part, value, reference, variant.lang):
+        yield sentence, {"list": told}
 
 
 def _named(found: Sequence[Explanation], before: Before) -> list[Explanation]:

@@ -162,7 +162,7 @@ def _agrees(wrong: Any, right: Any, unit: str) -> bool:
 
 def _wrong_text(variant: Variant, name: str, wrong: Any) -> str:
     part = next((p for p in variant.parts if p.quantity == name), None)
-    said = "" if part is None else part.sort.words(wrong, partial(variant.text.label, part.id))
+    said = "" if part is None else part.sort.words(wrong, partial(variant.label, part.id))
     if said:
         return quoted(said, variant.lang)
     if isinstance(wrong, (str, tuple)) or np.ndim(wrong) or not np.isfinite(wrong):
@@ -177,7 +177,7 @@ def _words_of(variant: Variant, name: str, found: Any, reason: str) -> str:
         return reason
     said, part = engine_words(variant.lang), variant.parts[number - 1]
     words = [_question(variant, part), reason]
-    case = part.sort.words(found, partial(variant.text.label, part.id))
+    case = part.sort.words(found, partial(variant.label, part.id))
     if case:
         # At the end of the reason's last sentence, or after it.
         words += [f"{said['solution']['case']}{said['sheet']['colon']}"] if is_whole(reason) else []

@@ -78,6 +78,11 @@ class JointGraph:
             {"between": list(j.bodies), "kind": j.kind, **({"at": j.at} if j.at else {})} for j in self.joints
         )
 
+    @property
+    def text(self) -> str:
+        """The joints in one text, as an answer of kind ``graph`` has them: ``1-2 revolute, 3-4-5 revolute``."""
+        return ", ".join(f"{'-'.join(map(str, joint.bodies))} {joint.kind}" for joint in self.joints)
+
     @cached_property
     def bodies(self) -> tuple[int, ...]:
         """1, the frame, to N."""

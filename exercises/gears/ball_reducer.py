@@ -102,6 +102,7 @@ EXERCISE = Exercise(
     },
     keep=(input_turns_visibly, input_accelerates_visibly, acceleration_unlike_velocity),
     parts=(
+        Part("graph", kind="graph", room=2, points=2),
         Part(
             "omega_why",
             kind="choice",
@@ -109,6 +110,7 @@ EXERCISE = Exercise(
             points=1,
         ),
         _no_slip("A"),
+        _no_slip("B"),
         _no_slip("C"),
         _no_slip("D"),
         Part("mobility", kind="integer", points=1),
@@ -129,6 +131,7 @@ EXERCISE = Exercise(
         Part("spin_D", unit="rad/s", points=1),
     ),
     figure=figure,
+    version=2,
     symbols={
         "mobility": "m",
         "v_O3": r"v_{O_3}",

@@ -256,6 +256,8 @@ EXERCISE = Exercise(
         rod_tells_in_the_speed_of_the_ram,
     ),
     parts=(
+        Part("w", kind="integer", points=1),
+        Part("gamma", kind="integer", points=1),
         *_equations("loop_1"),
         *_equations("loop_2"),
         *_equations("loop_3"),
@@ -279,5 +281,6 @@ EXERCISE = Exercise(
         Part("x8_ddot", unit="mm/s^2", points=1),
     ),
     figure=figure,
+    version=2,
     driver=Driver("theta2", "omega2", output="x8_dot"),
 )

@@ -189,14 +189,14 @@ def figure(frame, crank, motion, theta2, r5, beta, r4):
     )
 
 
-def _equations(loop):
+def _equations(loop, usual=("x", "y")):
     return loop_equations(
         loop,
         SYMBOLS_OF_THE_LOOPS,
         rates=("omega2", "omega3", "omega4", "omega6", "omega7"),
         second_rates=("alpha3", "alpha4", "alpha6", "alpha7"),
         parameters=LENGTHS,
-        usual=("x", "y"),
+        usual=usual,
     )
 
 
@@ -237,6 +237,8 @@ EXERCISE = Exercise(
         Part("cycles", kind="integer", points=1),
         *_equations("loop_1"),
         *_equations("loop_2"),
+        Part("third_loop", kind="choice", choices=("sum", "difference", "new"), points=1),
+        *_equations("loop_3", ("x",)),
         Part("theta3", unit="deg", kind="angle", points=2),
         Part("theta4", unit="deg", kind="angle", points=1),
         Part("theta6", unit="deg", kind="angle", points=2),
@@ -251,6 +253,7 @@ EXERCISE = Exercise(
         Part("alpha7", unit="rad/s^2", points=1),
     ),
     figure=figure,
+    version=2,
     symbols={
         "mobility": "m",
         "cycles": r"\gamma",

@@ -22,11 +22,21 @@ def _vector(x, y, z):
     return np.stack(np.broadcast_arrays(x, y, z), axis=-1)
 
 
+def graph():
+    """Two shafts on pivots of the frame; the ball touches the frame twice and each shaft once."""
+    return "0-1 revolute, 0-2 revolute, 0-3 point_contact, 0-3 point_contact, 1-3 point_contact, 2-3 point_contact"
+
+
 def omega_why():
     return "A_and_B_at_rest"
 
 
 def no_slip_A():
+    return "(R + r)*phi_dot + r*omega = 0"
+
+
+def no_slip_B():
+    """The same as at A, since the ball turns about AB."""
     return "(R + r)*phi_dot + r*omega = 0"
 
 
@@ -287,9 +297,10 @@ def phi_equals_theta(theta_dot):
     return theta_dot
 
 
-@mistake("no_slip_A", "no_slip_C", "no_slip_D", "omega", kind="sign")
+@mistake("no_slip_A", "no_slip_B", "no_slip_C", "no_slip_D", "omega", kind="sign")
 def omega_sign(omega):
     return (
+        "(R + r)*phi_dot - r*omega = 0",
         "(R + r)*phi_dot - r*omega = 0",
         "(R + r)*phi_dot + r*omega - R*psi_dot = 0",
         "(R + r)*phi_dot + r*omega - (R + r)*theta_dot = 0",
@@ -305,6 +316,23 @@ def C_at_radius_of_O3(R, r, psi_dot):
 @mistake("no_slip_C", "no_slip_D", "omega")
 def direct_contact(R, r, psi_dot):
     return "r*omega + R*psi_dot = 0", "r*omega + (R + r)*theta_dot = 0", -R * psi_dot / r
+
+
+@mistake("graph")
+def contacts_with_the_frame_as_one():
+    return "0-1 revolute, 0-2 revolute, 0-3 point_contact, 1-3 point_contact, 2-3 point_contact"
+
+
+@mistake("graph")
+def shafts_on_one_another():
+    """The output shaft pivoted on the input shaft, since they have one axis."""
+    return "0-1 revolute, 1-2 revolute, 0-3 point_contact, 0-3 point_contact, 1-3 point_contact, 2-3 point_contact"
+
+
+@mistake("no_slip_B")
+def B_at_radius_R():
+    """The contact B carried about the axis as if it were at C."""
+    return "R*phi_dot + r*omega = 0"
 
 
 @mistake("mobility")

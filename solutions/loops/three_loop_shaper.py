@@ -86,6 +86,16 @@ MECHANISM = Mechanism(
 )
 
 
+def w():
+    """Seven moving bodies; eight revolute joints, at O, A, B, C, D, E, F, G, and two slides, at E and G."""
+    return 3 * 7 - 2 * 10
+
+
+def gamma():
+    """Ten pairs, eight bodies with the frame."""
+    return 10 - 8 + 1
+
+
 def _frame(xC, yC):
     """Direction of OC."""
     return atan2(yC, xC)
@@ -238,6 +248,38 @@ def x8_ddot(r5, omega5, alpha5, theta5, r7, omega7, alpha7, theta7):
         - r7 * alpha7 * sin(theta7)
         - r7 * omega7**2 * cos(theta7)
     )
+
+
+@mistake("w", "gamma")
+def slides_left_out():
+    return 3 * 7 - 2 * 8, 8 - 8 + 1
+
+
+@mistake("w")
+def block_left_out():
+    """As if the coupler slid on the bar by its pin alone: one body and one joint less."""
+    return 3 * 6 - 2 * 9
+
+
+@mistake("w")
+def frame_counted():
+    return 3 * 8 - 2 * 10
+
+
+@mistake("w", "gamma")
+def one_joint_of_the_block():
+    """Of pivot and slide at E only one."""
+    return 3 * 7 - 2 * 9, 9 - 8 + 1
+
+
+@mistake("gamma", kind="count")
+def N_without_frame():
+    return 10 - 7 + 1
+
+
+@mistake("gamma", kind="count")
+def joint_count_minus():
+    return 10 - 8
 
 
 @mistake("loop_1_x", "loop_1_y", kind="link_sign")

@@ -64,6 +64,10 @@ LOOPS = {
         Vector("xC", 0.0), Vector("yC", pi / 2), Vector("r5", "theta4", turn="beta"), Vector("r6", "theta6"),
         Vector("xF", 0.0, -1), Vector("yF", pi / 2, -1), Vector("r7", "theta7", -1),
     ),
+    "loop_3": (
+        Vector("r2", "theta2"), Vector("r3", "theta3"), Vector("r4", "theta4", -1), Vector("r5", "theta4", turn="beta"),
+        Vector("r6", "theta6"), Vector("xF", 0.0, -1), Vector("yF", pi / 2, -1), Vector("r7", "theta7", -1),
+    ),
 }  # fmt: skip
 MECHANISM = Mechanism(
     ground={"O": 0, "C": lambda xC, yC: xC + 1j * yC, "F": lambda xF, yF: xF + 1j * yF},
@@ -83,6 +87,11 @@ def mobility():
 
 def cycles():
     return 7 - 6 + 1
+
+
+def third_loop():
+    """Loop 1 ends with C to O along the frame, loop 2 begins at C and ends with F to C: their sum passes C no more."""
+    return "sum"
 
 
 def _frame_1(xC, yC):
@@ -249,6 +258,23 @@ def notes_N_without_frame():
 @mistake("cycles", kind="count")
 def joint_count_minus():
     return 7 - 6
+
+
+@mistake("third_loop")
+def third_loop_counted_as_new():
+    """As the notes do."""
+    return "new"
+
+
+@mistake("third_loop")
+def third_loop_as_difference():
+    return "difference"
+
+
+@mistake("loop_3_x")
+def plate_side_CB_forgotten():
+    """From B to D as from C to D."""
+    return "r2*cos(theta2) + r3*cos(theta3) + r5*cos(theta4 + beta) + r6*cos(theta6) = xF + r7*cos(theta7)"
 
 
 @mistake("loop_1_x", "loop_1_y", kind="link_sign")

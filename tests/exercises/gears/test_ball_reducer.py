@@ -152,7 +152,7 @@ def test_no_slip_equations_hold_for_the_answers():
     answers = variant.solution()
     symbols = EXERCISE.spec.part("no_slip_A").variables
     values = {n: variant.given.get(n, answers.get(n)) for n in symbols}
-    for place in "ACD":
+    for place in "ABCD":
         equation = parse_equation(answers[f"no_slip_{place}"], symbols)
         assert abs(equation.difference(values)) < 1e-9
 
@@ -177,6 +177,49 @@ def test_arrays_and_scalars_agree():
         for name, value in variant.solution().items():
             if isinstance(value, (float, np.ndarray)):
                 assert together[name][index] == pytest.approx(value, rel=1e-14), name
+
+
+def test_the_condition_at_B_is_the_one_at_A_and_no_other():
+    variant = EXERCISE.variant(0)
+    right = {
+        place: EXERCISE.solution.graph.evaluate((f"no_slip_{place}",), {})[f"no_slip_{place}"]
+        for place in "ABCD"
+    }
+    verdicts = {p: variant.grade({"no_slip_B": text})["no_slip_B"].verdict for p, text in right.items()}
+    assert {p for p, verdict in verdicts.items() if verdict == "correct"} == {"A", "B"}
+
+
+@pytest.mark.parametrize(
+    ("answer", "verdict", "points"),
+    [
+        ("S0-S1 pivot, S0-S2 pivot, S0-S3 ponctuelle ×2, S1-S3 ponctuelle, S2-S3 ponctuelle", "correct", 2),
+        ("0/1 R; 0/2 R; 3/0 contact en A; 3/0 contact en B; 3/1 contact en C; 3/2 contact en D", "correct", 2),
+        ("bâti-1 pivot, bâti-2 pivot, 3-bâti RSG, 3-bâti RSG, 3-1 RSG, 3-2 RSG", "correct", 2),
+        (
+            "0-1 pivot, 0-2 pivot, 0-3 ponctuelle, 1-3 ponctuelle, 2-3 ponctuelle",
+            "mistake:contacts_with_the_frame_as_one",
+            2 * 5 / 6,
+        ),
+        ("0-1 pivot, 1-2 pivot, 0-3 ponctuelle, 0-3 ponctuelle, 1-3 ponctuelle, 2-3 ponctuelle",
+         "mistake:shafts_on_one_another", 2 * 4 / 6),
+        ("0-1 pivot, 0-2 pivot, 0-3 rotule, 0-3 ponctuelle, 1-3 ponctuelle, 2-3 ponctuelle", "partial", 2 * 5.5 / 6),
+    ],
+)  # fmt: skip
+def test_the_joint_graph_has_two_contacts_of_ball_and_frame(answer, verdict, points):
+    mark = EXERCISE.variant(0, "fr").grade({"graph": answer})["graph"]
+    assert (mark.verdict, mark.points) == (verdict, pytest.approx(points))
+
+
+def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
+    """It asked neither the graph nor the condition at B."""
+    record = dict(EXERCISE.variant(0).record)
+    record["version"] = 1
+    record["parts"] = [part for part in record["parts"] if part["id"] not in ("graph", "no_slip_B")]
+    variant = EXERCISE.from_record(record)
+    assert "graph" not in variant.part_ids
+    right = {i: str(v) for i, v in variant.solution().items() if isinstance(v, (str, int))}
+    assert variant.grade(right).points == len(right)
+    assert variant.record["version"] == 1
 
 
 @pytest.mark.parametrize("case", range(3))

@@ -162,3 +162,37 @@ def test_variants_keep_their_blocks_on_the_bar_and_their_rods_low_all_around():
         assert found["d5"].max() < 0.96 * given["r5"]
         assert abs(found["theta7"]).max() < 52
         assert 18 < found["theta5"].min() <= found["theta5"].max() < 162
+
+
+def test_freedoms_and_cycles_are_those_of_the_graph_of_figure_14():
+    from coursework.structure import LIBRARY
+
+    counts = LIBRARY["figure_14"].counts
+    found = EXERCISE.solve(**PLAIN, only=("w", "gamma"))
+    assert (found["w"], found["gamma"]) == (counts.w, counts.gamma) == (1, 3)
+
+
+@pytest.mark.parametrize(
+    ("part", "answer", "verdict"),
+    [
+        ("w", "0", "mistake:block_left_out"),
+        ("w", "3", "mistake:one_joint_of_the_block"),
+        ("w", "4", "mistake:frame_counted"),
+        ("w", "5", "mistake:slides_left_out"),
+        ("gamma", "4", "mistake:N_without_frame"),
+        ("gamma", "1", "mistake:slides_left_out"),
+        ("gamma", "3", "correct"),
+    ],
+)
+def test_counts_that_leave_something_out_are_told(part, answer, verdict):
+    assert EXERCISE.variant(0).grade({part: answer})[part].verdict == verdict
+
+
+def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
+    record = dict(EXERCISE.variant(0).record)
+    record["version"] = 1
+    record["parts"] = [part for part in record["parts"] if part["id"] not in ("w", "gamma")]
+    variant = EXERCISE.from_record(record)
+    assert "gamma" not in variant.part_ids
+    angle = f"{variant.solution()['theta3']:.4f}"
+    assert variant.grade({"theta3": angle})["theta3"].verdict == "correct"

@@ -152,3 +152,58 @@ def test_both_loops_keep_their_transmission_angles_over_the_turn():
         at_E = abs((found["theta6"] - found["theta7"] + 180) % 360 - 180)
         assert 29.99 < at_B.min() <= at_B.max() < 150.01
         assert 24.99 < at_E.min() <= at_E.max() < 155.01
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_outer_loop_is_the_sum_of_the_two_others(seed):
+    variant = EXERCISE.variant(seed)
+    symbols = EXERCISE.spec.part("loop_3_x").variables
+    answers = {**variant.given, **variant.solution()}
+    equations = {
+        loop: parse_equation(EXERCISE.solution.graph.evaluate((f"{loop}_x",), {})[f"{loop}_x"], symbols)
+        for loop in ("loop_1", "loop_2", "loop_3")
+    }
+    rng = np.random.default_rng(seed)
+    for _ in range(5):  # at any values, not only where the loops close
+        values = {n: rng.uniform(20, 200) for n in symbols}
+        gaps = {loop: equation.difference(values) for loop, equation in equations.items()}
+        signed = [
+            abs(gaps["loop_3"] - a * gaps["loop_1"] - b * gaps["loop_2"]) for a in (1, -1) for b in (1, -1)
+        ]
+        assert min(signed) < 1e-9
+    turned = {n: np.radians(answers[n]) if n.startswith(("theta", "beta")) else answers[n] for n in symbols}
+    assert abs(equations["loop_3"].difference(turned)) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("text", "verdict"),
+    [
+        ("r2*cos(theta2) + r3*cos(theta3) - r4*cos(theta4) + r5*cos(theta4+beta) + r6*cos(theta6) - xF - r7*cos(theta7) = 0", "correct"),
+        ("xF + r7*cos(theta7) - r6*cos(theta6) = r2*cos(theta2) + r3*cos(theta3) - r4*cos(theta4) + r5*cos(theta4 + beta)", "correct"),
+        ("r2*cos(theta2) + r3*cos(theta3) + r5*cos(theta4 + beta) + r6*cos(theta6) = xF + r7*cos(theta7)", "mistake:plate_side_CB_forgotten"),
+        ("r2*cos(theta2) + r3*cos(theta3) + r4*cos(theta4) + r5*cos(theta4 + beta) + r6*cos(theta6) = xF + r7*cos(theta7)", "slip:link_sign"),
+        ("r2*cos(theta2) + r3*cos(theta3) = xC + r4*cos(theta4)", "slip:other_loop"),
+    ],
+)  # fmt: skip
+def test_the_equation_of_the_outer_loop_is_judged_in_any_form(text, verdict):
+    assert EXERCISE.variant(1).grade({"loop_3_x": text})["loop_3_x"].verdict == verdict
+
+
+def test_who_counts_a_third_independent_loop_is_told():
+    mark = EXERCISE.variant(1, "en").grade(
+        {"third_loop": "one more equation, which does not follow from (1) and (2)"}
+    )
+    assert mark["third_loop"].verdict == "mistake:third_loop_counted_as_new"
+
+
+def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
+    record = dict(EXERCISE.variant(0).record)
+    record["version"] = 1
+    record["parts"] = [part for part in record["parts"] if part["id"] not in ("third_loop", "loop_3_x")]
+    variant = EXERCISE.from_record(record)
+    assert "third_loop" not in variant.part_ids
+    marking = variant.grade({"mobility": "1", "cycles": "3"})
+    assert [marking[i].verdict for i in ("mobility", "cycles")] == [
+        "correct",
+        "mistake:notes_N_without_frame",
+    ]
