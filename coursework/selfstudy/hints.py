@@ -26,7 +26,7 @@ from coursework.sheets.handout import handout
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
     from coursework.model import Part
-    from coursework.sheets.sheet import Given, Step
+    from coursework.sheets.sheet import Step
 
 
 _DIGITS = 6
@@ -92,8 +92,8 @@ def _symbol(variant: Variant, name: str) -> str:
 def _depends(variant: Variant, quantity: str, call: Callable[[str], str]) -> str:
     said = words(variant.lang)["study"]["hint"]
     needed = needs(variant, quantity)
-    told = {g.name: g for g in handout(variant).given}  # what a figure alone shows has no words
-    given = [_given(variant, told[n]) for n in needed if n in told]
+    told = {g.name for g in handout(variant).given}  # what a figure alone shows has no words
+    given = [_given(variant, n) for n in needed if n in told]
     asked = {p.quantity: (k, p.id) for k, p in enumerate(variant.parts, start=1)}
     before = [
         said["asked"].format(symbol=f"${_symbol(variant, n)}$", number=asked[n][0])
@@ -115,7 +115,8 @@ def _depends(variant: Variant, quantity: str, call: Callable[[str], str]) -> str
     )
 
 
-def _given(variant: Variant, given: Given) -> str:
+def _given(variant: Variant, name: str) -> str:
+    given = next(g for g in handout(variant).given if g.name == name)
     return f"${given_formula(given)}$" if given.is_number else given_words(given, variant.lang)
 
 
