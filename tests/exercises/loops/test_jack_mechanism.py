@@ -111,6 +111,25 @@ def test_the_animation_swings_between_the_ends_of_the_jack():
     )
 
 
+def test_vectors_of_the_animation_are_the_slopes_of_paths_at_the_rate_of_the_jack():
+    variant = EXERCISE.variant(4)
+    points, lengths = variant.animation().points, variant.given["L_min"] + np.arange(5.0, 100.0, 0.01)
+    rate, bend = variant.given["L_dot"], variant.given["L_ddot"]
+    given = {**variant.given, "L": lengths}
+    found = EXERCISE.solve(**given, only=("theta4", "omega4", "alpha4"))
+    at = variant.given["a"] * np.exp(1j * np.radians(found["theta4"]))
+    slope = np.gradient(at, lengths)
+    velocity, acceleration = slope * rate, np.gradient(slope, lengths) * rate**2 + slope * bend
+    angles = np.degrees(np.angle(points["A"].position))
+    inside = (angles > found["theta4"][9]) & (angles < found["theta4"][-9])
+    assert inside.sum() > 2
+    for told, right in ((points["A"].velocity, velocity), (points["A"].acceleration, acceleration)):
+        read = np.interp(angles[inside], found["theta4"], right.real) + 1j * np.interp(
+            angles[inside], found["theta4"], right.imag
+        )
+        np.testing.assert_allclose(told[inside], read, atol=1e-5 * np.abs(right).max())
+
+
 def test_the_statement_of_bodies_and_joints_turns_them_as_the_formulas_do():
     """By the joints, for one of the tilt: the jack turns by omega2 / omega4."""
     from coursework.motion.scenes import Scene
