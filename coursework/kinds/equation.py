@@ -69,7 +69,11 @@ def _same(value: Read, reference: str, variables: tuple[str, ...], parameters: t
     """Equations are dear to compare, and many students write the same."""
     from coursework.reading.equivalence import same_equation
 
-    return same_equation(value, _parsed(reference, variables), parameters=parameters)
+    asked = _parsed(reference, variables)
+    opened = value.without_inverse()
+    return same_equation(value, asked, parameters=parameters) or (
+        opened is not None and same_equation(opened, asked, parameters=parameters)
+    )
 
 
 @lru_cache(maxsize=1024)

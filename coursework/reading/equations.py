@@ -16,7 +16,7 @@ from coursework.reading.expressions import plain_expression
 from coursework.reading.reading import Reading, bare_value, reading_of, text_of
 from coursework.reading.spelling import plain_spelling, shorten
 from coursework.reading.trees import Expression, Operation
-from coursework.reading.vocabulary import MAX_LENGTH, Unreadable, Value
+from coursework.reading.vocabulary import INVERSE, MAX_LENGTH, Unreadable, Value
 
 
 @dataclass(frozen=True)
@@ -59,6 +59,23 @@ class Equation:
         if sides == [self.left.root, self.right.root]:
             return None
         return Equation(self.text, *(Expression(self.text, root) for root in sides))
+
+    def without_inverse(self) -> Equation | None:
+        """An angle that stands alone beside an inverse function, undone: ``x = atan(f)`` as ``tan(x) = f``.
+
+        None where neither side is an inverse function. Angles that differ by what the function cannot tell satisfy it too.
+        """
+        for side, other in ((self.left.root, self.right.root), (self.right.root, self.left.root)):
+            if side.kind == "neg":
+                side, other = side.args[0], Operation("neg", args=(other,))
+            if side.kind == "call" and side.name in INVERSE:
+                function = Operation("call", _UNDOES[side.name], (other,))
+                argument = side.args[0] if len(side.args) == 1 else Operation("product", "*/", side.args)
+                return Equation(self.text, Expression(self.text, function), Expression(self.text, argument))
+        return None
+
+
+_UNDOES = {"asin": "sin", "acos": "cos", "atan": "tan", "atan2": "tan"}
 
 
 def _in_degrees(node: Operation) -> Operation:

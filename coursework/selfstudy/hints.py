@@ -92,7 +92,8 @@ def _symbol(variant: Variant, name: str) -> str:
 def _depends(variant: Variant, quantity: str, call: Callable[[str], str]) -> str:
     said = words(variant.lang)["study"]["hint"]
     needed = needs(variant, quantity)
-    given = [_given(variant, n) for n in needed if n in variant.given]
+    told = {g.name for g in handout(variant).given}  # what a figure alone shows has no words
+    given = [_given(variant, n) for n in needed if n in told]
     asked = {p.quantity: (k, p.id) for k, p in enumerate(variant.parts, start=1)}
     before = [
         said["asked"].format(symbol=f"${_symbol(variant, n)}$", number=asked[n][0])

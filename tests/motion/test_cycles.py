@@ -16,6 +16,9 @@ from coursework.errors import BadCourse, UnknownName, WrongValue
 from coursework.motion.scenes import Scene
 from coursework.rendering.displayed import DisplayedAnimation as Animation
 
+#: Moved between the ends of a jack, in every variant, at the jack's own rate: see its tests.
+SWINGING = ("jack_mechanism",)
+
 
 @pytest.fixture
 def four_bar_that_swings():
@@ -45,7 +48,7 @@ def test_the_sheets_position_comes_first_and_a_loop_ends_where_it_began(name):
     assert (moved.angles[moved.first] - angle) % 360 == pytest.approx(0, abs=1e-9)
 
 
-@pytest.mark.parametrize("name", DRIVEN)
+@pytest.mark.parametrize("name", [name for name in DRIVEN if name not in SWINGING])
 def test_a_full_turn_visits_every_angle_once_the_way_the_driver_turns(name):
     moved = next(animation(name, seed) for seed in range(1, 30) if animation(name, seed).turns)
     speed = moved.variant.given.get(moved.variant.exercise.spec.driver.speed, 1.0)
@@ -101,7 +104,7 @@ def test_every_animated_mechanism_states_its_points():
     assert set(DRIVEN) | set(FILMED) == set(MOVING)
 
 
-@pytest.mark.parametrize("name", [n for n in WITH_POINTS if n not in FILMED])
+@pytest.mark.parametrize("name", [n for n in WITH_POINTS if n not in (*FILMED, *SWINGING)])
 @pytest.mark.parametrize("seed", [2, 9])
 def test_velocities_and_accelerations_are_the_slopes_of_positions(name, seed):
     step, speed, sped_up = 0.01, 3.0, 7.0
