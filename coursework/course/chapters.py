@@ -65,7 +65,9 @@ class Chapter:
         return tuple(name for s in self.sections for name in s.exercises)
 
 
-def chapters(stated: Any, exercises: Sequence[str], lessons: Sequence[str], source: str) -> tuple[Chapter, ...]:
+def chapters(
+    stated: Any, exercises: Sequence[str], lessons: Sequence[str], source: str
+) -> tuple[Chapter, ...]:
     """The chapters that a course states.
 
     Parameters
@@ -99,7 +101,9 @@ def _chapter(number: int, stated: Mapping[str, Any], where: str) -> Chapter:
     if not titles:
         raise BadCourse(f'{where} has no title: write title = {{ en = "…", fr = "…" }}')
     return Chapter(
-        number, titles, tuple(_section(one, f"{where}, section {k}") for k, one in enumerate(sections, start=1))
+        number,
+        titles,
+        tuple(_section(one, f"{where}, section {k}") for k, one in enumerate(sections, start=1)),
     )
 
 

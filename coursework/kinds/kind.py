@@ -88,6 +88,9 @@ class Kind(ABC):
     rounds: ClassVar[bool] = True  #: rounding on the way widens its margin, which has the part's unit
     rank: ClassVar[int] = 0  #: axes of one value: 1 for a vector, 2 for a matrix
     of_largest: ClassVar[bool] = False  #: a relative tolerance is of the largest entry, and holds for each
+    keeps_share: ClassVar[bool] = (
+        False  #: what a named error leaves is never less than the share of what is right
+    )
     is_open: ClassVar[bool] = False  #: a person marks it, and the solution need not give it
     room: ClassVar[Any] = (
         None  #: on the sheet, of a part that states none; a part of another kind has no such room
@@ -195,6 +198,14 @@ class Kind(ABC):
 
     def words(self, value: Any, label: Callable[[str], str]) -> str:
         """A reference in words, Markdown, where it is no formula; ``label`` calls its cases."""
+        return ""
+
+    def units(self, unit: str) -> tuple[str, ...]:
+        """The units that an answer to a part of this unit is in: one, or one a column."""
+        return (unit,)
+
+    def formula(self, value: np.ndarray, number: Callable[[float], str]) -> str:
+        """A reference that is an array, as a formula without its unit; nothing where its entries say enough."""
         return ""
 
     def latex(self, value: str, symbols: Mapping[str, str]) -> str:

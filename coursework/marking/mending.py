@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from coursework.course.answer_key import Key
 from coursework.language.words import listed, quoted, words
@@ -49,14 +49,22 @@ def mark_wrong(
     if named:
         for trace in (trace for e in named for trace in e.traces):
             before.paid.setdefault(trace, part.id)
-        shares = {e.verdict: _share(key, e, in_other_case="slip:other_case" in matches) for e in named}
+        least = _right_share(key, part, reading.values[index], judged_by) if part.sort.keeps_share else 0.0
+        shares = {
+            e.verdict: max(least, _share(key, e, in_other_case="slip:other_case" in matches)) for e in named
+        }
         verdict = max(shares, key=shares.__getitem__)  # where nothing tells which, the one that costs least
         said = _told(variant, part, judged_by, named, read, before)
         return made(verdict, shares[verdict], read_as, said, matches)
-    share = part.sort.share(part, reading.values[index], key.reference[judged_by.quantity])
+    share = _right_share(key, part, reading.values[index], judged_by)
     if share > 0:
         return made("partial", share, read_as, say(variant, part, "partial", read=read), matches)
     return made("wrong", 0.0, read_as, _told_wrong(variant, part, read, before), matches)
+
+
+def _right_share(key: Key, part: Part, value: Any, judged_by: Part) -> float:
+    """What an answer earns for what is right of it."""
+    return part.sort.share(part, value, key.reference[judged_by.quantity])
 
 
 def _named(found: Sequence[Explanation], before: Before) -> list[Explanation]:
