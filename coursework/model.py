@@ -111,7 +111,8 @@ class Part:
     along the quantity ``along``),
     ``direction`` (any non-zero multiple of the reference vector) or ``equation`` (in the exercise's
     symbols ``variables``, up to a factor, which may hold those of them that are ``parameters``: lengths), ``complex``
-    (by its distance to the reference), ``vector`` and ``matrix`` (entry by entry), ``choices`` (several right ones of
+    (by its distance to the reference), ``vector`` and ``matrix`` (entry by entry), ``twist`` and ``wrench`` (two columns,
+    component by component), ``twist_pattern`` and ``wrench_pattern`` (which components may differ from zero), ``choices`` (several right ones of
     ``choices``), ``text`` or ``drawing``, which a person marks: their ``room`` is a number of lines, or the width and
     height in mm of a box, of ``millimetre`` paper where it is told. An
     equation that closes a ``loop`` of the solution is right in any form: :func:`loop_equations`.

@@ -52,7 +52,14 @@ def exact_rank(rows):
 
 
 def letters(direction):
-    """The axes by letter: d along a direction, e the one after it, f the one after that."""
+    """The axes by letter: d along a direction, e the one after it, f the one after that.
+
+    Of a direction of whole numbers in a coordinate plane, e is a quarter of a turn further in that plane.
+    """
+    if direction not in AXES:
+        d = [int(x) for x in direction.split()]
+        e = cross([int(x == 0) for x in d], d)
+        return {"d": d, "e": e, "f": cross(d, e)}
     first = "xyz".index(direction)
     return {k: AXES[a] for k, a in zip("def", "xyzxy"[first : first + 3], strict=True)}
 

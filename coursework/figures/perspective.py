@@ -183,7 +183,7 @@ def _symbol(
     shape, depth = _DRAWN[kind]
     if kind == "spherical":
         return shape(place, _UNITS["z"], see, forward, mm)
-    u = _UNITS[row["along"]]
+    u = _unit(row["axis"]) if "axis" in row else _UNITS[row["along"]]
     center = _beyond(place, u, aside) if kind in _ALONG else place
     front = 1 if _dot(u, forward) >= 0 else -1
     arm = _ARM * mm + abs(aside)
@@ -312,11 +312,20 @@ _ALONG = (
 )  #: those whose symbol may stand anywhere on the axis
 
 
+def _unit(vector: Place) -> Place:
+    size = math.hypot(*vector)
+    return tuple(x / size for x in vector)
+
+
 def _across(u: Place) -> tuple[Place, Place]:
-    """The two other axes, in order after this one."""
+    """The two other axes, in order after this one; of any other direction, two that go with it."""
     units: list[Place] = list(_UNITS.values())
-    k = units.index(u)
-    return units[k - 2], units[k - 1]
+    if u in units:
+        k = units.index(u)
+        return units[k - 2], units[k - 1]
+    level = _unit((-u[1], u[0], 0.0)) if u[0] or u[1] else _UNITS["x"]
+    x, y, z = level
+    return level, (u[1] * z - u[2] * y, u[2] * x - u[0] * z, u[0] * y - u[1] * x)
 
 
 def _hull(points: Sequence[complex]) -> tuple[complex, ...]:

@@ -206,6 +206,14 @@ class Kind(ABC):
         """A reference in words, Markdown, where it is no formula; ``label`` calls its cases."""
         return ""
 
+    def units(self, unit: str) -> tuple[str, ...]:
+        """The units that an answer to a part of this unit is in: one, or one a column."""
+        return (unit,)
+
+    def formula(self, value: np.ndarray, number: Callable[[float], str]) -> str:
+        """A reference that is an array, as a formula without its unit; nothing where its entries say enough."""
+        return ""
+
     def latex(self, value: str, symbols: Mapping[str, str]) -> str:
         """A reference that is a text, as a formula; nothing where it is none."""
         return ""

@@ -49,9 +49,7 @@ def mark_wrong(
     if named:
         for trace in (trace for e in named for trace in e.traces):
             before.paid.setdefault(trace, part.id)
-        least = 0.0
-        if part.sort.share_stands:
-            least = part.sort.share(part, reading.values[index], key.reference[judged_by.quantity])
+        least = _right_share(key, part, reading.values[index], judged_by) if part.sort.share_stands else 0.0
         shares = {
             e.verdict: max(least, _share(key, e, in_other_case="slip:other_case" in matches)) for e in named
         }
@@ -59,7 +57,7 @@ def mark_wrong(
         said = _told(variant, part, judged_by, named, read, before)
         return made(verdict, shares[verdict], read_as, said, matches)
     value, reference = reading.values[index], key.reference[judged_by.quantity]
-    share = part.sort.share(part, value, reference)
+    share = _right_share(key, part, value, judged_by)
     more = [Said(*remark) for remark in _remarks(variant, part, value, reference)]
     if share > 0:
         mark = made("partial", share, read_as, say(variant, part, "partial", read=read), matches)
@@ -74,6 +72,11 @@ def _remarks(
     """What its kind tells of an answer that nothing explains, with what fills each sentence."""
     for sentence, told in part.sort.remarks(part, value, reference, variant.lang):
         yield sentence, {"list": told}
+
+
+def _right_share(key: Key, part: Part, value: Any, judged_by: Part) -> float:
+    """What an answer earns for what is right of it."""
+    return part.sort.share(part, value, key.reference[judged_by.quantity])
 
 
 def _named(found: Sequence[Explanation], before: Before) -> list[Explanation]:

@@ -12,6 +12,8 @@ PRICES: Mapping[str, float] = MappingProxyType({
     "sign": 0.5, "conjugate": 0.5, "inverse": 0.5, "unit": 0.5, "radians": 0.5, "turns_a_minute": 0.5,
     "quadrant": 0.5, "branch": 0.5, "exchanged": 0.5, "count": 0.5, "other_case": 0.0, "input": 0.0,
     "neighbour": 0.0,
+    # a twist or a wrench
+    "moment_sign": 0.5, "columns": 0.5, "other_point": 0.5, "complement": 0.0,
     # in a formula
     "term_sign": 0.5, "angle_sign": 0.5, "constant": 0.5, "term": 0.0, "angle": 0.0, "factor": 0.0, "square": 0.0,
     "root": 0.0, "function": 0.0, "arguments": 0.0, "degrees": 0.0, "all_degrees": 0.0,

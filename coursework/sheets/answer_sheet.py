@@ -194,6 +194,12 @@ def _value_latex(variant: Variant, name: str, value: Any) -> str:
         return "" if part is None else part.sort.latex(value, _symbols(variant))
     if isinstance(value, tuple):
         return ""
+    if (
+        isinstance(value, np.ndarray)
+        and part is not None
+        and (table := part.sort.formula(value, lambda v: number_latex(v, "1", PRINTED_DIGITS)))
+    ):
+        return table + r"\ \mid\ ".join(unit_latex(one) for one in part.sort.units(unit))
     if isinstance(value, np.ndarray) and value.ndim == 2:
         return _matrix_latex(value) + unit_latex(unit)
     if isinstance(value, np.ndarray):

@@ -102,7 +102,7 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
         id=part.id,
         symbol=variant.exercise.symbol(part.quantity) if part.sort.has_symbol else "",
         prompt=prompt(variant, part, ways),
-        unit="" if part.asks_unit else unit_text(part.unit, variant.lang),
+        unit="" if part.asks_unit else units_text(part, variant.lang),
         kind=part.kind,
         is_exact=part.is_exact,
         box="millimetre" if part.millimetre else part.sort.box,
@@ -117,6 +117,11 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
         judge=part.judge,
         key=answer_keys(variant.parts)[part.id],
     )
+
+
+def units_text(part: Part, lang: str) -> str:
+    """The unit of a part as it is printed; the units of its columns, parted by a bar."""
+    return " | ".join(filter(None, (unit_text(unit, lang) for unit in part.sort.units(part.unit))))
 
 
 def tolerance_words(part: Part, lang: str) -> str:

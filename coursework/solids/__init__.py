@@ -9,7 +9,7 @@ one unit of length, any one; axes and normals need not be unit vectors.
 * :func:`recognise`: the joint of the table that a space of twists is.
 """
 
-from coursework.solids.aligned import aligned, each_distinct
+from coursework.solids.aligned import aligned, directions_of, each_distinct, placed
 from coursework.solids.chains import Chain, PlanarChain, planar_kind
 from coursework.solids.combining import Parallel, Series, in_parallel, in_series
 from coursework.solids.joints import FREEDOMS, JOINTS, Joint, joint_of, joints_of
@@ -28,11 +28,13 @@ __all__ = [
     "Rank",
     "Series",
     "aligned",
+    "directions_of",
     "each_distinct",
     "in_parallel",
     "in_series",
     "joint_of",
     "joints_of",
+    "placed",
     "planar_kind",
     "rank_of",
     "recognise",

@@ -1,32 +1,101 @@
-"""Joints along the coordinate axes, as exercises draw them, and functions of them on columns of draws."""
+"""Joints along the coordinate axes and along vectors of whole numbers, as exercises draw them, and functions of them on
+columns of draws."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Any
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 
-_AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+from coursework.errors import WrongValue
+
+Whole: TypeAlias = tuple[int, int, int]
+
+_WHOLE: Mapping[str, Whole] = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
 _NEXT = {"x": "y", "y": "z", "z": "x"}
 
 
 def aligned(
-    name: str, along: str, point: Sequence[float] = (0.0, 0.0, 0.0), between: Sequence[int] = (0, 1)
+    name: str,
+    along: str,
+    point: Sequence[float] = (0.0, 0.0, 0.0),
+    between: Sequence[int] = (0, 1),
+    tilt: str = "",
 ) -> dict[str, Any]:
-    """The mapping of a joint whose direction is ``x``, ``y`` or ``z``.
+    """The mapping of a joint whose direction is ``x``, ``y`` or ``z``, or three whole numbers, ``3 4 0``.
 
     The direction is the axis, the normal of a joint that has no axis, and the line of a contact along a
-    line, whose normal is then the axis that follows: y after x, z after y, x after z.
+    line, whose normal is then the axis that follows: y after x, z after y, x after z; of a direction in a coordinate plane,
+    what a quarter of a turn in that plane makes of it. With a ``tilt``, a letter, the joint is turned with its point
+    about that axis of the origin, by the angle whose cosine is 4/5 and whose sine is 3/5.
     """
-    normal = _AXES[_NEXT[along] if name == "line_contact" else along]
+    axis, after = directions_of(along, tilt)
+    x, y, z = point
     return {
         "between": list(between),
         "joint": name,
-        "axis": list(_AXES[along]),
-        "normal": list(normal),
-        "point": [float(x) for x in point],
+        "axis": _unit(axis),
+        "normal": _unit(after if name == "line_contact" else axis),
+        "point": list(placed((float(x), float(y), float(z)), tilt)),
     }
+
+
+def directions_of(along: str, tilt: str = "") -> tuple[Whole, Whole]:
+    """A direction and the one that follows it, as :func:`aligned` says, in whole numbers.
+
+    Raises
+    ------
+    WrongValue
+        It is neither a letter nor three whole numbers, one of them 0.
+    """
+    if along in _WHOLE:
+        axis, after = _WHOLE[along], _WHOLE[_NEXT[along]]
+    else:
+        axis = _three(along)
+        place = axis.index(0) if 0 in axis else -1
+        about: Whole = tuple(int(k == place) for k in range(3))  # type: ignore[assignment]
+        after = _crossed(about, axis)
+    return _turned(axis, tilt), _turned(after, tilt)
+
+
+def placed(point: tuple[float, float, float], tilt: str = "") -> tuple[float, float, float]:
+    """Where a point comes to lie by the tilt of :func:`aligned`."""
+    x, y, z = (c / (5.0 if tilt else 1.0) for c in _turned(point, tilt))
+    return x, y, z
+
+
+def _three(along: str) -> Whole:
+    try:
+        x, y, z = map(int, along.split())
+    except ValueError:
+        raise WrongValue(
+            f"a direction is x, y, z or three whole numbers such as '3 4 0'; found {along[:40]!r}"
+        ) from None
+    if not (x or y or z):
+        raise WrongValue("a direction has a number that is not 0; found '0 0 0'")
+    return x, y, z
+
+
+def _crossed(a: Any, b: Any) -> Any:
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def _turned(vector: Any, tilt: str) -> Any:
+    """Five times what the tilt makes of a vector; without a tilt the vector."""
+    if not tilt:
+        return vector
+    about = _WHOLE[tilt]
+    across = _crossed(about, vector)
+    along = sum(a * v for a, v in zip(about, vector, strict=True))
+    # Rodrigues' formula, five times.
+    return tuple(4 * v + 3 * c + along * a for v, c, a in zip(vector, across, about, strict=True))
+
+
+def _unit(vector: Whole) -> list[float]:
+    size = math.sqrt(sum(x * x for x in vector))
+    return [x / size for x in vector] if size else [0.0, 0.0, 0.0]
 
 
 def each_distinct(function: Callable[..., Any], *columns: Any) -> Any:

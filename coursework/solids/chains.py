@@ -14,7 +14,7 @@ import numpy as np
 
 from coursework.errors import WrongValue
 from coursework.solids.joints import Joint, Measure, Vector, read_joints
-from coursework.solids.ranks import Rank, decompose, rank_of
+from coursework.solids.ranks import Rank, rank_of
 
 
 class _Loops:
@@ -194,6 +194,9 @@ _IN_PLANE = (2, 3, 4)  #: rotation about z, velocities along x and y
 _PLANAR = {(0, 0): "rigid", (1, 0): "revolute", (0, 1): "prismatic", (1, 1): "point_contact", (1, 2): "free"}
 
 
+_IN_PLANE_OR_SQUARE = 1e-9  #: largest component out of the plane, or in it, of a direction that has none
+
+
 @lru_cache(maxsize=1024)
 def _projected(name: str, frame: tuple[Vector, Vector, Vector], pitch: float) -> np.ndarray:
     """The freedoms of a joint in the plane xy, at its own point: shape (k, 3), not to be changed.
@@ -201,15 +204,27 @@ def _projected(name: str, frame: tuple[Vector, Vector, Vector], pitch: float) ->
     Raises
     ------
     WrongValue
-        Its axis or its normal is along none of x, y, z.
+        Its axis or its normal is neither in the plane nor perpendicular to it.
     """
-    if any(sorted(map(abs, vector))[1] > 1e-9 for vector in frame):
-        raise WrongValue(
-            f"in a plane problem axes and normals are along x, y or z; that of a {name} is {frame[0]}"
-        )
+    for vector in frame[:2]:
+        across, along = abs(vector[2]), max(abs(vector[0]), abs(vector[1]))
+        if min(across, along) > _IN_PLANE_OR_SQUARE:
+            x, y, z = vector
+            raise WrongValue(
+                "in a plane problem axes and normals lie in the plane xy or along z; "
+                f"that of a {name} is ({x:.6g}, {y:.6g}, {z:.6g})"
+            )
     here = (0.0, 0.0, 0.0)
     rows = np.array(Joint(name, frame, here, pitch).twists(here, 1.0)).reshape(-1, 6)[:, _IN_PLANE]
-    return np.round(decompose(rows, "the motions in the plane", 1.0)[1], 9) if len(rows) else rows
+    turns = bool(np.any(np.abs(rows[:, 0]) > _IN_PLANE_OR_SQUARE))
+    slides = [row[1:] for row in rows if np.hypot(*row[1:]) > _IN_PLANE_OR_SQUARE * max(1.0, abs(pitch))]
+    found = [[1.0, 0.0, 0.0]] if turns else []
+    if len(slides) == 1:
+        vx, vy = slides[0] / np.hypot(*slides[0])
+        found.append([0.0, vx, vy])
+    elif slides:
+        found += [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    return np.array(found).reshape(-1, 3)
 
 
 def planar_kind(joint: Joint) -> str:
@@ -218,7 +233,7 @@ def planar_kind(joint: Joint) -> str:
     Raises
     ------
     WrongValue
-        Its axis or its normal is along none of x, y, z.
+        Its axis or its normal is neither in the plane nor perpendicular to it.
     """
     rows = _projected(joint.name, joint.frame, joint.pitch)
     turning = int(np.any(rows[:, 0] != 0))
@@ -228,7 +243,8 @@ def planar_kind(joint: Joint) -> str:
 class PlanarChain(_Loops):
     """A chain in the plane xy: joints of space, of which what happens in the plane counts.
 
-    Parameters and errors are those of :class:`Chain`; axes and normals are along x, y or z.
+    Parameters and errors are those of :class:`Chain`; axes and normals lie in the plane or
+    are perpendicular to it.
     """
 
     equations = 3

@@ -1,11 +1,22 @@
 """What the exercises on chains of solids share."""
 
 from functools import cache
+from math import gcd, isqrt
 
 import numpy as np
 
 from coursework.model import GivenSpec, Part, chosen, drawn
-from coursework.solids import FREEDOMS, Parallel, Series, aligned, in_parallel, in_series, joint_of
+from coursework.solids import (
+    FREEDOMS,
+    Parallel,
+    Series,
+    aligned,
+    directions_of,
+    in_parallel,
+    in_series,
+    joint_of,
+    placed,
+)
 
 COMBINE = {"parallel": in_parallel, "series": in_series}
 
@@ -42,8 +53,12 @@ def joint_kind(names: tuple[str, ...] = DRAWN) -> GivenSpec:
     return chosen(*names, shown=False)
 
 
-def direction() -> GivenSpec:
-    return chosen("x", "y", "z", shown=False)
+#: Directions in the plane xy, neither along x nor along y, of a wedge or of a line of action.
+INCLINED = ("3 4 0", "4 -3 0")
+
+
+def direction(*more: str) -> GivenSpec:
+    return chosen("x", "y", "z", *more, shown=False)
 
 
 def coordinate() -> GivenSpec:
@@ -51,19 +66,38 @@ def coordinate() -> GivenSpec:
     return drawn(-40, 40, step=20, unit="mm", shown=False)
 
 
-def table(*joints):
-    """The lines of a statement's table of joints, each (bodies, name, direction, point)."""
-    return [
-        {
-            "number": k,
-            "bodies": bodies,
-            "joint": name,
-            "along": along,
-            "point": [int(c) for c in point],
-            "freedoms": FREEDOMS[name],
-        }
-        for k, (bodies, name, along, point) in enumerate(joints, start=1)
-    ]
+def table(*joints, tilt=""):
+    """The lines of a statement's table of joints, each (bodies, name, direction, point), all turned by a ``tilt``."""
+    return [_line(k, *joint, tilt) for k, joint in enumerate(joints, start=1)]
+
+
+def _line(number, bodies, name, along, point, tilt):
+    axis, normal = directions_of(along, tilt)
+    return {
+        "number": number,
+        "bodies": bodies,
+        "joint": name,
+        "along": along,
+        "axis": axis,
+        "u": "" if name == "spherical" else vector_latex(axis),
+        "n": vector_latex(normal) if name == "line_contact" else "",
+        "point": [round(c) for c in placed(tuple(map(float, point)), tilt)],
+        "freedoms": FREEDOMS[name],
+    }
+
+
+def vector_latex(vector):
+    """The unit vector along whole numbers, as a formula: ``\\vec x``, ``\\frac{3\\,\\vec x - 4\\,\\vec y}{5}``."""
+    common = gcd(*vector)
+    vector = [x // common for x in vector]
+    told = ""
+    for x, letter in zip(vector, "xyz", strict=True):
+        if x:
+            size = "" if abs(x) == 1 else rf"{abs(x)}\,"
+            sign = (" - " if told else "-") if x < 0 else " + " if told else ""
+            told += rf"{sign}{size}\vec {letter}"
+    size = isqrt(sum(x * x for x in vector))
+    return told if size == 1 else rf"\frac{{{told}}}{{{size}}}"
 
 
 def freedoms_of(joint):
@@ -85,7 +119,7 @@ def combined(combination: str, *joints: tuple) -> Parallel | Series:
 @cache
 def _motions() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Names "joint direction" in order, the freedoms of each, and the products T' T of its twists at its point."""
-    pairs = sorted((f"{name} {along}", name, along) for name in DRAWN for along in "xyz")
+    pairs = sorted((f"{name} {along}", name, along) for name in DRAWN for along in (*"xyz", *INCLINED))
     twists = [np.array(joint_of(aligned(n, a)).twists((0.0, 0.0, 0.0), 1.0)) for _, n, a in pairs]
     return (
         np.array([key for key, _, _ in pairs]),
@@ -109,7 +143,7 @@ def mobility_of_loops(senses, joints, directions, points, *, in_plane=False):
     """Mobility of a chain. ``senses`` has a row a joint: in each loop, whether it is met along (1), against (-1)
     or not (0). The columns are those of :func:`mobility_of_loop`.
 
-    The rank is that of a matrix of small whole numbers: its zeros are zeros but for rounding.
+    The rank is that of a matrix of small whole numbers and of fifths: its zeros are zeros but for rounding.
     """
     keys, freedoms, products = _motions()
     kept = _IN_PLANE if in_plane else _IN_SPACE

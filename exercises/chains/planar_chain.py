@@ -5,7 +5,7 @@ import numpy as np
 from coursework.figures import Figure, axes, line, note, point
 from coursework.model import Exercise, Part, chosen, drawn
 
-from ._solids import freedoms_of, mobility_of_loops
+from ._solids import INCLINED, direction, freedoms_of, mobility_of_loops, table
 
 PLANAR = ("revolute", "prismatic", "point_contact", "free")
 
@@ -27,10 +27,10 @@ WITH_FRAME = ("revolute", "prismatic", "cylindrical")
 
 
 def _has_plane_motion(joint, along):
-    """In the plane xy: turning about z, sliding along x or y; a line contact with its normal in the plane."""
+    """In the plane xy: turning about z, sliding in the plane; a line contact with its normal in the plane."""
     turns_away = (joint == "revolute") & (along != "z")
     slides_away = (joint == "prismatic") & (along == "z")
-    stands_up = (joint == "line_contact") & (along == "y")
+    stands_up = (joint == "line_contact") & (along == "y")  # its normal is along z
     return ~(turns_away | slides_away | stands_up)
 
 
@@ -102,10 +102,15 @@ def tells(
     places = ((0, 0), (x2, y2), (x3, y3), (x4, y4))
     return {
         "joints": [
-            {"number": k, "bodies": (k - 1, k % 4), "joint": name, "along": letter, "x": int(x), "y": int(y)}
-            for k, (name, letter, (x, y)) in enumerate(zip(names, along, places, strict=True), start=1)
+            {"x": int(x), "y": int(y), **row}
+            for row, (x, y) in zip(_rows(names, along, places), places, strict=True)
         ]
     }
+
+
+def _rows(names, along, places):
+    around = zip(names, along, places, strict=True)
+    return table(*[((k, (k + 1) % 4), name, way, (x, y, 0)) for k, (name, way, (x, y)) in enumerate(around)])
 
 
 def figure(x2, y2, x3, y3, x4, y4):
@@ -131,7 +136,7 @@ EXERCISE = Exercise(
             for k in (1, 2, 3, 4)
             for name, spec in (
                 (f"joint_{k}", chosen(*(JOINTS if k in (2, 3) else WITH_FRAME), shown=False)),
-                (f"direction_{k}", chosen("x", "y", "z", shown=False)),
+                (f"direction_{k}", direction(*(INCLINED if k in (2, 3) else ()))),
             )
         },
         "x2": drawn(-20, 20, step=20, unit="mm", shown=False),
@@ -162,6 +167,7 @@ EXERCISE = Exercise(
         Part("comparison", kind="choice", choices=("sound", "hidden", "plane"), points=1),
     ),
     tells=tells,
+    version=2,
     figure=figure,
     symbols={
         "Nc": "N_c",

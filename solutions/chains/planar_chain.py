@@ -254,6 +254,14 @@ KNOWN = (
     given(joints=_loop(("revolute", _Z), ("point_contact", _Y), ("prismatic", _Y))).gives(
         planar_2="point_contact", planar_3="prismatic", Nc=4, rc=3, m=1, h=0, h_space=0,
     ),
+    # A wedge: a slide along x, the slope that is common to both bodies, a slide along y.
+    given(joints=_loop(("prismatic", _X), ("prismatic", (3, -4, 0)), ("prismatic", _Y))).gives(
+        planar_1="prismatic", planar_2="prismatic", gamma=1, Nc=3, rc=2, m=1, Ns=6, rs=5, h=1, comparison="plane",
+    ),
+    # A pair of gears: two pivots, and a contact whose line of action is inclined.
+    given(joints=_loop(("revolute", _Z), ("point_contact", (94, 34, 0)), ("revolute", _Z))).gives(
+        planar_2="point_contact", gamma=1, Nc=4, rc=3, m=1, Ns=5, rs=5, h=0, comparison="sound",
+    ),
     # The table of the course: each column one joint.
     given(joints=_loop(("cylindrical", _Z), ("cylindrical", _X), ("annular", _X), ("planar", _Z))).gives(
         planar_1="revolute", planar_2="prismatic", planar_3="point_contact", planar_4="free",

@@ -434,7 +434,7 @@ def test_a_slider_crank_in_the_plane_and_in_space():
 
 
 def test_an_inclined_axis_is_no_plane_problem():
-    with pytest.raises(WrongValue, match="along x, y or z"):
+    with pytest.raises(WrongValue, match="in the plane xy or along z"):
         planar_kind(joint_of(joint("revolute", (0, 1, 1), O)))
 
 

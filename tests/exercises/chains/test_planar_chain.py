@@ -1,10 +1,12 @@
 """Plane chains: the answers against exact motions of the bodies in the plane and in space, and the course's table."""
 
+import numpy as np
 import pytest
 from exact_chains import freedoms, hindered
 
 import coursework
 from coursework.errors import CannotTell, WrongValue
+from coursework.solids import aligned
 
 EXERCISE = coursework.open_course()["planar_chain"]
 BETWEEN = [(0, 1), (1, 2), (2, 3), (3, 0)]
@@ -22,6 +24,11 @@ IN_PLANE = {
     ("planar", "z"): "free",
     ("point_contact", "z"): "free",
 }
+#: A direction in the plane that is neither x nor y is as x is, a line of contact with its normal in the plane.
+INCLINED = ("3 4 0", "4 -3 0")
+IN_PLANE |= {
+    (name, way): kind for (name, along), kind in IN_PLANE.items() if along == "x" for way in INCLINED
+}
 HINDERED_IN_PLANE = {"revolute": 2, "prismatic": 2, "point_contact": 1, "free": 0}
 
 
@@ -33,6 +40,74 @@ def joints_of(given):
 def in_plane(rows):
     """Of what a joint forbids, what bears on rotation z and velocities x and y alone."""
     return [[row[2], row[3], row[4]] for row in rows if any((row[2], row[3], row[4]))]
+
+
+def test_inclined_joints_are_drawn_and_upright_ones_too():
+    found = [
+        sum(v.given[f"direction_{k}"] in INCLINED for k in (2, 3)) for v in EXERCISE.variants(range(100))
+    ]
+    assert min(found.count(0), found.count(1), found.count(2)) >= 10
+
+
+def wedge(slope):
+    """A slide along x pushes one along y up a slope, a vector in the plane."""
+    slides = [(1, 0, 0), slope, (0, 1, 0)]
+    return [{"between": [k, (k + 1) % 3], "joint": "prismatic", "axis": a} for k, a in enumerate(slides)]
+
+
+def test_a_wedge_is_a_plane_chain_whatever_its_slope():
+    for slope in ((3, 4, 0), (1, 0.1, 0), (-1e-3, 1, 0), (1e6, 1, 0)):
+        found = EXERCISE.solve(joints=wedge(slope), only=("planar_2", "Nc", "rc", "m", "h", "h_space"))
+        assert found == {"planar_2": "prismatic", "Nc": 3, "rc": 2, "m": 1, "h": 1, "h_space": 4}
+    with pytest.raises(CannotTell):
+        EXERCISE.solve(
+            joints=[*wedge((1, 0, 0))[:2], {"between": [2, 0], "joint": "prismatic", "axis": (1, 1e-9, 0)}],
+            only="m",
+        )
+
+
+def gears(normal, contact=(40, 0, 0)):
+    return [
+        {"between": [0, 1], "joint": "revolute", "axis": Z, "point": (0, 0, 0)},
+        {"between": [1, 2], "joint": "point_contact", "normal": normal, "point": contact},
+        {"between": [2, 0], "joint": "revolute", "axis": Z, "point": (100, 0, 0)},
+    ]
+
+
+def test_a_pair_of_gears_turns_along_any_line_of_action_but_through_an_axis():
+    for normal in ((0, 1, 0), (0.342020143, 0.939692621, 0), (1, 5, 0)):
+        found = EXERCISE.solve(joints=gears(normal), only=("planar_2", "Nc", "rc", "m", "h"))
+        assert found == {"planar_2": "point_contact", "Nc": 4, "rc": 3, "m": 1, "h": 0}
+    # Along the line of centres the contact hinders nothing that the axes allow: both wheels turn alone.
+    assert EXERCISE.solve(joints=gears((1, 0, 0)), only=("rc", "m", "h")) == {"rc": 2, "m": 2, "h": 1}
+
+
+def test_four_bodies_with_inclined_joints_against_whole_numbers():
+    """Plane chains of any slopes and of one loop or two, by exact motions of the bodies."""
+    rng = np.random.default_rng(11)
+    slopes = ["3 4 0", "4 -3 0", "1 2 0", "5 -12 0", "x", "y", "1 1 0"]
+    met = set()
+    for _ in range(150):
+        size = int(rng.integers(3, 6))
+        between = [(k, (k + 1) % size) for k in range(size)] + [(0, 2)] * int(rng.integers(0, 2))
+        drawn = []
+        for _ in between:
+            name = str(
+                rng.choice(["revolute", "prismatic", "planar", "point_contact", "annular", "cylindrical"])
+            )
+            way = "z" if name == "revolute" else str(rng.choice(slopes))
+            drawn.append((name, way, (*(20 * int(c) for c in rng.integers(-3, 4, 2)), 0)))
+        forbidden = [(b, hindered(*one)) for b, one in zip(between, drawn, strict=True)]
+        joints = [aligned(name, way, place, b) for b, (name, way, place) in zip(between, drawn, strict=True)]
+        m, Ns = freedoms(size - 1, [(b, in_plane(rows)) for b, rows in forbidden])
+        spatial, unknowns = freedoms(size - 1, forbidden)
+        found = EXERCISE.solve(joints=joints, only=("m", "Ns", "h", "h_space", "gamma"))
+        assert found["m"] == m
+        assert found["Ns"] == Ns
+        assert found["h"] == Ns - (3 * (size - 1) - m)
+        assert found["h_space"] == unknowns - (6 * (size - 1) - spatial)
+        met.add((found["gamma"], found["m"]))
+    assert len(met) >= 6
 
 
 @pytest.mark.parametrize("block", range(3))
@@ -97,7 +172,7 @@ def test_what_is_no_plane_problem_is_said():
         *hinges([(0, 0), (40, 30), (140, 0)]),
         {"between": [2, 0], "joint": "prismatic", "axis": (1, 0, 1)},
     ]
-    with pytest.raises(WrongValue, match="along x, y or z"):
+    with pytest.raises(WrongValue, match="in the plane xy or along z"):
         EXERCISE.solve(joints=tilted, only="Nc")
     with pytest.raises(WrongValue, match="holds 3 joints"):
         EXERCISE.solve(joints=hinges([(0, 0), (40, 30), (140, 0)]), only="planar_4")

@@ -1,0 +1,245 @@
+"""What twists and wrenches have in common: two columns, each judged by its own largest component, and what exchanges them.
+
+A torsor is an array of six: the resultant in the basis of the question before the moment at its point. A plane one, in
+the plane xy, is an array of three: ``(vx, vy, wz)`` of a twist, ``(X, Y, N)`` of a wrench.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+
+from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.nearness import in_half_widths, offset
+from coursework.language.numbers import significant
+from coursework.reading.reading import Reading
+from coursework.reading.torsors import Form, component_place, read_pattern, read_torsor
+
+_UNITS = (1e-3, 1e3)  #: metres for millimetres
+_PARALLEL = 1e-9  #: of what is square to the resultant but for rounding
+
+
+class Torsor(Kind):
+    """Components at a point, right where each is within the half-width of its own column.
+
+    The half-width of a column is the larger of ``atol`` and ``rtol`` times the largest component of the reference there;
+    that of the moments is the envelope where that is wider. ``unit`` is that of the moments, ``of_resultant`` goes with it.
+    """
+
+    is_followed = of_largest = share_stands = True
+    rank = 1
+    box = "line"
+    family = "torsor"
+    faults: ClassVar[Mapping[str, str]] = dict.fromkeys(
+        ("unknown_symbol", "two_values", "not_a_number", "wrong_count", "wrong_shape", "wrong_torsor"),
+        "not_torsor",
+    )
+    form: ClassVar[Form]
+
+    def of_resultant(self, unit: str) -> str:
+        """The unit of the resultant where ``unit`` is that of the moments."""
+        raise NotImplementedError
+
+    def units(self, unit: str) -> tuple[str, ...]:
+        return self.of_resultant(unit), unit
+
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        units = (self.of_resultant(part.unit), part.unit)
+        return read_torsor(answer, self.form, units, len(asking.reference(part.quantity)))
+
+    # ------------------------------------------------------------------ judging
+
+    def _places(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Where an array of 6, or of 3, holds the resultant, and where the moments."""
+        order = np.array(self.form.plane if count == 3 else range(6))
+        return np.flatnonzero(order < 3), np.flatnonzero(order >= 3)
+
+    def _gaps(self, part: Stated, value: Any, reference: Any, envelope: float) -> np.ndarray:
+        """How far each component is off, in half-widths of its column."""
+        reference = np.asarray(reference, dtype=float)
+        gaps = None if np.shape(value) != reference.shape else offset(value, reference)
+        if gaps is None:
+            return np.full(reference.shape, math.inf)
+        found, whole = np.zeros(reference.shape), self.size(reference)
+        for places, room in zip(self._places(len(reference)), (0.0, envelope), strict=True):
+            size = float(np.max(np.abs(reference[places])))
+            width = max(part.half_width(size), room)
+            found[places] = [in_half_widths(abs(float(g)), width, size or whole) for g in gaps[places]]
+        return found
+
+    def distance(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        return float(np.max(self._gaps(part, value, reference, envelope)))
+
+    def size(self, reference: Any) -> float:
+        return float(np.max(np.abs(reference)))
+
+    def is_trivial(self, value: Any) -> bool:
+        return not np.any(value)
+
+    def share(self, part: Stated, value: Any, reference: Any) -> float:
+        """The share of components that are right, noughts too; none where nothing that is not 0 is right."""
+        right = self._gaps(part, value, reference, 0.0) <= 1
+        return float(np.mean(right)) if np.any(right & (np.asarray(reference) != 0)) else 0.0
+
+    def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:
+        value, reference = np.asarray(value, dtype=float), np.asarray(reference, dtype=float)
+        if value.shape != reference.shape or not np.all(np.abs(value) < math.sqrt(np.finfo(float).max)):
+            return
+        for name, wrong in self._wrong(reference):
+            if self.distance(part, wrong, reference) > 1 and self.distance(part, value, wrong) <= 1:
+                yield name
+                return
+        if self._is_at_another_point(part, value, reference):
+            yield "other_point"
+
+    def _wrong(self, reference: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
+        yield "sign", -reference
+        moment = self._places(len(reference))[1]
+        turned = reference.copy()
+        turned[moment] *= -1
+        yield "moment_sign", turned
+        if len(reference) == 6:
+            yield "columns", np.roll(reference, 3)
+        for factor in _UNITS:
+            scaled = reference.copy()
+            scaled[moment] *= factor
+            yield "unit", scaled
+
+    def _is_at_another_point(self, part: Stated, value: np.ndarray, reference: np.ndarray) -> bool:
+        """Whether it is the same torsor at some other point: its resultant, and moments that differ at right angles to it."""
+        (resultant, moment), (_, moved) = self._vectors(reference), self._vectors(value)
+        size = float(np.linalg.norm(resultant))
+        places = self._places(len(reference))[0]
+        if not size or np.any(self._gaps(part, value, reference, 0.0)[places] > 1):
+            return False
+        change = moved - moment
+        along = abs(float(change @ resultant)) / size
+        width = part.half_width(float(np.max(np.abs(np.concatenate((moment, moved))))))
+        return along <= max(width, _PARALLEL * float(np.linalg.norm(change)))
+
+    def _vectors(self, value: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Resultant and moment in space."""
+        whole = value
+        if len(value) == 3:
+            whole = np.zeros(6)
+            whole[list(self.form.plane)] = value
+        return whole[:3], whole[3:]
+
+    def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
+        just_off = np.array(value, dtype=float)
+        moments = self._places(len(just_off))[1]
+        just_off[moments[0]] += 1.3 * (
+            part.half_width(float(np.max(np.abs(just_off[moments])))) or half_width or 1.0
+        )
+        return just_off, 1.13 * np.asarray(value)
+
+    # ----------------------------------------------------------------- printing
+
+    def formula(self, value: np.ndarray, number: Callable[[float], str]) -> str:
+        cells: list[str] = ["-"] * 6
+        for place, one in zip(self.form.plane if len(value) == 3 else range(6), value.tolist(), strict=True):
+            cells[place] = number(one)
+        return _table(cells)
+
+    # ----------------------------------------------------------------- students
+
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        told = [significant(v, digits) for v in np.asarray(value).tolist()]
+        if len(told) == 3:
+            return "(" + " ; ".join(told) + ")"
+        return "{" + "; ".join(f"{a} {b}" for a, b in zip(told[:3], told[3:], strict=True)) + "}"
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        yield from super().spellings(part, value, label)
+        plain = np.asarray(value).tolist()
+        if len(plain) == 6:
+            first, second = plain[:3], plain[3:]
+            yield Spelling("lists", [first, second])
+            yield Spelling("rows", [list(row) for row in zip(first, second, strict=True)])
+            yield Spelling("columns", f"{{{' '.join(map(repr, first))} | {' '.join(map(repr, second))}}}")
+            inner = r" \\ ".join(f"{a!r} & {b!r}" for a, b in zip(first, second, strict=True))
+            yield Spelling("latex", rf"\begin{{Bmatrix}} {inner} \end{{Bmatrix}}")
+        else:
+            names = [self.form.names[place] for place in self.form.plane]
+            yield Spelling("named", "; ".join(f"{n} = {v!r}" for n, v in zip(names, plain, strict=True)))
+
+
+class Pattern(Kind):
+    """Which components of a torsor may differ from zero: right where exactly those are named.
+
+    The solution gives their names in one text, ``"wz vx"``; ``""`` where all vanish.
+    """
+
+    is_exact = is_text = has_rule = share_stands = True
+    has_symbol = is_called_by_symbol = False
+    box = "line"
+    family = "pattern"
+    wrong = "wrong_case"
+    faults: ClassVar[Mapping[str, str]] = {"wrong_torsor": "not_pattern", "unknown_symbol": "not_pattern"}
+    form: ClassVar[Form]
+
+    def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
+        return read_pattern(answer, self.form)
+
+    def kept(self, read_as: str) -> Any:
+        return self.components(read_as)
+
+    def components(self, value: Any) -> frozenset[str]:
+        """The names that a reference holds, ``"wz vx"``, or a set of them."""
+        if isinstance(value, (set, frozenset, tuple, list)):
+            return frozenset(map(str, value))
+        names = str(value).replace(",", " ").replace(";", " ").split()
+        places = {component_place(name, self.form) for name in names if name != "0"}
+        return frozenset(self.form.names[place] for place in places if place is not None)
+
+    def distance(
+        self, part: Stated, value: Any, reference: Any, along: Any = None, envelope: float = 0.0
+    ) -> float:
+        return 0.0 if self.components(value) == self.components(reference) else math.inf
+
+    def share(self, part: Stated, value: Any, reference: Any) -> float:
+        """Each component that may differ from 0 gives its share, each that may not takes as much away; 0 at least."""
+        right, named = self.components(reference), self.components(value)
+        return max(0.0, (len(named & right) - len(named - right)) / len(right)) if right else 0.0
+
+    def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:
+        right, named = self.components(reference), self.components(value)
+        names = self.form.names
+        if named != right and named == {names[(names.index(name) + 3) % 6] for name in right}:
+            yield "columns"
+        elif named != right and named == set(names) - right:
+            yield "complement"
+
+    def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
+        return (" ".join(sorted(self.components(value) ^ {self.form.names[0]})) or "0",)
+
+    def latex(self, value: str, symbols: Mapping[str, str]) -> str:
+        found = self.components(value)
+        return _table([_symbol(name) if name in found else "0" for name in self.form.names])
+
+    def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
+        found = self.components(value)
+        cells = [name if name in found else "0" for name in self.form.names]
+        return "{" + "; ".join(f"{a} {b}" for a, b in zip(cells[:3], cells[3:], strict=True)) + "}"
+
+    def spellings(self, part: Stated, value: Any, label: Callable[[str], str]) -> Iterator[Spelling]:
+        found = self.components(value)
+        marks = [int(name in found) for name in self.form.names]
+        yield Spelling("exact", ", ".join(sorted(found)) or "0")
+        yield Spelling("printed", self.written(value, 4, label))
+        yield Spelling("marks", [marks[:3], marks[3:]])
+
+
+def _table(cells: list[str]) -> str:
+    rows = r" \\ ".join(f"{a} & {b}" for a, b in zip(cells[:3], cells[3:], strict=True))
+    return rf"\left\{{\begin{{matrix}} {rows} \end{{matrix}}\right\}}"
+
+
+def _symbol(name: str) -> str:
+    stem, axis = r"\omega" if name[0] == "w" else name[0], name[1:]
+    return f"{stem}_{axis}" if axis else stem

@@ -1,0 +1,9 @@
+"""Which components of a twist may differ from zero: ``wz vx``."""
+
+from coursework.kinds.torsors import Pattern
+from coursework.reading.torsors import TWIST
+
+
+class TwistPattern(Pattern):
+    name = "twist_pattern"
+    form = TWIST

@@ -1,0 +1,9 @@
+"""Which components of a wrench may differ from zero: ``X Y M``."""
+
+from coursework.kinds.torsors import Pattern
+from coursework.reading.torsors import WRENCH
+
+
+class WrenchPattern(Pattern):
+    name = "wrench_pattern"
+    form = WRENCH

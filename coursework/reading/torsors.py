@@ -1,0 +1,411 @@
+"""Twists and wrenches as people write them: ``{0 10; 0 20; 5 0}``, ``{0 0 5 | 10 20 0}_A``, two lists, six numbers.
+
+A torsor has six cells, those of its resultant before those of its moment; a plane one keeps three of them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import accumulate
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.reading.digits import in_unit
+from coursework.reading.points import read_point
+from coursework.reading.reading import Reading, Stop, text_of
+from coursework.reading.spelling import plain_spelling, shorten, spelled_out, tidy, unwrapped
+from coursework.reading.units import parse_unit, plain_unit, same_dimension
+from coursework.reading.vocabulary import MAX_LENGTH, Unreadable
+
+_MOST = 10 * MAX_LENGTH  #: characters of a torsor
+
+
+class Form(NamedTuple):
+    """What a sort of torsor is made of: the names of its cells, the places of those that a plane one keeps, in the
+    order in which they are asked, and the words for its two columns."""
+
+    names: tuple[str, ...]
+    plane: tuple[int, ...]
+    resultant: re.Pattern[str]
+    moment: re.Pattern[str]
+    component: re.Pattern[str]
+
+
+TWIST = Form(
+    ("wx", "wy", "wz", "vx", "vy", "vz"),
+    (3, 4, 2),
+    re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*(?:o?mega|w|rot)", re.I),
+    re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*v", re.I),
+    re.compile(r"(?P<half>w|omega|v)_?\{?(?P<axis>[xyz])[\w'/,{}()]*", re.I),
+)
+WRENCH = Form(
+    ("X", "Y", "Z", "L", "M", "N"),
+    (0, 1, 5),
+    re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*[rf]", re.I),
+    re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*m", re.I),
+    re.compile(r"(?P<name>[XYZLMN])(?:_\w*|\d*)[\w'/,{}()]*|(?P<half>[FRM])_?(?P<axis>[xyz])\w*"),
+)
+
+
+class _Cells(NamedTuple):
+    """The cells of a text by place, none at those that a plane torsor leaves out, and what stands behind them."""
+
+    texts: tuple[str | None, ...]
+    behind: str
+
+
+def read_torsor(answer: Any, form: Form, units: tuple[str, str], count: int) -> Reading:
+    """The components of a torsor in ``units``, those of its resultant and of its moment, as arrays of shape ``(count,)``.
+
+    ``count`` is 6, resultant before moment, or 3 for a plane one in the order of ``form.plane``. A unit stands in a
+    cell, behind a column for all of it, or behind the brackets, where it goes to the column that it fits.
+    """
+
+    def read(text: str) -> Reading:
+        cells = _cells(text, form, plane=count == 3, symbols=False)
+        own = _units_behind(cells.behind, units)
+        columns = [_column(cells.texts[3 * half : 3 * half + 3], own[half], units[half]) for half in (0, 1)]
+        for column in columns:
+            if column is not None and column.status != "read":
+                return Reading(
+                    text, column.status, code=column.code, found=shorten(column.found or column.text)
+                )
+        return _both(text, columns, form.plane if count == 3 else tuple(range(6)), bool(cells.behind))
+
+    return _once(answer, read)
+
+
+def read_pattern(answer: Any, form: Form) -> Reading:
+    """The components that an answer says may differ from zero: a ``frozenset`` of names of ``form``.
+
+    A table as that of :func:`read_torsor`, with 0 where nothing can be and anything else where something may:
+    a symbol, ``*``, 1; a dash stands where a plane torsor says nothing. Or the names alone, ``wz, vx``; ``0`` for none.
+    """
+
+    def read(text: str) -> Reading:
+        found = _named_components(text, form)
+        if found is None:
+            found = _marked(text, form)
+        order = [name for name in form.names if name in found]
+        return Reading(text, "read", (frozenset(found),), (", ".join(order) or "0",))
+
+    return _once(answer, read)
+
+
+def _once(answer: Any, read: Callable[[str], Reading]) -> Reading:
+    """What all torsors have in common: what is missing, too long, or stops on the way."""
+    text = _as_text(answer)
+    if not text.strip():
+        return Reading(text, "missing")
+    if len(text) > _MOST:
+        return Reading(text, "unreadable", code="too_long", found=shorten(text))
+    try:
+        reading = read(text)
+    except (Stop, Unreadable) as stop:
+        status = stop.status if isinstance(stop, Stop) else "unreadable"
+        return Reading(text, status, code=stop.code, found=shorten(stop.found or text))
+    return reading
+
+
+def _as_text(answer: Any) -> str:
+    """The text of an answer; lists in brackets, a mapping by its names."""
+    if isinstance(answer, (np.ndarray, np.generic)):
+        answer = answer.tolist()
+    if answer is None:
+        return ""
+    if isinstance(answer, (set, frozenset)):
+        return ", ".join(sorted(map(text_of, answer))) or "0"
+    if isinstance(answer, Mapping):
+        return "; ".join(f"{text_of(name)} = {_as_text(value)}" for name, value in answer.items())
+    if isinstance(answer, (list, tuple)):
+        return "[" + " ; ".join(map(_as_text, answer[:_MOST])) + "]"
+    return answer if isinstance(answer, str) else text_of(answer)
+
+
+# ------------------------------------------------------------------------- cells
+
+_GRID = re.compile(
+    r"\\(?P<side>begin|end)\s*\{(?:[pbBvV]?matrix\*?|smallmatrix|array)\}(?:\s*\{[lcr|\s]*\})?"
+    r"|\\(?:left|right|displaystyle)(?![A-Za-z])\s*\.?"
+)
+_BRACE = {"begin": "{", "end": "}", None: " "}
+_ROW_END = re.compile(r"\\\\(?:\[[^\]]*\])?|\\cr(?![a-z])")
+_BAR = re.compile(r"\\(?:mid|vert|middle\s*\|)(?![A-Za-z])")
+_TITLE = re.compile(r"[^=;\n]{0,80}=\s*(?=[\[({])")
+_POINT_BEFORE = re.compile(r"_?\{?[A-Z]\d?'?\}?\s*(?=[\[({])")
+_CALLED = re.compile(r"(?:(?:np|numpy)\s*\.\s*)?(?:array|matrix|Matrix)\s*\(\s*(.*?)\s*\)", re.S)
+_GROUP = re.compile(r"[\[({]([^\[\](){}]*)[\])}]")
+_ANOTHER_GROUP = re.compile(r"[\s,;|]*(?:[^\W\d][^=\[({|;]*=\s*)?[\[({]")
+_INDEX = re.compile(
+    r"\s*_?\s*(?:\(\s*[A-Z]\w?'?\s*(?:[,;]\s*\w+\s*)?\)|\{[^{}]*\}|[A-MO-Z]\d?'?(?:\s*,\s*R\w?)?(?![\w/*^]))"
+)
+
+
+def _cells(text: str, form: Form, *, plane: bool, symbols: bool) -> _Cells:
+    """The cells of a text, whichever way it is laid out."""
+    inside, behind = _opened(_laid_out(text))
+    groups = _groups(inside, form) or _columns(inside)
+    if groups is not None and len(groups) == 2:
+        halves = [_entries(group, (3,), symbols=symbols) for group in groups]
+        if None not in halves:
+            return _Cells(_kept((*(halves[0] or ()), *(halves[1] or ())), form, plane=plane), behind)
+    rows = groups or [row for row in re.split(r"[;\n]", inside) if row.strip(" ,")]
+    found = _of_rows(rows, plane=plane, symbols=symbols)
+    if found is None:
+        raise Stop("wrong_torsor", text)
+    if len(found) == 3:
+        places = dict(zip(form.plane, found, strict=True))
+        return _Cells(tuple(_by_name([places.get(place) for place in range(6)], form)), behind)
+    return _Cells(_kept(_by_name(found, form), form, plane=plane), behind)
+
+
+def _kept(cells: Sequence[str | None], form: Form, *, plane: bool) -> tuple[str | None, ...]:
+    """The cells that count: in the plane, those that a plane torsor has."""
+    return tuple(cell if place in form.plane or not plane else None for place, cell in enumerate(cells))
+
+
+def _laid_out(text: str) -> str:
+    """Rows on lines and columns parted by bars, without LaTeX's and Python's own marks."""
+    text = unwrapped(text).strip().strip("$").strip()
+    text = _GRID.sub(lambda found: _BRACE[found["side"]], _ROW_END.sub("\n", text))
+    text = _BAR.sub("|", text).replace(r"\{", "{").replace(r"\}", "}").replace("&", "|")
+    text = "\n".join(map(tidy, text.splitlines())).strip()
+    if called := _CALLED.fullmatch(text):
+        text = called[1]
+    text = text[title.end() :] if (title := _TITLE.match(text)) and _is_title(title[0]) else text
+    text = text[point.end() :] if (point := _POINT_BEFORE.match(text)) else text
+    return text.strip()
+
+
+def _is_title(text: str) -> bool:
+    """Whether what stands before an equals sign names the whole, and holds no cells itself."""
+    return not re.search(r"(?<![\w/_{])\d", text)
+
+
+def _opened(text: str) -> tuple[str, str]:
+    """What stands inside the brackets about all of it, and the units behind."""
+    place = _end_of_first(text)
+    behind = text[place + 1 :]
+    if text[:1] not in ("[", "(", "{") or place < 0 or _ANOTHER_GROUP.match(behind):
+        return text, ""
+    if not any(mark in text[1:place] for mark in " ;,|\n[({"):
+        return text, ""
+    behind = _INDEX.sub("", behind, count=1) if _INDEX.match(behind) else behind
+    inside, more = _opened(text[1:place].strip())
+    return inside, f"{more} {behind}".strip(" .")
+
+
+def _end_of_first(text: str) -> int:
+    """Where the bracket that a text begins with is closed; -1 where it is not."""
+    depth = accumulate((char in "[({") - (char in "])}") for char in text)
+    return next((place for place, open_ in enumerate(depth) if open_ == 0), -1)
+
+
+def _groups(text: str, form: Form) -> list[str] | None:
+    """Cells that stand in brackets, a column or a row each; the resultant first where they are named."""
+    inner = [found[1] for found in _GROUP.finditer(text)]
+    between = [piece.strip(" ,;|\n=:") for piece in _GROUP.split(text)[::2]]
+    if len(inner) not in (2, 3) or any(re.search(r"\d", piece) and "/" not in piece for piece in between):
+        return None
+    if any(re.search(r"[*^+]|frac|sqrt", piece) for piece in between):
+        return None
+    if len(inner) == 2:
+        first, second = (spelled_out(piece).strip(" \\") for piece in between[:2])
+        if form.moment.match(first) or form.resultant.match(second):
+            inner.reverse()
+        if behind := between[2]:
+            inner[1] = f"{inner[1]} {behind}"
+    return inner
+
+
+def _columns(text: str) -> list[str] | None:
+    """The two columns on either side of the only bar."""
+    return text.split("|") if text.count("|") == 1 else None
+
+
+def _of_rows(rows: Sequence[str], *, plane: bool, symbols: bool) -> list[str] | None:
+    """The cells of rows: two of three, three of two, one of six or six of one; three alone in the plane."""
+    if len(rows) == 1:
+        return _entries(rows[0], (6, 3) if plane else (6,), symbols=symbols)
+    for wanted in {2: (3,), 3: (2, 1) if plane else (2,), 6: (1,)}.get(len(rows), ()):
+        found = [_entries(row, (wanted,), symbols=symbols) for row in rows]
+        if None not in found:
+            known = [row for row in found if row is not None]
+            return (
+                [c for r in known for c in r]
+                if len(rows) != 3
+                else [c for k in zip(*known, strict=True) for c in k]
+            )
+    return None
+
+
+def _entries(text: str, counts: Sequence[int], *, symbols: bool) -> list[str] | None:
+    """A row or a column cut into one of the counts of cells, the likeliest cut first."""
+    text = text.strip(" \n")
+    if (bare := _GROUP.fullmatch(text)) and counts != (1,):
+        text = bare[1]
+    text = re.sub(r"\s*=\s*", "=", text.strip(" ,;\n"))
+    for pieces in _cuts(text, symbols=symbols):
+        found = [piece.strip() for piece in pieces]
+        if len(found) in counts:
+            return found
+    return None
+
+
+def _cuts(text: str, *, symbols: bool) -> Iterator[list[str]]:
+    yield [text]
+    if "|" in text:
+        yield text.split("|")
+    if ";" in text or "\n" in text:
+        yield re.split(r"[;\n]", text)
+    yield re.split(r",\s+|\s+,\s*", text)
+    tokens = re.sub(r",\s|\s,", " ", text).split()
+    if not symbols:
+        yield _merged(tokens, signs=True)
+        tokens = _merged(tokens, signs=False)
+    yield tokens
+    yield text.split(",")
+
+
+_GOES_ON = re.compile(r"[^\W\d_]|[°%/*^)\]]")
+
+
+def _merged(tokens: Sequence[str], *, signs: bool) -> list[str]:
+    """Tokens between blanks, units and operators put back behind the number that they belong to."""
+    found: list[str] = []
+    for token in tokens:
+        begins = not _GOES_ON.match(token) or ("=" in token and token[-1] != "=")
+        open_before = bool(found) and (found[-1][-1] in "*/(^" or (signs and found[-1] in "+-"))
+        if found and (not begins or open_before):
+            found[-1] = f"{found[-1]}{'' if found[-1] in '+-' else ' '}{token}"
+        else:
+            found.append(token)
+    return found
+
+
+def _by_name(cells: Sequence[str | None], form: Form) -> list[str | None]:
+    """The cells at the places that they name, where each of them names one: ``wz = 5``."""
+    named = [cell.partition("=")[0] if cell and "=" in cell else "" for cell in cells]
+    places = [component_place(name, form) if name else None for name in named]
+    known = [place for place in places if place is not None]
+    if len(known) != sum(cell is not None for cell in cells) or len(set(known)) != len(known):
+        return list(cells)
+    found: list[str | None] = [None] * 6
+    for place, cell in zip(places, cells, strict=True):
+        if place is not None and cell is not None:
+            found[place] = cell
+    return found
+
+
+def component_place(text: str, form: Form) -> int | None:
+    """The place of the component that a text names, ``ω_z``, ``\\omega_z``, ``M``, ``Mz``; nothing where it names none."""
+    name = re.sub(r"[\s{}\\$]", "", spelled_out(plain_spelling(text)))
+    found = form.component.fullmatch(name)
+    if found is None:
+        return None
+    parts = found.groupdict()
+    if parts.get("name"):
+        return "XYZLMN".index(parts["name"])
+    return 3 * (parts["half"] in "vVM") + "xyz".index(parts["axis"].lower())
+
+
+# ------------------------------------------------------------------------ values
+
+
+def _units_behind(text: str, units: tuple[str, str]) -> tuple[str, str]:
+    """The units behind the brackets, each for the column of its kind; ``SI`` for both."""
+    text = plain_spelling(text).strip(" ()[]{}.")
+    if text.upper() in ("SI", "S.I", "USI"):
+        return units[0], units[1].replace("mm", "m")
+    own = ["", ""]
+    for piece in re.split(r"\s*[;,|&]\s*|\s+(?:et|and|puis)\s+|\s+", text):
+        unit = plain_unit(piece) if piece else None
+        if piece and unit is None:
+            raise Stop("unknown_unit", piece)
+        if unit is not None:
+            fits = [half for half in (0, 1) if same_dimension(unit, parse_unit(units[half]))]
+            if not fits:
+                in_unit(0.0, unit, parse_unit(units[1]))
+            own[fits[0]] = piece
+    return own[0], own[1]
+
+
+def _column(cells: Sequence[str | None], stated: str, unit: str) -> Reading | None:
+    """The cells of one column that there are, in its unit."""
+    kept = [cell for cell in cells if cell is not None]
+    if not kept:
+        return None
+    empty = next((cell for cell in kept if cell in ("", "-", "+")), None)
+    if empty is not None:
+        raise Stop("wrong_torsor", " ".join(kept))
+    if len(kept) == 1:
+        from coursework.reading.numbers import read_number
+
+        one = read_number(f"{kept[0]} {stated}".strip(), unit)
+        values = tuple((value,) for value in one.values)
+        return Reading(one.text, one.status, values, one.read_as, one.unit_given, one.code, one.found)
+    return read_point(f"({' ; '.join(kept)}) {stated}".strip(), unit, len(kept))
+
+
+def _both(text: str, columns: Sequence[Reading | None], order: Sequence[int], behind: bool) -> Reading:
+    """Both columns as one array in an order of cells; two readings where a column has two."""
+    ways: dict[bytes, tuple[np.ndarray, str]] = {}
+    places = [sorted(place for place in order if place // 3 == half) for half in (0, 1)]
+    for which in (0, -1):
+        found = np.zeros(6)
+        for column, own in zip(columns, places, strict=True):
+            if column is not None:
+                found[own] = column.values[which]
+        value = found[list(order)]
+        said = (column.read_as[which] for column in columns if column is not None)
+        echo = " | ".join(re.sub(r"^\(|\)", "", one) for one in said)
+        ways.setdefault(value.tobytes(), (value, f"{{{echo}}}"))
+    values, echoes = zip(*ways.values(), strict=True)
+    given = behind or any(column.unit_given for column in columns if column is not None)
+    return Reading(text, "read", values, echoes, given)
+
+
+# ---------------------------------------------------------------------- patterns
+
+_NONE = re.compile(
+    r"\{?\s*\}?|\{?\s*0\s*\}?|∅|(?:none|nothing|zero|null?|nulle?|aucune?|rien|z[ée]ro|tout(?:es)?\s+nulle?s)\.?",
+    re.I,
+)
+_ZERO = re.compile(r"[+-]?0+(?:[.,]0*)?|(?:zero|z[ée]ro|nulle?|null|nil|none|no|non)", re.I)
+_DASHES = ("", "-", "--", ".", "/")
+
+
+def _named_components(text: str, form: Form) -> set[str] | None:
+    """The components of a list of names alone; nothing where it is something else."""
+    plain = tidy(unwrapped(text)).strip().strip("{}[]()$.").strip()
+    if _NONE.fullmatch(plain):
+        return set()
+    pieces = [piece for piece in re.split(r"\s*[,;|\n]\s*|\s+(?:et|and)\s+|\s+", plain) if piece]
+    places = [component_place(piece, form) for piece in pieces]
+    known = [place for place in places if place is not None]
+    return {form.names[place] for place in known} if len(known) == len(pieces) else None
+
+
+def _marked(text: str, form: Form) -> set[str]:
+    """The components of a table that hold something else than 0."""
+    try:
+        cells, plane = _cells(text, form, plane=False, symbols=True).texts, False
+    except Stop:
+        cells, plane = _cells(text, form, plane=True, symbols=True).texts, True
+    found = set()
+    for place, cell in enumerate(cells):
+        kept = None if cell is None else cell.strip(" ()[]{}")
+        dashed = kept in _DASHES
+        if dashed and not plane and not _dashed_as_plane(cells, form):
+            raise Stop("wrong_torsor", text)
+        if kept is not None and not dashed and not _ZERO.fullmatch(kept):
+            found.add(form.names[place])
+    return found
+
+
+def _dashed_as_plane(cells: Sequence[str | None], form: Form) -> bool:
+    """Whether dashes stand where a plane torsor says nothing, and there alone."""
+    dashed = {place for place, cell in enumerate(cells) if cell is not None and cell.strip() in _DASHES}
+    return dashed.isdisjoint(form.plane)
