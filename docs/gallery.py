@@ -19,7 +19,7 @@ from coursework.api import Variant
 from coursework.course.chapters import Chapter
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
-from coursework.course.lessons import lesson_title
+from coursework.course.lessons import lesson_title, taught_by
 from coursework.language.numbers import plain, with_unit
 from coursework.markup.markdown import html_inline, to_html
 from coursework.markup.mathml import to_mathml
@@ -27,6 +27,7 @@ from coursework.model import GivenSpec
 from coursework.motion.animation import Animation
 from coursework.rendering.renderer import renderer_of
 from coursework.sheets.sheet import Question
+from coursework.workbook.binding import bound
 
 SEED = 0  #: the variant shown
 WHOLE = "whole/pages"  #: copied as they are into the site, as ``pages``
@@ -48,6 +49,13 @@ def pages(course: Course) -> Iterator[tuple[str, bytes]]:
         for file, made in attached(exercise):
             yield file, made.encode()
         yield f"{name}.md", page(exercise).encode()
+
+
+def workbook(course: Course) -> Iterator[tuple[str, bytes]]:
+    """The pages of the workbook in every language, whole pages that stand alone."""
+    for lang in course.folder.languages:
+        for file, make in renderer_of(course.folder).book_pages(bound(course, lang)).items():
+            yield f"{WHOLE}/workbook-{lang}/{file}", make().encode()
 
 
 def attached(exercise: CourseExercise) -> Iterator[tuple[str, str]]:
@@ -102,16 +110,22 @@ it. This page is made from the course at every build.
 def _chapter(course: Course, chapter: Chapter) -> str:
     """A chapter's heading, its lessons, and a card an exercise."""
     cards = "\n".join(_card(course[name]) for name in chapter.exercises)
-    lessons = ", ".join(f"*{lesson_title(course.folder, name, 'en')}*" for name in chapter.lessons)
-    said = f"Lessons: {lessons}.\n\n" if lessons else ""
+    titles = {name: lesson_title(course.folder, name, "en") for name in chapter.lessons}
+    lessons = ", ".join(_lesson(name, title, "en") for name, title in titles.items())
     return f"""## {chapter.number}. {chapter.title("en")}
 
-{said}```{{raw}} html
+```{{raw}} html
+<p>Lessons: {lessons}.</p>
 <div class="gallery">
 {cards}
 </div>
 ```
 """
+
+
+def _lesson(name: str, title: str, lang: str) -> str:
+    """A link to a lesson's page in the workbook."""
+    return f'<a href="../pages/workbook-{lang}/{name}.html">{html_inline(title, lang)}</a>'
 
 
 def _card(exercise: CourseExercise) -> str:
@@ -181,6 +195,8 @@ def _links(exercise: CourseExercise, lang: str) -> list[str]:
         f'<li><a href="../pages/{exercise.name}.{lang}.{kind}.html">{words} ({language})</a></li>'
         for kind, words in to.items()
     )
+    taught = taught_by(exercise.folder, exercise.name, lang)
+    links += "".join(f"<li>Lesson: {_lesson(one.name, one.title, lang)}</li>" for one in taught)
     return [_html(f"<ul>{links}</ul>"), ""]
 
 
@@ -231,7 +247,8 @@ def _html(text: str) -> str:
 def main(folder: str) -> None:
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
-    for name, content in pages(coursework.open_course()):
+    course = coursework.open_course()
+    for name, content in (*pages(course), *workbook(course)):
         (target / name).parent.mkdir(parents=True, exist_ok=True)
         (target / name).write_bytes(content)
 

@@ -195,12 +195,25 @@ def test_a_page_of_the_gallery_tells_all_questions_in_every_language(name):
 def test_every_picture_and_page_that_the_gallery_points_to_is_made(name):
     exercise, made = COURSE[name], {file for file, _ in gallery().attached(COURSE[name])}
     made |= {f"{name}.svg"} | {f"{name}.{lang}.png" for lang in exercise.languages}
+    made |= {
+        f"whole/pages/workbook-{lang}/{one}.html"
+        for lang in exercise.languages
+        for one in COURSE.folder.lessons
+    }
     page = gallery().page(exercise)
     shown = set(re.findall(r"!\[[^\]]*\]\(([^)]+)\)", page))
     led_to = {f"whole/{target}" for target in re.findall(r'href="\.\./([^"]+)"', page)}
     assert shown | led_to <= made
     assert (f"{name}.motion.svg" in shown) == (name != "vocabulary")
     assert {f"whole/pages/{name}.{lang}.solution.html" for lang in exercise.languages} <= led_to
+
+
+@pytest.mark.slow
+def test_the_pages_of_the_workbook_are_made_for_every_lesson_and_exercise():
+    made = {file for file, _ in gallery().workbook(COURSE)}
+    for lang in COURSE.folder.languages:
+        for one in (*COURSE.folder.lessons, *COURSE.names, "index"):
+            assert f"whole/pages/workbook-{lang}/{one}.html" in made
 
 
 def test_the_picture_of_a_sheet_is_one_page_as_png():
