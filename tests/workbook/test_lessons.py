@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import re
 from functools import cache
 
 import nbformat
@@ -11,10 +11,16 @@ from sweeps import sampled
 
 import coursework
 from coursework.cli import run
+from coursework.course.lessons import lesson_file, lesson_sections, taught_by
 from coursework.errors import BadCourse, UnknownName
 from coursework.language.words import languages
+from coursework.sheets.book import Code, Printed
+from coursework.sheets.book import Prose as Prose_
+from coursework.workbook.lesson_source import Answer, Cell, Image, Prose, blocks
+from coursework.workbook.lessons import faults, lesson_text, terms
 from coursework.workbook.notebooks import lesson_notebook
 
+every_language = pytest.mark.parametrize("lang", languages())
 LESSONS = coursework.open_course().folder.lessons
 
 
@@ -36,26 +42,65 @@ def test_a_lesson_runs_from_top_to_bottom(course, name, lang):
     assert all(output.name == "stdout" for output in printed)
 
 
-def test_the_french_lesson_prints_no_english(course):
-    printed = "".join(output.text for output in printed_by(course, "mechanisms", "fr"))
-    for english in ("does not close", "theta3_open", "crank-rocker", "double-rocker", "change-point"):
-        assert english not in printed
-    for french in ("mode ouvert", "ne se coupent pas", "manivelle-balancier", "double manivelle"):
-        assert french in printed
+#: Words of the exercises' and lessons' English that no French text has.
+ENGLISH = re.compile(r"\b(the|with|crank|rocker|does not|velocity|yes|length|slider|found)\b")
 
 
+def prints(told):
+    """The texts that a lesson prints, those of its answers too."""
+    pieces = [*told.pieces, *(piece for _, answer in told.answers for piece in answer)]
+    return [piece.text for piece in pieces if isinstance(piece, (Printed, Prose_))]
+
+
+def numbers(told):
+    """The numbers that come out, whatever the sign of their decimals."""
+    printed = " ".join(p.text for _, answer in told.answers for p in answer if p.text.startswith("- "))
+    return sorted(re.findall(r"\d+(?:[.,]\d+)?", printed.replace(",", ".").replace("{.}", ".")))
+
+
+@pytest.mark.parametrize("name", sampled(LESSONS, ["positions", "rolling"]))
+def test_a_lesson_is_read_drawn_and_run_and_is_the_same_in_every_language(course, name):
+    assert faults(course, name) == ()
+    told = {lang: lesson_text(course, name, lang) for lang in languages()}
+    for one in told.values():
+        for piece in one.pieces:
+            if isinstance(piece, (Printed, Code)):
+                assert max(map(len, piece.text.splitlines())) <= 100, f"wider than a page: {piece.text}"
+    if name != "accuracy":  # which has times
+        assert numbers(told["en"]) == numbers(told["fr"])
+    said = re.sub(r"\$[^$]*\$", "", " ".join(prints(told["fr"])))
+    found = ENGLISH.search(said)
+    assert not found, said[max(0, found.start() - 60) : found.end() + 60]
+
+
+@every_language
 @pytest.mark.parametrize("name", LESSONS)
-def test_a_lesson_computes_the_same_in_every_language(course, name):
-    """The code differs in its words alone: texts and comments."""
-    import ast
+def test_a_lesson_teaches_and_lets_try(course, name, lang):
+    """Goals, something to predict, an example that fades, usual mistakes, three questions, figures, terms."""
+    found = blocks(lesson_file(course.folder, name, lang).read_text("utf-8"), name)
+    text = "\n".join(one.text for one in found if isinstance(one, Prose))
+    code = "\n".join(one.code for one in found if isinstance(one, Cell))
+    assert re.search(r"^## (What you will be able to do|Ce que vous saurez faire)$", text, re.MULTILINE)
+    assert len(lesson_sections(course.folder, name, lang)) >= 3
+    assert "coursework.compare(" in code
+    assert "coursework.mistakes(" in code
+    levels = {int(level) for level in re.findall(r"\blevel=(\d)", code)}
+    assert 4 in levels, "a bare example"
+    assert levels & {1, 2, 3}, "a half-worked example"
+    assert re.search(r"coursework\.worked\((?![^)]*level=)", code), "a whole example"
+    assert sum(isinstance(one, Answer) for one in found) >= 3
+    assert sum(isinstance(one, Image) for one in found) >= 2
+    assert len(terms(course, name, lang)) >= 3
 
-    def shape(source):
-        tree = ast.parse(source)
-        return [type(node).__name__ for node in ast.walk(tree) if not isinstance(node, ast.JoinedStr)]
 
-    books = [json.loads(lesson_notebook(course, name, lang)) for lang in languages()]
-    codes = [[shape("".join(c["source"])) for c in b["cells"] if c["cell_type"] == "code"] for b in books]
-    assert all(code == codes[0] for code in codes)
+def test_every_exercise_leads_to_its_lesson_and_back(course):
+    for name in course.names:
+        for lang in languages():
+            taught = taught_by(course.folder, name, lang)
+            assert taught, name
+            section = course.folder.section_of(name)
+            assert section.lesson in {one.name for one in taught}
+            assert name in section.exercises
 
 
 def test_lessons_are_listed_and_written(tmp_path, capsys):
