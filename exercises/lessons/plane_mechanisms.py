@@ -411,7 +411,7 @@ def _yoke_at(theta2):
     foot = x - 34j
     return Figure(
         slot_link(x - 36j, x + 28j),
-        link(foot, foot + 62, label="4"),
+        link(foot, foot + 84, label="4"),
         link(0j, A, label="2"),
         slider(A, 90, "3"),
         rail(44 - 34j, 66 - 34j),
