@@ -104,7 +104,9 @@ def gear(center, pitch_radius, teeth, turned=0.0, pressure=20.0):
     base = pitch_radius * np.cos(np.radians(pressure))
     tip, root = pitch_radius + 0.9 * module, pitch_radius - 1.1 * module
     radii = np.linspace(max(base, root), tip, 6)
-    half = np.degrees(np.pi / (2 * teeth) + _involute(np.radians(pressure)) - _involute(np.arccos(base / radii)))
+    half = np.degrees(
+        np.pi / (2 * teeth) + _involute(np.radians(pressure)) - _involute(np.arccos(base / radii))
+    )
     flank = [polar(root, -180 / teeth * 0.62), *polar(radii, -half)]
     tooth = np.array([*flank, *np.conj(flank)[::-1]])
     return tuple(

@@ -326,7 +326,9 @@ def _film_at(theta2):
     pitch, gone = (top - bottom).imag, (top - complex(_claw(min(max(theta2, CLAW_IN), CLAW_OUT))[4])).imag
     holes = [top.imag - gone + pitch * k for k in range(-3, 4)]
     window = (bottom.imag - 0.75 * pitch, top.imag + 0.75 * pitch)
-    strip = [closed(_piece(top.real, one, other, window)) for other, one in zip(holes, holes[1:], strict=False)]
+    strip = [
+        closed(_piece(top.real, one, other, window)) for other, one in zip(holes, holes[1:], strict=False)
+    ]
     return Figure(
         closed(_claw(FINE)[4]),
         *strip,
@@ -414,7 +416,11 @@ def _pedal_at(theta2):
     )
 
 
-STRAIGHT = ((28.0, 14.0, 35.0, 35.0), 70.0, 0.0)  #: 2 : 1 : 2.5 : 2.5, the coupler carried on to twice its length
+STRAIGHT = (
+    (28.0, 14.0, 35.0, 35.0),
+    70.0,
+    0.0,
+)  #: 2 : 1 : 2.5 : 2.5, the coupler carried on to twice its length
 
 
 def straight_line():

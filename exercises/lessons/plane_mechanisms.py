@@ -151,7 +151,9 @@ def _contact():
 
 def binary_elements():
     """Figure 1 of the notes: two pivots, a pivot and a slide, two slides."""
-    return Figure(*panels(_two_pivots(), _pivot_and_slide(), _two_slides(), across=72, down=34), paper_mm=WIDE)
+    return Figure(
+        *panels(_two_pivots(), _pivot_and_slide(), _two_slides(), across=72, down=34), paper_mm=WIDE
+    )
 
 
 def _two_pivots():
@@ -232,7 +234,8 @@ def parameters():
 def inversions():
     """One chain, each of its four bars held in turn."""
     return Figure(
-        *panels(*[_held(bar) for bar in (1, 2, 3, 4)], across=100, down=24, columns=2, drop=84), paper_mm=(140, 105)
+        *panels(*[_held(bar) for bar in (1, 2, 3, 4)], across=100, down=24, columns=2, drop=84),
+        paper_mm=(140, 105),
     )
 
 
