@@ -18,12 +18,10 @@ from coursework.figures import (
     vector,
     wheel,
 )
-from coursework.kinematics.dyads import rrr
-from coursework.structure.joints import JointGraph
 from coursework.structure.library import LIBRARY
 from coursework.structure.scheme import kinematic_scheme
 
-from ._panels import block_on, closed, graph, moved, panels
+from ._panels import closed, graph, moved, panels
 
 WIDE = (150, 75)
 

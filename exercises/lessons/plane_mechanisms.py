@@ -26,7 +26,7 @@ from coursework.figures import (
 )
 from coursework.kinematics.dyads import rrp, rrr
 
-from ._panels import TURN, arrows_both, block_on, closed, double_arrow, gear, moved, panels
+from ._panels import TURN, arrows_both, closed, gear, moved, panels
 
 WIDE = (150, 70)
 
