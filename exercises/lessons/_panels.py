@@ -4,8 +4,8 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from coursework.degrees import angle, polar
-from coursework.figures import circle, line, link, note, pin, slider, trace, vector
+from coursework.degrees import polar
+from coursework.figures import circle, line, note, trace, vector
 
 TURN = tuple(range(0, 360, 10))  #: instants of a moving figure, degrees of its driver
 
@@ -47,14 +47,14 @@ def panels(*drawings, across, letters="abcdefgh", down=0.0, columns=None, drop=0
 def graph(places, joints, radius=4.2):
     """A joint graph: bodies as numbered circles at ``places``, the frame 1 with a second one.
 
-    ``joints`` are pairs of bodies and the letter of the joint; a third body makes a shared pivot.
+    ``joints`` are pairs of bodies, each with the letter of the joint; none where it is empty.
     """
     found = []
     for body, place in places.items():
         found += [circle(place, radius), note(place, str(body))]
     found.append(circle(places[1], 1.2 * radius))
     for bodies, letter in joints:
-        p, q = (places[body] for body in bodies[:2])
+        p, q = (places[body] for body in bodies)
         way = (q - p) / abs(q - p) * 1.2 * radius
         found.append(line(p + way, q - way, thin=False, label=letter or None))
     return found
@@ -70,31 +70,6 @@ def arrows_both(p, v, label=None):
     return [vector(p, v, label), vector(p, -v)]
 
 
-def double_arrow(center, radius, middle, half):
-    """A turning to and fro: two heads on one arc, from degrees to degrees."""
-    from coursework.figures import rotation_arrow
-
-    return [
-        rotation_arrow(center, radius, middle, middle + half),
-        rotation_arrow(center, radius, middle, middle - half),
-    ]
-
-
-def block_on(p, way, label=None):
-    """A block with the pin that it carries; ``way`` is a vector along its guide."""
-    return [slider(p, angle(way)), pin(p, label)]
-
-
-def circle_of(center, radius, count=72):
-    """Points of a circle."""
-    return center + polar(radius, np.linspace(0, 360, count, endpoint=False))
-
-
-def bars(*pairs):
-    """Bars between points, each with its number."""
-    return [link(p, q, label=label) for p, q, label in pairs]
-
-
 def gear(center, pitch_radius, teeth, turned=0.0, pressure=20.0):
     """The outline of a gear of involute teeth; ``turned`` in degrees, 0 with a tooth along x.
 
@@ -104,7 +79,9 @@ def gear(center, pitch_radius, teeth, turned=0.0, pressure=20.0):
     base = pitch_radius * np.cos(np.radians(pressure))
     tip, root = pitch_radius + 0.9 * module, pitch_radius - 1.1 * module
     radii = np.linspace(max(base, root), tip, 6)
-    half = np.degrees(np.pi / (2 * teeth) + _involute(np.radians(pressure)) - _involute(np.arccos(base / radii)))
+    half = np.degrees(
+        np.pi / (2 * teeth) + _involute(np.radians(pressure)) - _involute(np.arccos(base / radii))
+    )
     flank = [polar(root, -180 / teeth * 0.62), *polar(radii, -half)]
     tooth = np.array([*flank, *np.conj(flank)[::-1]])
     return tuple(

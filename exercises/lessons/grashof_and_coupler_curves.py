@@ -1,5 +1,7 @@
 """Figures of the lesson on Grashof's rule and coupler curves: the four types, why the rule holds, what curves do."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from coursework.degrees import angle, polar
@@ -74,7 +76,6 @@ def bars():
 
 def flat_crank():
     """The two triangles that a full turn must pass: the crank against the frame and along it."""
-    r1, r2, r3, r4 = CHAIN
     found = []
     for shift, theta2, letter in ((0.0, 180.0, "a"), (96.0, 0.0, "b")):
         O, A, B, C = map(complex, _linkage(CHAIN, theta2))
@@ -92,7 +93,7 @@ def flat_crank():
             ],
             shift,
         )
-        found.append(note(shift + r1 / 2 - 28j, f"({letter})"))
+        found.append(note(shift + CHAIN[0] / 2 - 28j, f"({letter})"))
     return Figure(*found, paper_mm=(158, 75))
 
 
@@ -326,7 +327,7 @@ def _film_at(theta2):
     pitch, gone = (top - bottom).imag, (top - complex(_claw(min(max(theta2, CLAW_IN), CLAW_OUT))[4])).imag
     holes = [top.imag - gone + pitch * k for k in range(-3, 4)]
     window = (bottom.imag - 0.75 * pitch, top.imag + 0.75 * pitch)
-    strip = [closed(_piece(top.real, one, other, window)) for other, one in zip(holes, holes[1:], strict=False)]
+    strip = [closed(_piece(top.real, one, other, window)) for other, one in pairwise(holes)]
     return Figure(
         closed(_claw(FINE)[4]),
         *strip,
@@ -414,7 +415,11 @@ def _pedal_at(theta2):
     )
 
 
-STRAIGHT = ((28.0, 14.0, 35.0, 35.0), 70.0, 0.0)  #: 2 : 1 : 2.5 : 2.5, the coupler carried on to twice its length
+STRAIGHT = (
+    (28.0, 14.0, 35.0, 35.0),
+    70.0,
+    0.0,
+)  #: 2 : 1 : 2.5 : 2.5, the coupler carried on to twice its length
 
 
 def straight_line():

@@ -18,12 +18,10 @@ from coursework.figures import (
     vector,
     wheel,
 )
-from coursework.kinematics.dyads import rrr
-from coursework.structure.joints import JointGraph
 from coursework.structure.library import LIBRARY
 from coursework.structure.scheme import kinematic_scheme
 
-from ._panels import block_on, closed, graph, moved, panels
+from ._panels import closed, graph, moved, panels
 
 WIDE = (150, 75)
 
@@ -102,7 +100,9 @@ def shared_pivot():
     places = {1: 0 - 6j, 2: -30 + 6j, 3: -22 + 30j, 4: 0 + 12j, 5: 22 + 30j, 6: 30 + 6j}
     hub = 0 + 30j
     joints = [((1, 2), "O"), ((2, 3), "A"), ((1, 4), "D"), ((5, 6), "C"), ((1, 6), "C'")]
-    arms = [line(p + (hub - p) / abs(hub - p) * 5.1, hub, thin=False) for p in (places[3], places[4], places[5])]
+    arms = [
+        line(p + (hub - p) / abs(hub - p) * 5.1, hub, thin=False) for p in (places[3], places[4], places[5])
+    ]
     found = [*graph(places, joints), *arms, contact(hub, "B")]
     return Figure(*_scheme("figure_27"), *moved(found, 136), paper_mm=(158, 80))
 
@@ -134,7 +134,9 @@ def roller_follower():
     roller = 6.0
     # The roller's centre is on the axis x = 0, a roller's radius off the nearest point of the profile.
     centre = 1j * max(
-        z.imag + np.sqrt(roller**2 - z.real**2) for z in profile.tolist() if abs(z.real) < roller and z.imag > 0
+        z.imag + np.sqrt(roller**2 - z.real**2)
+        for z in profile.tolist()
+        if abs(z.real) < roller and z.imag > 0
     )
     touch = min(profile.tolist(), key=lambda z: abs(z - centre))
     return Figure(
@@ -166,7 +168,13 @@ def taken_apart():
         ground_pivot(O, "O"), ground_pivot(C, "C"), pin(A, "A"), pin(B, "B"), rotation_arrow(O, 8, 95, 175),
     ]  # fmt: skip
     driver = [link(O, A, label="2"), ground_pivot(O, "O"), pin(A, "A"), rotation_arrow(O, 8, 95, 175)]
-    dyad = [link(A, B, label="3"), link(C, B, label="4"), ground_pivot(A, "A"), ground_pivot(C, "C"), pin(B, "B")]
+    dyad = [
+        link(A, B, label="3"),
+        link(C, B, label="4"),
+        ground_pivot(A, "A"),
+        ground_pivot(C, "C"),
+        pin(B, "B"),
+    ]
     return Figure(
         *moved(whole, 0j), *moved(driver, 98), *moved(dyad, 118),
         note(33 - 17j, "(a)"), note(104 - 17j, "(b)"), note(158 - 17j, "(c)"), paper_mm=(158, 62),
@@ -192,7 +200,12 @@ def _dyad_rrp():
 def _dyad_rpr():
     A, C = 40 + 22j, 4 + 0j
     way = (A - C) / abs(A - C)
-    return [slot_link(C, C + 52 * way, label="4"), slider(A, float(angle(way)), "3"), ground_pivot(A), ground_pivot(C)]
+    return [
+        slot_link(C, C + 52 * way, label="4"),
+        slider(A, float(angle(way)), "3"),
+        ground_pivot(A),
+        ground_pivot(C),
+    ]
 
 
 def _dyad_prp():
@@ -237,7 +250,9 @@ def class_one():
         link(18 + 19j, 18 + 46j, label="2"), link(6 + 46j, 30 + 46j), _piston(18 + 16j, 19, 6),
         vector(18 + 3j, 8j, "p"),
     ]  # fmt: skip
-    return Figure(*moved(motor, 0j), *moved(press, 64), note(18 - 14j, "(a)"), note(82 - 14j, "(b)"), paper_mm=(110, 70))
+    return Figure(
+        *moved(motor, 0j), *moved(press, 64), note(18 - 14j, "(a)"), note(82 - 14j, "(b)"), paper_mm=(110, 70)
+    )
 
 
 def _piston(p, width, height):
@@ -257,7 +272,13 @@ def _dyad_of_engine():
 
 def _parted(name, group, at, low):
     """A mechanism, and its group alone with its outer joints held."""
-    return Figure(*_scheme(name), *moved(group, at), note(36 - 1j * (low + 10), "(a)"), note(at + 42 - 1j * (low + 10), "(b)"), paper_mm=(158, 70))
+    return Figure(
+        *_scheme(name),
+        *moved(group, at),
+        note(36 - 1j * (low + 10), "(a)"),
+        note(at + 42 - 1j * (low + 10), "(b)"),
+        paper_mm=(158, 70),
+    )
 
 
 def class_three():

@@ -26,7 +26,7 @@ from coursework.figures import (
 )
 from coursework.kinematics.dyads import rrp, rrr
 
-from ._panels import TURN, arrows_both, block_on, closed, double_arrow, gear, moved, panels
+from ._panels import TURN, arrows_both, closed, gear, moved, panels
 
 WIDE = (150, 70)
 
@@ -151,7 +151,9 @@ def _contact():
 
 def binary_elements():
     """Figure 1 of the notes: two pivots, a pivot and a slide, two slides."""
-    return Figure(*panels(_two_pivots(), _pivot_and_slide(), _two_slides(), across=72, down=34), paper_mm=WIDE)
+    return Figure(
+        *panels(_two_pivots(), _pivot_and_slide(), _two_slides(), across=72, down=34), paper_mm=WIDE
+    )
 
 
 def _two_pivots():
@@ -232,7 +234,8 @@ def parameters():
 def inversions():
     """One chain, each of its four bars held in turn."""
     return Figure(
-        *panels(*[_held(bar) for bar in (1, 2, 3, 4)], across=100, down=24, columns=2, drop=84), paper_mm=(140, 105)
+        *panels(*[_held(bar) for bar in (1, 2, 3, 4)], across=100, down=24, columns=2, drop=84),
+        paper_mm=(140, 105),
     )
 
 
@@ -411,7 +414,7 @@ def _yoke_at(theta2):
     foot = x - 34j
     return Figure(
         slot_link(x - 36j, x + 28j),
-        link(foot, foot + 62, label="4"),
+        link(foot, foot + 84, label="4"),
         link(0j, A, label="2"),
         slider(A, 90, "3"),
         rail(44 - 34j, 66 - 34j),
