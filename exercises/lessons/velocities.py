@@ -276,6 +276,29 @@ def radial_and_transverse():
     )
 
 
+def jack():
+    """A jack of varying length L between B and A, and the arm OA that it turns."""
+    O, B = 0j, 150 - 25j
+    A = polar(130.0, 68)
+    u = _unit(A - B)
+    return Figure(
+        line(O, B, dashed=True),
+        slot_link(B, B + 96 * u),
+        line(B + 96 * u, A, thin=False),
+        line(B + 40 * u, A, thin=False),
+        link(O, A, label="a"),
+        pin(A, "A"),
+        ground_pivot(O, "O"),
+        ground_pivot(B, "B"),
+        line(B, B + 45, dashed=True),
+        vector(A, 38 * u, r"\dot L"),
+        vector(A, 34j * u, r"L\,\omega_2"),
+        angle_mark(O, 0, 68, r"\theta_4"),
+        angle_mark(B, 0, angle(u), r"\theta_2"),
+        paper_mm=(95, 66),
+    )
+
+
 def _slotted():
     """The slotted mechanism of the notes: O4, O2, A; velocities of A and of the guide's point there, mm/s."""
     O4, O2 = 0j, 228.6j
