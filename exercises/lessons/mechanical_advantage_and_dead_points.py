@@ -131,10 +131,9 @@ def toggle():
 def toggle_moving():
     """The knee goes to and fro at an even pace; the arrows are its velocity and the ram's."""
     frames = []
-    for way in 2 * np.pi * np.arange(36) / 36:
+    for way in 0.45 + 2 * np.pi * np.arange(36) / 36:
         B, C = _toggle(float(np.degrees(np.arcsin(0.33 + 0.3 * np.cos(way)))))
-        pace = -30 * np.sign(np.sin(way) + 1e-12) * abs(np.sin(way))
-        knee = -pace
+        knee = 30 * float(np.sin(way))
         fall = 2 * knee * B.real / B.imag
         frames.append(
             Figure(
