@@ -1,7 +1,5 @@
 """Figures of the lesson on rolling without slipping: the ball reducer and Havens' planetary gear."""
 
-import numpy as np
-
 from coursework.degrees import polar
 from coursework.figures import (
     Figure,
