@@ -225,7 +225,7 @@ def _threaded(center: Place, u: Place, see: See, forward: Place, mm: float) -> l
     """A cylinder with a thread across it."""
     _, e2 = _across(u)
     way = [_beyond(_beyond(center, u, far * 0.7 * _LONG * mm), e2, far * _RADIUS * mm) for far in (-1, 1)]
-    return [*_tube(center, u, see, forward, mm), line(see(way[0]), see(way[1]))]
+    return [*_tube(center, u, see, forward, mm), _face(tuple(map(see, way)))]
 
 
 def _box(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
@@ -264,9 +264,9 @@ def _round(center: Place, u: Place, see: See, forward: Place, mm: float) -> list
 
 
 def _pinned(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """A ball with a pin across its axis."""
-    e1, _ = _across(u)
-    pin = _face(tuple(see(_beyond(center, e1, far * 1.9 * _BALL * mm)) for far in (-1, 1)))
+    """A ball with a pin across its axis, that way in which it is seen best."""
+    across = max(_across(u), key=lambda e: abs(see(e)))
+    pin = _face(tuple(see(_beyond(center, across, far * 1.9 * _BALL * mm)) for far in (-1, 1)))
     return [pin, *_round(center, u, see, forward, mm)]
 
 

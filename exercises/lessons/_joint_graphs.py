@@ -22,6 +22,9 @@ def joint(p, q, label=None, bend=0.0):
         return [line(p + 1.2 * RADIUS * way, q - 1.2 * RADIUS * way, thin=False, label=label)]
     control = (p + q) / 2 + 2 * bend * 1j * way
     start, end = (z + 1.2 * RADIUS * (control - z) / abs(control - z) for z in (p, q))
-    curve = [(1 - s / 16) ** 2 * start + 2 * s / 16 * (1 - s / 16) * control + (s / 16) ** 2 * end for s in range(17)]
+    curve = [
+        (1 - s / 16) ** 2 * start + 2 * s / 16 * (1 - s / 16) * control + (s / 16) ** 2 * end
+        for s in range(17)
+    ]
     found = [trace(curve, dotted=False)]
     return [*found, note(curve[8] + 4j * way * (1 if bend > 0 else -1), label)] if label else found

@@ -1,9 +1,31 @@
-"""Figures of the lesson on accuracy: two pencil lines that cross, at a wide angle and at a narrow one."""
+"""Figures of the lesson on accuracy: a linkage at its change point, and two pencil lines that cross."""
 
 from coursework.degrees import polar, sin
-from coursework.figures import Figure, angle_mark, dimension, line, point, trace
+from coursework.figures import Figure, angle_mark, dimension, ground_pivot, line, link, pin, point, trace
+from coursework.kinematics.dyads import rrr
 
 _HALF = 3.0  #: half the width of what a pencil line may be off, mm
+
+
+def _linkage(at, theta2):
+    """Bars of 100, 50, 70 and 80 mm, half as large."""
+    O, A, C = at, at + polar(25.0, theta2), at + 50
+    B = rrr(A, C, 35.0, 40.0)
+    return [
+        link(O, A),
+        link(A, B),
+        link(C, B),
+        ground_pivot(O, "O"),
+        ground_pivot(C, "C"),
+        pin(A, "A"),
+        pin(B, "B"),
+        angle_mark(O, 0, theta2, r"\theta_2", radius=9),
+    ]
+
+
+def change_point():
+    """The linkage of the lesson at 120 degrees, and just beside the place where all four bars lie on one line."""
+    return Figure(*_linkage(0j, 120.0), *_linkage(complex(96), 176.0), paper_mm=(140, 48))
 
 
 def _crossing(at, angle):

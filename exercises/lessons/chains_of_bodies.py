@@ -25,8 +25,10 @@ from coursework.figures.perspective import in_perspective
 
 from ._joint_graphs import bodies, joint
 
-_WIDE = (120.0, 56.0)
-_SHELF, _LARGER = 20.0, 1.45  #: between two joints of the gallery, mm, and how much larger they are drawn than in a chain
+_SHELF, _LARGER = (
+    20.0,
+    1.45,
+)  #: between two joints of the gallery, mm, and how much larger they are drawn than in a chain
 _BETA = 35.0  #: between the shafts of the universal joint, degrees
 _TURN = tuple(range(0, 360, 10))
 
@@ -47,7 +49,7 @@ def twist_at_two_points():
         contact(P, "P", toward=-150),
         point(A, "A", toward=-60),
         point(B, "B", toward=-20),
-        paper_mm=(92, 60),
+        paper_mm=(92, 46),
     )
 
 
@@ -63,14 +65,12 @@ def wrench_at_two_points():
         rotation_arrow(B, 8, 150, 30, "M_B"),
         point(A, "A", toward=110),
         contact(B, "B", toward=-20),
-        paper_mm=(92, 56),
+        paper_mm=(92, 42),
     )
 
 
 def _gallery(*names):
-    rows = [
-        {"joint": name, "along": "z", "point": (0.0, _SHELF * k, 0.0)} for k, name in enumerate(names)
-    ]
+    rows = [{"joint": name, "along": "z", "point": (0.0, _SHELF * k, 0.0)} for k, name in enumerate(names)]
     small = in_perspective(rows, tall=60.0)
     return Figure(*small.elements, scale=_LARGER * small.fixed_scale)
 
@@ -129,13 +129,20 @@ def closed_graph():
         *joint(at["n"], at["0"], "L_{n+1}"),
         vector(at["1"] - 24, 18, "E"),
         vector(at["n"] + 24, -18, "S"),
-        paper_mm=(110, 62),
+        paper_mm=(100, 48),
     )
 
 
 def complex_graph():
     """A four-bar linkage with a rod and a slide: two independent cycles."""
-    at = {"0": 0j, "1": complex(-34, 22), "2": complex(0, 44), "3": complex(34, 22), "4": complex(66, 22), "5": complex(50, -8)}
+    at = {
+        "0": 0j,
+        "1": complex(-34, 22),
+        "2": complex(0, 44),
+        "3": complex(34, 22),
+        "4": complex(66, 22),
+        "5": complex(50, -8),
+    }
     return Figure(
         *bodies(at),
         *joint(at["0"], at["1"], "O"),
@@ -145,7 +152,7 @@ def complex_graph():
         *joint(at["3"], at["4"], "D"),
         *joint(at["4"], at["5"], "E"),
         *joint(at["5"], at["0"], "x"),
-        paper_mm=(110, 66),
+        paper_mm=(100, 50),
     )
 
 
@@ -192,7 +199,7 @@ def linear_and_angular():
         ground_pivot(O2, "O_2"),
         slider(A, float(np.degrees(np.angle(A)))),
         pin(A, "A"),
-        paper_mm=(90, 74),
+        paper_mm=(90, 60),
     )
 
 
@@ -214,7 +221,7 @@ def wedge():
         note(complex(16, 7), "1"),
         note(foot + 11 + 26j, "2"),
         angle_mark(complex(-24, 0), 0, 30, r"\alpha", radius=14),
-        paper_mm=(100, 66),
+        paper_mm=(100, 52),
     )
 
 
@@ -241,7 +248,10 @@ def _arms(theta1):
 
 def _yoke(shaft, arm, far=58.0, neck=26.0, half=17.0):
     """A shaft that ends in a fork: its two prongs hold an arm of the cross."""
-    prong = [(_seen(neck * shaft), _seen(neck * shaft + sign * half * arm), _seen(sign * half * arm)) for sign in (1, -1)]
+    prong = [
+        (_seen(neck * shaft), _seen(neck * shaft + sign * half * arm), _seen(sign * half * arm))
+        for sign in (1, -1)
+    ]
     found = [line(_seen(far * shaft), _seen(neck * shaft), thin=False)]
     for one, two, three in prong:
         found += [line(one, two, thin=False), line(two, three, thin=False)]

@@ -1,7 +1,5 @@
 """Figures of the lesson on rolling without slipping: the ball reducer and Havens' planetary gear."""
 
-import numpy as np
-
 from coursework.degrees import polar
 from coursework.figures import (
     Figure,
@@ -46,7 +44,7 @@ def wheel_on_the_ground():
         point(centre, "C", toward=-45),
         point(2 * centre, "K", toward=110),
         contact(0, "I", toward=-150),
-        paper_mm=(100, 60),
+        paper_mm=(90, 50),
     )
 
 
@@ -66,7 +64,7 @@ def rolling_and_spin():
         line(centre + turn, centre + turn.real, dashed=True),
         line(centre + turn, centre + 1j * turn.imag, dashed=True),
         contact(0, "I", toward=-120),
-        paper_mm=(100, 60),
+        paper_mm=(90, 48),
     )
 
 
@@ -81,7 +79,7 @@ def ball_graph():
         *joint(places["0"], places["3"], "B", -5),
         *joint(places["1"], places["3"], "C"),
         *joint(places["2"], places["3"], "D"),
-        paper_mm=(100, 62),
+        paper_mm=(90, 48),
     )
 
 
@@ -118,7 +116,9 @@ def ball_axis():
     """Why the ball turns about AB: distances of the four points and of the centre to that line."""
     at = _places()
     along = polar(1.0, 45)
-    feet = {name: at["A"] + ((at[name] - at["A"]) * along.conjugate()).real * along for name in ("O_3", "C", "D")}
+    feet = {
+        name: at["A"] + ((at[name] - at["A"]) * along.conjugate()).real * along for name in ("O_3", "C", "D")
+    }
     return Figure(
         circle(at["O_3"], r),
         centre_line(complex(0, -22), complex(0, 24), label="z"),
@@ -130,7 +130,7 @@ def ball_axis():
         contact(at["C"], "C", toward=180),
         contact(at["D"], "D", toward=90),
         point(at["O_3"], "O_3", toward=200),
-        paper_mm=(105, 62),
+        paper_mm=(100, 50),
     )
 
 
@@ -153,7 +153,7 @@ def speeds_from_above():
         contact(C, "C", toward=-130),
         note(polar(R - 7, -28), "S_1"),
         note(polar(R + 2 * r + 8, 18), "S_0"),
-        paper_mm=(110, 66),
+        paper_mm=(100, 52),
     )
 
 
@@ -178,7 +178,7 @@ def central_axes():
         contact(at["C"], "C", toward=150),
         contact(at["D"], "D", toward=150),
         contact(S, "S", toward=200),
-        paper_mm=(110, 95),
+        paper_mm=(100, 74),
     )
 
 
@@ -196,13 +196,19 @@ def rolling_at_D():
         line(ball_turn, complex(omega), dashed=True),
         point(complex(0, turn.imag), r"\Omega_n", toward=180),
         point(complex(omega), r"\Omega_t", toward=-90),
-        paper_mm=(90, 70),
+        paper_mm=(80, 54),
     )
 
 
 def havens_graph():
     """Joint graph of Havens' gear: four pivots, the slot twice, the rolling contact."""
-    places = {"0": 0j, "1": complex(34, 26), "2": complex(74, 26), "3": complex(34, -26), "4": complex(74, -26)}
+    places = {
+        "0": 0j,
+        "1": complex(34, 26),
+        "2": complex(74, 26),
+        "3": complex(34, -26),
+        "4": complex(74, -26),
+    }
     return Figure(
         *bodies(places),
         *joint(places["0"], places["1"], "O_1"),
@@ -212,7 +218,7 @@ def havens_graph():
         *joint(places["0"], places["4"], "O_4"),
         *joint(places["4"], places["2"], "A_1", 6),
         *joint(places["4"], places["2"], "B_2", -6),
-        paper_mm=(100, 66),
+        paper_mm=(90, 52),
     )
 
 
@@ -242,7 +248,14 @@ def equal_projections():
     v_A, v_B = spin * (A - pole), spin * (B_ - pole)
     along = (B_ - A) / abs(B_ - A)
     common = (v_A / along).real * along
-    outline = [complex(-9, -6), complex(24, -9), complex(62, 5), complex(66, 17), complex(40, 22), complex(-4, 10)]
+    outline = [
+        complex(-9, -6),
+        complex(24, -9),
+        complex(62, 5),
+        complex(66, 17),
+        complex(40, 22),
+        complex(-4, 10),
+    ]
     return Figure(
         trace((*outline, outline[0]), dotted=False),
         line(A - 14 * along, B_ + 40 * along),
@@ -291,7 +304,7 @@ def _havens_parts(at):
     ]
 
 
-_SIZE = (112.0, 84.0)
+_SIZE = (112.0, 76.0)
 _SCALE = 0.9  #: mm of mechanism for one mm of velocity over omega1
 
 
@@ -360,5 +373,3 @@ def havens_at_I():
         point(at["I"] + part, "K"),
         paper_mm=_SIZE,
     )
-
-

@@ -1,11 +1,11 @@
 """Joints in space are seen from where they are told apart, each with the symbol of its kind."""
 
-from itertools import combinations
+from itertools import combinations, product
 
 import pytest
 
 import coursework
-from coursework.figures.perspective import _DRAWN, _VIEWS, _looking, in_perspective
+from coursework.figures.perspective import _DRAWN, _VIEWS, _face, _looking, in_perspective
 from coursework.figures.placing import distance
 from coursework.solids import FREEDOMS
 
@@ -46,6 +46,16 @@ def test_every_kind_of_joint_has_a_symbol_of_its_own(along):
     assert len(set(drawn.values())) == len(_DRAWN) == 10
     for name in ("closed_chain", "serial_joints", "parallel_joints"):
         assert set(COURSE[name].spec.given["joint_1"].choices) <= set(_DRAWN)
+
+
+def test_a_thread_lies_on_its_cylinder_and_a_pin_is_seen_beside_its_ball():
+    for view, u in product(_VIEWS, ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))):
+        see, forward = _looking(*view)
+        # Plain lines are drawn beneath the sides of symbols.
+        *_, thread = _DRAWN["helical"][0]((0, 0, 0), u, see, forward, 1.0)
+        assert isinstance(thread, _face)
+        pin, ball = _DRAWN["spherical_pin"][0]((0, 0, 0), u, see, forward, 1.0)
+        assert abs(pin.points[0] - ball.center) > 1.3 * ball.radius
 
 
 @pytest.mark.parametrize("seed", range(1, 41))
