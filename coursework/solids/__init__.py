@@ -9,14 +9,24 @@ one unit of length, any one; axes and normals need not be unit vectors.
 * :func:`recognise`: the joint of the table that a space of twists is.
 """
 
-from coursework.solids.aligned import aligned, directions_of, each_distinct, placed
+from coursework.solids.aligned import (
+    ARRANGEMENTS,
+    Placed,
+    aligned,
+    arranged,
+    directions_of,
+    each_distinct,
+    placed,
+)
 from coursework.solids.chains import Chain, PlanarChain, planar_kind
-from coursework.solids.combining import Parallel, Series, in_parallel, in_series
+from coursework.solids.combining import CONDITIONS, Parallel, Series, in_parallel, in_series
 from coursework.solids.joints import FREEDOMS, JOINTS, Joint, joint_of, joints_of
 from coursework.solids.ranks import Rank, rank_of
 from coursework.solids.recognition import EQUIVALENTS, Equivalent, recognise
 
 __all__ = [
+    "ARRANGEMENTS",
+    "CONDITIONS",
     "EQUIVALENTS",
     "FREEDOMS",
     "JOINTS",
@@ -24,10 +34,12 @@ __all__ = [
     "Equivalent",
     "Joint",
     "Parallel",
+    "Placed",
     "PlanarChain",
     "Rank",
     "Series",
     "aligned",
+    "arranged",
     "directions_of",
     "each_distinct",
     "in_parallel",
