@@ -51,7 +51,9 @@ class _Block:
 
 
 def _blocks(joints: Sequence[Joint]) -> list[_Block]:
-    found, slides, turns = [], [], ()
+    found: list[_Block] = []
+    slides: list[Vector] = []
+    turns: tuple[Vector, ...] | None = ()
     for joint in joints:
         own = _turns_of(joint)
         if turns != () and (joint.kind.translations or own is None):

@@ -406,7 +406,9 @@ LOSING_ROWS = [
     row_of(("prismatic", X), ("revolute", Z), ("prismatic", Y), ("prismatic", Z), S),
     row_of(("prismatic", X), S, ("prismatic", Y), ("prismatic", Z)),
     row_of(("planar", Z), ("revolute", (0, 2, 1)), ("prismatic", (0, 1, 2)), S),
-    row_of(("planar", Z), ("revolute", (0, 1, 1)), ("planar", Y), S),  # half a turn lays one plane on the other
+    row_of(
+        ("planar", Z), ("revolute", (0, 1, 1)), ("planar", Y), S
+    ),  # half a turn lays one plane on the other
 ]
 
 
