@@ -56,6 +56,8 @@ def letters(direction):
 
     Of a direction of whole numbers in a coordinate plane, e is a quarter of a turn further in that plane.
     """
+    if isinstance(direction, dict):
+        return direction
     if direction not in AXES:
         d = [int(x) for x in direction.split()]
         e = cross([int(x == 0) for x in d], d)
@@ -64,13 +66,43 @@ def letters(direction):
     return {k: AXES[a] for k, a in zip("def", "xyzxy"[first : first + 3], strict=True)}
 
 
+def turned(vector, tilt):
+    """Five times a vector turned about the axis of a letter, by the angle of cosine 4/5 and sine 3/5; or the vector."""
+    if not tilt:
+        return list(vector)
+    k = "xyz".index(tilt)
+    i, j = (k + 1) % 3, (k + 2) % 3
+    found = [5 * x for x in vector]
+    found[i], found[j] = 4 * vector[i] - 3 * vector[j], 3 * vector[i] + 4 * vector[j]
+    return found
+
+
+#: How many joints an arrangement has, and what it does to them.
+COUNTS = {"two": 2, "two_tilted": 2, "two_inclined": 2, "three": 3, "three_tilted": 3, "four": 4}
+
+
+def arrangement(given):
+    """The joints of a variant: name, axes by letter and point in whole numbers."""
+    found = []
+    tilt = given["tilt"] if given["arrangement"].endswith("tilted") else ""
+    for k in range(1, COUNTS[given["arrangement"]] + 1):
+        along = (
+            given["inclined"] if (k, given["arrangement"]) == (2, "two_inclined") else given[f"direction_{k}"]
+        )
+        axes = {letter: turned(axis, tilt) for letter, axis in letters(along).items()}
+        point = [int(given[f"{c}{k}"]) if k > 1 else 0 for c in "xyz"]
+        place = turned(point, tilt)
+        found.append((given[f"joint_{k}"], axes, [c // 5 for c in place] if tilt else place))
+    return found
+
+
 def motions(name, direction, point):
-    """Rotation and velocity at the origin of what a joint leaves free."""
+    """Rotation and velocity at the origin of what a joint leaves free; a direction may be given by its axes."""
     axes, (turns, slides) = letters(direction), FREE[name]
     return [[*axes[k], *cross(point, axes[k])] for k in turns] + [[0, 0, 0, *axes[k]] for k in slides]
 
 
 def actions(name, direction, point):
-    """Moment at the origin and force of what a joint transmits."""
+    """Moment at the origin and force of what a joint transmits; a direction may be given by its axes."""
     axes, (moments, forces) = letters(direction), BLOCKED[name]
     return [[*axes[k], 0, 0, 0] for k in moments] + [[*cross(point, axes[k]), *axes[k]] for k in forces]

@@ -26,7 +26,12 @@ def check_units(drawn: Sequence[Variant], report: Report) -> None:
 
 def proof_of(variant: Variant) -> Findings:
     exercise = variant.exercise
-    return prove(exercise.solution.graph, variant.used, _declared(exercise), variant.effects)
+    graph = exercise.solution.graph
+    mixed = {p.quantity for p in exercise.spec.parts if len(p.sort.units(p.unit)) > 1}
+    wanted = tuple(name for name in graph.quantities if name not in mixed)
+    found = prove(graph, variant.used, _declared(exercise), variant.effects, wanted)
+    found.unproved |= dict.fromkeys(mixed, "its columns are in two units")
+    return found
 
 
 def _declared(exercise: CourseExercise) -> dict[str, str]:

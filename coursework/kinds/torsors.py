@@ -172,7 +172,7 @@ class Torsor(Kind):
 class Pattern(Kind):
     """Which components of a torsor may differ from zero: right where exactly those are named.
 
-    The solution gives their names in one text, ``"wz vx"``; ``""`` where all vanish.
+    The solution gives their names in one text, ``"wz vx"``; ``"0"`` where all vanish.
     """
 
     is_exact = is_text = has_rule = share_stands = True

@@ -359,18 +359,24 @@ def _both(text: str, columns: Sequence[Reading | None], order: Sequence[int], be
             if column is not None:
                 found[own] = column.values[which]
         value = found[list(order)]
-        said = (column.read_as[which] for column in columns if column is not None)
-        echo = " | ".join(re.sub(r"^\(|\)", "", one) for one in said)
-        ways.setdefault(value.tobytes(), (value, f"{{{echo}}}"))
+        ways.setdefault(value.tobytes(), (value, _echo(columns, which, order)))
     values, echoes = zip(*ways.values(), strict=True)
     given = behind or any(column.unit_given for column in columns if column is not None)
     return Reading(text, "read", values, echoes, given)
 
 
+def _echo(columns: Sequence[Reading | None], which: int, order: Sequence[int]) -> str:
+    """Both columns as they were read, ``{0; 0; 5} {10; 20; 0}``; three components in the order in which they are asked."""
+    said = [re.sub(r"^\(|\)", "", column.read_as[which]) for column in columns if column is not None]
+    if len(order) == 3:
+        return "(" + "; ".join(said if order[0] < 3 else said[::-1]) + ")"
+    return " ".join(f"{{{one}}}" for one in said)
+
+
 # ---------------------------------------------------------------------- patterns
 
 _NONE = re.compile(
-    r"\{?\s*\}?|\{?\s*0\s*\}?|∅|(?:none|nothing|zero|null?|nulle?|aucune?|rien|z[ée]ro|tout(?:es)?\s+nulle?s)\.?",
+    r"0|∅|(?:none|nothing|zero|null?|nulle?|aucune?|rien|z[ée]ro|tout(?:es)?\s+nulle?s)\.?",
     re.I,
 )
 _ZERO = re.compile(r"[+-]?0+(?:[.,]0*)?|(?:zero|z[ée]ro|nulle?|null|nil|none|no|non)", re.I)
@@ -380,8 +386,10 @@ _DASHES = ("", "-", "--", ".", "/")
 def _named_components(text: str, form: Form) -> set[str] | None:
     """The components of a list of names alone; nothing where it is something else."""
     plain = tidy(unwrapped(text)).strip().strip("{}[]()$.").strip()
-    if _NONE.fullmatch(plain):
+    if _NONE.fullmatch(plain) or (not plain and re.fullmatch(r"\\?\{\s*\\?\}|\[\s*\]|\(\s*\)", text.strip())):
         return set()
+    if not plain:
+        return None
     pieces = [piece for piece in re.split(r"\s*[,;|\n]\s*|\s+(?:et|and)\s+|\s+", plain) if piece]
     places = [component_place(piece, form) for piece in pieces]
     known = [place for place in places if place is not None]

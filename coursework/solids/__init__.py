@@ -6,17 +6,29 @@ one unit of length, any one; axes and normals need not be unit vectors.
 
 * :func:`in_parallel`, :func:`in_series`: joints between two bodies, joints in a row;
 * :class:`Chain`, :class:`PlanarChain`: loops of joints, in space and in a plane;
+* :func:`twist_components`, :func:`wrench_components`: which components may differ from zero at a point;
 * :func:`recognise`: the joint of the table that a space of twists is.
 """
 
-from coursework.solids.aligned import aligned, directions_of, each_distinct, placed
+from coursework.solids.aligned import (
+    ARRANGEMENTS,
+    Placed,
+    aligned,
+    arranged,
+    directions_of,
+    each_distinct,
+    placed,
+)
 from coursework.solids.chains import Chain, PlanarChain, planar_kind
-from coursework.solids.combining import Parallel, Series, in_parallel, in_series
+from coursework.solids.combining import CONDITIONS, Parallel, Series, in_parallel, in_series
 from coursework.solids.joints import FREEDOMS, JOINTS, Joint, joint_of, joints_of
 from coursework.solids.ranks import Rank, rank_of
 from coursework.solids.recognition import EQUIVALENTS, Equivalent, recognise
+from coursework.solids.torsors import moved, twist_components, wrench_components
 
 __all__ = [
+    "ARRANGEMENTS",
+    "CONDITIONS",
     "EQUIVALENTS",
     "FREEDOMS",
     "JOINTS",
@@ -24,18 +36,23 @@ __all__ = [
     "Equivalent",
     "Joint",
     "Parallel",
+    "Placed",
     "PlanarChain",
     "Rank",
     "Series",
     "aligned",
+    "arranged",
     "directions_of",
     "each_distinct",
     "in_parallel",
     "in_series",
     "joint_of",
     "joints_of",
+    "moved",
     "placed",
     "planar_kind",
     "rank_of",
     "recognise",
+    "twist_components",
+    "wrench_components",
 ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -64,6 +64,43 @@ def placed(point: tuple[float, float, float], tilt: str = "") -> tuple[float, fl
     """Where a point comes to lie by the tilt of :func:`aligned`."""
     x, y, z = (c / (5.0 if tilt else 1.0) for c in _turned(point, tilt))
     return x, y, z
+
+
+class Placed(NamedTuple):
+    """What :func:`aligned` makes a joint of."""
+
+    name: str
+    along: str
+    point: tuple[float, float, float]
+    tilt: str = ""
+
+    def mapping(self, between: Sequence[int] = (0, 1)) -> dict[str, Any]:
+        return aligned(self.name, self.along, self.point, between, self.tilt)
+
+
+#: How many joints there are, whether all are tilted, and whether the direction of the second is inclined.
+ARRANGEMENTS: Mapping[str, tuple[int, bool, bool]] = {
+    "two": (2, False, False),
+    "two_tilted": (2, True, False),
+    "two_inclined": (2, False, True),
+    "three": (3, False, False),
+    "three_tilted": (3, True, False),
+    "four": (4, False, False),
+}
+
+
+def arranged(arrangement: str, tilt: str, inclined: str, *joints: Sequence[Any]) -> tuple[Placed, ...]:
+    """Of joints, each (name, along, x, y, z) with lengths in mm, those of an arrangement, as it places them."""
+    count, is_tilted, is_inclined = ARRANGEMENTS[arrangement]
+    return tuple(
+        Placed(
+            name,
+            inclined if is_inclined and number == 1 else along,
+            (float(x), float(y), float(z)),
+            tilt if is_tilted else "",
+        )
+        for number, (name, along, x, y, z) in enumerate(joints[:count])
+    )
 
 
 def _three(along: str) -> Whole:

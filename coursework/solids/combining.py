@@ -10,8 +10,12 @@ from typing import Any
 import numpy as np
 
 from coursework.solids.joints import Joint, Measure, read_joints
+from coursework.solids.poses import all_free_at_every_pose
 from coursework.solids.ranks import Rank, decompose
 from coursework.solids.recognition import Equivalent, recognise
+
+#: What joints in parallel demand of their makers: nothing, parallel or square directions, distances and centres, or both.
+CONDITIONS = ("none", "directions", "positions", "both")
 
 
 def in_parallel(joints: Iterable[Joint | Mapping[str, Any]]) -> Parallel:
@@ -75,6 +79,25 @@ class Parallel:
         return 6 - self.rs
 
     @cached_property
+    def angular(self) -> int:
+        """How many of the superfluous unknowns are held by moments alone: conditions on directions."""
+        moments = [row for joint in self.joints for row in joint.moments]
+        rows = np.array(moments).reshape(-1, 3)
+        return len(rows) - decompose(rows, "the transmitted moments", 1.0)[0].value
+
+    @property
+    def linear(self) -> int:
+        """How many conditions bear on positions: the other superfluous unknowns, which forces hold."""
+        return self.h - self.angular
+
+    @property
+    def condition(self) -> str:
+        """What must be made exactly for the joints to fit together, one of :data:`CONDITIONS`."""
+        if self.angular:
+            return "both" if self.linear else "directions"
+        return "positions" if self.linear else "none"
+
+    @cached_property
     def equivalent(self) -> Equivalent:
         _, wrenches, twists = self._spaces
         return recognise(twists, wrenches, self.measure)
@@ -127,5 +150,8 @@ class Series:
 
     @cached_property
     def equivalent(self) -> Equivalent:
+        """``free`` only where all six freedoms are there at every pose; where they are at this one, ``other``."""
         _, twists, wrenches = self._spaces
+        if len(twists) == 6 and not all_free_at_every_pose(self.joints):
+            return Equivalent("other")
         return recognise(twists, wrenches, self.measure)

@@ -95,6 +95,21 @@ class Joint:
     def _free(self) -> tuple[list[Vector], list[Vector]]:
         return _named(self.frame, self.kind.rotations), _named(self.frame, self.kind.translations)
 
+    @property
+    def turns(self) -> list[Vector]:
+        """Unit vectors along the axes of its free rotations."""
+        return self._free[0]
+
+    @property
+    def moments(self) -> list[Vector]:
+        """Unit vectors along the moments that it transmits without a force."""
+        return _named(self.frame, _others(self.kind.rotations))
+
+    @property
+    def slides(self) -> list[Vector]:
+        """Unit vectors along its free translations; that of a screw goes with its rotation, and is none of them."""
+        return self._free[1]
+
     def twists(self, origin: Vector, length: float) -> list[list[float]]:
         """Its free twists at a point: ``freedoms`` rows of 6, velocities divided by the length."""
         arm = self.arm(origin, length)

@@ -1,14 +1,17 @@
 """What the exercises on chains of solids share."""
 
 from functools import cache
+from inspect import Parameter, Signature
 from math import gcd, isqrt
 
 import numpy as np
 
 from coursework.model import GivenSpec, Part, chosen, drawn
 from coursework.solids import (
+    ARRANGEMENTS,
     FREEDOMS,
     Parallel,
+    Placed,
     Series,
     aligned,
     directions_of,
@@ -55,6 +58,8 @@ def joint_kind(names: tuple[str, ...] = DRAWN) -> GivenSpec:
 
 #: Directions in the plane xy, neither along x nor along y, of a wedge or of a line of action.
 INCLINED = ("3 4 0", "4 -3 0")
+#: Directions in the three coordinate planes along none of their axes.
+SLANTING = (*INCLINED, "0 3 4", "0 4 -3", "3 0 4", "4 0 -3")
 
 
 def direction(*more: str) -> GivenSpec:
@@ -107,25 +112,76 @@ def freedoms_of(joint):
 
 
 @cache
-def combined(combination: str, *joints: tuple) -> Parallel | Series:
-    """The joints together, with their rank and the equivalent joint; each joint is (name, direction, x, y, z).
-
-    Every axis lies along x, y or z: stretching space along these changes neither a rank nor a name, so that it
-    is enough to know which coordinates are zero.
-    """
-    return COMBINE[combination]([aligned(name, along, point) for name, along, *point in joints])
+def combined(combination: str, *joints: Placed) -> Parallel | Series:
+    """The joints together, with their rank and the equivalent joint."""
+    return COMBINE[combination]([joint.mapping() for joint in joints])
 
 
 @cache
 def _motions() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Names "joint direction" in order, the freedoms of each, and the products T' T of its twists at its point."""
-    pairs = sorted((f"{name} {along}", name, along) for name in DRAWN for along in (*"xyz", *INCLINED))
+    pairs = _every_joint()
     twists = [np.array(joint_of(aligned(n, a)).twists((0.0, 0.0, 0.0), 1.0)) for _, n, a in pairs]
     return (
         np.array([key for key, _, _ in pairs]),
         np.array([len(t) for t in twists]),
         np.array([t.T @ t for t in twists]),
     )
+
+
+@cache
+def _actions() -> np.ndarray:
+    """In the same order, the products of what each transmits at its point, (force, moment)."""
+    wrenches = [
+        np.array(joint_of(aligned(n, a)).wrenches((0.0, 0.0, 0.0), 1.0)).reshape(-1, 6)[:, [3, 4, 5, 0, 1, 2]]
+        for _, n, a in _every_joint()
+    ]
+    return np.array([w.T @ w for w in wrenches])
+
+
+def _every_joint() -> list[tuple[str, str, str]]:
+    return sorted((f"{name} {along}", name, along) for name in DRAWN for along in (*"xyz", *SLANTING))
+
+
+def _rows(joint, along) -> np.ndarray:
+    joint, along = np.atleast_1d(joint), np.atleast_1d(along)
+    return np.searchsorted(_motions()[0], np.char.add(np.char.add(joint, " "), along))
+
+
+def _carry(point, shape) -> np.ndarray:
+    """What takes a torsor from a point, columns in mm, to the origin: resultants stay, moments follow."""
+    x, y, z = (np.broadcast_to(np.asarray(c, float) / 20, shape) for c in point)
+    carry = np.zeros((*shape, 6, 6))
+    carry[..., range(6), range(6)] = 1.0
+    # The velocity at the origin of a rotation about an axis through (x, y, z).
+    carry[..., 0, 4], carry[..., 0, 5] = z, -y
+    carry[..., 1, 3], carry[..., 1, 5] = -z, x
+    carry[..., 2, 3], carry[..., 2, 4] = y, -x
+    return carry
+
+
+def rank_together(combination, arrangement, inclined, *joints):
+    """The rank of what joints transmit in parallel or let move in series, of columns; each joint is (name, direction, x, y, z).
+
+    A tilt turns all of them alike and changes nothing.
+    """
+    products = _actions() if combination == "parallel" else _motions()[2]
+    arrangement = np.atleast_1d(arrangement)
+    counts, _, slanted = (
+        np.array(column)[_place(arrangement)] for column in zip(*ARRANGEMENTS.values(), strict=True)
+    )
+    total = 0.0
+    for number, (name, along, *point) in enumerate(joints):
+        along = np.where(slanted, inclined, along) if number == 1 else along
+        row = _rows(name, along)
+        carry = _carry(point, np.broadcast_shapes(row.shape, arrangement.shape))
+        moved = np.swapaxes(carry, -1, -2) @ products[row] @ carry
+        total = total + moved * (number < counts)[..., None, None]
+    return (np.linalg.eigvalsh(total) > 1e-6).sum(axis=-1)
+
+
+def _place(arrangement) -> np.ndarray:
+    return np.array([list(ARRANGEMENTS).index(one) for one in arrangement.ravel()]).reshape(arrangement.shape)
 
 
 _IN_SPACE, _IN_PLANE = (
@@ -145,20 +201,12 @@ def mobility_of_loops(senses, joints, directions, points, *, in_plane=False):
 
     The rank is that of a matrix of small whole numbers and of fifths: its zeros are zeros but for rounding.
     """
-    keys, freedoms, products = _motions()
+    _, freedoms, products = _motions()
     kept = _IN_PLANE if in_plane else _IN_SPACE
     total, count = 0.0, 0
     for sense, joint, along, point in zip(np.array(senses), joints, directions, points, strict=True):
-        joint, along = np.atleast_1d(joint), np.atleast_1d(along)
-        row = np.searchsorted(keys, np.char.add(np.char.add(joint, " "), along))
-        x, y, z = (np.broadcast_to(np.asarray(c, float) / 20, row.shape) for c in point)
-        carry = np.zeros((*row.shape, 6, 6))
-        carry[..., range(6), range(6)] = 1.0
-        # The velocity at the origin of a rotation about an axis through (x, y, z).
-        carry[..., 0, 4], carry[..., 0, 5] = z, -y
-        carry[..., 1, 3], carry[..., 1, 5] = -z, x
-        carry[..., 2, 3], carry[..., 2, 4] = y, -x
-        carry = carry[..., kept]
+        row = _rows(joint, along)
+        carry = _carry(point, row.shape)[..., kept]
         moved = np.swapaxes(carry, -1, -2) @ products[row] @ carry
         total = total + np.kron(np.outer(sense, sense), moved)
         count = count + (_planar_freedoms() if in_plane else freedoms)[row]
@@ -172,17 +220,42 @@ def _planar_freedoms() -> np.ndarray:
     return (np.linalg.eigvalsh(products) > 1e-6).sum(axis=-1)
 
 
-def two_joints():
-    """Given: the kinds and directions of two joints, the first at the origin, and the place of the second."""
-    return {
+def several_joints(third: tuple[str, ...]) -> dict[str, GivenSpec]:
+    """Given: two to four joints, the first at the origin, by :func:`coursework.solids.arranged`; ``third`` are the names of
+    the third and the fourth."""
+    found = {
+        "arrangement": chosen(*ARRANGEMENTS, shown=False),
+        "tilt": direction(),
+        "inclined": chosen(*SLANTING, shown=False),
         "joint_1": joint_kind(),
         "direction_1": direction(),
-        "joint_2": joint_kind(),
-        "direction_2": direction(),
-        "x2": coordinate(),
-        "y2": coordinate(),
-        "z2": coordinate(),
     }
+    for k in (2, 3, 4):
+        found |= {f"joint_{k}": joint_kind(DRAWN if k == 2 else third), f"direction_{k}": direction()}
+        found |= {f"{axis}{k}": coordinate() for axis in "xyz"}
+    return found
+
+
+GIVEN = tuple(several_joints(DRAWN))
+
+
+def of_joints(read):
+    """A function of all that is given, from one of (arrangement, tilt, inclined, joint, …), each joint (name, direction, x, y, z)."""
+
+    def told(*given):
+        arrangement, tilt, inclined, name, along, *others = given
+        return read(
+            arrangement, tilt, inclined, (name, along, 0, 0, 0), *zip(*[iter(others)] * 5, strict=True)
+        )
+
+    told.__name__, told.__doc__, told.__module__ = read.__name__, read.__doc__, read.__module__
+    told.__signature__ = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in GIVEN])
+    return told
+
+
+def table_of(joints, bodies):
+    """The lines of a statement's table of joints that are :class:`~coursework.solids.Placed`."""
+    return [_line(k + 1, bodies[k], *joint) for k, joint in enumerate(joints)]
 
 
 def axis_parts(has_direction, has_line):

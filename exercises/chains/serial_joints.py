@@ -1,41 +1,77 @@
-"""Two joints in a row: kinematic unknowns, useful and internal mobility, and the joint that replaces the row."""
+"""Two to four joints in a row: kinematic unknowns, useful and internal mobility, and the joint that replaces the row."""
+
+import numpy as np
 
 from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part
-from coursework.solids import EQUIVALENTS
+from coursework.solids import ARRANGEMENTS, EQUIVALENTS, arranged
 
-from ._solids import WITH_DIRECTION, WITH_LINE, axis_parts, combined, table, two_joints
+from ._solids import (
+    WITH_DIRECTION,
+    WITH_LINE,
+    axis_parts,
+    combined,
+    freedoms_of,
+    of_joints,
+    rank_together,
+    several_joints,
+    table_of,
+)
 
-
-def _name(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
-    second = (joint_2, direction_2, x2 != 0, y2 != 0, z2 != 0)
-    return combined("series", (joint_1, direction_1, 0, 0, 0), second).equivalent.name
-
-
-def has_direction(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
-    return _name(joint_1, direction_1, joint_2, direction_2, x2, y2, z2) in WITH_DIRECTION
-
-
-def has_line(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
-    return _name(joint_1, direction_1, joint_2, direction_2, x2, y2, z2) in WITH_LINE
-
-
-def tells(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
-    return {
-        "rows": table(
-            ((0, 1), joint_1, direction_1, (0, 0, 0)),
-            ((1, 2), joint_2, direction_2, (x2, y2, z2)),
-        )
-    }
+#: The third and the fourth joint: with freer ones nearly every row would leave all six freedoms.
+STIFF = ("revolute", "prismatic", "cylindrical", "spherical")
 
 
-def figure(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
-    rows = tells(joint_1, direction_1, joint_2, direction_2, x2, y2, z2)["rows"]
-    return in_perspective(rows, bodies=((1, 1, 2),))
+@of_joints
+def longer_rows_have_few_freedoms(arrangement, tilt, inclined, *joints):
+    """Of three or four joints, seven at most: among them rows with six at this position, and with an inner one."""
+    counts = np.vectorize(lambda name: ARRANGEMENTS[name][0])(np.atleast_1d(arrangement))
+    every = [freedoms_of(name) * (number < counts) for number, (name, *_) in enumerate(joints)]
+    return (counts == 2) | (np.sum(every, axis=0) <= 7)
+
+
+@of_joints
+def longer_rows_seldom_have_six(arrangement, tilt, inclined, *joints):
+    """Of three or four joints, six freedoms only where the second is a ball."""
+    rank = rank_together("series", arrangement, inclined, *joints)
+    counts = np.vectorize(lambda name: ARRANGEMENTS[name][0])(np.atleast_1d(arrangement))
+    return (counts == 2) | (rank < 6) | (np.atleast_1d(joints[1][0]) == "spherical")
+
+
+def _name(arrangement, tilt, inclined, *joints):
+    return combined("series", *arranged(arrangement, "x", inclined, *joints)).equivalent.name
+
+
+@of_joints
+def has_direction(*given):
+    return _name(*given) in WITH_DIRECTION
+
+
+@of_joints
+def has_line(*given):
+    return _name(*given) in WITH_LINE
+
+
+@of_joints
+def tells(*given):
+    joints = arranged(*given)
+    return {"rows": table_of(joints, _bodies(joints))}
+
+
+def _bodies(joints):
+    return [(k, k + 1) for k in range(len(joints))]
+
+
+@of_joints
+def figure(*given):
+    joints = arranged(*given)
+    inner = [(k, k, k + 1) for k in range(1, len(joints))]
+    return in_perspective(table_of(joints, _bodies(joints)), bodies=inner)
 
 
 EXERCISE = Exercise(
-    given=two_joints(),
+    given=several_joints(STIFF),
+    keep=(longer_rows_have_few_freedoms, longer_rows_seldom_have_six),
     parts=(
         Part("Nc", kind="integer", points=1),
         Part("m", kind="integer", points=1),
@@ -45,13 +81,10 @@ EXERCISE = Exercise(
         Part("equivalent", kind="choice", choices=EQUIVALENTS, ordered=True, points=2),
         *axis_parts(has_direction, has_line),
     ),
+    version=2,
     tells=tells,
     figure=figure,
     symbols={
-        "joint_1": "L_1",
-        "joint_2": "L_2",
-        "direction_1": r"\vec{u}_1",
-        "direction_2": r"\vec{u}_2",
         "Nc": "N_c",
         "m_useful": "m_u",
         "m_internal": "m_i",

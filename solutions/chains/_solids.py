@@ -8,7 +8,7 @@ import numpy as np
 
 from coursework.language.numbers import significant
 from coursework.quantities.columns import each_stacked
-from coursework.solids import Chain, PlanarChain, in_parallel, in_series, joints_of
+from coursework.solids import Chain, PlanarChain, arranged, in_parallel, in_series, joints_of
 
 _in_parallel = lru_cache(maxsize=4096)(in_parallel)
 _chain = lru_cache(maxsize=4096)(Chain)
@@ -18,6 +18,13 @@ _in_series = lru_cache(maxsize=4096)(in_series)
 #: Equivalent joints of which a line is known, by any of its points.
 _WITH_LINE = ("revolute", "helical", "cylindrical", "point_contact")
 _NOWHERE = (np.nan, np.nan, np.nan)
+
+
+def _row_of(bodies, arrangement, tilt, inclined, name, along, *others):
+    """Mappings of the joints of an arrangement; ``bodies`` gives those that the joint of a number lies between."""
+    rest = zip(*[iter(others)] * 5, strict=True)
+    placed = arranged(arrangement, tilt, inclined, (name, along, 0, 0, 0), *rest)
+    return tuple(joint.mapping(bodies(number)) for number, joint in enumerate(placed))
 
 
 def _parallel_of(joints):
@@ -67,6 +74,37 @@ def _sum_of(terms):
             sign = (" - " if told else "-") if share < 0 else " + " if told else ""
             told += f"{sign}{size}{symbol}"
     return told
+
+
+@lru_cache(maxsize=4096)
+def _lines(joints, what):
+    """A line a free motion, or with ``"wrenches"`` a transmitted action, at the origin: its number, its joint, its resultant
+    and its moment as formulas, and how it adds up from those before, where it does."""
+    of_joint, twists, letter = [], [], "a" if what == "wrenches" else "t"
+    for number, joint in enumerate(joints, start=1):
+        for twist in getattr(joint, what)((0.0, 0.0, 0.0), 1.0):
+            of_joint.append(number)
+            twists.append(np.roll(twist, 3) if what == "wrenches" else np.array(twist))
+    first, sums = [], []  # the independent ones among those before
+    for twist in twists:
+        before = np.array([twists[k] for k in first]).reshape(-1, 6).T
+        shares, *_ = np.linalg.lstsq(before, twist, rcond=None)
+        if np.allclose(before @ shares, twist, rtol=0, atol=1e-9 * abs(twist).max()):
+            sums.append(
+                _sum_of((share, f"{letter}_{{{k + 1}}}") for k, share in zip(first, shares, strict=True))
+            )
+        else:
+            first.append(len(sums))
+            sums.append("")
+    return tuple(
+        {"number": k, "joint": j, "resultant": _triple(t[:3]), "moment": _triple(t[3:]), "sum": told}
+        for k, (j, t, told) in enumerate(zip(of_joint, twists, sums, strict=True), start=1)
+    )
+
+
+def _triple(vector):
+    inner = r";\ ".join(map(_number, vector))
+    return rf"\left({inner}\right)"
 
 
 def _chain_of(joints):

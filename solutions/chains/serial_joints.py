@@ -1,28 +1,29 @@
 """Joints in a row: their free motions add up, so the ranks are those of the added motions."""
 
-from functools import lru_cache
-
 import numpy as np
 
 from coursework.quantities.columns import each, each_stacked
-from coursework.solids import FREEDOMS, aligned, each_distinct, joint_of
+from coursework.solids import FREEDOMS, each_distinct, joint_of
 from coursework.solution import given, mistake
 
-from ._solids import _direction, _freest, _in_parallel, _number, _point_of_axis, _series_of, _sum_of
+from ._solids import _direction, _freest, _in_parallel, _lines, _point_of_axis, _row_of, _series_of
 
 STRUCTURES = ("joints", "free_motions")
 
 
-def _pair(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
-    return (
-        aligned(joint_1, direction_1, between=(0, 1)),
-        aligned(joint_2, direction_2, (x2, y2, z2), between=(1, 2)),
-    )
+def _in_a_row(*given):
+    return _row_of(lambda number: (number, number + 1), *given)
 
 
-def joints(joint_1, direction_1, joint_2, direction_2, x2, y2, z2):
-    """The first at A1, the origin; the second at A2."""
-    return each_distinct(_pair, joint_1, direction_1, joint_2, direction_2, x2, y2, z2)
+def joints(
+    arrangement, tilt, inclined, joint_1, direction_1,
+    joint_2, direction_2, x2, y2, z2, joint_3, direction_3, x3, y3, z3, joint_4, direction_4, x4, y4, z4,
+):  # fmt: skip
+    """Those of the arrangement, the first at A1, the origin."""
+    return each_distinct(
+        _in_a_row, arrangement, tilt, inclined, joint_1, direction_1,
+        joint_2, direction_2, x2, y2, z2, joint_3, direction_3, x3, y3, z3, joint_4, direction_4, x4, y4, z4,
+    )  # fmt: skip
 
 
 def _combined(joints):
@@ -31,34 +32,7 @@ def _combined(joints):
 
 def free_motions(_combined):
     """One by one, at A1: a line of the table each, and how it adds up from those before, where it does."""
-    return each(lambda whole: _lines(whole.joints), _combined)
-
-
-@lru_cache(maxsize=4096)
-def _lines(joints):
-    of_joint, twists = [], []
-    for number, joint in enumerate(joints, start=1):
-        for twist in joint.twists((0.0, 0.0, 0.0), 1.0):
-            of_joint.append(number)
-            twists.append(np.array(twist))
-    first, sums = [], []  # the independent ones among those before
-    for twist in twists:
-        before = np.array([twists[k] for k in first]).reshape(-1, 6).T
-        shares, *_ = np.linalg.lstsq(before, twist, rcond=None)
-        if np.allclose(before @ shares, twist, rtol=0, atol=1e-9 * abs(twist).max()):
-            sums.append(_sum_of((share, f"t_{k + 1}") for k, share in zip(first, shares, strict=True)))
-        else:
-            first.append(len(sums))
-            sums.append("")
-    return tuple(
-        {"number": k, "joint": j, "rotation": _triple(t[:3]), "velocity": _triple(t[3:]), "sum": told}
-        for k, (j, t, told) in enumerate(zip(of_joint, twists, sums, strict=True), start=1)
-    )
-
-
-def _triple(vector):
-    inner = r";\ ".join(map(_number, vector))
-    return rf"\left({inner}\right)"
+    return each(lambda whole: _lines(whole.joints, "twists"), _combined)
 
 
 def Nc(free_motions):
@@ -84,6 +58,7 @@ def h():
 
 
 def equivalent(_combined):
+    """No joint at all only where all six motions are free at every pose; where they are at this one alone, another."""
     return each_stacked(lambda one: one.equivalent.name, _combined)
 
 
@@ -139,6 +114,12 @@ def freer_joint_alone(_combined):
     return each_stacked(_freest, _combined)
 
 
+@mistake("equivalent")
+def free_at_this_pose(equivalent, m_useful):
+    """Six motions here are taken for six at every pose."""
+    return np.where(np.asarray(m_useful) == 6, "free", equivalent)
+
+
 def residual(joints, Nc, m, m_useful, m_internal, h, equivalent):
     """Mobility from the actions: the last body is free of what not every joint of the row transmits."""
     known = [joint_of(joint) for joint in joints]
@@ -173,7 +154,7 @@ KNOWN = (
         axis_dir=np.array([0.0, 0.0, 1.0]),
     ),
     # A universal joint: two hinges whose axes meet at right angles.
-    given(joint_1="revolute", direction_1="x", joint_2="revolute", direction_2="y", x2=0, y2=0, z2=0).gives(
+    given(joints=[{"joint": "revolute", "axis": axis, "point": _O} for axis in (_X, _Y)]).gives(
         Nc=2, m_useful=2, m_internal=0, equivalent="spherical_pin",
     ),
     # A drawing board's two-hinged arm with a third hinge holds a plane against the board.
@@ -188,4 +169,17 @@ KNOWN = (
     given(joints=[{"joint": "spherical", "point": p} for p in (_O, (0, 80, 0))]).gives(
         Nc=6, m_useful=5, m_internal=1, equivalent="point_contact", axis_dir=np.array([0.0, 1.0, 0.0]),
     ),
+    # Three slides and a ball: all six, however far they slide and turn.
+    given(joints=[*({"joint": "prismatic", "axis": a} for a in (_X, (0, 3, 4), (0, 4, -3))), {"joint": "spherical", "point": _O}]).gives(
+        m_useful=6, m_internal=0, equivalent="free",
+    ),
+    # An arm of six hinges: all six here, but not where two of its axes are in line.
+    given(
+        joints=[
+            {"joint": "revolute", "axis": axis, "point": point}
+            for axis, point in (
+                (_Z, _O), (_Y, (0, 0, 300)), (_Y, (300, 0, 700)), (_X, (800, 0, 300)), (_Y, (800, 0, 300)), ((3, 0, 4), (800, 0, 300)),
+            )
+        ]
+    ).gives(Nc=6, m_useful=6, m_internal=0, equivalent="other"),
 )  # fmt: skip

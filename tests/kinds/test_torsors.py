@@ -163,11 +163,16 @@ def test_at_another_point_is_so_for_any_point_and_any_axis():
         ("{0 vx; 0 0; wz 0}", "wz vx"), ("wz, vx", "wz vx"), ("ωz et vx", "wz vx"), ("ω_z ; v_x", "wz vx"),
         ("0 0 wz | vx 0 0", "wz vx"), ([[0, 0, 1], [1, 0, 0]], "wz vx"), ({"vx", "wz"}, "wz vx"), ("{0 *; 0 0; * 0}", "wz vx"),
         (r"\begin{Bmatrix} 0 & v_x \\ 0 & 0 \\ \omega_z & 0 \end{Bmatrix}", "wz vx"), ("{0 libre; 0 0; libre 0}", "wz vx"),
-        ("0", ""), ("aucune", ""), ("{0 0; 0 0; 0 0}", ""), ("{- vx; - vy; wz -}", "wz vx vy"), ("vx 0 wz", "wz vx"),
+        ("0", ""), ("aucune", ""), ("{ }", ""), ("{0}", ""), ("{0 0; 0 0; 0 0}", ""), ("{- vx; - vy; wz -}", "wz vx vy"), ("vx 0 wz", "wz vx"),
     ],
 )  # fmt: skip
 def test_a_pattern_is_a_table_or_names(answer, named):
     assert read(MAY_MOVE, answer, "").values == (frozenset(named.split()),)
+
+
+@pytest.mark.parametrize("answer", ["((((", "?", "12 +", "{", "je ne sais pas", "vz?", "1 = 1 = 1"])
+def test_what_is_no_pattern_is_told_so(answer):
+    assert read(MAY_MOVE, answer, "").status == "unreadable"
 
 
 def test_the_pattern_of_a_wrench_has_letters_of_its_own():

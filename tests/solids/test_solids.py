@@ -184,7 +184,7 @@ def test_joints_in_parallel(joints, expected, direction, point, h):
         ([joint("revolute", X, O), joint("revolute", Y, (0, 0, 9))], "other", None, None, 0),
         ([joint("prismatic", X), joint("prismatic", Y)], "other", None, None, 0),
         ([joint("spherical", X, O), joint("spherical", X, (9, 0, 0))], "point_contact", X, O, 1),
-        ([joint("spherical", X, p) for p in (O, (9, 0, 0), (0, 9, 0))], "free", None, None, 3),
+        ([joint("spherical", X, p) for p in (O, (9, 0, 0), (0, 9, 0))], "other", None, None, 3),
     ],
 )
 def test_joints_in_series(joints, expected, direction, point, m_internal):
@@ -341,6 +341,98 @@ def test_a_rod_on_two_balls_turns_about_itself():
     ]
     chain = Chain(joints, 1, 3)
     assert (chain.m, chain.h, chain.m_internal, chain.m_useful) == (2, 0, 1, 1)
+
+
+# ------------------------------------------------------------- at every pose
+
+
+def turned(axis, angle):
+    """The matrix of a rotation."""
+    x, y, z = np.asarray(axis, float) / np.linalg.norm(axis)
+    skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + math.sin(angle) * skew + (1 - math.cos(angle)) * skew @ skew
+
+
+def posed(rng, joints):
+    """The same row after each joint was moved, its own slide before its own turn or after it."""
+    turn, shift, found = np.eye(3), np.zeros(3), []
+    for one in map(joint_of, joints):
+        frame = [turn @ np.asarray(u) for u in one.frame]
+        point = turn @ np.asarray(one.point or O) + shift
+        letters = "uvw"
+        own = np.eye(3)
+        for letter in rng.permutation(list(one.kind.rotations)):
+            own = turned(frame[letters.index(letter)], rng.uniform(-math.pi, math.pi)) @ own
+        slide = sum(
+            (rng.uniform(-60, 60) * frame[letters.index(c)] for c in one.kind.translations), np.zeros(3)
+        )
+        carried = frame if rng.random() < 0.5 else [own @ u for u in frame]
+        slides = [carried[letters.index(c)] for c in one.kind.translations]
+        found.append((one, frame, point, slides))
+        shift = point + own @ (shift - point) + slide
+        turn = own @ turn
+    return found
+
+
+def least_of_six(rows):
+    """How near a row at a pose comes to losing one of six freedoms: its least singular value of six, lengths in 100 mm."""
+    twists = []
+    for one, frame, point, slides in rows:
+        for letter in one.kind.rotations:
+            axis = frame["uvw".index(letter)]
+            twists.append([*axis, *(np.cross(point, axis) / 100)])
+        twists += [[0, 0, 0, *way] for way in slides]
+    return np.linalg.svd(np.array(twists))[1][5] if len(twists) >= 6 else 0.0
+
+
+def row_of(*kinds):
+    return [joint(name, axis, O) for name, axis in kinds]
+
+
+S = ("spherical", X)
+FREE_ROWS = [
+    row_of(("prismatic", X), ("prismatic", Y), ("prismatic", Z), S),
+    row_of(S, ("prismatic", X), ("prismatic", (0, 3, 4)), ("prismatic", Z)),
+    row_of(("planar", Z), ("prismatic", Z), S),
+    row_of(("planar", Z), ("prismatic", (0, 2, 1)), S),  # its line turns about z and stays out of the plane
+    row_of(("planar", Z), ("revolute", (0, 1, 3)), ("prismatic", (0, 1, 4)), S),
+    row_of(("planar", Z), ("revolute", (0, 1, 1)), ("planar", X), S),
+    row_of(("prismatic", X), ("revolute", X), ("prismatic", Y), ("prismatic", Z), S),
+    row_of(("cylindrical", Z), ("planar", Z), S),
+    row_of(("planar", Z), ("revolute", (0, 1, 1)), ("planar", (0, 1, 1)), S),
+]
+LOSING_ROWS = [
+    row_of(*[("prismatic", a) for a in (X, Y, Z)], *[("revolute", a) for a in (X, Y, Z)]),
+    row_of(("prismatic", X), ("revolute", Z), ("prismatic", Y), ("prismatic", Z), S),
+    row_of(("prismatic", X), S, ("prismatic", Y), ("prismatic", Z)),
+    row_of(("planar", Z), ("revolute", (0, 2, 1)), ("prismatic", (0, 1, 2)), S),
+    row_of(
+        ("planar", Z), ("revolute", (0, 1, 1)), ("planar", Y), S
+    ),  # half a turn lays one plane on the other
+]
+
+
+@pytest.mark.parametrize("joints", FREE_ROWS, ids=lambda row: " ".join(j["joint"] for j in row))
+def test_six_freedoms_at_every_pose_are_no_joint(joints):
+    assert in_series(joints).equivalent.name == "free"
+    rng = np.random.default_rng(1)
+    assert min(least_of_six(posed(rng, joints)) for _ in range(500)) > 0.01
+
+
+@pytest.mark.parametrize("joints", LOSING_ROWS, ids=lambda row: " ".join(j["joint"] for j in row))
+def test_six_freedoms_at_one_pose_alone_are_no_joint_of_the_table(joints):
+    found = in_series(joints)
+    assert (found.m_useful, found.equivalent.name) == (6, "other")
+    rng = np.random.default_rng(1)
+    poses = [least_of_six(posed(rng, joints)) for _ in range(1500)]
+    assert min(poses) < 0.04 * np.median(poses)
+
+
+def test_two_balls_leave_five_and_three_six_that_are_lost_in_line():
+    balls = [joint("spherical", X, p) for p in (O, (40, 0, 0), (40, 30, 0))]
+    assert in_series(balls[:2]).equivalent.name == "point_contact"
+    assert (in_series(balls).m_useful, in_series(balls).equivalent.name) == (6, "other")
+    assert in_series([{"joint": "free"}]).equivalent.name == "free"
 
 
 # ------------------------------------------------------------------- decisions

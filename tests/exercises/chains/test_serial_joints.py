@@ -2,21 +2,18 @@
 
 import numpy as np
 import pytest
-from exact_joints import exact_rank, motions
+from exact_joints import COUNTS, FREE, arrangement, exact_rank, motions
 
 import coursework
-from coursework.solids import FREEDOMS
+from coursework.solids import FREEDOMS, aligned
 
 EXERCISE = coursework.open_course()["serial_joints"]
 
 
 def test_ranks_are_those_of_whole_numbers():
     for variant in EXERCISE.variants(range(150)):
-        g, answers = variant.given, variant.solution()
-        place = [int(g[n]) for n in ("x2", "y2", "z2")]
-        rows = motions(g["joint_1"], g["direction_1"], (0, 0, 0)) + motions(
-            g["joint_2"], g["direction_2"], place
-        )
+        answers = variant.solution()
+        rows = [row for joint in arrangement(variant.given) for row in motions(*joint)]
         rank = exact_rank(rows)
         assert (answers["Nc"], answers["m"], answers["h"]) == (len(rows), len(rows), 0)
         assert (answers["m_useful"], answers["m_internal"]) == (rank, len(rows) - rank)
@@ -25,6 +22,32 @@ def test_ranks_are_those_of_whole_numbers():
             force = np.array(answers["axis_dir"], float)
             wrench = np.concatenate([np.cross(answers["axis_point"], force), force])
             np.testing.assert_allclose(np.array(rows, float) @ wrench, 0, atol=1e-9)
+
+
+def test_every_arrangement_is_drawn():
+    found = [variant.given["arrangement"] for variant in EXERCISE.variants(range(400))]
+    assert all(found.count(name) >= 10 for name in COUNTS)
+    assert sum(found.count(name) for name in ("two", "three", "four")) >= 80, "upright ones too"
+
+
+def test_random_inclined_joints_against_whole_numbers():
+    rng = np.random.default_rng(23)
+    ways = ["x", "y", "z", "0 3 4", "4 0 -3", "5 12 0", "1 1 0", "0 2 -1", "3 0 1"]
+    for _ in range(200):
+        drawn = [
+            (
+                str(rng.choice(list(FREE))),
+                str(rng.choice(ways)),
+                [int(c) for c in 10 * rng.integers(-3, 4, 3)],
+            )
+            for _ in range(rng.integers(2, 5))
+        ]
+        found = EXERCISE.solve(
+            joints=[aligned(*joint) for joint in drawn], only=("Nc", "m_useful", "m_internal")
+        )
+        rows = [row for joint in drawn for row in motions(*joint)]
+        rank = exact_rank(rows)
+        assert (found["Nc"], found["m_useful"], found["m_internal"]) == (len(rows), rank, len(rows) - rank)
 
 
 def test_the_axis_is_asked_where_there_is_one():
@@ -56,7 +79,7 @@ def test_a_caller_gives_any_joints_in_any_order_of_the_row():
 
     only = ("Nc", "m_useful", "m_internal", "equivalent")
     bent = EXERCISE.solve(joints=arm((0.6, 0, 0.8)), only=only)
-    assert bent == {"Nc": 6, "m_useful": 6, "m_internal": 0, "equivalent": "free"}
+    assert bent == {"Nc": 6, "m_useful": 6, "m_internal": 0, "equivalent": "other"}
     straight = EXERCISE.solve(joints=arm((1, 0, 0)), only=only)
     assert (straight["Nc"], straight["m_useful"], straight["m_internal"]) == (6, 5, 1)
     assert EXERCISE.solve(joints=arm((1, 0, 0))[::-1], only=only) == straight

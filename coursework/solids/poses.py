@@ -1,0 +1,119 @@
+"""What an open chain leaves free at every pose, not only at the one that is given.
+
+Joints are moved without limit. Rotations span all directions at every pose only where one joint has them all: hinges in a row
+always come to lie in one plane somewhere. Translations span space at every pose if two sets of them do, each carried along by
+joints that do not turn it, whatever the hinges between them do.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from coursework.solids.joints import Joint, Vector
+from coursework.solids.ranks import decompose
+
+_HALF = math.pi / 2
+_SAME = 1e-7  #: angles that differ by less are equal
+
+
+def all_free_at_every_pose(joints: Sequence[Joint]) -> bool:
+    """Whether the last body of a row has six freedoms with respect to the first however the joints between are moved.
+
+    A joint that turns and slides may carry its slide on either of its bodies: both must do.
+    """
+    if not any(len(joint.kind.rotations) == 3 for joint in joints):
+        return False
+    if any(joint.name == "free" for joint in joints):
+        return True
+    blocks = _blocks(joints)
+    if any(len(block.span) == 3 for block in blocks):
+        return True
+    return any(_span_together(blocks, one, other) for one, other in combinations(range(len(blocks)), 2))
+
+
+@dataclass(frozen=True)
+class _Block:
+    """Directions of slides that nothing turns with respect to one another, and the turns that follow: axes, in order,
+    or None where a joint turns in all ways."""
+
+    span: np.ndarray
+    turns: tuple[Vector, ...] | None
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Of a plane of directions."""
+        return np.cross(*self.span)
+
+
+def _blocks(joints: Sequence[Joint]) -> list[_Block]:
+    found: list[_Block] = []
+    slides: list[Vector] = []
+    turns: tuple[Vector, ...] | None = ()
+    for joint in joints:
+        own = _turns_of(joint)
+        if turns != () and (joint.kind.translations or own is None):
+            found.append(_Block(_spanned(slides), turns))
+            slides, turns = [], ()
+        if own is None and joint.kind.translations:
+            # It turns its own slide, or not: that is counted on for nothing.
+            found.append(_Block(_spanned(slides), None))
+            slides = []
+            continue
+        slides += joint.slides
+        turns = None if own is None or turns is None else (*turns, *own)
+    return [*found, _Block(_spanned(slides), ())]
+
+
+def _turns_of(joint: Joint) -> tuple[Vector, ...] | None:
+    """The axes of a joint's own turning; None where it turns in more than one way."""
+    if len(joint.kind.rotations) > 1:
+        return None
+    return tuple(joint.turns)
+
+
+def _spanned(slides: Sequence[Vector]) -> np.ndarray:
+    return decompose(np.array(slides).reshape(-1, 3), "the directions of the slides", 1.0)[1]
+
+
+def _span_together(blocks: Sequence[_Block], one: int, other: int) -> bool:
+    """Whether two blocks span space however the turns between them stand."""
+    first, last = blocks[one].span, blocks[other].span
+    axes: list[Vector] = []
+    for block in blocks[one:other]:
+        if block.turns is None:
+            return False
+        axes += block.turns
+    if len(first) + len(last) < 3 or 0 in (len(first), len(last)):
+        return False
+    a = blocks[one].normal if len(first) == 2 else first[0]
+    b = blocks[other].normal if len(last) == 2 else last[0]
+    low, high = _angles(a, axes, b)
+    if len(first) == len(last):  # two planes, which must not coincide
+        return low > _SAME and high < math.pi - _SAME
+    return high < _HALF - _SAME or low > _HALF + _SAME  # a line, which must not lie in the plane
+
+
+def _angles(fixed: np.ndarray, axes: Sequence[Vector], turned: np.ndarray) -> tuple[float, float]:
+    """The least and the largest angle between two directions, one of which is turned about axes in a row."""
+    chain = [fixed, *(np.array(axis) for axis in axes), turned]
+    low = high = _angle(chain[-1], chain[-2])
+    for axis, before in zip(chain[-2:0:-1], chain[-3::-1], strict=True):
+        step = _angle(axis, before)
+        ends = [abs(low - step), abs(high - step), _folded(low + step), _folded(high + step)]
+        reached = low - _SAME <= step <= high + _SAME
+        opposite = low - _SAME <= math.pi - step <= high + _SAME
+        low, high = 0.0 if reached else min(ends), math.pi if opposite else max(ends)
+    return low, high
+
+
+def _folded(angle: float) -> float:
+    return min(angle, 2 * math.pi - angle)
+
+
+def _angle(a: np.ndarray, b: np.ndarray) -> float:
+    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
