@@ -29,7 +29,8 @@ the label would rather be; by default it goes where the links leave most room.
 ``link(p, q, r, weld=True)`` one bent bar, gussets at its corners; ``slot_link(p, q, label)`` a
 slotted guide; ``slider(p, direction, label)`` a block (add a ``pin`` on it where a bar
 ends); ``rail(p, q)`` the guide of a block whose centre moves from p to q, below the block when
-p→q goes to the right, above it when to the left; ``wheel(center, radius, label)`` a wheel or a cam, beneath the rest.
+p→q goes to the right, above it when to the left; ``wheel(center, radius, label)`` a wheel, beneath the rest;
+``profile(points, label)`` a body of any closed outline, such as a cam.
 
 **Lines.** ``line(p, q, dashed=False, thin=True, label=)``; ``circle(center, radius, dashed=, label=)``;
 ``arc(center, radius, from_deg, to_deg, dashed=)``; ``centre_line(p, q, label)`` chain-dotted, label
@@ -63,6 +64,7 @@ from coursework.figures.elements import (
     link,
     pin,
     point,
+    profile,
     rail,
     section,
     slider,
@@ -107,6 +109,7 @@ __all__ = [
     "note",
     "pin",
     "point",
+    "profile",
     "rail",
     "rotation_arrow",
     "scale_bar",

@@ -313,3 +313,16 @@ class wheel(Element):
         disc = Disc(center, radius, EDGE, TINT, layer=FILLS)
         paper.draw(disc)
         paper.around(self.label, center, 0.9, area=disc.outline())
+
+
+@dataclass(frozen=True)
+class profile(Element):
+    """A body of any closed outline, such as a cam: tinted, beneath the bars, the supports and the pins."""
+
+    points: tuple[complex, ...]
+    label: str | None = None
+
+    def draw(self, paper: Paper) -> None:
+        points = tuple(map(paper.at, self.points))
+        paper.draw(Path(points, EDGE, TINT, closed=True, layer=FILLS))
+        paper.around(self.label, added(points) / len(points), 0.9, area=(*points, points[0]))

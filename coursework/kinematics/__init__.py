@@ -11,6 +11,7 @@ function computes what it is asked for and nothing beyond: rates only when rates
 ``chains``        any closed chain, by Newton's method with a certificate
 ``cycle``         turning points over one turn
 ``rocker_slider`` a slider moved by the rocker of a four-bar: where it turns back
+``cams``          laws of motion of a follower: rise, dwell, return
 ``triangles``     sides and angles, of flat triangles too
 
 They rest on ``angles`` (crank angles as exact sines and cosines), ``elementary`` (tangent and arctangent,

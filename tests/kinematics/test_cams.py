@@ -1,0 +1,46 @@
+"""Laws of cams against fifty digits, near their ends as well, and over a turn."""
+
+import mpmath
+import numpy as np
+import pytest
+
+from coursework.kinematics.cams import rise_345, rise_dwell_return
+
+
+@pytest.mark.parametrize("u", [1e-9, 1e-3, 0.25, 0.5, 0.75, 1 - 1e-3, 1 - 2**-40])
+def test_the_polynomial_and_its_derivatives_keep_their_digits(u):
+    with mpmath.workdps(50):
+        x = mpmath.mpf(u)
+        right = (
+            10 * x**3 - 15 * x**4 + 6 * x**5,
+            30 * x**2 - 60 * x**3 + 30 * x**4,
+            60 * x - 180 * x**2 + 120 * x**3,
+        )
+    for found, exact in zip(rise_345(u), right, strict=True):
+        assert found == pytest.approx(float(exact), rel=2e-15, abs=0)
+
+
+def test_outside_the_rise_the_follower_rests():
+    lift, slope, bend = rise_345(np.array([-0.5, 0.0, 1.0, 2.0]))
+    np.testing.assert_array_equal(lift, [0, 0, 1, 1])
+    np.testing.assert_array_equal(slope, 0)
+    np.testing.assert_array_equal(bend, 0)
+
+
+def test_it_returns_as_it_rose_wherever_the_turn_is_begun():
+    dwell, turn = 0.5, 6.0
+    u = np.linspace(0, 1, 41)
+    up = rise_dwell_return(u, dwell, turn)
+    back = rise_dwell_return(2 + dwell - u, dwell, turn)
+    earlier = rise_dwell_return(2 + dwell - u - turn, dwell, turn)
+    for way, one, other, before in zip((1, -1, 1), up, back, earlier, strict=True):
+        np.testing.assert_allclose(one, way * other, atol=1e-13)
+        np.testing.assert_allclose(other, before, atol=1e-13)
+
+
+def test_numbers_of_mpmath_keep_their_digits():
+    with mpmath.workdps(50):
+        third = mpmath.mpf(1) / 3
+        lift, slope, _ = rise_dwell_return(third, mpmath.mpf(1), mpmath.mpf(4))
+        assert abs(lift - mpmath.mpf(17) / 81) < mpmath.mpf("1e-48")
+        assert abs(slope - mpmath.mpf(40) / 27) < mpmath.mpf("1e-48")
