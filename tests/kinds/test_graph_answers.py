@@ -246,7 +246,7 @@ def test_its_room_is_a_number_of_lines(room):
 
 def test_every_name_of_a_kind_of_joint_means_one_kind():
     from coursework.language.words import languages, words
-    from coursework.reading.graphs import kind_named
+    from coursework.reading.graph_tokens import kind_named
 
     for lang in languages():
         for kind, names in words(lang)["graph"]["kinds"].items():
