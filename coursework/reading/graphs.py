@@ -84,7 +84,7 @@ def read_graph(answer: Any, reference: Graph, *, named: bool = True) -> Reading:
         return Reading(answer, "unreadable", code="too_long", found=shorten(answer))
     try:
         tokens = [*tokens_of(plain(unwrapped(answer)), frozenset(bodies_of(reference)), named)]
-        values = tuple(_framed(_graph(way), reference, named) for way in _ways(tokens))
+        values = tuple(map(_graph, _ways(_framed(tokens, reference, named))))
     except Stop as stop:
         return Reading(answer, "unreadable", code=stop.code, found=shorten(stop.found))
     return Reading(answer, "read", values, tuple(map(spelled, values)))
@@ -103,7 +103,7 @@ def _as_text(answer: Any) -> str:
 
 def _line(one: Any) -> str:
     if isinstance(one, Mapping):
-        one = (*one.get("between", ()), one.get("kind", ""))
+        one = (one.get("between", ()), one.get("kind", ""))
     if not isinstance(one, (list, tuple)):
         return text_of(one)
     flat = [part for item in one for part in (item if isinstance(item, (list, tuple)) else (item,))]
@@ -171,7 +171,7 @@ def _graph(tokens: Sequence[Token]) -> Graph:
         raise Stop("no_joint", " ".join(token.text for token in tokens))
     if len(joints) > _MOST_JOINTS:
         raise Stop("too_long", "")
-    return tuple(joints)
+    return in_order(joints)
 
 
 def _joints(group: tuple[str, ...], kind: str) -> Iterator[Edge]:
@@ -298,16 +298,18 @@ def _with_kinds_between(
     return found, place + 1 - start
 
 
-def _framed(graph: Graph, reference: Graph, named: bool) -> Graph:
+def _framed(tokens: list[Token], reference: Graph, named: bool) -> list[Token]:
     """The frame by the number that the reference gives it; 0 is the frame where no other body is called so.
 
     Where bodies have no names, it is called :data:`FRAME`.
     """
-    frame, met = bodies_of(reference)[0] if named else FRAME, set(bodies_of(graph))
+    frame = bodies_of(reference)[0] if named else FRAME
     names = {FRAME: frame}
-    if not met & {frame, FRAME} and "0" not in bodies_of(reference):
+    if "0" not in bodies_of(reference) and not any(
+        t.sort == "body" and t.said in (frame, FRAME) for t in tokens
+    ):
         names["0"] = frame
-    return renamed(graph, names)
+    return [t._replace(said=names.get(t.said, t.said)) if t.sort == "body" else t for t in tokens]
 
 
 def _ways(tokens: list[Token]) -> Iterator[list[Token]]:
