@@ -126,6 +126,16 @@ def _is_linked(pieces: Sequence[re.Match[str]], place: int) -> bool:
     return any(p.lastgroup == "link" for p in around)
 
 
+def _beside(pieces: Sequence[re.Match[str]], place: int) -> bool:
+    """Whether a link joins a piece to a number: ``0-a``."""
+    return any(
+        0 <= place + 2 * way < len(pieces)
+        and pieces[place + way].lastgroup == "link"
+        and pieces[place + 2 * way].lastgroup == "name"
+        for way in (-1, 1)
+    )
+
+
 def _is_label(pieces: Sequence[re.Match[str]], place: int) -> bool:
     """Whether a letter is the name of a point, ``en P``, ``pivot R``, and not that of a kind."""
     if len(pieces[place][0]) > 1 or not place:
@@ -157,7 +167,9 @@ def _worded(pieces: Sequence[re.Match[str]], place: int, named: bool) -> list[To
     plain = folded(text)
     if plain in _said("frame"):
         return [Token("body", FRAME, text)]
-    if not named and _is_linked(pieces, place):
+    if (not named and _is_linked(pieces, place)) or (
+        text.isascii() and len(text) == 1 and _beside(pieces, place)
+    ):
         return [Token("body", text.casefold(), text)]
     if plain in _said("and"):
         return [Token("comma", "", text)]

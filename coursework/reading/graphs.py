@@ -177,7 +177,7 @@ def _graph(tokens: Sequence[Token]) -> Graph:
 def _joints(group: tuple[str, ...], kind: str) -> Iterator[Edge]:
     """A joint of a group of bodies; one by one along a chain that comes back to a body."""
     if len(group) == 1:
-        raise Stop("lone_body", f"{group[0]} {kind}".strip())
+        raise Stop("lone_body", group[0])
     if len(set(group)) == len(group):
         yield edge(group, kind)
         return
