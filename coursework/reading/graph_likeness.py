@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations, islice, product
 
-from coursework.reading.graphs import FRAME, Edge, Graph, bodies_of, edge, natural, renamed
+from coursework.reading.graph_tokens import FRAME
+from coursework.reading.graphs import Edge, Graph, bodies_of, edge, natural, renamed
 
 _STEPS = 20_000  #: of the search for names that fit
 _SPANNED = 64  #: ways in which shared pivots may be written as pairs that are tried

@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-import re
-import unicodedata
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from difflib import get_close_matches
 from functools import lru_cache
 from itertools import pairwise
 from typing import Any, NamedTuple
 
-from coursework.language.words import languages, words
+from coursework.reading.graph_tokens import FRAME, Token, kind_named, plain, tokens_of
 from coursework.reading.reading import Reading, Stop, text_of
-from coursework.reading.spelling import shorten, tidy, unwrapped
+from coursework.reading.spelling import shorten, unwrapped
 
 _MOST = 4000  #: characters of an answer
 _MOST_JOINTS = 60
-_LETTERS = {"R": "revolute", "P": "prismatic", "H": "higher", "G": "prismatic"}
 LETTER_OF = {"revolute": "R", "prismatic": "P", "higher": "H"}  #: as on the drawn graph
-FRAME = "frame"  #: what the frame is called before its number is known
 
 
 class Edge(NamedTuple):
@@ -88,8 +83,8 @@ def read_graph(answer: Any, reference: Graph, *, named: bool = True) -> Reading:
     if len(answer) > _MOST:
         return Reading(answer, "unreadable", code="too_long", found=shorten(answer))
     try:
-        tokens = [*_tokens(_plain(unwrapped(answer)), frozenset(bodies_of(reference)), named)]
-        values = tuple(_framed(_graph(way), reference, named) for way in _ways(tokens))
+        tokens = [*tokens_of(plain(unwrapped(answer)), frozenset(bodies_of(reference)), named)]
+        values = tuple(map(_graph, _ways(_framed(tokens, reference, named))))
     except Stop as stop:
         return Reading(answer, "unreadable", code=stop.code, found=shorten(stop.found))
     return Reading(answer, "read", values, tuple(map(spelled, values)))
@@ -108,7 +103,7 @@ def _as_text(answer: Any) -> str:
 
 def _line(one: Any) -> str:
     if isinstance(one, Mapping):
-        one = (*one.get("between", ()), one.get("kind", ""))
+        one = (one.get("between", ()), one.get("kind", ""))
     if not isinstance(one, (list, tuple)):
         return text_of(one)
     flat = [part for item in one for part in (item if isinstance(item, (list, tuple)) else (item,))]
@@ -120,195 +115,34 @@ def _is_word(part: Any) -> bool:
     return isinstance(part, str) and kind_named(part) is not None
 
 
-# --- words ------------------------------------------------------------------------------
-
-
-def folded(text: str) -> str:
-    """Words without case, accents, hyphens and the s of a plural."""
-    bare = unicodedata.normalize("NFKD", text.casefold())
-    bare = "".join(c for c in bare if not unicodedata.combining(c))
-    return " ".join(w[:-1] if len(w) > 3 and w.endswith("s") else w for w in re.split(r"[\s'_-]+", bare) if w)
-
-
-@lru_cache(maxsize=1)
-def _kinds() -> Mapping[str, str]:
-    """The kind of each name that a joint has in any language."""
-    tables = [words(lang)["graph"]["kinds"] for lang in languages()]
-    found = {folded(kind): kind for table in tables for kind in table}
-    return found | {folded(name): kind for table in tables for kind, names in table.items() for name in names}
-
-
-@lru_cache(maxsize=4)
-def _said(what: str) -> frozenset[str]:
-    return frozenset(folded(word) for lang in languages() for word in words(lang)["graph"][what])
-
-
-@lru_cache(maxsize=1)
-def _longest() -> int:
-    return max(len(name.split()) for name in _kinds())
-
-
-def kind_named(text: str) -> str | None:
-    """The kind of a name or a letter, if it is one."""
-    return _LETTERS.get(text.strip().upper()) or _kinds().get(folded(text))
-
-
-# --- tokens -----------------------------------------------------------------------------
-
-
-class _Token(NamedTuple):
-    """``body``, ``kind``, ``link``, ``comma``, ``stop`` or ``times``, what it stands for, and as it was written."""
-
-    sort: str
-    said: str = ""
-    text: str = ""
-
-
-_ARROWS = re.compile(r"<?[-=]+>|<[-=]+|[←→↔⟵⟶⟷⇔⇒↦]|\\(?:left)?(?:right)?arrow\b|--+|[_~]{2,}")
-_NAME = r"[A-Za-z]{0,2}[0-9]+"
-_QUOTED = re.compile(r"(?<!\w)['\"]([^'\"\n]*)['\"](?!\w)")
-#: ``1) 1-2 pivot``, ``L1: 1-2 pivot``: the number of a joint in a list
-_NUMBERING = re.compile(
-    r"(?im)(^|[;,])\s*(?:[0-9]+\s*\)|(?:joint|liaison|[lj])?\s*[0-9]+\s*:)(?=[^,;\n]*[0-9]\s*[-/]\s*[a-z]{0,2}[0-9])"
-)
-_TUPLE = re.compile(
-    rf"[(\[{{]\s*({_NAME})\s*[,;]\s*({_NAME})\s*(?:[,;]\s*({_NAME})\s*)?(?:[,;]\s*([^\W\d_][^,;()\[\]{{}}]*))?[)\]}}]"
-)
-_PIECE = re.compile(
-    r"(?P<times>(?:[*×]|\bx)\s*(?P<n>[2-9])\b|\b(?P<m>[2-9])\s*(?:[*×]|x\b))|(?P<stop>[;\n]|\.(?=\s|$))|(?P<comma>[,&+])"
-    r"|(?P<link>[-/])|(?P<name>[A-Za-z]{0,2}[0-9]+)|(?P<word>[^\W\d_]+)|(?P<rest>[:=()\[\]{}|'\"*.°→_]|\s)"
-)
-
-
-def _plain(text: str) -> str:
-    """One spelling of dashes, digits and lines; LaTeX and arrows left out."""
-    lines = [tidy(line) for line in text.replace("\\\\", "\n").splitlines()]
-    text = unicodedata.normalize("NFKC", "\n".join(lines))
-    text = re.sub(r"\\(?:text|mathrm|mathit)|[$\\{}]|(?<=[A-Za-z])_(?=\{?[0-9])", "", _ARROWS.sub("-", text))
-    text = _QUOTED.sub(r"\1", _NUMBERING.sub(r"\1", text))
-    return _TUPLE.sub(_untupled, text)
-
-
-def _untupled(match: re.Match[str]) -> str:
-    bodies = "-".join(filter(None, match.groups()[:3]))
-    return f";{bodies} {match[4]};" if match[4] else f" {bodies} "
-
-
-def _tokens(text: str, known: Collection[str], named: bool) -> Iterator[_Token]:
-    """The tokens of a plain text, its filling left out."""
-    pieces = [m for m in _PIECE.finditer(text) if not m["rest"]]
-    if stray := _PIECE.sub("", text).strip():
-        raise Stop("no_joint", stray)
-    place = 0
-    while place < len(pieces):
-        found, used = _taken(pieces, place, known, named)
-        yield from found
-        place += used
-
-
-def _taken(
-    pieces: Sequence[re.Match[str]], place: int, known: Collection[str], named: bool
-) -> tuple[list[_Token], int]:
-    """The tokens of the next piece or pieces, and of how many."""
-    piece = pieces[place]
-    sort, text = str(piece.lastgroup), piece[0]
-    if piece["times"]:
-        return [_Token("times", piece["n"] or piece["m"], text)], 1
-    if sort in ("stop", "comma", "link"):
-        return [_Token(sort, "", text)], 1
-    if sort == "name":
-        return _numbered(text, _is_linked(pieces, place), known), 1
-    for length in range(min(_longest(), len(pieces) - place), 0, -1):
-        group = pieces[place : place + length]
-        if all(p.lastgroup in ("word", "link") for p in group) and group[-1].lastgroup == "word":
-            phrase = " ".join(p[0] for p in group if p.lastgroup == "word")
-            if (kind := kind_named(phrase)) is not None and (length > 1 or not _is_label(pieces, place)):
-                return [_Token("kind", kind, phrase)], length
-    return _worded(pieces, place, named), 1
-
-
-def _is_linked(pieces: Sequence[re.Match[str]], place: int) -> bool:
-    around = pieces[max(0, place - 1) : place + 2]
-    return any(p.lastgroup == "link" for p in around)
-
-
-def _is_label(pieces: Sequence[re.Match[str]], place: int) -> bool:
-    """Whether a letter is the name of a point, ``en P``, ``pivot R``, and not that of a kind."""
-    if len(pieces[place][0]) > 1 or not place:
-        return False
-    before = pieces[place - 1]
-    if before.lastgroup != "word":
-        return False
-    word = before[0]
-    return folded(word) in _said("at") or (len(word) > 1 and kind_named(word) is not None)
-
-
-def _numbered(text: str, is_linked: bool, known: Collection[str]) -> list[_Token]:
-    """A body of a number, ``12`` as two bodies where there is none of that number; ``R12`` says its kind as well."""
-    letters = text.rstrip("0123456789")
-    number = text[len(letters) :]
-    tokens = []
-    if letters in _LETTERS:
-        tokens = [_Token("kind", _LETTERS[letters], letters)]
-    elif letters and letters.casefold() not in ("s", "l", "c") and not is_linked:
-        return []  # a point's name
-    if number not in known and len(number) > 1 and not is_linked and set(number) <= set(known):
-        bodies = [_Token("body", digit, text) for digit in number]
-        return tokens + [t for body in bodies for t in (_Token("link"), body)][1:]
-    return [*tokens, _Token("body", str(int(number)), text)]
-
-
-def _worded(pieces: Sequence[re.Match[str]], place: int, named: bool) -> list[_Token]:
-    text = pieces[place][0]
-    plain = folded(text)
-    if plain in _said("frame"):
-        return [_Token("body", FRAME, text)]
-    if not named and _is_linked(pieces, place):
-        return [_Token("body", text.casefold(), text)]
-    if plain in _said("and"):
-        return [_Token("comma", "", text)]
-    if plain in _said("filling") | _said("at"):
-        return []
-    if _is_linked(pieces, place):
-        return [_Token("body", text.casefold(), text)]
-    near = get_close_matches(plain, _kinds(), 1, 0.8) if len(plain) > 4 else ()
-    if near:
-        return [_Token("kind", _kinds()[near[0]], text)]
-    if len(text) < 3:
-        return []  # the name of a point, of an axis
-    if not named:
-        return [_Token("body", text.casefold(), text)]
-    raise Stop("unknown_joint", text)
-
-
 # --- joints -----------------------------------------------------------------------------
 
 
 class _Piece(NamedTuple):
     """What stands between two separators: groups of bodies, and kinds, in the order written."""
 
-    content: tuple[tuple[str, ...] | _Token, ...]
+    content: tuple[tuple[str, ...] | Token, ...]
     is_closed: bool  #: a stop follows
     times: int = 1
 
     @property
     def groups(self) -> list[tuple[str, ...]]:
-        return [part for part in self.content if not isinstance(part, _Token)]
+        return [part for part in self.content if not isinstance(part, Token)]
 
     @property
     def kind(self) -> str | None:
         """The kind that is said, in a word before in a letter, which may be the name of a point."""
-        kinds = [part for part in self.content if isinstance(part, _Token)]
+        kinds = [part for part in self.content if isinstance(part, Token)]
         kinds.sort(key=lambda token: len(token.text) == 1)
         return kinds[0].said if kinds else None
 
     @property
     def is_leading(self) -> bool:
         """Whether the kind stands first."""
-        return isinstance(self.content[0], _Token)
+        return isinstance(self.content[0], Token)
 
 
-def _graph(tokens: Sequence[_Token]) -> Graph:
+def _graph(tokens: Sequence[Token]) -> Graph:
     joints: list[Edge] = []
     waiting: list[tuple[str, ...]] = []
     heading = ""
@@ -337,13 +171,13 @@ def _graph(tokens: Sequence[_Token]) -> Graph:
         raise Stop("no_joint", " ".join(token.text for token in tokens))
     if len(joints) > _MOST_JOINTS:
         raise Stop("too_long", "")
-    return tuple(joints)
+    return in_order(joints)
 
 
 def _joints(group: tuple[str, ...], kind: str) -> Iterator[Edge]:
     """A joint of a group of bodies; one by one along a chain that comes back to a body."""
     if len(group) == 1:
-        raise Stop("lone_body", f"{group[0]} {kind}".strip())
+        raise Stop("lone_body", group[0])
     if len(set(group)) == len(group):
         yield edge(group, kind)
         return
@@ -353,7 +187,7 @@ def _joints(group: tuple[str, ...], kind: str) -> Iterator[Edge]:
         yield edge((one, other), kind)
 
 
-def _pieces(tokens: Sequence[_Token]) -> Iterator[_Piece]:
+def _pieces(tokens: Sequence[Token]) -> Iterator[_Piece]:
     """What stands between separators; of a run without any, ``1-2 pivot 2-3 pivot``, joint by joint."""
     content: list[Any] = []
     singles: list[str] = []
@@ -383,10 +217,10 @@ def _pieces(tokens: Sequence[_Token]) -> Iterator[_Piece]:
         place += 1
         if token.sort == "kind":
             close()
-            if _is_full(content) and isinstance(content[0], _Token) and not _is_point(content[0], token):
+            if _is_full(content) and isinstance(content[0], Token) and not _is_point(content[0], token):
                 yield _Piece(tuple(content), False, times)
                 content, times = [], 1
-            content = [part for part in content if not (isinstance(part, _Token) and _is_point(part, token))]
+            content = [part for part in content if not (isinstance(part, Token) and _is_point(part, token))]
             content.append(token)
         elif token.sort == "times":
             times = int(token.said)
@@ -403,15 +237,15 @@ def _pieces(tokens: Sequence[_Token]) -> Iterator[_Piece]:
 
 
 def _is_full(content: Sequence[Any]) -> bool:
-    return len({isinstance(part, _Token) for part in content}) > 1
+    return len({isinstance(part, Token) for part in content}) > 1
 
 
-def _is_point(letter: _Token, word: _Token) -> bool:
+def _is_point(letter: Token, word: Token) -> bool:
     """Whether a letter that could be a kind is the name of a point, before a kind in words: ``P: 4-5 pivot``."""
     return len(letter.text) == 1 < len(word.text)
 
 
-def _goes_on(tokens: Sequence[_Token], place: int, singles: Sequence[str]) -> bool:
+def _goes_on(tokens: Sequence[Token], place: int, singles: Sequence[str]) -> bool:
     """Whether bodies are listed one by one: ``1 and 2``, ``3, 4, 5``."""
     if not singles or place >= len(tokens) or tokens[place].sort != "body":
         return False
@@ -420,8 +254,8 @@ def _goes_on(tokens: Sequence[_Token], place: int, singles: Sequence[str]) -> bo
 
 
 def _chain(
-    tokens: Sequence[_Token], place: int
-) -> tuple[tuple[str, ...] | list[tuple[tuple[str, ...], _Token]], int]:
+    tokens: Sequence[Token], place: int
+) -> tuple[tuple[str, ...] | list[tuple[tuple[str, ...], Token]], int]:
     """Bodies that are linked, or stand side by side, and of how many tokens; a list of joints where kinds stand between."""
     between, used = _with_kinds_between(tokens, place)
     if between:
@@ -441,15 +275,15 @@ def _chain(
     return tuple(bodies), end - place
 
 
-def _sort(tokens: Sequence[_Token], place: int) -> str:
+def _sort(tokens: Sequence[Token], place: int) -> str:
     return tokens[place].sort if place < len(tokens) else ""
 
 
 def _with_kinds_between(
-    tokens: Sequence[_Token], place: int
-) -> tuple[list[tuple[tuple[str, ...], _Token]], int]:
+    tokens: Sequence[Token], place: int
+) -> tuple[list[tuple[tuple[str, ...], Token]], int]:
     """Joints whose kind stands between their bodies, ``1 -R- 2 -R- 3``, ``1 pivot 2``, and of how many tokens."""
-    found: list[tuple[tuple[str, ...], _Token]] = []
+    found: list[tuple[tuple[str, ...], Token]] = []
     start = place
     while True:
         middle = place + 1 + (_sort(tokens, place + 1) == "link")
@@ -464,19 +298,21 @@ def _with_kinds_between(
     return found, place + 1 - start
 
 
-def _framed(graph: Graph, reference: Graph, named: bool) -> Graph:
+def _framed(tokens: list[Token], reference: Graph, named: bool) -> list[Token]:
     """The frame by the number that the reference gives it; 0 is the frame where no other body is called so.
 
     Where bodies have no names, it is called :data:`FRAME`.
     """
-    frame, met = bodies_of(reference)[0] if named else FRAME, set(bodies_of(graph))
+    frame = bodies_of(reference)[0] if named else FRAME
     names = {FRAME: frame}
-    if not met & {frame, FRAME} and "0" not in bodies_of(reference):
+    if "0" not in bodies_of(reference) and not any(
+        t.sort == "body" and t.said in (frame, FRAME) for t in tokens
+    ):
         names["0"] = frame
-    return renamed(graph, names)
+    return [t._replace(said=names.get(t.said, t.said)) if t.sort == "body" else t for t in tokens]
 
 
-def _ways(tokens: list[_Token]) -> Iterator[list[_Token]]:
+def _ways(tokens: list[Token]) -> Iterator[list[Token]]:
     """The tokens; and with P for a pivot where no pivot is said in another way: G is the slide then, or the answer has both
     honest readings."""
     kinds = [token for token in tokens if token.sort == "kind"]

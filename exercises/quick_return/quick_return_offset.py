@@ -34,6 +34,13 @@ def _piston(rod, r2, theta2):
     return r2 * cos(theta2) + rod.real, -r2 * sin(theta2) + r2 * cos(theta2) * lean
 
 
+def piston_gain(rod, r2, theta2):
+    """a_C over omega2**2."""
+    turning = -r2 * cos(theta2) / rod.real
+    gain = (r2 * sin(theta2) + turning**2 * rod.imag) / rod.real
+    return -r2 * cos(theta2) - turning**2 * rod.real - gain * rod.imag
+
+
 def unequal_halves(r2, r3, e):
     """(alpha - beta) / 2, degrees."""
     return asin(abs(e) / (r3 - r2)) - asin(abs(e) / (r3 + r2))
@@ -61,6 +68,10 @@ def stroke_is_not_twice_the_crank(stroke, r2):
 
 def piston_moves_visibly(piston, r2):
     return abs(piston[1]) > 0.15 * r2
+
+
+def piston_accelerates_visibly(piston_gain, r2):
+    return abs(piston_gain) > 0.15 * r2
 
 
 def crank_off_the_axes(theta2):
@@ -127,13 +138,14 @@ EXERCISE = Exercise(
         "theta2": drawn(-175, 180, step=5, unit="deg"),
         "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
     },
-    helpers=(rod, piston, unequal_halves, stroke),
+    helpers=(rod, piston, piston_gain, unequal_halves, stroke),
     keep=(
         offset_is_visible,
         crank_turns_with_room,
         strokes_last_unlike,
         stroke_is_not_twice_the_crank,
         piston_moves_visibly,
+        piston_accelerates_visibly,
         crank_off_the_axes,
         side_of_the_line_tells,
         offset_tells,
@@ -143,6 +155,7 @@ EXERCISE = Exercise(
     parts=(
         Part("xC", unit="mm", points=1),
         Part("v_C", unit="mm/s", points=2),
+        Part("a_C", unit="mm/s^2", points=2),
         Part("stroke", unit="mm", points=1),
         Part("alpha", unit="deg", points=2),
         Part("beta", unit="deg", points=1),
@@ -150,10 +163,14 @@ EXERCISE = Exercise(
         Part("t_advance", unit="s", points=1),
         Part("t_return", unit="s", points=1),
         *loop_equations(
-            "loop_1", ("r2", "theta2", "r3", "theta3", "xC", "e"), rates=("omega2", "omega3", "v_C")
+            "loop_1",
+            ("r2", "theta2", "r3", "theta3", "xC", "e"),
+            rates=("omega2", "omega3", "v_C"),
+            second_rates=("alpha3", "a_C"),
         ),
     ),
     symbols={"xC": "x_C", "stroke": "s", "t_advance": "t_a", "t_return": "t_r"},
     figure=figure,
+    version=2,
     driver=Driver("theta2", "omega2", output="v_C"),
 )

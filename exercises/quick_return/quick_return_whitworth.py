@@ -21,7 +21,17 @@ from coursework.figures import (
 from coursework.kinematics.dyads import rrp
 from coursework.model import Driver, Exercise, Part, drawn, loop_equations
 
-from ._slotted_ram import C, P, _clearest, arm, crank_off_the_axes, guide_rate
+from ._slotted_ram import (
+    C,
+    P,
+    _clearest,
+    arm,
+    crank_off_the_axes,
+    guide_gain,
+    guide_rate,
+    ram_accelerates_visibly,
+    ram_gain,
+)
 
 
 def _rod_share(P, C):
@@ -164,13 +174,14 @@ EXERCISE = Exercise(
         "theta2": drawn(-175, 180, step=5, unit="deg"),
         "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
     },
-    helpers=(arm, guide_rate, P, C, ram, stroke, lines_to_the_ends, unequal_halves),
+    helpers=(arm, guide_rate, guide_gain, P, C, ram, ram_gain, stroke, lines_to_the_ends, unequal_halves),
     keep=(
         pivots_can_be_told_apart_on_paper,
         pins_can_be_told_apart_on_paper,
         rod_reaches_with_room,
         crank_off_the_axes,
         ram_moves_visibly,
+        ram_accelerates_visibly,
         place_of_the_rod_on_the_guide_tells,
         turning_of_the_guide_tells,
         quadrant_of_the_guide_tells,
@@ -182,6 +193,7 @@ EXERCISE = Exercise(
     parts=(
         Part("xC", unit="mm", points=2),
         Part("v_C", unit="mm/s", points=2),
+        Part("a_C", unit="mm/s^2", points=2),
         Part("stroke", unit="mm", points=1),
         Part("alpha", unit="deg", points=2),
         Part("beta", unit="deg", points=1),
@@ -190,10 +202,14 @@ EXERCISE = Exercise(
         Part("t_return", unit="s", points=1),
         *loop_equations("loop_1", ("r1", "r2", "theta2", "rA", "theta4")),
         *loop_equations(
-            "loop_2", ("r4", "theta4", "r5", "theta5", "xC", "h"), rates=("omega4", "omega5", "v_C")
+            "loop_2",
+            ("r4", "theta4", "r5", "theta5", "xC", "h"),
+            rates=("omega4", "omega5", "v_C"),
+            second_rates=("alpha4", "alpha5", "a_C"),
         ),
     ),
     symbols={"xC": "x_C", "stroke": "s", "t_advance": "t_a", "t_return": "t_r"},
     figure=figure,
+    version=2,
     driver=Driver("theta2", "omega2", output="v_C"),
 )

@@ -88,6 +88,7 @@ EXERCISE = Exercise(
         Part("a_coriolis", unit="mm/s^2", points=1),
         Part("rA_ddot", unit="mm/s^2", points=1),
         Part("alpha4", unit="rad/s^2", points=1),
+        Part("a_tangential", unit="mm/s^2", points=1, by_request=True),
         *loop_equations(
             "loop_1",
             ("r1", "theta1", "r2", "theta2", "rA", "theta4"),

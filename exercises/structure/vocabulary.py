@@ -91,5 +91,6 @@ EXERCISE = Exercise(
         for question in BANK
     ),
     figure=figure,
+    version=2,
     tells=tells,
 )

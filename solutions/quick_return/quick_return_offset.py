@@ -16,7 +16,14 @@ from coursework.kinematics.angles import Degrees
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.slider_crank import SliderCrank
 from coursework.mechanics import Body, Mechanism, Slide
-from coursework.polygons import crank_v, polygon_of_velocities, slider_v
+from coursework.polygons import (
+    crank_a,
+    crank_v,
+    polygon_of_accelerations,
+    polygon_of_velocities,
+    slider_a,
+    slider_v,
+)
 from coursework.solution import formula, given, mistake, stable
 
 from ._in_line import _in_line
@@ -27,6 +34,7 @@ UNITS = {
     "p": "mm",
     "q": "mm",
     "omega3": "rad/s",
+    "alpha3": "rad/s^2",
     "x1": "mm",
     "x2": "mm",
     "phi1": "deg",
@@ -42,7 +50,7 @@ LOOPS = {
         Vector("e", pi / 2, -1),
     ),
 }
-RATES = {"xC": ("v_C", "")}
+RATES = {"xC": ("v_C", "a_C")}
 MECHANISM = Mechanism(
     ground={"O": 0},
     bodies=(
@@ -94,6 +102,16 @@ def omega3(r2, omega2, theta2, q):
 def v_C(r2, omega2, theta2, p, omega3):
     """Velocity of the piston, positive to the right."""
     return -r2 * omega2 * sin(theta2) - p * omega3
+
+
+def alpha3(r2, omega2, theta2, p, q, omega3):
+    """The piston keeps to its line: no acceleration across it."""
+    return (r2 * omega2**2 * sin(theta2) + omega3**2 * p) / q
+
+
+def a_C(r2, omega2, theta2, p, q, omega3, alpha3):
+    """Acceleration of the piston, positive to the right."""
+    return -r2 * omega2**2 * cos(theta2) - omega3**2 * q - alpha3 * p
 
 
 @stable(lambda r2, r3, e, _turning: sqrt((r3 + r2 - e) * (r3 + r2 + e)))
@@ -151,6 +169,26 @@ def rod_forgotten_in_v(r2, omega2, theta2):
     return -r2 * omega2 * sin(theta2)
 
 
+@mistake("a_C")
+def a_C_no_rod_normal(a_C, omega3, q):
+    return a_C + omega3**2 * q
+
+
+@mistake("a_C")
+def rod_forgotten_in_a(r2, omega2, theta2):
+    return -r2 * omega2**2 * cos(theta2)
+
+
+@mistake("alpha3")
+def rod_turns_at_a_constant_rate():
+    return 0.0
+
+
+@mistake("a_C", kind="sign")
+def a_C_sign(a_C):
+    return -a_C
+
+
 @mistake("stroke")
 def stroke_2r2(r2):
     return 2 * r2
@@ -196,10 +234,12 @@ def advance_and_return_exchanged(alpha, beta):
     return beta, alpha
 
 
-def polygons(r2, theta2, omega2, p, q, omega3, v_C):
+def polygons(r2, theta2, omega2, p, q, omega3, v_C, alpha3, a_C):
+    crank, rod = polar(r2, theta2), q + 1j * p
     return (
-        polygon_of_velocities(
-            crank_v("A", "OA", polar(r2, theta2), omega2), slider_v("C", "A", q + 1j * p, omega3, v_C)
+        polygon_of_velocities(crank_v("A", "OA", crank, omega2), slider_v("C", "A", rod, omega3, v_C)),
+        polygon_of_accelerations(
+            crank_a("A", "OA", crank, omega2), slider_a("C", "A", rod, omega3, alpha3, "r_3", a_C)
         ),
     )
 
@@ -235,7 +275,15 @@ _ROOT3 = 3**0.5
 KNOWN = (
     # Stretched a 60-144-156 triangle, folded a 60-80-100 one; upright, C is 32 above A and the rod in translation.
     given(r2=28, r3=128, e=60, theta2=90, omega2=5).gives(
-        xC=(96 * 160) ** 0.5, v_C=-140, x1=80, x2=144, stroke=64, alpha="194.250", beta="165.750", Q="1.17195"
+        xC=(96 * 160) ** 0.5,
+        v_C=-140,
+        a_C=-22400 / (96 * 160) ** 0.5,
+        x1=80,
+        x2=144,
+        stroke=64,
+        alpha="194.250",
+        beta="165.750",
+        Q="1.17195",
     ),
     # Dead: the piston stands still at the far end.
     given(r2=28, r3=128, e=-60, theta2="-22.619864948040426 deg", omega2=-5).gives(

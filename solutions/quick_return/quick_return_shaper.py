@@ -15,6 +15,7 @@ from coursework.figures import Figure, circle, ground_pivot, line, link, pin, po
 from coursework.solution import given, mistake, stable
 
 from ._slotted_ram import *
+from ._slotted_ram_acceleration import *
 from ._strokes import *
 from ._swinging import *
 
@@ -28,6 +29,9 @@ UNITS = {
     "p": "mm",
     "q": "mm",
     "omega5": "rad/s",
+    "rA_dot": "mm/s",
+    "alpha4": "rad/s^2",
+    "alpha5": "rad/s^2",
     "sigma": "deg",
     "T": "s",
 }
@@ -168,7 +172,7 @@ KNOWN = (
     ),
     # The guide upright, A above O2; P-C a 3-4-5 triangle.
     given(r1=200, r2=100, r4=450, r5=100, h=390, theta2=90, omega2=3).gives(
-        theta4=90, omega4=1, xC=80, v_C=-450, stroke=450
+        theta4=90, omega4=1, xC=80, v_C=-450, alpha4=0, alpha5=5.625, a_C=337.5, stroke=450
     ),
     # The guide upright, A below O2: the guide turns back, and faster.
     given(r1=200, r2=100, r4=450, r5=100, h=390, theta2=-90, omega2=math.pi).gives(

@@ -17,6 +17,7 @@ from coursework.kinematics.slider_crank import SliderCrank
 from coursework.solution import given, mistake, stable
 
 from ._slotted_ram import *
+from ._slotted_ram_acceleration import *
 from ._strokes import *
 
 UNITS = {
@@ -29,6 +30,9 @@ UNITS = {
     "p": "mm",
     "q": "mm",
     "omega5": "rad/s",
+    "rA_dot": "mm/s",
+    "alpha4": "rad/s^2",
+    "alpha5": "rad/s^2",
     "x1": "mm",
     "x2": "mm",
     "phi1": "deg",
@@ -137,6 +141,11 @@ def P_at_A(rA, theta4):
 @mistake("v_C")
 def v_C_rod_left_out(omega4, yP):
     return -omega4 * yP
+
+
+@mistake("a_C")
+def a_C_no_rod_normal(a_C, omega5, q):
+    return a_C + omega5**2 * q
 
 
 @mistake("stroke")
@@ -255,7 +264,18 @@ _LINE = {"r1": 50, "r2": 100, "r4": 60, "r5": 100, "h": 0}
 KNOWN = (
     # A straight above O2: the guide upright, P-C a 3-4-5 triangle; on the strokes the angles at A are 30 degrees.
     given(**_LINE, theta2=90, omega2=3).gives(
-        rA=150, theta4=90, omega4=2, xC=80, v_C=-120, stroke=120, alpha=240, beta=120, Q=2
+        rA=150,
+        theta4=90,
+        omega4=2,
+        xC=80,
+        v_C=-120,
+        alpha4=0,
+        alpha5=3,
+        a_C=180,
+        stroke=120,
+        alpha=240,
+        beta=120,
+        Q=2,
     ),
     # Straight below, where A is three times nearer to O4.
     given(**_LINE, theta2=-90, omega2=2 * math.pi).gives(

@@ -158,6 +158,11 @@ def no_coriolis(r2, alpha2, omega2, theta2, theta4, rA):
     return (r2 * alpha2 * cos(theta2 - theta4) - r2 * omega2**2 * sin(theta2 - theta4)) / rA
 
 
+@mistake("a_tangential")
+def coriolis_in_the_tangential_term(rA, alpha4, a_coriolis):
+    return rA * alpha4 + a_coriolis
+
+
 @mistake("a_coriolis", kind="constant")
 def coriolis_no_2(omega4, rA_dot):
     return omega4 * rA_dot
@@ -207,7 +212,7 @@ KNOWN = (
     ),
     # Crank along the frame: the guide is at its greatest length and turns with the least slide.
     given(r1=200, r2=100, theta1=90, theta2=90, omega2=3).gives(
-        rA=300, theta4=90, rA_dot=0, omega4=1, a_coriolis=0, a_centripetal=-300
+        rA=300, theta4=90, rA_dot=0, omega4=1, a_coriolis=0, a_centripetal=-300, a_tangential=0
     ),
     # Crank square to the guide at the end of the swing: the guide stands still.
     given(r1=200, r2=100, theta1=90, theta2=-150, omega2=4).gives(

@@ -237,7 +237,7 @@ def test_rams_have_an_acceleration(course, name):
     step = np.radians(0.05) / given["omega2"]
     slope = (table.columns["v_C"][2:] - table.columns["v_C"][:-2]) / (2 * step)
     size = np.abs(slope).max()
-    np.testing.assert_allclose(table.columns["a_C_x"][1:-1], slope, atol=1e-4 * size)
+    np.testing.assert_allclose(table.columns["a_C"][1:-1], slope, atol=1e-4 * size)
 
 
 def test_the_advantage_is_shown_over_a_turn(course):

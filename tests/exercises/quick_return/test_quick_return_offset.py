@@ -25,6 +25,9 @@ def exact(r2, r3, e, theta2, omega2):
         # Rigid rod: both ends have the same velocity along it.
         along, v_A = C - A, 1j * omega2 * A
         v_C = mpmath.re(v_A * mpmath.conj(along)) / mpmath.re(along)
+        # Along the rod, C accelerates as A does, but for what turns towards A.
+        a_A = -(omega2**2) * A
+        a_C = (mpmath.re(a_A * mpmath.conj(along)) - abs(v_C - v_A) ** 2) / mpmath.re(along)
         near, far = right_of(mpmath.mpc(0), r3 - r2), right_of(mpmath.mpc(0), r3 + r2)
         # The crank points to the far end, and away from the near one.
         arc = mpmath.degrees(abs(mpmath.arg(far / -near)))
@@ -32,6 +35,7 @@ def exact(r2, r3, e, theta2, omega2):
         return {
             "xC": mpmath.re(C),
             "v_C": v_C,
+            "a_C": a_C,
             "stroke": mpmath.re(far - near),
             "alpha": 360 - arc,
             "beta": arc,
@@ -102,3 +106,13 @@ def test_the_sign_of_the_notes_sends_the_piston_the_other_way():
 def test_lines_above_and_below_the_pivot_are_both_issued():
     above = [v.given["e"] > 0 for v in EXERCISE.variants(range(300))]
     assert 0.35 < np.mean(above) < 0.65
+
+
+def test_a_record_of_the_first_version_is_marked_as_it_was_issued():
+    """It asked no acceleration."""
+    record = dict(EXERCISE.variant(0).record)
+    record["version"] = 1
+    record["parts"] = [part for part in record["parts"] if part["id"] != "a_C"]
+    variant = EXERCISE.from_record(record)
+    assert "a_C" not in variant.part_ids
+    assert variant.grade({"v_C": f"{variant.solution()['v_C']:.6g}"})["v_C"].verdict == "correct"

@@ -116,3 +116,21 @@ def test_rates_keep_their_digits_where_the_formulas_lose_them(r1, r2, theta2):
     found = EXERCISE.solve(**given, only=("rA", "rA_dot", "omega4", "rA_ddot", "alpha4"))
     for name, right in _exact_motion(**given).items():
         assert found[name] == pytest.approx(float(right), rel=2e-13), name
+
+
+def test_the_tangential_term_is_asked_by_request_and_told_from_the_whole_across_the_guide():
+    """A seed asks what it asked before; a build may ask for the term besides."""
+    variant = EXERCISE.variant(3, "en")
+    assert "a_tangential" not in variant.part_ids
+    found = EXERCISE.solve(**variant.given, only=("rA", "alpha4", "a_coriolis", "a_tangential"))
+    record = dict(variant.record)
+    part = {"id": "a_tangential", "quantity": "a_tangential", "unit": "mm/s^2", "kind": "number", "points": 1}
+    record["parts"] = [*record["parts"], part]
+    asked = EXERCISE.from_record(record)
+    right = asked.grade({"a_tangential": f"{found['rA'] * found['alpha4'] / 1000:.5g} m/s²"})["a_tangential"]
+    assert right.verdict == "correct"
+    whole = f"{found['a_tangential'] + found['a_coriolis']:.5g}"
+    assert (
+        asked.grade({"a_tangential": whole})["a_tangential"].verdict
+        == "mistake:coriolis_in_the_tangential_term"
+    )

@@ -5,6 +5,7 @@ import tomllib
 from collections import Counter
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import coursework
@@ -14,7 +15,9 @@ from coursework.course.course import Course
 from coursework.course.folder import Folder
 from coursework.course.texts import constants
 from coursework.errors import BadCourse
+from coursework.kinematics.slotted_guide import motion
 from coursework.language.words import languages
+from coursework.structure import LIBRARY
 
 COURSE = coursework.open_course()
 EXERCISE = COURSE["vocabulary"]
@@ -60,6 +63,30 @@ def test_the_right_case_stands_at_no_favourite_place():
         order.setdefault(question, []).append(case)
     places = Counter(order[question].index(right) for question, right in ANSWERS.items())
     assert max(places.values()) <= 0.5 * len(ANSWERS)
+
+
+@pytest.mark.parametrize(("fixed", "driven", "turns"), [(40.0, 100.0, 1), (100.0, 40.0, 0)])
+def test_the_guide_of_an_inversion_turns_or_swings_as_the_bank_says(fixed, driven, turns):
+    """The crank fixed and the longer rod driven: the guide turns. The rod fixed, the shorter crank driven: it swings."""
+    assert (ANSWERS["inversion_crank"], ANSWERS["inversion_slotted"]) == ("turns", "rod")
+    angles = motion(fixed, driven, np.linspace(0, 2 * np.pi, 2001), order=0).guide_angle
+    assert np.sum(np.angle(np.exp(1j * np.diff(angles)))) == pytest.approx(2 * np.pi * turns, abs=1e-9)
+
+
+def test_a_contact_in_place_of_the_coupler_leaves_the_degrees_of_freedom():
+    assert ANSWERS["derived_contact"] == "coupler"
+    assert LIBRARY["figure_3"].counts.w == LIBRARY["figure_6_gears"].counts.w == 1
+
+
+def test_a_record_of_the_first_version_asks_its_own_questions():
+    record = dict(EXERCISE.variant(0).record)
+    record["version"] = 1
+    record["parts"] = [
+        part for part in record["parts"] if not part["id"].startswith(("inversion", "derived"))
+    ]
+    variant = EXERCISE.from_record(record)
+    marking = variant.grade({i: ANSWERS[i] for i in variant.part_ids})
+    assert (marking.points, marking.out_of) == (len(record["parts"]), len(record["parts"]))
 
 
 def test_who_is_wrong_is_told_what_was_confused():
