@@ -178,7 +178,7 @@ def test_a_folder_that_cannot_be_written_is_told_by_the_name_that_was_asked(smal
 
 @pytest.mark.parametrize(
     ("command", "name"),
-    [(["notebook", "grashof", "mobility"], "grashof.fr.ipynb"), (["lesson"], "mechanisms.fr.ipynb")],
+    [(["notebook", "grashof", "mobility"], "grashof.fr.ipynb"), (["lesson", "rolling"], "rolling.fr.ipynb")],
 )
 def test_a_notebook_that_somebody_wrote_in_is_not_replaced_unasked(command, name, tmp_path, capsys):
     (tmp_path / name).write_text("mine", "utf-8")
