@@ -281,6 +281,10 @@ def _wrong_values(variant: Variant, part: Part) -> list[Any]:
         return [w for w in map(float, far) if distance(variant, part, w) > 2]
     if sort.family == "equation":
         return []
+    if sort.family == "pattern":
+        found, names = sort.components(value), frozenset(sort.form.names)
+        wrong = (names - found, found ^ {sort.form.names[0]}, names, frozenset())
+        return [" ".join(sorted(one)) or "0" for one in wrong if one != found]
     value = np.asarray(value)
     far = (-value, 1.5 * value + 2.0, value[..., ::-1] + 1.0 if value.ndim else value * 1j)
     return [w for w in far if distance(variant, part, w) > 2]

@@ -38,14 +38,14 @@ TWIST = Form(
     (3, 4, 2),
     re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*(?:o?mega|w|rot)", re.I),
     re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*v", re.I),
-    re.compile(r"(?P<half>w|omega|v)_?\{?(?P<axis>[xyz])[\w'/,{}()]*", re.I),
+    re.compile(r"(?P<half>w|omega|v)_?\{?(?P<axis>[xyz])(?:_?\d\w*|_[A-Z]\w?)?(?:[,/]\d+)*'?", re.I),
 )
 WRENCH = Form(
     ("X", "Y", "Z", "L", "M", "N"),
     (0, 1, 5),
     re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*[rf]", re.I),
     re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*m", re.I),
-    re.compile(r"(?P<name>[XYZLMN])(?:_\w*|\d*)[\w'/,{}()]*|(?P<half>[FRM])_?(?P<axis>[xyz])\w*"),
+    re.compile(r"(?P<name>[XYZLMN])(?:_?\d\w*|_[A-Z]\w?)?(?:[,/]\d+)*'?|(?P<half>[FRM])_?(?P<axis>[xyz])\w*"),
 )
 
 
@@ -139,7 +139,7 @@ _CALLED = re.compile(r"(?:(?:np|numpy)\s*\.\s*)?(?:array|matrix|Matrix)\s*\(\s*(
 _GROUP = re.compile(r"[\[({]([^\[\](){}]*)[\])}]")
 _ANOTHER_GROUP = re.compile(r"[\s,;|]*(?:[^\W\d][^=\[({|;]*=\s*)?[\[({]")
 _INDEX = re.compile(
-    r"\s*_?\s*(?:\(\s*[A-Z]\w?'?\s*(?:[,;]\s*\w+\s*)?\)|\{[^{}]*\}|[A-MO-Z]\d?'?(?:\s*,\s*R\w?)?(?![\w/*^]))"
+    r"\s*_?\s*(?:\(\s*[A-Z]\w?'?\s*(?:[,;]\s*\w+\s*)?\)|\{[\w\s,()/']{0,20}\}|[A-MO-Z]\d?'?(?:\s*,\s*R\w?)?(?![\w/*^]))"
 )
 
 
@@ -301,7 +301,10 @@ def _by_name(cells: Sequence[str | None], form: Form) -> list[str | None]:
 
 def component_place(text: str, form: Form) -> int | None:
     """The place of the component that a text names, ``ω_z``, ``\\omega_z``, ``M``, ``Mz``; nothing where it names none."""
-    name = re.sub(r"[\s{}\\$]", "", spelled_out(plain_spelling(text)))
+    spelled = spelled_out(plain_spelling(text))
+    if not re.fullmatch(r"[^{}]*(?:\{[^{}]*\}[^{}]*)*", spelled):
+        return None
+    name = re.sub(r"[\s{}\\$]", "", spelled)
     found = form.component.fullmatch(name)
     if found is None:
         return None
@@ -380,6 +383,7 @@ _NONE = re.compile(
     re.I,
 )
 _ZERO = re.compile(r"[+-]?0+(?:[.,]0*)?|(?:zero|z[ée]ro|nulle?|null|nil|none|no|non)", re.I)
+_MARK = re.compile(r"[+-]?\\?[^\W_][\w\\{},'/=.]{0,20}|[*?≠]{1,2}0?", re.I)  #: a symbol, a number, a star
 _DASHES = ("", "-", "--", ".", "/")
 
 
@@ -399,14 +403,18 @@ def _named_components(text: str, form: Form) -> set[str] | None:
 def _marked(text: str, form: Form) -> set[str]:
     """The components of a table that hold something else than 0."""
     try:
-        cells, plane = _cells(text, form, plane=False, symbols=True).texts, False
+        (cells, behind), plane = _cells(text, form, plane=False, symbols=True), False
     except Stop:
-        cells, plane = _cells(text, form, plane=True, symbols=True).texts, True
+        (cells, behind), plane = _cells(text, form, plane=True, symbols=True), True
+    if behind:
+        raise Stop("wrong_torsor", text)
     found = set()
     for place, cell in enumerate(cells):
         kept = None if cell is None else cell.strip(" ()[]{}")
         dashed = kept in _DASHES
         if dashed and not plane and not _dashed_as_plane(cells, form):
+            raise Stop("wrong_torsor", text)
+        if kept and not dashed and not _MARK.fullmatch(kept):
             raise Stop("wrong_torsor", text)
         if kept is not None and not dashed and not _ZERO.fullmatch(kept):
             found.add(form.names[place])
