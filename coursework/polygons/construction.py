@@ -19,7 +19,7 @@ from coursework.polygons.polygon import Polygon, Side, Stage
 
 BOX_MM = (110.0, 90.0)  #: width and height of a whole drawing on paper
 SCALES = {"velocity": "k_v", "acceleration": "k_a", "position": "k_l"}
-_SYMBOLS_MM = (21.0, 26.0)  #: of the box: what labels, ends of lines and the bar of the scale take
+_SYMBOLS_MM = (24.0, 26.0)  #: of the box: what labels, ends of lines and the bar of the scale take
 _SMALL_MM = (38.0, 30.0)  #: the points of a drawing of a step
 _BEYOND = (3.0, 5.0)  #: mm by which a line passes its ends, on the drawing of a step and on the whole
 _BAR_MM = 20.0

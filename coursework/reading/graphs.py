@@ -97,7 +97,7 @@ def _as_text(answer: Any) -> str:
     if not isinstance(answer, (list, tuple, set, frozenset)):
         return text_of(answer)
     if isinstance(answer, (set, frozenset)):
-        answer = sorted(answer, key=str)
+        answer = sorted(answer, key=text_of)
     return "\n".join(map(_line, answer))
 
 

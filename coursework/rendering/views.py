@@ -45,6 +45,7 @@ GUIDE_TOGETHER = 16  #: rows at most of a marking guide that no page's end may c
 #: go on to a second page, and leave the first some.
 _FEW, _LEFT, _EACH = 8, 14.0, 6.0
 _MANY, _LEFT_BY_MANY = 14, (14.0, 22.0)  #: with the data beside the figure, and below it
+_FULL = 25  #: so many at least fill the second page too
 SHORT_SOLUTION = 3  #: steps at most to an answer that stands with its question on one page
 LAST_TOGETHER = 4  #: questions at least that a sheet's last page holds, where a page's end parts them
 _BESIDE = 9  #: data at most that stand beside the figure
@@ -123,7 +124,7 @@ def _by_paper(paper: int, letters: int) -> float:
 
 def _left(questions: int, beside: bool) -> float:
     """What the questions of a sheet leave of a page's height to its figure, mm."""
-    if questions >= _MANY:
+    if _MANY <= questions < _FULL:
         return _LEFT_BY_MANY[0 if beside else 1]
     return _LEFT + _EACH * (_FEW - questions) if beside and questions <= _FEW else 0.0
 

@@ -135,7 +135,7 @@ def test_the_height_that_questions_leave_to_a_figure_costs_no_page(name, lang, s
 
 
 @pytest.mark.parametrize(
-    "name", ["quick_return_shaper", "mechanical_advantage", "coriolis", "three_loop_shaper"]
+    "name", ["flat_faced_cam", "mechanical_advantage", "coriolis", "havens_planetary"]
 )
 def test_a_slender_figure_is_larger_where_few_or_many_questions_leave_it_height(name):
     variants = [v for v in COURSE[name].variants(range(40)) if v.figure.aspect < 1]

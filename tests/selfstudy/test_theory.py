@@ -46,10 +46,10 @@ def test_what_a_fresh_variant_asks_differs_among_variants_and_what_it_leaves_out
     assert without_theory(variants[0]).parts
 
 
-def test_the_theory_of_the_ball_reducer_is_nine_of_its_points():
+def test_the_theory_of_the_ball_reducer_is_twelve_of_its_points():
     variant = COURSE["ball_reducer"].variant(1)
-    assert sum(p.points for p in variant.parts if p.id in theory(variant.exercise)) == 9
-    assert sum(p.points for p in variant.parts) == 23
+    assert sum(p.points for p in variant.parts if p.id in theory(variant.exercise)) == 12
+    assert sum(p.points for p in variant.parts) == 26
     assert sum(p.points for p in without_theory(variant).parts) == 14
 
 
