@@ -7,8 +7,8 @@
 
     [[chapters.sections]]
     lesson = "positions"
-    needs = ["mobility_and_groups"]
-    exercises = ["two_circles", { name = "four_bar_positions", needs = ["grashof"] }]
+    needs = ["structure"]
+    exercises = ["circles", { name = "linkage", needs = ["bars"] }]
 
 A section has a lesson, whose title it bears, or a ``title`` of its own, or neither. Whatever is needed first stands earlier.
 """

@@ -16,7 +16,7 @@ from typing import Any
 from coursework.course.folder import Folder
 from coursework.errors import BadCourse, nearest, unknown
 
-_FORM = 'NAME = { lesson = "mechanisms", sections = [1, 2] }'
+_FORM = 'NAME = { lesson = "rods", sections = [1, 2] }'
 _SOURCE = "exercises/course.toml: [lessons]"
 _TITLE = re.compile(r"^# +(.+?) *$", re.MULTILINE)
 _SECTION = re.compile(r"^## +((\d+)\..*?) *$", re.MULTILINE)
@@ -65,7 +65,7 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
     """The lessons that teach an exercise, in a language: that of its section of the chapters, then those that ``[lessons]`` of
     ``course.toml`` names for it.
 
-    ``coriolis = { lesson = "mechanisms", sections = [8] }``, or a list of these; a bare ``"mechanisms"`` is a whole
+    ``crank_pin = { lesson = "rods", sections = [8] }``, or a list of these; a bare ``"rods"`` is a whole
     lesson. Sections are told by the numbers of their headings. A lesson that is not written in the
     language is left out.
 
@@ -88,6 +88,13 @@ def taught_by(folder: Folder, exercise: str, lang: str) -> tuple[Lesson, ...]:
     if any(_named(one) in placed for one in listed):
         placed = []  # it says which sections
     return tuple(_taught(folder, exercise, [*placed, *listed], lang))
+
+
+def practised(folder: Folder, lesson: str, lang: str) -> tuple[str, ...]:
+    """The exercises that a lesson teaches, in the order in which they are learnt."""
+    return tuple(
+        name for name in folder.in_order if any(one.name == lesson for one in taught_by(folder, name, lang))
+    )
 
 
 def _named(stated: Any) -> Any:

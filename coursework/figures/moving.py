@@ -172,6 +172,7 @@ class _Stage(Paper):
 
 
 Frames = Sequence[Sequence[Element]]
+PAPER_MM = (130.0, 95.0)  #: what moves takes at most unless told
 
 
 def drawing(
@@ -181,7 +182,7 @@ def drawing(
     spots: Sequence[Spot] = (),
     keys: Sequence[Key] = (),
     closed: bool = True,
-    paper_mm: tuple[float, float] = (130, 95),
+    paper_mm: tuple[float, float] = PAPER_MM,
 ) -> Drawing:
     """The elements at every instant, with vectors and paths of points, to one scale.
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from coursework.course.variant import Variant
 from coursework.errors import WrongValue, unknown
-from coursework.figures.moving import Arrow, Drawing, Key, Spot, drawing, extent
+from coursework.figures.moving import PAPER_MM, Arrow, Drawing, Key, Spot, drawing, extent
 from coursework.figures.moving_svg import moving_svg, still_svg
 from coursework.language.numbers import unit_text
 from coursework.language.words import words
@@ -134,8 +134,8 @@ class Animation(Reel):
 
     # -------------------------------------------------------------------- picture
 
-    def drawing(self, effects: Sequence[str]) -> Drawing:
-        """Everything at every instant, with what these effects show."""
+    def drawing(self, effects: Sequence[str], paper_mm: tuple[float, float] = PAPER_MM) -> Drawing:
+        """Everything at every instant, with what these effects show, in a box of this size."""
         arrows, spots = [], []
         for name, effect, v in self._vectors:
             if effect in effects and effect in self.scales:
@@ -145,7 +145,9 @@ class Animation(Reel):
         if "position" in effects:
             spots = [Spot(point.position, name, self.closed) for name, point in self.points.items()]
         keys = self._keys({a.effect for a in arrows})
-        return drawing(self.frames, arrows=arrows, spots=spots, keys=keys, closed=self.closed)
+        return drawing(
+            self.frames, arrows=arrows, spots=spots, keys=keys, closed=self.closed, paper_mm=paper_mm
+        )
 
     def _keys(self, effects: set[str]) -> list[Key]:
         """The legend: for each effect an arrow of a round value."""
@@ -190,9 +192,9 @@ class Animation(Reel):
             lang=self.variant.lang,
         )
 
-    def stills(self, count: int) -> tuple[str, ...]:
-        """So many instants of the cycle as SVG, evenly spread, the statement's first."""
-        shown, instants = self.drawing(self.effects), len(self.angles)
+    def stills(self, count: int, paper_mm: tuple[float, float]) -> tuple[str, ...]:
+        """So many instants of the cycle as SVG, evenly spread, the statement's first, each in a box of this size."""
+        shown, instants = self.drawing(self.effects, paper_mm), len(self.angles)
         turned = [(self.first + round(k * instants / count)) % instants for k in range(count)]
         said = {"title": self.title, "words": self.words, "lang": self.variant.lang}
         return tuple(still_svg(shown, instant, **said) for instant in turned)

@@ -30,6 +30,7 @@ def typst_source(folders: Sequence[Path], book: Book, paper: str = "a4", *, apar
     names = _of_book(book) | {"paper": paper, "apart": apart, "tall": _TALL}
     names |= {"exercises": {one.handout.exercise: _exercise(env, one, "typ.j2") for one in book.exercises}}
     names["pieces"] = partial(_typst_pieces, env, book)
+    names["exercises_of"] = partial(_own_exercises, book)
     body = Markup(render(env, "book.typ.j2", names))
     # The parts of a paper are those of an exercise in a book.
     return render(
@@ -154,8 +155,7 @@ def _page(env: Environment, book: Book, page: Page, names: Mapping[str, Any]) ->
 
 
 def _own_exercises(book: Book, lesson: LessonText) -> tuple[Practised, ...]:
-    sections = (s for c in book.chapters for s in c.sections)
-    return next((s.exercises for s in sections if s.lesson is lesson), ())
+    return tuple(one for one in book.exercises if lesson.name in {name for name, _ in one.lessons})
 
 
 def _html_pieces(env: Environment, book: Book, lesson: LessonText, names: Mapping[str, Any]) -> Markup:

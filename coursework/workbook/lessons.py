@@ -17,6 +17,7 @@ from coursework.workbook.pictures import drawn
 from coursework.workbook.running import Session, Shows
 
 _TITLE = re.compile(r"\A# +[^\n]*\n*")
+_CELL = re.compile(r"(?<!\\)\|")
 _HEAD = re.compile(r"^(##+) +(?:(\d+)\. +)?(.*?) *$", re.MULTILINE)
 
 
@@ -125,12 +126,22 @@ def faults(course: Course[Any], name: str) -> tuple[str, ...]:
         except CourseworkError as fault:
             found.append(f"{name}, {lang}: {fault}")
             continue
+        found += _cut_formulas(text, name, lang)
         blocks = source.blocks(text, name)
         shapes[lang] = [type(b).__name__ for b in blocks if not isinstance(b, source.Prose)]
     if len({tuple(shape) for shape in shapes.values()}) > 1:
         told = "; ".join(f"{lang}: {_counted(shape)}" for lang, shape in shapes.items())
         found.append(f"{name} is not the same in every language: {told}")
     return tuple(found)
+
+
+def _cut_formulas(text: str, name: str, lang: str) -> list[str]:
+    """Rows of tables in which a bar of a formula ends a cell."""
+    return [
+        f"{name}, {lang}, line {k}: a bar inside a formula ends the cell of a table; write \\lvert, \\rvert or \\mid: {line.strip()}"
+        for k, line in enumerate(text.splitlines(), 1)
+        if line.lstrip().startswith("|") and any(cell.count("$") % 2 for cell in _CELL.split(line))
+    ]
 
 
 def _counted(shape: Sequence[str]) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 from urllib.parse import quote
 
 from coursework.course.course import Course
-from coursework.course.lessons import lesson_file, lesson_sections, lesson_title
+from coursework.course.lessons import lesson_file, lesson_sections, practised
 from coursework.language.words import words
 from coursework.markup.links import TERM, Link, relinked
 from coursework.markup.markdown import to_notebook_markdown
@@ -94,17 +94,9 @@ def _picture(file: str, shown: Drawn, lang: str) -> str:
 
 def _practise(course: Course[Any], name: str, lang: str) -> list[str]:
     """The exercises of the lesson, each a link to its notebook."""
-    section = next((s for c in course.folder.chapters for s in c.sections if s.lesson == name), None)
-    if section is None or not section.exercises:
+    exercises = practised(course.folder, name, lang)
+    if not exercises:
         return []
-    lines = [f"- [{course[one].title(lang)}]({notebook_name(one, lang)})" for one in section.exercises]
-    command = f"coursework notebook {' '.join(section.exercises)} --lang {lang}"
+    lines = [f"- [{course[one].title(lang)}]({notebook_name(one, lang)})" for one in exercises]
+    command = f"coursework notebook {' '.join(exercises)} --lang {lang}"
     return [f"## {words(lang)['lesson']['practise']}", "\n".join(lines), f"`{command}`"]
-
-
-def lesson_titles(course: Course[Any], exercise: str, lang: str) -> tuple[tuple[str, str], ...]:
-    """The lessons that teach an exercise: names and titles."""
-    section = course.folder.section_of(exercise)
-    if section is None or not section.lesson:
-        return ()
-    return ((section.lesson, lesson_title(course.folder, section.lesson, lang)),)

@@ -18,6 +18,7 @@ from coursework.sheets.book import Drawn
 from coursework.workbook.lesson_source import Image
 
 STILLS = 4  #: instants of what moves that stand on paper
+_CELL = (80.0, 46.0)  #: the room of one of them, mm
 _ASKED = ("seed", "motion", "count")
 
 
@@ -63,13 +64,14 @@ def _call(folder: Folder, lesson: str, name: str) -> Any:
 
 def _moving(frames: Sequence[Figure], said: str, caption: str, lang: str) -> Drawn:
     """Figures that follow one another, the first after the last."""
-    shown, count = drawing([frame.elements for frame in frames]), len(frames)
+    elements, count = [frame.elements for frame in frames], len(frames)
+    shown, small = drawing(elements), drawing(elements, paper_mm=_CELL)
     told = {"title": said, "words": said, "lang": lang}
     return Drawn(
         said,
         caption,
         svg=moving_svg(shown, order=[*range(count), 0], first=0, seconds=SECONDS, **told),
-        stills=tuple(still_svg(shown, round(k * count / STILLS) % count, **told) for k in range(STILLS)),
+        stills=tuple(still_svg(small, round(k * count / STILLS) % count, **told) for k in range(STILLS)),
     )
 
 
@@ -92,4 +94,4 @@ def _of_exercise(course: Course[Any], lesson: str, image: Image, lang: str) -> D
 
 def moving(animation: Animation, caption: str = "") -> Drawn:
     """An exercise's mechanism in motion, and instants of it for paper."""
-    return Drawn(animation.words, caption, svg=animation.svg(), stills=animation.stills(STILLS))
+    return Drawn(animation.words, caption, svg=animation.svg(), stills=animation.stills(STILLS, _CELL))

@@ -223,7 +223,14 @@ def test_a_prediction_is_compared_only_when_its_answer_is_right(here):
 
 
 #: Counts alone, words alone, and bars that are to be found: nothing here is told by a figure or by reason before it is computed.
-NOTHING_TO_PREDICT = {"crank_rocker_design", "joint_graph", "joint_twist", "mobility", "quick_return_design", "vocabulary"}
+NOTHING_TO_PREDICT = {
+    "crank_rocker_design",
+    "joint_graph",
+    "joint_twist",
+    "mobility",
+    "quick_return_design",
+    "vocabulary",
+}
 
 
 @every_exercise
