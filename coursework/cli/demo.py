@@ -39,7 +39,7 @@ def _right(variant: Variant, key: Key, part: Part, digits: int = 5) -> str:
     """The right answer as a careful student writes it, without unit."""
 
     def label(case: str) -> str:
-        return " ".join(to_text(variant.text.label(part.id, case), variant.lang).split())
+        return " ".join(to_text(variant.label(part.id, case), variant.lang).split())
 
     if part.sort.is_open:
         return f"{variant.exercise.name}, {part.id}"

@@ -8,6 +8,7 @@ import random
 import pytest
 
 import coursework
+from coursework.cli.demo import HABITS
 from coursework.errors import BadCourse
 from coursework.kinds.kind import kind_of
 from coursework.model import Part
@@ -275,3 +276,14 @@ def test_a_student_alone_is_told_the_form(tmp_path):
     session = coursework.study("joint_graph", lang="en", folder=tmp_path)
     assert "write the two bodies of each" in str(session.check({"graph": "???"}))
     assert "✓" in str(session.check({"graph": session.variant.solution()["graph"]}))
+
+
+@pytest.mark.parametrize("name", ["joint_graph", "ball_reducer"])
+def test_the_class_of_the_demonstration_answers_it(name):
+    """Careful students write it in the words of their language."""
+    variant = coursework.open_course()[name].variant(3, "fr")
+    answers = [habit(variant, variant.key, variant.exercise.spec.part("graph"), 0) for habit in HABITS]
+    assert "pivot" in answers[0]
+    assert variant.grade({"graph": answers[0]})["graph"].verdict == "correct"
+    for answer in answers:
+        assert variant.grade({"graph": answer})["graph"].verdict != "unreadable"
