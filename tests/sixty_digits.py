@@ -30,6 +30,8 @@ SISTERS = {
         ("rA_ddot", "alpha4"),
         {"alpha2": 0.0, "theta1": 90.0},
     ),
+    "velocity_polygon_six_bar": ("slider_extras", ("omega3", "omega4", "omega5", "r6_dot"), {}),
+    "acceleration_polygon_six_bar": ("slider_extras", ("alpha3", "r6_ddot"), {}),
     "crank_shaper_drawn": ("quick_return_shaper", ("v_C", "alpha", "beta", "Q"), {}),
     "two_circles": (
         "four_bar_positions",
