@@ -22,8 +22,8 @@ _STEP = mp.mpf(2) ** -90
 SISTERS = {
     "velocity_polygon": ("four_bar_motion", ("v_B", "omega3", "omega4"), {"alpha2": 0.0}),
     "acceleration_polygon": ("four_bar_motion", ("a_B", "alpha3", "alpha4"), {"alpha2": 0.0}),
-    "velocity_polygon_slider": ("slider_crank", ("r1_dot", "omega3"), {"alpha2": 0.0, "e": 0.0}),
-    "acceleration_polygon_slider": ("slider_crank", ("r1_ddot", "alpha3"), {"alpha2": 0.0, "e": 0.0}),
+    "velocity_polygon_slider": ("slider_crank", ("r1_dot", "omega3"), {"alpha2": 0.0}),
+    "acceleration_polygon_slider": ("slider_crank", ("r1_ddot", "alpha3"), {"alpha2": 0.0}),
     "velocity_polygon_slotted": ("slotted_mechanism", ("rA_dot", "omega4"), {"alpha2": 0.0, "theta1": 90.0}),
     "acceleration_polygon_slotted": (
         "slotted_mechanism",
