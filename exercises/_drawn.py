@@ -5,7 +5,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from coursework.degrees import angle, polar
-from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin, rail, slider, slot_link
+from coursework.figures import (
+    Figure,
+    angle_mark,
+    dimension,
+    ground_pivot,
+    line,
+    link,
+    pin,
+    rail,
+    slider,
+    slot_link,
+)
 from coursework.kinematics.dyads import rrp, rrr, side_of
 from coursework.language.numbers import significant
 from coursework.model import Part, chosen, drawn
@@ -95,26 +106,47 @@ def four_bar_figure(bars, r1, r2, theta2):
 
 # --------------------------------------------------------------------- slider-crank
 
+
+def largest_offset(r2):
+    """A quarter of the cranks, those of 20 mm times a whole number, are in line with their piston."""
+    return np.where(r2 % 20 == 0, 0.0, 0.5 * r2)
+
+
 SLIDER_CRANK = {
     "r2": drawn(30, 100, step=5, unit="mm"),
     "r3": drawn(lambda r2: 1.5 * r2, lambda r2: 3 * r2, step=5, unit="mm", positive=True),
+    "e": drawn(lambda r2: -largest_offset(r2), largest_offset, step=5, unit="mm", default=0),
     "theta2": drawn(-175, 180, step=5, unit="deg"),
     "omega2": drawn(-40, 40, unit="rad/s"),
 }
 
 
-def rod(r2, r3, theta2):
+def offset_is_none_or_visible(e, r2):
+    return (e == 0) | (abs(e) >= 0.2 * r2)
+
+
+def rod_reaches_all_turn(r2, r3, e):
+    return r3 > 1.2 * (r2 + abs(e))
+
+
+def rod(r2, r3, e, theta2):
     """Vector AB."""
     crank = polar(r2, theta2)
-    return rrp(crank, r3, 0.0 * r2) - crank
+    return rrp(crank, r3, e) - crank
 
 
-def slider_crank_figure(rod, r2, theta2):
+def slider_crank_figure(rod, r2, theta2, e):
     O, A = 0j, polar(r2, theta2)
     B, half_rail = A + rod, 0.5 * r2
+    end = B.real + 1.6 * half_rail
     return Figure(
         rail(B - half_rail, B + half_rail),
-        line(O, B.real + 1.6 * half_rail, dashed=True),
+        line(O, end, dashed=True),
+        *(
+            (line(B, complex(end, e), dashed=True), dimension(end, complex(end, e), "e", offset=0))
+            if e
+            else ()
+        ),
         link(O, A, label="r_2"),
         link(A, B, label="r_3"),
         slider(B),

@@ -22,14 +22,16 @@ _STEP = mp.mpf(2) ** -90
 SISTERS = {
     "velocity_polygon": ("four_bar_motion", ("v_B", "omega3", "omega4"), {"alpha2": 0.0}),
     "acceleration_polygon": ("four_bar_motion", ("a_B", "alpha3", "alpha4"), {"alpha2": 0.0}),
-    "velocity_polygon_slider": ("slider_crank", ("r1_dot", "omega3"), {"alpha2": 0.0, "e": 0.0}),
-    "acceleration_polygon_slider": ("slider_crank", ("r1_ddot", "alpha3"), {"alpha2": 0.0, "e": 0.0}),
+    "velocity_polygon_slider": ("slider_crank", ("r1_dot", "omega3"), {"alpha2": 0.0}),
+    "acceleration_polygon_slider": ("slider_crank", ("r1_ddot", "alpha3"), {"alpha2": 0.0}),
     "velocity_polygon_slotted": ("slotted_mechanism", ("rA_dot", "omega4"), {"alpha2": 0.0, "theta1": 90.0}),
     "acceleration_polygon_slotted": (
         "slotted_mechanism",
         ("rA_ddot", "alpha4"),
         {"alpha2": 0.0, "theta1": 90.0},
     ),
+    "velocity_polygon_six_bar": ("slider_extras", ("omega3", "omega4", "omega5", "r6_dot"), {}),
+    "acceleration_polygon_six_bar": ("slider_extras", ("alpha3", "r6_ddot"), {}),
     "crank_shaper_drawn": ("quick_return_shaper", ("v_C", "alpha", "beta", "Q"), {}),
     "two_circles": (
         "four_bar_positions",

@@ -48,7 +48,7 @@ class Records:
                 "mark it with the course it was issued from"
             )
         try:
-            given = {n: record["given"][n]["value"] for n in self.spec.given}
+            given = {n: self._recorded(record["given"], n, version < current) for n in self.spec.given}
             seed = int(record["seed"])
             asked = {str(part["id"]): float(part["points"]) for part in record["parts"]}
             orders = {
@@ -63,6 +63,13 @@ class Records:
             self._check_order(part, orders.get(part.id, ()))
         issued = dict(record) if version < current else None
         return Recorded(seed, given, str(record.get("lang", "fr")), parts, issued, orders)
+
+    def _recorded(self, given: Mapping[str, Any], name: str, older: bool) -> Any:
+        """A given value as issued; what an older version did not have yet is its default."""
+        default = self.spec.given[name].default
+        if older and name not in given and default is not None:
+            return default
+        return given[name]["value"]
 
     def _parts_of(self, asked: tuple[tuple[str, float], ...], older: bool) -> tuple[Part, ...]:
         """The parts that a record asks, by id, worth what it says: an assignment may say so, or an older version."""

@@ -159,7 +159,10 @@ def judge_drawing(
         if len(sides) == 1:
             ideal[point], fault = _known(point, sides[0], here, points, polygon, used, width)
         else:
-            ideal[point], fault = _crossing(point, sides, here, points, polygon, used, width)
+            on_drawn = not any(_anchor(side, point) in faults for side in sides) and _is_spread(
+                here, points, width
+            )
+            ideal[point], fault = _crossing(point, sides, here, points, polygon, used, width, on_drawn)
         if fault:
             faults[point] = fault
     legible = polygon.size / used >= LEAST_MM * tolerance
@@ -225,6 +228,8 @@ def _known(
     own = (
         right if ratio is None or side.image is None else ratio * (here[side.image[1]] - here[side.image[0]])
     )
+    if abs(own) <= width < abs(right):  # nothing is in proportion to what is not drawn
+        own = right
     right, ideal = way * right, here[anchor] + way * own
     if point not in drawn:
         return ideal, Fault(MISSING)
@@ -239,9 +244,12 @@ def _known(
 
 def _crossing(
     point: str, sides: tuple[Side, ...], here: Mapping[str, complex], drawn: Mapping[str, complex],
-    polygon: Polygon, scale: float, width: float,
+    polygon: Polygon, scale: float, width: float, on_drawn: bool,
 ) -> tuple[complex, Fault | None]:  # fmt: skip
-    """Where two lines meet that are drawn from the student's own points, and what is wrong with the point drawn."""
+    """Where two lines meet that are drawn from the student's own points, and what is wrong with the point drawn.
+
+    ``on_drawn``: both lines start from points that are right, in a drawing of some size.
+    """
     anchors = tuple(_anchor(side, point) for side in sides)
     ideal = _meeting(sides, [here[a] for a in anchors])
     if ideal is None:  # as one line: where it should be, from the first
@@ -252,7 +260,7 @@ def _crossing(
     good = [_off(side, there, here[a]) <= width for side, a in zip(sides, anchors, strict=True)]
     if all(good):
         # Lines that are drawn from one point meet there, whatever their directions.
-        collapsed = all(
+        collapsed = not on_drawn and all(
             abs(there - here[a]) <= width < abs(s.value) / scale for s, a in zip(sides, anchors, strict=True)
         )
         return ideal, Fault(VECTOR) if collapsed else None
@@ -271,6 +279,12 @@ def _crossing(
     if abs(there - (2 * anchor - ideal)) <= 2 * width:
         fault = Fault(SENSE, right_one, plainer=fault)
     return ideal, fault
+
+
+def _is_spread(here: Mapping[str, complex], drawn: Mapping[str, complex], width: float) -> bool:
+    """Whether the points drawn so far are more than one spot."""
+    first, *others = (drawn[q] for q in here if q in drawn)
+    return any(abs(z - first) > 2 * width for z in others)
 
 
 def _off(side: Side, there: complex, through: complex) -> float:

@@ -10,7 +10,9 @@ from .._drawn import (
     known,
     of_drawing,
     of_slider_crank,
+    offset_is_none_or_visible,
     rod,
+    rod_reaches_all_turn,
     slider_crank_figure,
     told_angle,
     told_number,
@@ -23,8 +25,8 @@ def vectors_are_long_enough_to_draw(of_slider_crank):
     return all_long(1 / 8, of_A, normal, tangential, of_B) & all_long(1 / 4, of_A, tangential, of_B)
 
 
-def tells(r2, r3, theta2, omega2):
-    vector = rod(r2, r3, theta2)
+def tells(r2, r3, e, theta2, omega2):
+    vector = rod(r2, r3, e, theta2)
     normal = of_slider_crank(vector, r2, theta2)[1]
     return {
         "theta3": told_angle(vector),
@@ -33,9 +35,15 @@ def tells(r2, r3, theta2, omega2):
 
 
 EXERCISE = Exercise(
+    version=2,
     given=SLIDER_CRANK,
     helpers=(rod, of_slider_crank),
-    keep=(crank_turns_visibly, vectors_are_long_enough_to_draw),
+    keep=(
+        crank_turns_visibly,
+        offset_is_none_or_visible,
+        rod_reaches_all_turn,
+        vectors_are_long_enough_to_draw,
+    ),
     parts=(
         known("known_A"),
         known("known_BA_n"),

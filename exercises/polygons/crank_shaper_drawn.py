@@ -68,14 +68,14 @@ def rod_never_in_line_with_the_lever(r1, r2, r4, r5, h):
 def velocities_are_long_enough_to_draw(guided, ram):
     v_D, of_rod, v_E = ram.velocities
     *of_pins, sliding = guided.velocities
-    return all_long(1 / 5, *of_pins, sliding, v_D, v_E) & all_long(1 / 10, of_rod, *of_pins, v_D)
+    return all_long(1 / 6, *of_pins, sliding, v_D, v_E) & all_long(1 / 12, of_rod, *of_pins, v_D)
 
 
 def accelerations_are_long_enough_to_draw(guided, ram):
     of_P2, coriolis, normal, tangential, sliding = guided.accelerations
     a_D, _, of_rod, a_E = ram.accelerations
     others = of_P2, coriolis, tangential, sliding, a_D, a_E
-    return all_long(1 / 5, *others) & all_long(1 / 12, normal, of_rod, *others)
+    return all_long(1 / 6, *others) & all_long(1 / 15, normal, of_rod, *others)
 
 
 def tells(r1, r2, r4, r5, h, theta2):

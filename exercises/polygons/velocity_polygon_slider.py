@@ -10,7 +10,9 @@ from .._drawn import (
     crank_turns_visibly,
     known,
     of_drawing,
+    offset_is_none_or_visible,
     rod,
+    rod_reaches_all_turn,
     slider_crank_figure,
     told_angle,
 )
@@ -22,14 +24,20 @@ def vectors_are_long_enough_to_draw(rod, r2, theta2):
     return all_long(1 / 3, polar(r2, theta2), omega3 * rod, -r2 * sin(theta2) - omega3 * rod.imag)
 
 
-def tells(r2, r3, theta2):
-    return {"theta3": told_angle(rod(r2, r3, theta2))}
+def tells(r2, r3, e, theta2):
+    return {"theta3": told_angle(rod(r2, r3, e, theta2))}
 
 
 EXERCISE = Exercise(
+    version=2,
     given=SLIDER_CRANK,
     helpers=(rod,),
-    keep=(crank_turns_visibly, vectors_are_long_enough_to_draw),
+    keep=(
+        crank_turns_visibly,
+        offset_is_none_or_visible,
+        rod_reaches_all_turn,
+        vectors_are_long_enough_to_draw,
+    ),
     parts=(
         known("known_A"),
         known("known_BA"),

@@ -275,42 +275,51 @@ def c_vector(p, c):
     return p + 0.6 * (turned(p, c, 75) - p)
 
 
-def _meeting(A, C, radius_A, radius_C):
-    """Where the circles about A and C meet, on paper: on the left of AC, then on its right. Circles that do not meet
-    are taken to touch."""
-    way = C - A
-    along = (abs(way) ** 2 + radius_A**2 - radius_C**2) / (2 * abs(way))
-    across = np.sqrt(np.maximum(radius_A**2 - along**2, 0.0))
-    return tuple(A + way / abs(way) * (along + side * 1j * across) for side in (1, -1))
+def _wrong_circles(images, kl, center, radius_A, radius):
+    """Where the circle of a radius about A meets another, on paper: on the left of the line of centres, then on its right;
+    the right pins where they do not meet."""
+    A, _, *pins = images
+    way = center - A
+    along = (abs(way) ** 2 + radius_A**2 - radius**2) / (2 * abs(way))
+    square = radius_A**2 - along**2
+    across = 1j * np.sqrt(np.maximum(square, 0.0))
+    found = (A + way / abs(way) * (along + side * across) for side in (1, -1))
+    return tuple(to_paper(np.where(square > 0, z, B), kl) for z, B in zip(found, pins, strict=True))
 
 
 @mistake("b1", "b2", kind="exchanged")
 def radii_exchanged(_images, r3, r4, kl):
     """That of the coupler about C, that of the rocker about A."""
-    return tuple(to_paper(z, kl) for z in _meeting(*_images[:2], r4, r3))
+    return _wrong_circles(_images, kl, _images[1], r4, r3)
 
 
 @mistake("b1", "b2")
 def circle_about_O(_images, r3, r4, kl):
     """The circle of the rocker drawn about the pivot of the crank."""
-    return tuple(to_paper(z, kl) for z in _meeting(_images[0], 0j, r3, r4))
+    return _wrong_circles(_images, kl, 0 * _images[0], r3, r4)
 
 
 @mistake("b1", "b2")
 def off_circle_A(_images, r3, r4, kl):
     """With another opening of the compass about A."""
-    return tuple(to_paper(z, kl) for z in _meeting(*_images[:2], 0.85 * r3, r4))
+    return _wrong_circles(_images, kl, _images[1], 0.85 * r3, r4)
 
 
 @mistake("b1", "b2")
 def off_circle_C(_images, r3, r4, kl):
-    return tuple(to_paper(z, kl) for z in _meeting(*_images[:2], r3, 0.85 * r4))
+    return _wrong_circles(_images, kl, _images[1], r3, 0.85 * r4)
+
+
+def _away(B, a, c):
+    """12 mm from a pin, halfway between the two bars or square to that."""
+    u, v = ((z[..., 0] + 1j * z[..., 1]) / np.hypot(z[..., 0], z[..., 1]) for z in (B - a, B - c))
+    step = np.where(abs(u + v) > abs(u - v), u + v, u - v)
+    return B + to_paper(12 * step / abs(step), 1.0)
 
 
 @mistake("b1", "b2")
 def off_both(a, c, b1, b2):
-    middle = (a + c) / 2
-    return middle + 1.4 * (b1 - middle), middle + 1.4 * (b2 - middle)
+    return _away(b1, a, c), _away(b2, a, c)
 
 
 @mistake("b2")

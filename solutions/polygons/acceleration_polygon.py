@@ -6,11 +6,12 @@ import numpy as np
 from coursework.degrees import polar
 from coursework.kinematics.angles import Degrees
 from coursework.kinematics.four_bar import FourBar
-from coursework.marking.drawn_polygons import Asked, Read, met, to_paper, turned, verdicts
+from coursework.marking.drawn_polygons import Asked, Read, verdicts
 from coursework.polygons import crank_a, polygon_of_accelerations, two_bars_a
 from coursework.solution import given, judge, mistake, stable
 
 from ._drawn_acceleration import *
+from ._drawn_rocker import *
 
 UNITS = {"mb_t": "mm"}
 SYMBOLS = {"sense3": "s_3", "sense4": "s_4", "mb_t": "b'' b"}
@@ -40,18 +41,6 @@ def _images(_bars, omega2):
 def _lines(_bars):
     _, coupler, rocker, *_ = _bars
     return 1j * coupler, 1j * rocker
-
-
-def known_B_n():
-    return "both"
-
-
-def known_B_t():
-    return "direction"
-
-
-def m(_images, ka):
-    return to_paper(_images[2], ka)
 
 
 def _start(m):
@@ -105,51 +94,6 @@ def normal_part_unknown():
 @mistake("known_BA_t", "known_B_t")
 def tangential_part_unknown():
     return "neither", "neither"
-
-
-@mistake("m")
-def m_length(p, m):
-    return p + 1.7 * (m - p)
-
-
-@mistake("m")
-def m_direction(p, m):
-    """Square to the bar."""
-    return turned(p, m, 90)
-
-
-@mistake("m", kind="sign")
-def m_sense(p, m):
-    """From C to B."""
-    return 2 * p - m
-
-
-@mistake("m")
-def m_vector(p, m):
-    return p + 1.6 * (turned(p, m, 75) - p)
-
-
-@mistake("m")
-def m_on_a(p, a, m):
-    return a + m - p
-
-
-@mistake("b")
-def ct_direction(n, _start, _lines):
-    along, other = _lines
-    return met(n, along, _start, other * np.exp(-0.35j))
-
-
-@mistake("b", kind="sign")
-def ct_sense(_start, b):
-    return 2 * _start - b
-
-
-@mistake("b")
-def ct_on_p(n, p, _lines):
-    """The normal part of B left out."""
-    along, other = _lines
-    return met(n, along, p, other)
 
 
 @mistake("ka", "p", "a", "n", "m", "b")

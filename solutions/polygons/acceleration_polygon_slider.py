@@ -15,12 +15,12 @@ from ._drawn_acceleration import *
 SYMBOLS = {"side_B": "s_B", "sense3": "s_3"}
 
 
-def _bars(r2, r3, theta2):
+def _bars(r2, r3, e, theta2):
     """Vectors OA and AB; rate of AB over that of OA; its acceleration over the square."""
     pin = polar(r2, theta2)
-    reach = SliderCrank(r2, r3, 0.0 * r2).run(Degrees(theta2))
+    reach = SliderCrank(r2, r3, e).run(Degrees(theta2))
     ratio = -pin.real / reach
-    return pin, reach - 1j * pin.imag, ratio, (1 - ratio**2) * pin.imag / reach
+    return pin, reach + 1j * (e - pin.imag), ratio, ((1 - ratio**2) * pin.imag + ratio**2 * e) / reach
 
 
 def _images(_bars, omega2):
@@ -134,9 +134,9 @@ def crank_for_rod(alpha3, r2, r3):
 
 
 @judge
-def drawing(answers, r2, r3, theta2, omega2):
+def drawing(answers, r2, r3, e, theta2, omega2):
     """Any pole and any scale; see :mod:`coursework.drawn`."""
-    bars = _bars(r2, r3, theta2)
+    bars = _bars(r2, r3, e, theta2)
     _, rod, *_ = bars
     of_rod = {"crank_for_rod": ("b'", "b", 1 / r2)}
     asked = Asked(
@@ -163,20 +163,22 @@ def _polygon(bars, omega2, scale=None):
     )
 
 
-def polygons(r2, r3, theta2, omega2, ka):
+def polygons(r2, r3, e, theta2, omega2, ka):
     """At the scale of the answers."""
-    return (_polygon(_bars(r2, r3, theta2), omega2, ka),)
+    return (_polygon(_bars(r2, r3, e, theta2), omega2, ka),)
 
 
-def residual(r2, r3, theta2, omega2, ka, a, n, b, bb_t, pa_b, r1_ddot, alpha3):
+def residual(r2, r3, e, theta2, omega2, ka, a, n, b, bb_t, pa_b, r1_ddot, alpha3):
     """The piston's abscissa differentiated twice, and B from A."""
     A = r2 * np.exp(1j * np.radians(theta2))
-    rod = np.sqrt(r3**2 - A.imag**2) - 1j * A.imag
+    rise = e - A.imag
+    rod = np.sqrt(r3**2 - rise**2) + 1j * rise
     omega3 = -omega2 * A.real / rod.real
     z_a, z_n, z_b = ((q[..., 0] + 1j * q[..., 1]) * ka for q in (a, n, b))
     size = r2 * omega2**2
     reach = rod.real
-    second = -(omega2**2) * (A.real + (A.real**2 - A.imag**2) / reach + A.imag**2 * A.real**2 / reach**3)
+    # Of the abscissa A.real + reach, reach^2 = r3^2 - rise^2.
+    second = -(omega2**2) * (A.real + (A.real**2 + rise * A.imag) / reach + rise**2 * A.real**2 / reach**3)
     return (
         abs(z_a + omega2**2 * A) / size,
         abs(z_n - z_a + omega3**2 * rod) / size,
@@ -192,6 +194,10 @@ KNOWN = (
     # Crank upright: a 3-4-5 triangle, the rod in translation at this instant.
     given(r2=30, r3=50, theta2=90, omega2=8).gives(
         ka=50, a=(0, -38.4), n=(0, -38.4), b=(28.8, 0), bb_t=48, pa_b=28.8, r1_ddot=1440, alpha3=48
+    ),
+    # With an offset, the rod (40, 30): it turns at -4 rad/s, as fast as the crank and the other way.
+    given(r2=40, r3=50, e=30, theta2=0, omega2=4).gives(
+        ka=20, a=(-32, 0), n=(-64, -24), r1_ddot=-640 - 640 - 12 * 30, alpha3=12
     ),
     # Outer dead centre: the rod turns at 2 rad/s, the other way, and does not accelerate.
     given(r2=40, r3=120, theta2=0, omega2=-6).gives(

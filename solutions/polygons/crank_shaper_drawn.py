@@ -387,9 +387,9 @@ def vector_direction(a, n, p, q):
     return turned(p, a, 90), turned(q, n, 90)
 
 
-@mistake("a2", "m", kind="sign")
-def vector_sense(a2, m, q, d2):
-    return 2 * q - a2, 2 * d2 - m
+@mistake("a", "a2", kind="sign")
+def vector_sense(a, a2, p, q):
+    return 2 * p - a, 2 * q - a2
 
 
 @mistake("a", "a2")

@@ -14,11 +14,11 @@ from ._drawn_velocity import *
 SYMBOLS = {"way_B": r"\varepsilon_B", "turn_3": r"\varepsilon_3"}
 
 
-def _bars(r2, r3, theta2):
+def _bars(r2, r3, e, theta2):
     """Vectors OA and AB; the rate of AB over that of OA."""
     pin = polar(r2, theta2)
-    reach = SliderCrank(r2, r3, 0.0 * r2).run(Degrees(theta2))
-    return pin, reach - 1j * pin.imag, -pin.real / reach
+    reach = SliderCrank(r2, r3, e).run(Degrees(theta2))
+    return pin, reach + 1j * (e - pin.imag), -pin.real / reach
 
 
 def _images(_bars, omega2):
@@ -90,9 +90,9 @@ def omega3_of_V_B(kv, pv_b, r3, omega3):
 
 
 @judge
-def drawing(answers, r2, r3, theta2, omega2):
+def drawing(answers, r2, r3, e, theta2, omega2):
     """Any pole and any scale; see :mod:`coursework.drawn`."""
-    bars = _bars(r2, r3, theta2)
+    bars = _bars(r2, r3, e, theta2)
     _, rod, _ = bars
     of_rod = {"crank_for_rod": ("a", "b", 1 / r2), "omega3_of_V_B": ("p_v", "b", 1 / r3)}
     asked = Asked(
@@ -117,15 +117,15 @@ def _polygon(bars, omega2, scale=None):
     )
 
 
-def polygons(r2, r3, theta2, omega2, kv):
+def polygons(r2, r3, e, theta2, omega2, kv):
     """At the scale of the answers."""
-    return (_polygon(_bars(r2, r3, theta2), omega2, kv),)
+    return (_polygon(_bars(r2, r3, e, theta2), omega2, kv),)
 
 
-def residual(r2, r3, theta2, omega2, kv, a, b, ab, pv_b, r1_dot, omega3):
+def residual(r2, r3, e, theta2, omega2, kv, a, b, ab, pv_b, r1_dot, omega3):
     """The rod turned as a complex exponential; b on the guide, at its rate from a."""
     A = r2 * np.exp(1j * np.radians(theta2))
-    rod = r3 * np.exp(-1j * np.arcsin(A.imag / r3))
+    rod = r3 * np.exp(-1j * np.arcsin((A.imag - e) / r3))
     z_a, z_b = (q[..., 0] + 1j * q[..., 1] for q in (a, b))
     size = r2 * abs(omega2)
     return (
@@ -141,6 +141,12 @@ KNOWN = (
     # Crank upright: the rod translates, and the piston goes left at the speed of the pin.
     given(r2=30, r3=50, theta2=90, omega2=8).gives(
         kv=2, a=(-120, 0), b=(-120, 0), ab=0, pv_b=120, r1_dot=-240, omega3=0
+    ),
+    # With an offset, crank upright and the rod (40, 30): it translates all the same.
+    given(r2=30, r3=50, e=60, theta2=90, omega2=8).gives(b=(-120, 0), ab=0, r1_dot=-240, omega3=0),
+    # With an offset, crank level and the rod (40, 30): it turns as fast as the crank, the other way.
+    given(r2=40, r3=50, e=30, theta2=0, omega2=4).gives(
+        kv=2, a=(0, 80), b=(60, 0), ab=100, pv_b=60, r1_dot=120, omega3=-4
     ),
     # Rod and crank equal: an isosceles triangle, r1 = 2 r2 cos theta2.
     given(r2=100, r3=100, theta2=60, omega2=5).gives(

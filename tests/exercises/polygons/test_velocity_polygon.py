@@ -1,6 +1,11 @@
 """Drawn velocity polygons: against the exercises that compute the same motion."""
 
+import cmath
+import math
+import random
+
 import pytest
+from paper_student import Student, rounded
 
 import coursework
 
@@ -74,3 +79,45 @@ def test_a_right_length_on_a_wrong_drawing_is_right_and_one_of_the_drawing_follo
     marking = variant.grade({**given, "pv_b": own})
     assert marking["pv_b"].verdict == "follow_through"
     assert marking["b"].verdict == "mistake:ba_direction"
+
+
+def test_most_slider_cranks_are_offset_to_either_side_and_some_are_not():
+    for name in ("velocity_polygon_slider", "acceleration_polygon_slider"):
+        offsets = [v.given["e"] for v in COURSE[name].variants(range(200))]
+        assert 40 < sum(e == 0 for e in offsets) < 120
+        assert min(offsets) < -20
+        assert max(offsets) > 20
+
+
+@pytest.mark.parametrize("name", ["velocity_polygon_slider", "acceleration_polygon_slider"])
+def test_a_record_of_the_first_version_has_no_offset_and_is_solved(name):
+    exercise = COURSE[name]
+    variant = next(v for v in exercise.variants(range(20)) if v.given["e"] == 0)
+    record = {**variant.record, "version": 1}
+    record["given"] = {n: v for n, v in record["given"].items() if n != "e"}
+    old = exercise.from_record(record)
+    numbers = ("r1_dot", "omega3") if name.startswith("velocity") else ("r1_ddot", "alpha3")
+    for quantity in numbers:
+        assert old.solution()[quantity] == pytest.approx(variant.solution()[quantity], rel=1e-14)
+
+
+def test_a_careful_student_has_the_drawing_of_an_offset_slider_crank():
+    chance = random.Random(2)
+    for variant in SLIDER.variants(range(40)):
+        given = variant.given
+        crank = cmath.rect(given["r2"], math.radians(given["theta2"]))
+        theta3 = math.degrees(math.asin((given["e"] - crank.imag) / given["r3"]))
+        rod = cmath.rect(given["r3"], math.radians(round(theta3, 1)))
+        student = Student(chance, abs(given["omega2"] * crank))
+        student.lay_off("a", "p", 1j * given["omega2"] * crank)
+        student.cross("b", "a", 1j * rod, "p", 1 + 0j)
+        answers = {
+            **student.points(),
+            "kv": rounded(student.scale),
+            "ab": student.measured("a", "b"),
+            "pv_b": student.measured("p", "b"),
+            "r1_dot": rounded(student.vector("p", "b").real),
+            "omega3": rounded((student.vector("a", "b") / (1j * rod)).real),
+        }
+        marking = variant.grade(answers)
+        assert {n: marking[n].verdict for n in answers} == dict.fromkeys(answers, "correct"), variant.seed
