@@ -63,7 +63,7 @@ class Torsor(Kind):
         gaps = None if np.shape(value) != reference.shape else offset(value, reference)
         if gaps is None:
             return np.full(reference.shape, math.inf)
-        found, whole = np.zeros(reference.shape), self.size(reference)
+        found, whole = np.zeros(reference.shape), float(np.max(np.abs(reference)))
         for places, room in zip(self._places(len(reference)), (0.0, envelope), strict=True):
             size = float(np.max(np.abs(reference[places])))
             width = max(part.half_width(size), room)
@@ -76,7 +76,9 @@ class Torsor(Kind):
         return float(np.max(self._gaps(part, value, reference, envelope)))
 
     def size(self, reference: Any) -> float:
-        return float(np.max(np.abs(reference)))
+        """The largest moment: the margin that is told is that of the second column; of a torsor without moments, the resultant."""
+        whole = np.abs(np.asarray(reference, dtype=float))
+        return float(np.max(whole[self._places(len(whole))[1]])) or float(np.max(whole))
 
     def is_trivial(self, value: Any) -> bool:
         return not np.any(value)

@@ -130,7 +130,9 @@ def tolerance_words(part: Part, lang: str) -> str:
         return ""
     table = engine_words(lang)["accepted"]
     percent = localise(plain(round(100 * part.rtol, 6)), lang)
-    share = table["share_of_largest" if part.sort.of_largest else "share"].format(percent)
+    of_column = len(part.sort.units(part.unit)) > 1
+    largest = "share_of_column" if of_column else "share_of_largest"
+    share = table[largest if part.sort.of_largest else "share"].format(percent)
     absolute = localise(plain(part.atol), lang)
     if part.atol and part.unit == "deg":
         fixed = table["degrees"].format(absolute)

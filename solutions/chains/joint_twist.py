@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from coursework.errors import WrongValue
 from coursework.quantities.columns import each, vector
 from coursework.solids import aligned, each_distinct, joints_of, moved, twist_components, wrench_components
 from coursework.solids.torsors import TWIST, WRENCH
@@ -44,6 +45,11 @@ def wrench_1_at_2(joints, _known):
 
 def _second(joints):
     """A2, whether or not the point counts for the joint there."""
+    if len(joints) < 2 or "point" not in joints[1]:
+        raise WrongValue(
+            "A2 is the 'point' of the second joint of the list, which a joint without a point of its own has too; "
+            f"found {len(joints)} joints"
+        )
     x, y, z = joints[1]["point"]
     return float(x), float(y), float(z)
 

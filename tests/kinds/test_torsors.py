@@ -121,6 +121,18 @@ def test_each_column_has_its_own_margin():
             assert (TWIST.sort.distance(TWIST, value, big) <= 1) is right, place
 
 
+def test_the_margin_that_is_told_is_that_of_the_moments():
+    light = np.array([500.0, 0.0, 0.0, 0.0, 0.0, 20.0])
+    assert WRENCH.half_width(WRENCH.sort.size(light)) == pytest.approx(0.2)
+    assert WRENCH.half_width(WRENCH.sort.size(np.array([500.0, 0.0, 0.0, 0.0, 0.0, 0.0]))) == pytest.approx(
+        5.0
+    )
+    off = light + np.array([0.0, 0.0, 4.9, 0.0, 0.19, 0.0])
+    assert WRENCH.sort.distance(WRENCH, off, light) <= 1
+    off[4] = 0.21
+    assert WRENCH.sort.distance(WRENCH, off, light) > 1
+
+
 def test_noughts_count():
     value = np.array([0.0, 0.0, 5.0, 10.0, 20.0, 1.0])
     assert TWIST.sort.distance(TWIST, value, SPIN) > 1

@@ -8,6 +8,7 @@ import pytest
 from exact_joints import actions, cross, exact_rank, motions
 
 import coursework
+from coursework.errors import WrongValue
 from coursework.kinds.kind import kind_of
 from coursework.solids import in_series, joints_of, twist_components, wrench_components
 
@@ -162,3 +163,5 @@ def test_a_caller_gives_joints_and_data_of_their_own():
     assert found["twist_1"] == "wx wy wz vx vy vz"
     assert found["twist_1_at_2"] == found["twist_1"], "A2 is on the axis"
     assert found["twist_both"] == "0"
+    with pytest.raises(WrongValue, match="second joint"):
+        EXERCISE.solve(joints=tilted[:1], only="twist_1_at_2")

@@ -82,6 +82,34 @@ def test_a_pair_of_gears_turns_along_any_line_of_action_but_through_an_axis():
     assert EXERCISE.solve(joints=gears((1, 0, 0)), only=("rc", "m", "h")) == {"rc": 2, "m": 2, "h": 1}
 
 
+def test_the_three_loop_shaper_of_the_notes_is_given_as_it_stands():
+    """Figure 14: a four-bar whose coupler ABE drives a block on the bar DF, and by a rod a ram; the bar is at any angle."""
+    shaper = coursework.open_course()["three_loop_shaper"]
+    for seed in range(5):
+        variant = shaper.variant(seed)
+        g, at = variant.given, variant.quantities(("theta3", "theta4", "theta5", "theta7"))
+        along = {k: np.radians(float(at[k])) for k in ("theta3", "theta4", "theta5", "theta7")}
+
+        def from_(place, length, angle):
+            return place + g[length] * np.exp(1j * angle)
+
+        A, C, D = from_(0, "r2", np.radians(g["theta2"])), g["xC"] + 1j * g["yC"], g["xD"] + 1j * g["yD"]
+        B, F = from_(C, "r4", along["theta4"]), from_(D, "r5", along["theta5"])
+        E, G = from_(A, "r6", along["theta3"] + np.radians(g["beta"])), from_(F, "r7", along["theta7"])
+        pins = [(0, 1, 0j), (1, 2, A), (2, 3, B), (3, 0, C), (2, 4, E), (5, 0, D), (5, 6, F), (6, 7, G)]
+        joints = [
+            {"between": [i, j], "joint": "revolute", "axis": Z, "point": (z.real, z.imag, 0)}
+            for i, j, z in pins
+        ]
+        bar = np.exp(1j * along["theta5"])
+        joints += [
+            {"between": [4, 5], "joint": "prismatic", "axis": (bar.real, bar.imag, 0)},
+            {"between": [7, 0], "joint": "prismatic", "axis": (1, 0, 0)},
+        ]
+        found = EXERCISE.solve(joints=joints, only=("n", "gamma", "Nc", "m", "h"))
+        assert found == {"n": 7, "gamma": 3, "Nc": 10, "m": 1, "h": 0}
+
+
 def test_four_bodies_with_inclined_joints_against_whole_numbers():
     """Plane chains of any slopes and of one loop or two, by exact motions of the bodies."""
     rng = np.random.default_rng(11)
