@@ -170,6 +170,11 @@ def lever_point_as_fast_as_the_pin(r2, omega2):
     return r2 * abs(omega2)
 
 
+@mistake("v_rel", kind="sign")
+def sliding_the_other_way(v_rel):
+    return -v_rel
+
+
 @mistake("v_rel")
 def lever_at_rest(r2, omega2, theta2, theta3):
     return -r2 * omega2 * cos(theta2 - theta3)
