@@ -79,6 +79,17 @@ def theta4(r1, r2, theta2, rho, theta3):
     return angle(polar(r2, theta2) + polar(rho, theta3) - r1)
 
 
+def _across(side, _lever):
+    """The sine of theta4 - theta3: the angle ACD, with the sign of the mode."""
+    return side * np.sin(_lever.transmission_angle)
+
+
+def _rate_of_sliding(r1, r2, omega2, theta2, d, v_rel, rho, _across, _lever):
+    """The derivative of v_rel = -r1 r2 omega2 sin(theta2) / (d sin(theta4 - theta3)), in which no large terms cancel."""
+    turning = v_rel**2 * np.cos(_lever.transmission_angle) / rho
+    return (turning - r1 * r2 * omega2**2 * cos(theta2) / d) / _across
+
+
 def tau(theta3):
     """The tangent, from which the normal is 90 degrees ahead."""
     return wrap(theta3 - 90)
@@ -94,7 +105,7 @@ def v_A4(AD, omega4):
     return AD * abs(omega4)
 
 
-@stable(lambda rho, omega2, _lever: rho * (_lever.coupler_ratio - _lever.rocker_ratio) * omega2)
+@stable(lambda r1, r2, omega2, theta2, d, _across: -r1 * r2 * omega2 * sin(theta2) / (d * _across))
 def v_rel(r2, omega2, theta2, theta3, omega4, d, theta4, rho):
     """The difference of their velocities along the tangent."""
     return omega4 * (d * cos(theta4 - theta3) - rho) - r2 * omega2 * cos(theta2 - theta3)
@@ -125,7 +136,7 @@ def alpha4(r2, omega2, theta2, theta3, omega4, d, theta4, rho, a_rel_n, a_coriol
     ) / (d * sin(theta4 - theta3))
 
 
-@stable(lambda rho, omega2, _lever: rho * (_lever.coupler_gain - _lever.rocker_gain) * omega2**2)
+@stable(_rate_of_sliding)
 def a_rel_t(r2, omega2, theta2, theta3, alpha4, d, theta4, rho, omega4):
     """The accelerations along the tangent: what is left to the pin's own motion in the slot."""
     return (
@@ -168,6 +179,11 @@ def speed_of_C_for_that_of_A4(d, omega4):
 @mistake("v_A4")
 def lever_point_as_fast_as_the_pin(r2, omega2):
     return r2 * abs(omega2)
+
+
+@mistake("v_rel", kind="sign")
+def sliding_the_other_way(v_rel):
+    return -v_rel
 
 
 @mistake("v_rel")

@@ -131,6 +131,11 @@ def derivatives_by_the_share_of_the_rise(h, u):
     return 30 * h * (u**2 - 2 * u**3 + u**4), 60 * h * (u - 3 * u**2 + 2 * u**3)
 
 
+@mistake("q", "s2", "q_max")
+def rise_in_degrees(q, s2, q_max, b, beta):
+    return q * (b / beta), s2 * (b / beta) ** 2, q_max * (b / beta)
+
+
 @mistake("v")
 def speed_of_the_point_of_the_cam(Rb, s, omega):
     return (Rb + s) * omega
