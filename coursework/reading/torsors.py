@@ -20,6 +20,7 @@ from coursework.reading.units import parse_unit, plain_unit, same_dimension
 from coursework.reading.vocabulary import MAX_LENGTH, Unreadable
 
 _MOST = 10 * MAX_LENGTH  #: characters of a torsor
+_MOST_NESTED = 8  #: brackets about all of it
 
 
 class Form(NamedTuple):
@@ -184,8 +185,10 @@ def _is_title(text: str) -> bool:
     return not re.search(r"(?<![\w/_{])\d", text)
 
 
-def _opened(text: str) -> tuple[str, str]:
+def _opened(text: str, nested: int = 0) -> tuple[str, str]:
     """What stands inside the brackets about all of it, and the units behind."""
+    if nested > _MOST_NESTED:
+        raise Stop("wrong_torsor", text)
     place = _end_of_first(text)
     behind = text[place + 1 :]
     if text[:1] not in ("[", "(", "{") or place < 0 or _ANOTHER_GROUP.match(behind):
@@ -193,7 +196,7 @@ def _opened(text: str) -> tuple[str, str]:
     if not any(mark in text[1:place] for mark in " ;,|\n[({"):
         return text, ""
     behind = _INDEX.sub("", behind, count=1) if _INDEX.match(behind) else behind
-    inside, more = _opened(text[1:place].strip())
+    inside, more = _opened(text[1:place].strip(), nested + 1)
     return inside, f"{more} {behind}".strip(" .")
 
 
@@ -397,7 +400,7 @@ def _named_components(text: str, form: Form) -> set[str] | None:
     pieces = [piece for piece in re.split(r"\s*[,;|\n]\s*|\s+(?:et|and)\s+|\s+", plain) if piece]
     places = [component_place(piece, form) for piece in pieces]
     known = [place for place in places if place is not None]
-    return {form.names[place] for place in known} if len(known) == len(pieces) else None
+    return {form.names[place] for place in known} if known and len(known) == len(pieces) else None
 
 
 def _marked(text: str, form: Form) -> set[str]:

@@ -102,6 +102,24 @@ def test_what_is_no_torsor_is_told_so(answer):
     assert TWIST.sort.faults.get(reading.code, reading.code) in ("not_torsor", "unknown_unit")
 
 
+@pytest.mark.parametrize(
+    "answer",
+    [
+        "(" * 900 + "0 0 5 10 20 0" + ")" * 900,
+        "{" * 3000,
+        "[[[[" * 500,
+        "0 " * 5000,
+        "; | " * 900,
+        "=" * 3000,
+        "wz_" * 900,
+        "{0 0 5 | " * 300,
+    ],
+)
+@pytest.mark.parametrize("part", [TWIST, MAY_MOVE], ids=lambda part: part.kind)
+def test_hostile_texts_are_refused(part, answer):
+    assert read(part, answer, SPIN).status == "unreadable"
+
+
 def test_a_unit_of_another_kind_is_told():
     assert read(TWIST, "{0 0 5 | 10 20 0} kg", SPIN).status == "wrong_unit"
     assert read(TWIST, "{0 0 5 N | 10 20 0}", SPIN).status == "wrong_unit"

@@ -82,6 +82,11 @@ def test_a_pair_of_gears_turns_along_any_line_of_action_but_through_an_axis():
     assert EXERCISE.solve(joints=gears((1, 0, 0)), only=("rc", "m", "h")) == {"rc": 2, "m": 2, "h": 1}
 
 
+def from_(place, length, angle):
+    """A point at the end of a link, as a complex number."""
+    return place + length * np.exp(1j * angle)
+
+
 def test_the_three_loop_shaper_of_the_notes_is_given_as_it_stands():
     """Figure 14: a four-bar whose coupler ABE drives a block on the bar DF, and by a rod a ram; the bar is at any angle."""
     shaper = coursework.open_course()["three_loop_shaper"]
@@ -90,12 +95,9 @@ def test_the_three_loop_shaper_of_the_notes_is_given_as_it_stands():
         g, at = variant.given, variant.quantities(("theta3", "theta4", "theta5", "theta7"))
         along = {k: np.radians(float(at[k])) for k in ("theta3", "theta4", "theta5", "theta7")}
 
-        def from_(place, length, angle):
-            return place + g[length] * np.exp(1j * angle)
-
-        A, C, D = from_(0, "r2", np.radians(g["theta2"])), g["xC"] + 1j * g["yC"], g["xD"] + 1j * g["yD"]
-        B, F = from_(C, "r4", along["theta4"]), from_(D, "r5", along["theta5"])
-        E, G = from_(A, "r6", along["theta3"] + np.radians(g["beta"])), from_(F, "r7", along["theta7"])
+        A, C, D = from_(0, g["r2"], np.radians(g["theta2"])), g["xC"] + 1j * g["yC"], g["xD"] + 1j * g["yD"]
+        B, F = from_(C, g["r4"], along["theta4"]), from_(D, g["r5"], along["theta5"])
+        E, G = from_(A, g["r6"], along["theta3"] + np.radians(g["beta"])), from_(F, g["r7"], along["theta7"])
         pins = [(0, 1, 0j), (1, 2, A), (2, 3, B), (3, 0, C), (2, 4, E), (5, 0, D), (5, 6, F), (6, 7, G)]
         joints = [
             {"between": [i, j], "joint": "revolute", "axis": Z, "point": (z.real, z.imag, 0)}
