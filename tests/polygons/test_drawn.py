@@ -11,6 +11,7 @@ import pytest
 import coursework
 from coursework.errors import BadCourse, UnknownName, WrongValue
 from coursework.model import Exercise, Part, drawn
+from coursework.polygons import Polygon, Side, image
 from coursework.polygons.hand_drawn import TOLERANCE_MM, judge_drawing, vector_fault
 
 COURSE = coursework.open_course()
@@ -146,7 +147,9 @@ def test_nothing_is_accepted_that_is_three_tolerances_off_its_vector(name):
                 step = cmath.rect(chance.uniform(2.05, 60), chance.uniform(0, 6.3))
                 wrong = {**points, point: points[point] + step}
                 off = max(abs((step * s.along.conjugate()).imag) if s.is_line else abs(step) for s in sides)
-                assert judge_drawing(polygon, wrong, scale).is_right(point) == (off <= 2 * TOLERANCE_MM)
+                found = judge_drawing(polygon, wrong, scale)
+                # Along a vector whose like the others are, the point is that of another scale, which is told.
+                assert found.is_right(point) == (off <= 2 * TOLERANCE_MM) or not found.fits_stated_scale
 
 
 def test_a_drawing_turned_or_mirrored_is_another_drawing():
@@ -293,3 +296,57 @@ def test_a_scale_that_makes_any_drawing_small_explains_no_number(name):
         scale = next(i for i in reads if i in ("kv", "ka"))
         marking = variant.grade({**dict.fromkeys(reads, "7.7e7"), scale: "1e6"})
         assert {marking[i].points for i in reads} == {0}
+
+
+# ------------------------------------------------------------------------- in proportion
+
+
+def lever():
+    """A point of a lever by two lines, another of the same lever by proportion, then one more by two lines."""
+    along = cmath.exp(1.1j)
+    of_block, across = 300 * cmath.exp(2.4j), 1j * along
+    of_lever = across * (of_block / across).real
+    of_end = 1.6 * of_lever
+    rod = 1j * cmath.exp(0.2j)
+    of_ram = (of_end + rod * -of_end.imag / rod.imag).real
+    return Polygon(
+        "velocity",
+        (
+            Side("p", "a", "A", of_block, "across", "known"),
+            Side("b", "a", "slide", of_block - of_lever, "along", way=along),
+            Side("p", "b", "B", of_lever, "across", way=across),
+            image("p", "d", "D", of_end, ("p", "b"), "OD / OB"),
+            Side("d", "e", "rod", of_ram - of_end, "square to the rod", way=rod),
+            Side("p", "e", "E", of_ram, "along x", way=1),
+        ),
+    )
+
+
+def test_a_point_in_proportion_is_judged_by_the_students_own():
+    polygon, scale = lever(), 3.0
+    points = on_paper(polygon, scale, 5 + 5j)
+    assert not judge_drawing(polygon, points, scale).faults
+    wrong_b = points["b"] + 9 * polygon.side("p", "b").along
+    enlarged = points["p"] + 1.6 * (wrong_b - points["p"])
+    rod = polygon.side("d", "e").along
+    own_e = complex((enlarged - rod * ((enlarged - points["p"]).imag / rod.imag)).real, points["p"].imag)
+    found = judge_drawing(polygon, {**points, "b": wrong_b, "d": enlarged, "e": own_e}, scale)
+    assert set(found.faults) == {"b"}
+    assert found.follows("d")
+    assert found.follows("e")
+
+
+def test_a_point_out_of_proportion_is_at_fault_and_one_of_nothing_drawn_too():
+    polygon, scale = lever(), 3.0
+    points = on_paper(polygon, scale, 0j)
+    fault = judge_drawing(polygon, {**points, "d": points["b"]}, scale).faults["d"]
+    assert (fault.kind, fault.side) == ("length", polygon.side("p", "d"))
+    spot = {**points, "b": 0j, "d": 0j}
+    assert "d" in judge_drawing(polygon, spot, scale).faults
+
+
+def test_a_proportion_of_points_that_are_not_found_is_refused():
+    with pytest.raises(BadCourse, match="both found"):
+        Polygon("velocity", (image("p", "d", "D", 3, ("p", "b"), "2"),))
+    with pytest.raises(BadCourse, match="state its length"):
+        Side("p", "d", "D", 3, "along", image=("p", "b"))
