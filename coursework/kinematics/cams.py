@@ -20,16 +20,15 @@ def rise_345(u: Any) -> tuple[Any, Any, Any]:
     return u**3 * (10.0 - 15.0 * u + 6.0 * u**2), 30.0 * (u * left) ** 2, 60.0 * u * left * (1.0 - 2.0 * u)
 
 
-def rise_dwell_return(u: Any, dwell: Any, turn: Any) -> tuple[Any, Any, Any]:
-    """Lift at the cam angle ``u``, and its first and second derivatives by ``u``; every angle counted in rises.
+def rise_dwell_return(u: Any, dwell: Any, turn: Any) -> tuple[Any, Any]:
+    """How far a follower is in its rise at the cam angle ``u``, 0 to 1, and +1, or -1 where it returns; angles in rises.
 
-    The follower rises while u goes from 0 to 1, stays up during ``dwell``, returns as it rose, and stays down for the rest of
-    the ``turn``, which is longer than ``2 + dwell``. ``u`` is no more than a turn from 0 either way.
+    It rises while u goes from 0 to 1, stays up during ``dwell``, returns as it rose, and stays down for the rest of the
+    ``turn``, which is longer than ``2 + dwell``. ``u`` is no more than a turn from 0 either way.
     """
     after = u - 1.0 - dwell / 2.0  # the middle of the dwell, about which all is symmetric
     away = np.minimum(abs(after), abs(turn - abs(after)))
     rising = (u >= 0) & (u <= 1)
     share = np.where(rising, u, 1.0 + dwell / 2.0 - away)[()]
     before = (after <= 0) == (abs(after) <= turn / 2.0)
-    lift, slope, bend = rise_345(share)
-    return lift, np.where(before, slope, -slope)[()], bend
+    return np.minimum(np.maximum(share, 0.0), 1.0), np.where(before, 1.0, -1.0)[()]

@@ -30,8 +30,9 @@ def rising(theta, beta):
 
 def law(h, theta, beta):
     """Lift and its two derivatives by the cam angle."""
-    lift, slope, bend = rise_dwell_return(wrap(theta) / beta, DWELL / beta, 360 / beta)
-    return h * lift, h * slope / np.radians(beta), h * bend / np.radians(beta) ** 2
+    share, way = rise_dwell_return(wrap(theta) / beta, DWELL / beta, 360 / beta)
+    lift, slope, bend = rise_345(share)
+    return h * lift, way * h * slope / np.radians(beta), h * bend / np.radians(beta) ** 2
 
 
 def least(h, beta):

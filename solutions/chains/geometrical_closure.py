@@ -2,7 +2,7 @@
 
 from coursework.degrees import atan, atan2, cos, polar, sin
 from coursework.figures import Figure, angle_mark, ball, ground_pivot, line, slot_link, vector
-from coursework.solution import Moving, given, mistake
+from coursework.solution import Moving, given, mistake, stable
 
 UNITS = {"y": "mm"}
 SYMBOLS = {"y": "y"}
@@ -50,6 +50,7 @@ def ratio(omega3, omega1):
     return omega3 / omega1
 
 
+@stable(lambda R, e, h: atan2(2 * R * h, h**2 - (R - e) * (R + e)))
 def swing(R, e, h):
     """Between the two places of the ball farthest along y."""
     return atan((R + e) / h) + atan((R - e) / h)

@@ -1,7 +1,6 @@
 """Cam with a flat-faced follower: solution. All follows from the lift and its two derivatives by the cam angle.
 
-The formulas are those of the rise; over the whole turn the law of the numeric core gives the same there, and the dwells and the
-return beyond.
+The formulas are those of the rise; they hold over the whole turn, with the share of the rise that the follower has at each angle.
 """
 
 from math import pi
@@ -11,7 +10,7 @@ import numpy as np
 from coursework.degrees import polar, wrap
 from coursework.errors import Undefined
 from coursework.figures import Figure, circle, contact, dimension, ground_pivot, line, link, point, profile
-from coursework.kinematics.cams import rise_dwell_return
+from coursework.kinematics.cams import rise_345, rise_dwell_return
 from coursework.solution import Moving, formula, given, mistake, stable
 
 UNITS = {
@@ -33,8 +32,8 @@ EFFECTS = {"position": ("s", "q"), "velocity": ("v",), "acceleration": ("a",)}
 DWELL, TURN = 40, 360
 
 
-def _law(theta, _fitting):
-    """Lift over the whole turn, and its derivatives by the share of the rise."""
+def _place(theta, _fitting):
+    """Over the whole turn: how far in the rise, and whether up or down."""
     return rise_dwell_return(wrap(theta) / _fitting, DWELL / _fitting, TURN / _fitting)
 
 
@@ -55,23 +54,24 @@ def b(_fitting):
 
 
 @formula(r"\frac{<theta>}{<beta>}")
-def u(theta, _fitting):
+def u(_place):
     """Share of the rise."""
-    return wrap(theta) / _fitting
+    return _place[0]
 
 
-@stable(lambda h, _law: h * _law[0])
+@stable(lambda h, u: h * rise_345(u)[0])
 def s(h, u):
     return h * (10 * u**3 - 15 * u**4 + 6 * u**5)
 
 
-@stable(lambda h, b, _law: h * _law[1] / b)
-def q(h, u, b):
+@formula(r"\frac{30 \times <h> \times \left(<u>^2 - 2 \times <u>^3 + <u>^4\right)}{<b>}")
+@stable(lambda h, b, u, _place: _place[1] * h * rise_345(u)[1] / b)
+def q(h, u, b, _place):
     """The slope of the lift, by the angle in radians: the point of contact is so far from the follower's line."""
-    return 30 * h * (u**2 - 2 * u**3 + u**4) / b
+    return 30 * h * (u**2 - 2 * u**3 + u**4) / b * _place[1]
 
 
-@stable(lambda h, b, _law: h * _law[2] / b**2)
+@stable(lambda h, b, u: h * rise_345(u)[2] / b**2)
 def s2(h, u, b):
     """Its second derivative."""
     return 60 * h * (u - 3 * u**2 + 2 * u**3) / b**2
@@ -198,8 +198,9 @@ def motion(Rb, s, q, v, a):
 
 def _outline(h, beta, b, Rb, around):
     """The cam at the angle 0: the contact that each angle has, turned back."""
-    lift, slope, _ = _law(around, beta)
-    return (h * slope / b + 1j * (Rb + h * lift)) * polar(1, -around)
+    share, way = _place(around, beta)
+    lift, slope, _ = rise_345(share)
+    return (way * h * slope / b + 1j * (Rb + h * lift)) * polar(1, -around)
 
 
 def figure(h, beta, b, Rb, theta, s, q, rho, theta_c):

@@ -30,17 +30,26 @@ def test_outside_the_rise_the_follower_rests():
 def test_it_returns_as_it_rose_wherever_the_turn_is_begun():
     dwell, turn = 0.5, 6.0
     u = np.linspace(0, 1, 41)
-    up = rise_dwell_return(u, dwell, turn)
-    back = rise_dwell_return(2 + dwell - u, dwell, turn)
-    earlier = rise_dwell_return(2 + dwell - u - turn, dwell, turn)
-    for way, one, other, before in zip((1, -1, 1), up, back, earlier, strict=True):
-        np.testing.assert_allclose(one, way * other, atol=1e-13)
-        np.testing.assert_allclose(other, before, atol=1e-13)
+    up, ups = rise_dwell_return(u, dwell, turn)
+    back, downs = rise_dwell_return(2 + dwell - u, dwell, turn)
+    earlier, before = rise_dwell_return(2 + dwell - u - turn, dwell, turn)
+    np.testing.assert_array_equal(up, u)
+    np.testing.assert_allclose(back, u, atol=1e-15)
+    np.testing.assert_allclose(earlier, u, atol=1e-15)
+    assert (ups == 1).all()
+    assert (downs == -1).all()
+    assert (before == -1).all()
+
+
+def test_between_it_stays_up_and_down():
+    share, _ = rise_dwell_return(np.array([1.1, 1.4, 2.6, 4.0, 5.9, -0.1, -3.0]), 0.5, 6.0)
+    np.testing.assert_array_equal(share, [1, 1, 0, 0, 0, 0, 0])
 
 
 def test_numbers_of_mpmath_keep_their_digits():
     with mpmath.workdps(50):
-        third = mpmath.mpf(1) / 3
-        lift, slope, _ = rise_dwell_return(third, mpmath.mpf(1), mpmath.mpf(4))
+        share, way = rise_dwell_return(mpmath.mpf(1) / 3, mpmath.mpf(1), mpmath.mpf(4))
+        lift, slope, _ = rise_345(share)
+        assert way == 1
         assert abs(lift - mpmath.mpf(17) / 81) < mpmath.mpf("1e-48")
         assert abs(slope - mpmath.mpf(40) / 27) < mpmath.mpf("1e-48")
