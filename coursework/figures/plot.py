@@ -19,6 +19,7 @@ from coursework.language.numbers import localise, significant
 _WIDTH, _HEIGHT = 112.0, 26.0  #: of a panel, mm
 _LEFT, _RIGHT, _TOP, _BOTTOM, _GAP = 19.0, 5.0, 7.5, 11.5, 9.5
 _SMALL = 0.78  #: size of the numbers on the axes, relative to a label
+_LEAST = 3  #: numbers on an axis
 LINE, RIGHT, WRONG, GRID = "#1b3a57", "#1b7a4b", "#b3261e", "#d5d9de"
 
 
@@ -257,8 +258,12 @@ def _ticks(low: float, high: float, count: int) -> list[float]:
     """Round values between two, about so many."""
     rough = (high - low) / count
     power = 10.0 ** math.floor(math.log10(rough))
-    step = next(m * power for m in (1, 2, 5, 10) if m * power >= rough * (1 - 1e-9))
-    first, last = math.ceil(low / step - 1e-6), math.floor(high / step + 1e-6)
+    larger = [m * power for m in (1, 2, 5, 10) if m * power >= rough * (1 - 1e-9)]
+    # A coarse step may leave two values, which say little of a scale.
+    for step in (larger[0], larger[0] / 2):
+        first, last = math.ceil(low / step - 1e-6), math.floor(high / step + 1e-6)
+        if last - first >= _LEAST - 1:
+            break
     return [k * step for k in range(first, last + 1)]
 
 

@@ -68,6 +68,12 @@ def _steps(variant: Variant) -> Sequence[Step]:
     return answer_sheet(variant, polygons=False).steps
 
 
+def _blank(part: Part, step: Step, keys: Mapping[str, str], said: Any) -> str:
+    """The room of an answer, behind its symbol where it has one."""
+    form = said["blank" if part.sort.has_symbol else "unnamed"]
+    return str(form.format(symbol=f"${step.symbol}$", key=f"`{keys[part.id]}`"))
+
+
 def told_steps(variant: Variant, level: int, left: Sequence[Part], keys: Mapping[str, str], said: Any) -> str:
     """The steps of the solution as Markdown: whole up to the first blank; from there on no number stands in them.
 
@@ -86,7 +92,7 @@ def told_steps(variant: Variant, level: int, left: Sequence[Part], keys: Mapping
             pieces = [step.words, f"$${chain_on_lines(step)}$$" if step.value else ""]
         else:
             formula = hints.formula(variant, step.name) if level <= WITH_FORMULA or part is None else ""
-            blank = said["blank"].format(symbol=f"${step.symbol}$", key=f"`{keys[part.id]}`") if part else ""
+            blank = _blank(part, step, keys, said) if part else ""
             pieces = [hints.words_of(variant, step.name), formula, blank]
         if any(pieces):
             lines.append(f"**{len(lines) + 1}.** " + "\n\n".join(filter(None, pieces)))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -64,11 +65,10 @@ class Worked(Shown):
         return [*pieces, "\n".join(numbered)]
 
     def _asked(self, question: Question) -> str:
-        symbol = f"${question.symbol}$" if question.symbol else ""
-        unit = f" ({question.unit})" if question.unit else ""
-        cases = "".join(f"\n   - {label}" for _, label in offered(question))
-        prompt = " ".join(question.prompt.split())
-        return f"{prompt}{f' {symbol}{unit}' if symbol else ''}{cases}"
+        cases = "".join(
+            f"\n   - {f'{letter}) ' if letter else ''}{label}" for letter, label in offered(question)
+        )
+        return f"{_named(question)}{cases}"
 
     def _told(self) -> str:
         """The solution, as far as it is told."""
@@ -120,6 +120,19 @@ class Worked(Shown):
             if mark.verdict != "missing"
         )
         return Shown(self.lang, "\n".join(lines))
+
+
+def _named(question: Question) -> str:
+    """What is asked, with its unit, and its symbol where the words do not hold it."""
+    prompt = " ".join(question.prompt.split())
+    if not question.symbol:
+        return prompt
+    unit = f" ({question.unit})" if question.unit else ""
+    first, *rest = re.split(r"(?=[.?](?:\s|$))", prompt, maxsplit=1)
+    bare, symbol = (re.sub(r"[{}\s]", "", text) for text in (first, question.symbol))
+    if f"${symbol}$" in bare or f"${symbol}=" in bare:
+        return f"{first}{unit}{''.join(rest)}"
+    return f"{prompt} ${question.symbol}${unit}"
 
 
 def _leading_to(variant: Variant, wanted: set[str]) -> list[Step]:

@@ -10,7 +10,7 @@ from study_words import BOTH, SAID, flat, start_of
 
 import coursework
 from coursework.errors import UnknownName, WrongValue
-from coursework.figures.plot import Axis, Plot, Spot
+from coursework.figures.plot import Axis, Plot, Spot, _ticks
 from coursework.selfstudy import predictions
 
 
@@ -92,6 +92,14 @@ def test_a_wrong_angle_is_not_drawn_as_if_it_were_nearly_right(lang, here):
     (svg,) = (piece.svg for piece in shown.pieces if hasattr(piece, "svg"))
     # 246.7° is above the curve, which reaches 114°.
     assert re.search(r'h2.8l-1.4 -2z" fill="#b3261e"', svg)
+
+
+@pytest.mark.parametrize(("low", "high"), [(-4.7, 3.6), (-5.5, 3.5), (-1, 1), (40, 110), (0.013, 0.0189)])
+def test_a_scale_has_three_round_numbers_at_least(low, high):
+    ticks = _ticks(low, high, 4)
+    assert 3 <= len(ticks) <= 6
+    assert all(low <= t <= high for t in ticks)
+    assert np.ptp(np.diff(ticks)) < 1e-9 * (high - low)
 
 
 def test_a_plot_says_what_it_cannot_draw():

@@ -6,7 +6,7 @@ import pytest
 
 import coursework
 from coursework.errors import UnknownName, WrongValue
-from coursework.language.words import languages
+from coursework.language.words import languages, words
 
 NAME, PARTS = "four_bar_motion", ("theta3", "omega3")
 
@@ -67,3 +67,26 @@ def test_named_mistakes_are_told_in_the_exercise_s_words(lang):
     told = exercise.variant(0, lang).solution_text
     (lines,) = shown.pieces
     assert lines.splitlines() == ["- " + " ".join(told.sections[f"mistake {n}"].text.split()) for n in names]
+
+
+@pytest.mark.parametrize("lang", languages())
+def test_a_question_names_its_symbol_once(lang):
+    shown = coursework.worked(
+        "four_bar_positions", seed=5, lang=lang, level=4, parts=("a", "theta3_open", "mu")
+    )
+    asked = shown.pieces[-1].splitlines()
+    for line, symbol, unit in zip(
+        asked, ("$a$", r"$\theta_3^{(1)}$", r"$\mu$"), ("mm²", "°", "°"), strict=True
+    ):
+        assert line.replace(" ", "").count(symbol) == 1
+        assert f"({unit})" in line
+
+
+@pytest.mark.parametrize("lang", languages())
+def test_choices_are_lettered_as_their_answer_is(lang):
+    bare = coursework.worked("grashof", seed=1, lang=lang, level=4, parts=("linkage_type",))
+    letter = bare.right[0].rpartition("**")[0].rpartition("**")[2].partition(" ")[0]
+    assert f"\n   - {letter} " in bare.pieces[-1]
+    half = coursework.worked("grashof", seed=5, lang=lang, level=2)
+    assert "linkage" not in half.pieces[-1].rpartition("=")[0].rpartition("\n")[2]
+    assert words(lang)["lesson"]["unnamed"] in half.pieces[-1]
