@@ -62,11 +62,14 @@ FORMS = {
         "theta3 = atan((e - R*sin(theta1))/h)",
         "-theta3 = arctan((R*sin(theta1) - e)/h)",
         "atan2(e - R*sin(theta1); h) = theta3",
+        "cotan(theta3) = h/(e - R*sin(theta1))",
     ),
     "law_dot": (
         "omega3 = -omega1*h*R*cos(theta1)/(h^2 + (e - R*sin(theta1))^2)",
         "omega3/omega1 = -(R/h)*cos(theta1)/(1 + ((R*sin(theta1) - e)/h)^2)",
         "omega3*(1 + ((e - R*sin(theta1))/h)^2) + R*omega1*cos(theta1)/h = 0",
+        "omega3 = -R/h*cos(theta1)*omega1*cos(atan((e - R*sin(theta1))/h))^2",
+        "omega3 = -R/h*cos(theta1)*omega1*cos(atan2(e - R*sin(theta1); h))^2",
     ),
 }
 WRONG = {
@@ -77,9 +80,15 @@ WRONG = {
         "tan(theta3) = e/h - R/h*cos(theta1)",
         "theta3 = atan((R*sin(theta1) - e)/h)",
         "theta3 = asin((e - R*sin(theta1))/h)",
+        "cotan(theta3) = (e - R*sin(theta1))/h",
         "theta3 = 0",
     ),
-    "law_dot": ("omega3 = -omega1*R*cos(theta1)/h", "omega3 = omega1"),
+    "law_dot": (
+        "omega3 = -omega1*R*cos(theta1)/h",
+        "omega3 = omega1",
+        "omega3 = -R/h*cos(theta1)*omega1*cos(atan((e - R*sin(theta1))/h))",
+        "omega3 = -R/h*cos(theta1)*omega1*sin(atan((e - R*sin(theta1))/h))^2",
+    ),
 }
 
 
