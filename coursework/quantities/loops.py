@@ -180,7 +180,10 @@ class Loop:
             both = slide[0] and turn[0]
             factor = "2*" if link.coriolis == 2 else ""
             radial = [(1, slide[1]), (-1, turn[0] and f"{length}*{turn[0]}^2")]
-            transverse = [(1, both and f"{factor}{slide[0]}*{turn[0]}"), (1, turn[1] and f"{length}*{turn[1]}")]
+            transverse = [
+                (1, both and f"{factor}{slide[0]}*{turn[0]}"),
+                (1, turn[1] and f"{length}*{turn[1]}"),
+            ]
         radial, transverse = ([p for p in pieces if p[1]] for pieces in (radial, transverse))
         slips = iter(link.slips)
         radial, transverse = (

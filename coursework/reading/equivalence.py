@@ -127,9 +127,9 @@ def _divisors(equation: Equation) -> list[Expression]:
     return list(found.values())
 
 
-def _hypotenuse(y: Operation, x: Operation = Operation("number", "1")) -> Operation:
-    """What the sine and the cosine of an arctangent divide by: of the triangle of sides y and x."""
-    two = Operation("number", "2")
+def _hypotenuse(y: Operation, x: Operation | None = None) -> Operation:
+    """What the sine and the cosine of an arctangent divide by: of the triangle of sides y and x, 1 unless told."""
+    two, x = Operation("number", "2"), x or Operation("number", "1")
     squares = Operation("sum", "++", (Operation("power", args=(x, two)), Operation("power", args=(y, two))))
     return Operation("call", "sqrt", (squares,))
 
