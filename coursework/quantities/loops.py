@@ -30,13 +30,14 @@ class Link:
     """A vector of a loop as somebody writes it, rightly unless told.
 
     ``swapped``: sine and cosine are exchanged. ``turned``: the sign before the added angle, 0 where it is left out.
-    ``slips``: signs before the terms of its derivative, 0 where one is left out.
+    ``slips``: signs before the terms of its derivative, 0 where one is left out. ``coriolis``: the factor of that term.
     """
 
     vector: Vector
     swapped: bool = False
     turned: int = 1
     slips: tuple[int, ...] = ()
+    coriolis: int = 2
 
     @property
     def name(self) -> str:
@@ -177,8 +178,12 @@ class Loop:
             radial, transverse = [(1, slide[0])], [(1, turn[0] and f"{length}*{turn[0]}")]
         else:
             both = slide[0] and turn[0]
+            factor = "2*" if link.coriolis == 2 else ""
             radial = [(1, slide[1]), (-1, turn[0] and f"{length}*{turn[0]}^2")]
-            transverse = [(1, both and f"2*{slide[0]}*{turn[0]}"), (1, turn[1] and f"{length}*{turn[1]}")]
+            transverse = [
+                (1, both and f"{factor}{slide[0]}*{turn[0]}"),
+                (1, turn[1] and f"{length}*{turn[1]}"),
+            ]
         radial, transverse = ([p for p in pieces if p[1]] for pieces in (radial, transverse))
         slips = iter(link.slips)
         radial, transverse = (
@@ -217,6 +222,8 @@ class Loop:
             for term in range(count):
                 for slip in (-1, 0):
                     yield replace(link, slips=tuple(slip if j == term else 1 for j in range(count)))
+            if order == 2 and self._rates_of(link.vector.length)[0] and self._rates_of(link.vector.angle)[0]:
+                yield replace(link, coriolis=1)
 
         return self._changed(wrong)
 

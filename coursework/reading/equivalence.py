@@ -119,10 +119,19 @@ def _divisors(equation: Equation) -> list[Expression]:
             below = [node.args[0]]
         elif node.kind == "call" and node.name == "tan":
             below = [Operation("call", "cos", node.args)]
+        elif node.kind == "call" and node.name in ("sin", "cos") and node.args[0].name in ("atan", "atan2"):
+            below = [_hypotenuse(*node.args[0].args)]
         for factor in itertools.chain.from_iterable(map(_factors, below)):
             if not factor.constant:
                 found.setdefault(factor, Expression(equation.text, factor))
     return list(found.values())
+
+
+def _hypotenuse(y: Operation, x: Operation | None = None) -> Operation:
+    """What the sine and the cosine of an arctangent divide by: of the triangle of sides y and x, 1 unless told."""
+    two, x = Operation("number", "2"), x or Operation("number", "1")
+    squares = Operation("sum", "++", (Operation("power", args=(x, two)), Operation("power", args=(y, two))))
+    return Operation("call", "sqrt", (squares,))
 
 
 def _powers(

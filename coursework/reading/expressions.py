@@ -246,7 +246,7 @@ class _Parser:
         if len(args) != (2 if name == "atan2" else 1):
             raise self.fail(f"{name} does not take {len(args)} arguments", "not_a_number", self.text)
         self.depth -= 1
-        node = Operation("call", name, args)
+        node = _cotangent(args) if name == "cot" else Operation("call", name, args)
         return self.raised(node, exponent) if exponent else node
 
     def exponent_of_function(self) -> Operation:
@@ -287,6 +287,10 @@ class _Parser:
         if known and known[1] in ("variable", "constant"):
             return Operation("product", "**", (argument, self.power()))
         return argument
+
+
+def _cotangent(args: tuple[Operation, ...]) -> Operation:
+    return Operation("product", "*/", (Operation("call", "cos", args), Operation("call", "sin", args)))
 
 
 def _parse(text: str, vocabulary: Vocabulary, *, tight: bool) -> tuple[Operation, list[bool]]:

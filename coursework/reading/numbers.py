@@ -37,6 +37,7 @@ from coursework.reading.digits import (
 )
 from coursework.reading.expressions import plain_expression
 from coursework.reading.reading import Reading, Stop, bare_value, reading_of, text_of
+from coursework.reading.scales import is_of_paper, restated
 from coursework.reading.spelling import shorten
 from coursework.reading.trees import Expression, Operation, without_idle
 from coursework.reading.units import Unit, parse_unit, plain_unit
@@ -475,9 +476,13 @@ def read_number(text: Any, unit: str, *, thousands: bool = True, proportions: bo
         return _from_real(text)
     if isinstance(text, str) and "\n" in text and _LINES.search(text.replace("\r", "")):
         return Reading(text, "unreadable", code="two_values", found=shorten(" ".join(text.split())))
-    return reading_of(
-        text, lambda plain: _from_amounts(text, read_amounts(plain, target, thousands, proportions))
-    )
+
+    def read(plain: str) -> Reading:
+        texts = restated(plain, unit) if is_of_paper(unit) else (plain,)
+        amounts = [a for one in texts for a in read_amounts(one, target, thousands, proportions)]
+        return _from_amounts(text, amounts)
+
+    return reading_of(text, read)
 
 
 def read_numbers(texts: Sequence[object], unit: str) -> tuple[np.ndarray, np.ndarray]:

@@ -44,6 +44,7 @@ FUNCTIONS: Mapping[str, Callable] = {
     "sin": np.sin,
     "cos": np.cos,
     "tan": np.tan,
+    "cot": lambda x: 1 / np.tan(x),
     "asin": np.arcsin,
     "acos": np.arccos,
     "atan": np.arctan,
@@ -55,6 +56,7 @@ FUNCTIONS: Mapping[str, Callable] = {
 }
 _ALIASES = {
     "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "tg": "tan", "arctg": "atan",
+    "cotan": "cot", "cotg": "cot", "ctg": "cot",
 }  # fmt: skip
 INVERSE = ("asin", "acos", "atan", "atan2")
 _DEGREE_WORDS = ("deg", "degree", "degrees", "degré", "degrés")

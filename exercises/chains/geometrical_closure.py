@@ -104,6 +104,9 @@ EXERCISE = Exercise(
         Part("law", kind="equation", variables=(*LENGTHS, "theta1", "theta3"), parameters=LENGTHS, points=2),
         Part("theta3", unit="deg", kind="angle", points=1),
         Part("q", unit="mm", points=1),
+        Part("angular", kind="choice", choices=("contact", "sum", "law"), points=1),
+        Part("closure_angle", kind="equation", variables=("theta1", "theta3", "epsilon"), points=1),
+        Part("epsilon", unit="deg", points=1),
         Part(
             "law_dot",
             kind="equation",
@@ -116,8 +119,12 @@ EXERCISE = Exercise(
         Part("swing", unit="deg", points=1),
     ),
     figure=figure,
+    version=2,
     symbols={
         "perpendicular": r"\mathrm{perpendicular}",
+        "angular": r"\mathrm{angular}",
+        "closure_angle": r"\mathrm{closure}_{\varepsilon}",
+        "epsilon": r"\varepsilon",
         "closure_y": r"\mathrm{closure}_y",
         "closure_z": r"\mathrm{closure}_z",
         "law": r"\mathrm{law}",

@@ -207,14 +207,14 @@ def _about(share, spread=0.15):
     return (lambda xC: (1 - spread) * share * xC), (lambda xC: (1 + spread) * share * xC)
 
 
-def _equations(loop):
+def _equations(loop, usual=("x", "y")):
     return loop_equations(
         loop,
         SYMBOLS_OF_THE_LOOPS,
         rates=("omega2", "omega3", "omega4", "omega5", "d5_dot", "omega7", "x8_dot"),
         second_rates=("alpha3", "alpha4", "alpha5", "d5_ddot", "alpha7", "x8_ddot"),
         parameters=LENGTHS,
-        usual=("x", "y"),
+        usual=usual,
     )
 
 
@@ -261,6 +261,7 @@ EXERCISE = Exercise(
         *_equations("loop_1"),
         *_equations("loop_2"),
         *_equations("loop_3"),
+        *_equations("loop_4", usual=()),
         Part("theta3", unit="deg", kind="angle", points=2),
         Part("theta4", unit="deg", kind="angle", points=1),
         Part("theta5", unit="deg", kind="angle", points=1),

@@ -1,6 +1,6 @@
 """Ball crank and fork: solution. The vector CA stays in the middle plane of the fork: its product with y3 vanishes."""
 
-from coursework.degrees import atan, atan2, cos, polar, sin
+from coursework.degrees import acos, atan, atan2, cos, polar, sin
 from coursework.figures import Figure, angle_mark, ball, ground_pivot, line, slot_link, vector
 from coursework.solution import Moving, given, mistake, stable
 
@@ -36,6 +36,19 @@ def theta3(y, h):
 
 def q(y, h):
     return (y**2 + h**2) ** 0.5
+
+
+def angular():
+    return "contact"
+
+
+def closure_angle():
+    return "cos(epsilon) = sin(theta1)*cos(theta3)"
+
+
+def epsilon(theta1, theta3):
+    """Between the crank and the normal of the fork's faces, by the product of their vectors."""
+    return acos(sin(theta1) * cos(theta3))
 
 
 def law_dot():
@@ -98,6 +111,16 @@ def height_for_the_distance(h):
     return h
 
 
+@mistake("angular", "closure_angle", "epsilon")
+def angles_added_in_space(theta1, theta3):
+    return "sum", "epsilon = theta1 + theta3", abs(theta1 + theta3)
+
+
+@mistake("closure_angle", "epsilon", kind="arguments")
+def angle_with_the_wrong_axis(theta1, theta3):
+    return "cos(epsilon) = cos(theta1)*cos(theta3)", acos(cos(theta1) * cos(theta3))
+
+
 @mistake("law_dot", "omega3")
 def derivative_of_the_tangent_alone(h, R, theta1, omega1):
     return "omega3*h = -R*cos(theta1)*omega1", -R * cos(theta1) * omega1 / h
@@ -146,7 +169,7 @@ def figure(R, h, e, y, theta3):
     )
 
 
-def residual(R, h, e, theta1, omega1, theta3, q, omega3, ratio, swing):
+def residual(R, h, e, theta1, omega1, theta3, q, epsilon, omega3, ratio, swing):
     """CA in space and its products with the vectors of the fork; their derivative; the ends of the swing."""
     from math import pi
 
@@ -157,11 +180,13 @@ def residual(R, h, e, theta1, omega1, theta3, q, omega3, ratio, swing):
     goes = omega1 * np.array([-R * np.sin(t1), R * np.cos(t1), 0 * t1])
     y3 = np.array([0 * t3, np.cos(t3), np.sin(t3)])
     z3 = np.array([0 * t3, -np.sin(t3), np.cos(t3)])
+    x1 = np.array([np.cos(t1), np.sin(t1), 0 * t1])
     size, speed = R + h, R * abs(omega1)
     ends = [np.arctan2(e - side * R, h) for side in (-1, 1)]
     return (
         (ball_at * y3).sum(axis=0) / size,
         ((ball_at * z3).sum(axis=0) - q) / size,
+        np.cos(np.radians(epsilon)) - (x1 * y3).sum(axis=0),
         ((goes * y3).sum(axis=0) + (ball_at * omega3 * z3).sum(axis=0)) / speed,
         ratio - omega3 / omega1,
         swing * pi / 180 - (ends[0] - ends[1]),
@@ -171,10 +196,10 @@ def residual(R, h, e, theta1, omega1, theta3, q, omega3, ratio, swing):
 KNOWN = (
     # The ball as far out as the axis is deep: the fork at 45 degrees, at the end of its swing.
     given(R=50, h=50, e=0, theta1=90, omega1=4).gives(
-        theta3=-45, q=50 * 2**0.5, omega3=0, ratio=0, swing=90, perpendicular="y3"
+        theta3=-45, q=50 * 2**0.5, omega3=0, ratio=0, swing=90, perpendicular="y3", epsilon=45
     ),
     # The ball right above the axis: the fork upright, and as fast as it can be.
-    given(R=60, h=80, e=30, theta1=30, omega1=2).gives(theta3=0, q=80, omega3=-0.75 * 3**0.5),
+    given(R=60, h=80, e=30, theta1=30, omega1=2).gives(theta3=0, q=80, omega3=-0.75 * 3**0.5, epsilon=60),
     # A 3-4-5 triangle, and an eccentric axis.
     given(R=40, h=80, e=20, theta1=-90, omega1=5).gives(theta3="36.8699", q=100, omega3=0),
     given(R=40, h=80, e=20, theta1=180, omega1=5).gives(omega3=16000 / 6800, ratio=3200 / 6800),

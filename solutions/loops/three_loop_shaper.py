@@ -70,6 +70,10 @@ LOOPS = {
         Vector("xD", 0.0), Vector("yD", pi / 2), Vector("r5", "theta5"), Vector("r7", "theta7"),
         Vector("x8", 0.0, -1), Vector("d3", pi / 2, -1),
     ),
+    "loop_4": (
+        Vector("r2", "theta2"), Vector("r6", "theta3", turn="beta"), Vector("r5", "theta5"), Vector("d5", "theta5", -1),
+        Vector("r7", "theta7"), Vector("x8", 0.0, -1), Vector("d3", pi / 2, -1),
+    ),
 }  # fmt: skip
 MECHANISM = Mechanism(
     ground={"O": 0, "C": lambda xC, yC: xC + 1j * yC, "D": lambda xD, yD: xD + 1j * yD},

@@ -159,6 +159,7 @@ def test_two_answers_about_a_loop_say_different_things():
         ("four_bar_positions", "loop_1_x", "r2 cos(θ2 - θ3) - r3 = r1 cos θ3 + r4 cos(θ4 - θ3)", "slip:link_sign"),
         ("three_loop_shaper", "loop_3_x", "r5 cos θ5 + r7 cos θ7 = 0", "slip:frame_missing"),
         ("four_bar_motion", "loop_1_x_ddot", "r2 alpha2 sin θ2 + r3 omega3^2 cos θ3 + r3 alpha3 sin θ3 = r4 omega4^2 cos θ4 + r4 alpha4 sin θ4", "slip:link_term"),
+        ("slotted_mechanism", "loop_1_complex_ddot", "r2*(i*alpha2 - omega2^2)*e^(i*theta2) = (rA_ddot - rA*omega4^2 + i*(rA*alpha4 + rA_dot*omega4))*e^(i*theta4)", "slip:link_term"),
         ("four_bar_positions", "loop_1_x", "r2 + r3 = r1 + r4", "wrong"),
         ("four_bar_positions", "loop_1_x", "rA = 3", "unreadable"),
     ],

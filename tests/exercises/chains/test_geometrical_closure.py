@@ -7,7 +7,7 @@ import pytest
 import coursework
 
 EXERCISE = coursework.open_course()["geometrical_closure"]
-ASKED = ("theta3", "q", "omega3", "ratio", "swing")
+ASKED = ("theta3", "q", "epsilon", "omega3", "ratio", "swing")
 
 
 def exact(R, h, e, theta1, omega1):
@@ -33,10 +33,14 @@ def exact(R, h, e, theta1, omega1):
         def lean(angle):
             return mpmath.atan((e - R * mpmath.sin(angle)) / h)
 
+        y3 = (mpmath.cos(theta3), mpmath.sin(theta3))  # along y0 and z0
+        turned = mpmath.matrix([[mpmath.cos(start), mpmath.sin(start), 0]])
+        epsilon = mpmath.acos((turned * mpmath.matrix([0, *y3]))[0])
         ends = [lean(mpmath.findroot(lambda a: mpmath.diff(lean, a), near)) for near in (-1.5, 1.5)]
         return {
             "theta3": mpmath.degrees(theta3),
             "q": q,
+            "epsilon": mpmath.degrees(epsilon),
             "omega3": omega3,
             "ratio": omega3 / omega1,
             "swing": mpmath.degrees(abs(ends[0] - ends[1])),
@@ -54,6 +58,11 @@ def test_every_number_agrees_with_fifty_digits(seed):
 FORMS = {
     "closure_y": ("e - R*sin(theta1) = q*sin(theta3)", "2*q*sin(theta3) = 2*(e - R*sin(theta1))"),
     "closure_z": ("h/cos(theta3) = q", "h - q*cos(theta3) = 0", "theta3 = acos(h/q)"),
+    "closure_angle": (
+        "epsilon = acos(sin(theta1)*cos(theta3))",
+        "2*cos(epsilon) = sin(theta1 + theta3) + sin(theta1 - theta3)",
+        "cos(epsilon)/cos(theta3) = sin(theta1)",
+    ),
     "law": (
         "tan(theta3) = (e - R*sin(theta1))/h",
         "h*tan(theta3) + R*sin(theta1) = e",
@@ -62,24 +71,39 @@ FORMS = {
         "theta3 = atan((e - R*sin(theta1))/h)",
         "-theta3 = arctan((R*sin(theta1) - e)/h)",
         "atan2(e - R*sin(theta1); h) = theta3",
+        "cotan(theta3) = h/(e - R*sin(theta1))",
     ),
     "law_dot": (
         "omega3 = -omega1*h*R*cos(theta1)/(h^2 + (e - R*sin(theta1))^2)",
         "omega3/omega1 = -(R/h)*cos(theta1)/(1 + ((R*sin(theta1) - e)/h)^2)",
         "omega3*(1 + ((e - R*sin(theta1))/h)^2) + R*omega1*cos(theta1)/h = 0",
+        "omega3 = -R/h*cos(theta1)*omega1*cos(atan((e - R*sin(theta1))/h))^2",
+        "omega3 = -R/h*cos(theta1)*omega1*cos(atan2(e - R*sin(theta1); h))^2",
     ),
 }
 WRONG = {
     "closure_y": ("R*sin(theta1) + e = q*sin(theta3)", "R*sin(theta1) - e = q*cos(theta3)"),
     "closure_z": ("h*cos(theta3) = q",),
+    "closure_angle": (
+        "epsilon = theta1 + theta3",
+        "cos(epsilon) = cos(theta1)*cos(theta3)",
+        "cos(epsilon) = sin(theta1)",
+        "epsilon = asin(sin(theta1)*cos(theta3))",
+    ),
     "law": (
         "tan(theta3) = (R*sin(theta1) - e)/h",
         "tan(theta3) = e/h - R/h*cos(theta1)",
         "theta3 = atan((R*sin(theta1) - e)/h)",
         "theta3 = asin((e - R*sin(theta1))/h)",
+        "cotan(theta3) = (e - R*sin(theta1))/h",
         "theta3 = 0",
     ),
-    "law_dot": ("omega3 = -omega1*R*cos(theta1)/h", "omega3 = omega1"),
+    "law_dot": (
+        "omega3 = -omega1*R*cos(theta1)/h",
+        "omega3 = omega1",
+        "omega3 = -R/h*cos(theta1)*omega1*cos(atan((e - R*sin(theta1))/h))",
+        "omega3 = -R/h*cos(theta1)*omega1*sin(atan((e - R*sin(theta1))/h))^2",
+    ),
 }
 
 
