@@ -25,7 +25,10 @@ def distance(variant: Variant, part: Part, value: Any) -> float:
     key = variant.key
     if part.judge and not part.is_exact:
         reference = np.asarray(key.reference[part.quantity], dtype=float)
-        off = np.linalg.norm(np.asarray(value, dtype=float) - reference)
+        off = np.asarray(value, dtype=float) - reference
+        if turn := part.sort.turn:
+            off = (off + turn / 2) % turn - turn / 2
+        off = np.linalg.norm(off)
         return float(off) / (0.01 * float(np.linalg.norm(reference)) + 1e-6)
     along = key.reference.get(part.along) if part.along else None
     width = key.envelope.get(part.quantity, 0.0)
@@ -259,6 +262,8 @@ def holds_two(part: Part, both: Both, reading: Reading) -> bool:
         return False  # 100 / 10 is 10
     if part.sort.is_number and part.unit == "1" and other == 1:
         return False
+    if part.unit == "mm/mm":
+        return False  # a scale of 1 / 2
     return any(math.isclose(value, each) for value in reading.values for each in (one, other)) and not (
         one == 2 * other and both.form in FORMULAS[:4] + FORMULAS[10:16]
     )
@@ -281,6 +286,9 @@ def _wrong_values(variant: Variant, part: Part) -> list[Any]:
         return [w for w in map(float, far) if distance(variant, part, w) > 2]
     if sort.family == "equation":
         return []
+    if sort.family == "graph":
+        joints = str(value).split(", ")
+        return [", ".join(joints[:-1]), f"{value}, {joints[0].split()[0]} prismatic"]
     if sort.family == "pattern":
         found, names = sort.components(value), frozenset(sort.form.names)
         wrong = (names - found, found ^ {sort.form.names[0]}, names, frozenset())

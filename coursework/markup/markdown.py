@@ -65,7 +65,7 @@ _ABOVE = re.compile(
     "[\u20d0-\u20f0]"
 )  #: signs above a letter, which formulas have; no font of the text has them
 #: A vector's letter and its arrow: one font draws the two of them.
-_VECTOR = re.compile("([A-Za-zΑ-Ωα-ω]\u20d7)")
+_VECTOR = re.compile("([A-Za-zΑ-Ωα-ω0-9]\u20d7)")
 _VECTOR_FONT = "New Computer Modern Math"
 SUBSTITUTE = "\N{WHITE SQUARE}"  #: stands for a character that no font at hand draws
 

@@ -342,7 +342,7 @@ def _short(name: str, most: int = 40) -> str:
 
 
 #: A letter with an arrow above it.
-_VECTOR = re.compile("([^\\W\\d_])\N{COMBINING RIGHT ARROW ABOVE}")
+_VECTOR = re.compile("([^\\W_])\N{COMBINING RIGHT ARROW ABOVE}")
 
 
 def _charted(text: str) -> str:

@@ -28,7 +28,7 @@ def ram_gain(P, C, guide_rate, guide_gain):
 
 
 def ram_accelerates_visibly(ram_gain, r2):
-    return abs(ram_gain) > 0.25 * r2
+    return abs(ram_gain) > 0.2 * r2
 
 
 def P(arm, r4):

@@ -331,7 +331,7 @@ def test_a_choice_is_quoted_with_quotation_marks(course):
 
 
 def test_a_name_is_quoted_with_its_underscore(course):
-    said = told(course, "vocabulary", 0, "en", parallel_degree="h = N_s_r")["parallel_degree"]
+    said = told(course, "vocabulary", 7, "en", parallel_degree="h = N_s_r")["parallel_degree"]
     assert "“h = N_s_r”" in said.feedback
 
 
