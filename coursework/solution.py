@@ -102,6 +102,22 @@ def formula(latex: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     return mark
 
 
+def told_after(*names: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Say which quantities the worked solution tells before this one, where its words speak of what its code does not take.
+
+        @told_after("transmitted")
+        def rs(_combined): ...
+
+    So the table of what is transmitted stands before the rank that is counted in it, whichever questions are asked.
+    """
+
+    def mark(function: Callable[..., Any]) -> Callable[..., Any]:
+        function.__told_after__ = names  # type: ignore[attr-defined]  # marks a function
+        return function
+
+    return mark
+
+
 def stable(function: Callable[..., Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Say how a quantity is computed where its textbook formula would lose digits.
 
@@ -277,6 +293,7 @@ class Solution:
         )
         functions |= quantities(loops)
         graph = Graph(functions)
+        _check_told(source, graph)
         for wrong in mistakes.values():
             try:
                 graph.replacing(wrong.replacement)
@@ -357,6 +374,15 @@ class Solution:
         if self.residual is None:
             raise BadCourse(f"{self.source} states no residual; write the governing equations")
         return self.graph.with_functions({"residual": self.residual})
+
+
+def _check_told(source: str, graph: Graph) -> None:
+    for name in graph.names:
+        for before in graph.node(name).told_after:
+            if before not in graph.quantities:
+                raise BadCourse(
+                    f"{source}: {name} is told after {before!r}, which is no quantity{nearest(before, graph.quantities)}"
+                )
 
 
 def _film(source: str, module: ModuleType) -> Film | None:

@@ -282,6 +282,8 @@ class CourseExercise(Generic[V]):
     def chosen_parts(self, parts: Sequence[str] | None) -> tuple[Part, ...] | None:
         """Parts by id, in the order of the exercise; None for the usual ones.
 
+        Those that are judged together are asked together: one that is named brings the others, less those by request.
+
         Raises
         ------
         UnknownName
@@ -293,10 +295,11 @@ class CourseExercise(Generic[V]):
         for part_id in parts:
             if part_id not in known:
                 raise unknown("part", part_id, known, self.name)
+        judges = {p.judge for p in self.spec.parts if p.judge and p.id in parts}
         return tuple(
             p
             for p in self.spec.parts
-            if ALL in parts or p.id in parts or (USUAL in parts and not p.by_request)
+            if ALL in parts or p.id in parts or (not p.by_request and (USUAL in parts or p.judge in judges))
         )
 
     def parts_worth(self, points: Mapping[str, float]) -> tuple[Part, ...]:

@@ -26,6 +26,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from pathlib import Path
@@ -270,6 +271,30 @@ def _jinja(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> 
         raise BadStatement(f"{source} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
 
 
+@lru_cache(maxsize=1024)
+def _names(path: Path, changed: int, folders: tuple[Path, ...], source: str) -> frozenset[str]:
+    """The variables of a text and of those that it includes by name; what cannot be read is told where it is rendered."""
+    template = _template(path, changed, folders, source)
+    if isinstance(template, Text):
+        return frozenset()
+    if isinstance(template, _Filled):
+        return template.names
+    import jinja2
+    from jinja2 import meta
+
+    environment, names = template.environment, set[str]()
+    waiting = [path.name]
+    met = {*waiting}
+    while waiting:
+        with suppress(jinja2.TemplateError, UnicodeDecodeError):
+            tree = environment.parse(environment.loader.get_source(environment, waiting.pop())[0])
+            names |= meta.find_undeclared_variables(tree)
+            included = {name for name in meta.find_referenced_templates(tree) if name} - met
+            met |= included
+            waiting += included
+    return frozenset(names)
+
+
 class ExerciseTexts:
     """The texts of one exercise, in every language: of the exercise itself (``exercises``) and of its solution
     (``solutions``)."""
@@ -326,6 +351,20 @@ class ExerciseTexts:
             raise BadCourse(f"{self.name} has no text in {lang!r}: {source} is missing")
         shared = (self.folder.root / kind, *self.folder.template_folders)
         return render(path, shared, variables, source)
+
+    def names(self, kind: str, lang: str) -> frozenset[str]:
+        """What variables stand in a text and in those that it includes; none where there is no text.
+
+        Raises
+        ------
+        BadStatement
+            It cannot be read.
+        """
+        path = self.file(kind, lang)
+        if not path.exists():
+            return frozenset()
+        shared = (self.folder.root / kind, *self.folder.template_folders)
+        return _names(path, path.stat().st_mtime_ns, shared, self.folder.relative(path))
 
     def constants(self, kind: str, lang: str) -> Constants:
         """What of a text is the same for every variant; read once."""

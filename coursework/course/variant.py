@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self
 from coursework.course.exercise import CourseExercise, refuse_complex
 from coursework.course.lettering import letters_of, printed_order
 from coursework.course.texts import Text
-from coursework.errors import BadCourse
+from coursework.errors import BadCourse, CourseworkError
 from coursework.language.numbers import localise, plain, significant, with_unit
 from coursework.language.words import languages, no_language, words
 from coursework.model import Part
@@ -188,9 +188,27 @@ class Variant:
 
     @cached_property
     def solution_text(self) -> Text:
-        """The sections of the solution's words; any quantity of the walk may stand in them, rounded."""
-        rounded = {n: _rounded(v, self.lang) for n, v in self.walk.items()}
-        return self.exercise.texts.text("solutions", self.lang, {**rounded, **self.printed})
+        """The sections of the solution's words; any quantity may stand in them, rounded.
+
+        One that is not on the walk, of a question that is not asked, is computed for the words that it stands in.
+        """
+        texts, lang = self.exercise.texts, self.lang
+        besides = texts.names("solutions", lang) & {*self.exercise.solution.graph.quantities}
+        values = {**self.existing(besides - self.walk.keys()), **self.walk}
+        rounded = {n: _rounded(v, lang) for n, v in values.items()}
+        return texts.text("solutions", lang, {**rounded, **self.printed})
+
+    def existing(self, names: Iterable[str]) -> dict[str, Any]:
+        """Those of some quantities that exist for the given values, as plain Python holds them."""
+        found = {}
+        for name in sorted(names):
+            try:
+                found[name] = self.exercise.existing(name, self.quantities([name])[name], self.used)
+            except BadCourse:
+                raise
+            except CourseworkError:
+                continue
+        return found
 
     def letters(self, part: Part) -> Mapping[str, str]:
         """The letters of a choice by case, in the order printed; none of a sheet that was issued without."""

@@ -15,6 +15,7 @@ A name that begins with an underscore is hidden: a function may need it, a reque
 from __future__ import annotations
 
 import inspect
+import re
 import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -73,6 +74,16 @@ class Node:
         defaults = {p.name: p.default for p in parameters.values() if p.default is not p.empty}
         stable = getattr(function, "__stable__", None)
         return Node(function, tuple(parameters), defaults, None if stable is None else Node.of(stable))
+
+    @property
+    def printed(self) -> tuple[str, ...]:
+        """The names that its formula is stated with, which need not be those that the function takes."""
+        return tuple(re.findall(r"<(\w+)>", getattr(self.function, "__formula__", "")))
+
+    @property
+    def told_after(self) -> tuple[str, ...]:
+        """The names that a worked solution tells before it besides."""
+        return getattr(self.function, "__told_after__", ())
 
     @property
     def needs(self) -> frozenset[str]:
@@ -145,6 +156,18 @@ def _missing(found: Mapping[str, str]) -> MissingQuantity:
     )
 
 
+def _met(nodes: Mapping[str, Node], names: Iterable[str]) -> frozenset[str]:
+    """The names and all that they need, by the first of each node's functions."""
+    found: set[str] = set()
+    waiting = list(names)
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found.add(name)
+            waiting.extend(nodes[name].arguments if name in nodes else ())
+    return frozenset(found)
+
+
 class Graph:
     """Quantities by name. Immutable; plans are remembered for each shape of request."""
 
@@ -171,14 +194,7 @@ class Graph:
 
     def _ancestors(self, names: Iterable[str]) -> frozenset[str]:
         """The names and all that they need, by the first of each node's functions."""
-        found: set[str] = set()
-        waiting = list(names)
-        while waiting:
-            name = waiting.pop()
-            if name not in found:
-                found.add(name)
-                waiting.extend(self._nodes[name].arguments if name in self._nodes else ())
-        return frozenset(found)
+        return _met(self._nodes, names)
 
     @property
     def quantities(self) -> tuple[str, ...]:
@@ -190,6 +206,22 @@ class Graph:
         """The same graph, every quantity by the first of its functions."""
         graph = Graph.__new__(Graph)
         nodes = {name: replace(node, stable=None) for name, node in self._nodes.items()}
+        graph._build(nodes, self._shadowed, self._effects)
+        return graph
+
+    @cached_property
+    def _on_paper(self) -> Graph:
+        """The textbook graph, where a quantity needs besides what its formula is stated with and what is told before it: it
+        is to plan with alone.
+
+        Not what would itself need the quantity: that one is found first.
+        """
+        graph = Graph.__new__(Graph)
+        nodes = dict(self.textbook._nodes)
+        for name, node in nodes.items():
+            for before in (*node.printed, *node.told_after):
+                if before in nodes and name not in _met(nodes, (before,)):
+                    nodes[name] = replace(nodes[name], arguments=(*nodes[name].arguments, before))
         graph._build(nodes, self._shadowed, self._effects)
         return graph
 
@@ -230,7 +262,13 @@ class Graph:
         Cycle
             Quantities that need each other.
         """
+        self._refuse_hidden(wanted)
         return self._plan(tuple(wanted), frozenset(given), frozenset(effects))[0]
+
+    def _refuse_hidden(self, wanted: Iterable[str]) -> None:
+        for name in wanted:
+            if _is_hidden(name):
+                raise unknown("quantity", name, self.quantities)
 
     def _plan(
         self,
@@ -286,7 +324,7 @@ class Graph:
             order[name] = (node.function, tuple(arguments))
 
         for name in wanted:
-            if name not in self._known and name not in given:
+            if name not in self._nodes and name not in self._known and name not in given:
                 raise unknown("quantity", name, self.quantities)
             visit(name)
         if missing:
@@ -318,6 +356,7 @@ class Graph:
         Undefined
             A function divides by zero or leaves its domain on scalars.
         """
+        self._refuse_hidden(wanted)
         values = self._values(tuple(wanted), given, effects, found or {})
         return {name: values[name] for name in wanted}
 
@@ -328,7 +367,7 @@ class Graph:
         effects: Iterable[str] = (),
         found: Mapping[str, Value] | None = None,
     ) -> dict[str, Value]:
-        """As :meth:`evaluate`, with all that is met on the way, hidden ones too.
+        """As :meth:`evaluate`, with all that is met on the way, hidden ones too; they may be wanted here.
 
         Of arrays so long that they are gone through piece by piece, only what is wanted.
         """
@@ -338,8 +377,9 @@ class Graph:
     def walk(
         self, wanted: Sequence[str], given: Mapping[str, Value], effects: Iterable[str] = ()
     ) -> tuple[str, ...]:
-        """The names of every quantity that the textbook way meets on the way to the wanted ones, in its order."""
-        met = self.textbook.plan(tuple(wanted), self._renamed(given), effects)
+        """The names of every quantity that the textbook way meets on the way to the wanted ones, in its order; those
+        that a formula on the way is stated with, or that are told before it, are met before it."""
+        met = self._on_paper.plan(tuple(wanted), self._renamed(given), effects)
         return tuple(name for name in met if not _is_hidden(name))
 
     def _renamed(self, given: Mapping[str, Value]) -> Mapping[str, Value]:

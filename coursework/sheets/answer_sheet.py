@@ -61,11 +61,11 @@ def _models(variant: Variant, text: Text) -> Iterator[Step]:
     """The model answers of the questions that a person marks: sections of the solution's text."""
     for part in variant.parts:
         if part.sort.is_open and (section := text.sections.get(part.id)) is not None:
-            said = f"{_question(variant, part)} {section.text}"
+            said = f"{question_called(variant, part)} {section.text}"
             yield Step(part.id, "", "", "", "", said, (), asked=True)
 
 
-def _question(variant: Variant, part: Part) -> str:
+def question_called(variant: Variant, part: Part) -> str:
     """Which question it is, at the head of a step: ``*Question 3.*``"""
     number = 1 + variant.parts.index(part)
     asks = f"{engine_words(variant.lang)['sheet']['question']['one']} {number}."
@@ -79,11 +79,12 @@ def _symbol(variant: Variant, name: str) -> str:
 def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step, ...]:
     """The quantities that are not given, in order."""
     units = variant.exercise.units
-    kinds = {n: kind_of(v, units.get(n, "1")) for n, v in values.items()}
-    symbols = tuple((n, _symbol(variant, n), kinds[n]) for n in values)
+    named = {**values, **variant.existing(_named_besides(variant, values))}
+    kinds = {n: kind_of(v, units.get(n, "1")) for n, v in named.items()}
+    symbols = tuple((n, _symbol(variant, n), kinds[n]) for n in named)
     numbers = {
         n: Told(number_latex(v, units.get(n, "1"), PRINTED_DIGITS), True, kinds[n])
-        for n, v in values.items()
+        for n, v in named.items()
         if isinstance(v, (int, float, complex))
     }
     remarks = _remarks(variant, values, text)
@@ -92,6 +93,14 @@ def _steps(variant: Variant, values: Mapping[str, Any], text: Any) -> tuple[Step
         for name, value in values.items()
         if name not in variant.given
     )
+
+
+def _named_besides(variant: Variant, values: Mapping[str, Any]) -> set[str]:
+    """What formulas are stated with that itself needs what they give, so that it is no step before them."""
+    graph = variant.exercise.solution.graph
+    nodes = (graph.node(name) for name in values if name in graph.names)
+    named = {name for node in nodes for name in node.printed if name not in node.arguments}
+    return named.intersection(graph.quantities) - values.keys()
 
 
 def _step(
@@ -176,7 +185,7 @@ def _words_of(variant: Variant, name: str, found: Any, reason: str) -> str:
     if not number:
         return reason
     said, part = engine_words(variant.lang), variant.parts[number - 1]
-    words = [_question(variant, part), reason]
+    words = [question_called(variant, part), reason]
     case = part.sort.words(found, partial(variant.label, part.id))
     if case:
         # At the end of the reason's last sentence, or after it.

@@ -4,7 +4,7 @@ import numpy as np
 
 from coursework.quantities.columns import each, each_stacked
 from coursework.solids import FREEDOMS, each_distinct, joint_of
-from coursework.solution import given, mistake
+from coursework.solution import given, mistake, told_after
 
 from ._solids import _direction, _lines, _parallel_of, _point_of_axis, _row_of, _stiffest
 
@@ -40,6 +40,7 @@ def Ns(transmitted):
     return each_stacked(len, transmitted)
 
 
+@told_after("transmitted")
 def rs(_combined):
     """The rank of all the transmitted actions at one point."""
     return each_stacked(lambda one: one.rs, _combined)

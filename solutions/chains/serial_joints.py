@@ -4,7 +4,7 @@ import numpy as np
 
 from coursework.quantities.columns import each, each_stacked
 from coursework.solids import FREEDOMS, each_distinct, joint_of
-from coursework.solution import given, mistake
+from coursework.solution import given, mistake, told_after
 
 from ._solids import _direction, _freest, _in_parallel, _lines, _point_of_axis, _row_of, _series_of
 
@@ -44,6 +44,7 @@ def m(Nc):
     return Nc
 
 
+@told_after("free_motions")
 def m_useful(_combined):
     """The rank of all the free motions at one point."""
     return each_stacked(lambda one: one.m_useful, _combined)
@@ -57,6 +58,7 @@ def h():
     return 0
 
 
+@told_after("m_useful")
 def equivalent(_combined):
     """No joint at all only where all six motions are free at every pose; where they are at this one alone, another."""
     return each_stacked(lambda one: one.equivalent.name, _combined)

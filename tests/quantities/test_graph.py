@@ -254,6 +254,27 @@ def test_the_walk_shows_the_textbook_way_with_the_stable_values():
     assert walk["slope"] == 1e-9
 
 
+def test_the_walk_meets_what_a_formula_is_stated_with_before_it():
+    def span(length, height):
+        return (length**2 - height**2) ** 0.5
+
+    def tilt(height, length):
+        return np.arcsin(height / length)
+
+    span.__formula__ = r"<length> \cos <tilt>"
+    tilt.__formula__ = (
+        r"\arccos \frac{<span>}{<length>}"  # each is stated with the other: the first asked comes last
+    )
+    graph, rod = Graph({f.__name__: f for f in (span, tilt)}), {"length": 5.0, "height": 3.0}
+    assert graph.walk(("span",), rod) == ("tilt", "span")
+    assert graph.plan(("span",), rod) == ("span",)
+    assert graph.walk(("tilt",), rod) == ("tilt",)
+
+
+def test_hidden_quantities_may_be_wanted_of_everything():
+    assert HIDDEN.everything(("_chord",), ARC)["_chord"] == HIDDEN.everything(("grade",), ARC)["_chord"]
+
+
 def test_hidden_quantities_cannot_be_named_by_a_request():
     assert "_chord" not in HIDDEN.quantities
     for request in (
