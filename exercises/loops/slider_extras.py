@@ -197,6 +197,6 @@ EXERCISE = Exercise(
         Part("r6_ddot", unit="mm/s^2", points=1),
     ),
     figure=figure,
-    symbols={"mobility": "m", "cycles": r"\gamma"},
+    symbols={"mobility": "w", "cycles": r"\gamma"},
     driver=Driver("theta2", "omega2", output="r6_dot"),
 )

@@ -28,7 +28,7 @@ def test_list_follows_the_chapters_and_says_what_is_needed_first(cli, course):
         if chapter.exercises
     ]
     assert places == sorted(places)
-    assert out.index("vocabulary") < out.index("ball_reducer") < out.index("complex_chain")
+    assert out.index("joint_graph") < out.index("ball_reducer") < out.index("complex_chain")
 
 
 def test_show_prints_a_statement_in_either_language(cli):
