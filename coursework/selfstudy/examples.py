@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Container, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
     from coursework.course.variant import Variant
     from coursework.model import Part
     from coursework.sheets.sheet import Step
+
+_ANNOUNCES = re.compile(r"[^.!?]*:")  # nothing but what comes next
 
 LEVELS = 4
 WITH_FORMULA = 2  #: levels up to which a blank still shows its formula
@@ -92,6 +95,8 @@ def told_steps(variant: Variant, level: int, left: Sequence[Part], keys: Mapping
             pieces = [step.words, f"$${chain_on_lines(step)}$$" if step.value else ""]
         else:
             formula = hints.formula(variant, step.name) if level <= WITH_FORMULA or part is None else ""
+            if not (part or formula) and _ANNOUNCES.fullmatch(step.words.strip()):
+                continue
             blank = _blank(part, step, keys, said) if part else ""
             pieces = [hints.words_of(variant, step.name), formula, blank]
         if any(pieces):

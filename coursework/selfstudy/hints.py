@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 
 _DIGITS = 6
+_HERE = re.compile(r"(?<=[.!?])\s+\w+\s*:$")  # "Here:", with nothing behind it
 _UNFINISHED = re.compile(r"(?:(?<=[.!?])|\A)[^.!?]*[^.!?\s]\s*\Z")
 _LAST_SENTENCE = re.compile(r"(?:(?<=[.!?…])\s|\A)(?:[^.!?…]|[.!?…](?!\s|\Z))*[.!?…]\W*\Z")
 _COMPUTED = re.compile(r"\{[{%#]")
@@ -144,7 +145,8 @@ def _before_numbers(variant: Variant, section: str) -> str:
     path = variant.exercise.texts.file("solutions", variant.lang)
     start = _COMPUTED.split(sections(path, path.stat().st_mtime_ns).get(section, ""), maxsplit=1)[0]
     ends = [found.end() for found in _SENTENCE_END.finditer(start)]
-    return re.sub(r"\s*:$", ".", start[: ends[-1]].strip()) if ends else ""
+    told = _HERE.sub("", start[: ends[-1]].strip()) if ends else ""
+    return re.sub(r"\s*:$", ".", told)
 
 
 def _against(variant: Variant, part: Part) -> str:

@@ -90,3 +90,8 @@ def test_choices_are_lettered_as_their_answer_is(lang):
     half = coursework.worked("grashof", seed=5, lang=lang, level=2)
     assert "linkage" not in half.pieces[-1].rpartition("=")[0].rpartition("\n")[2]
     assert words(lang)["lesson"]["unnamed"] in half.pieces[-1]
+
+
+def test_a_step_that_only_announces_a_hidden_value_is_left_out():
+    told = str(coursework.worked("complex_chain", seed=10, lang="en", level=3).pieces)
+    assert "The input is on this body" not in told
