@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
@@ -9,6 +10,7 @@ from numbers import Real
 from typing import Any
 
 from coursework.reading.digits import in_unit, written_amount
+from coursework.reading.expressions import plain_expression
 from coursework.reading.numbers import NAME, RATIO, read_amounts, says_value, target_unit, without_name
 from coursework.reading.reading import Reading, Stop, bare_value, reading_of, text_of
 from coursework.reading.spelling import plain_spelling, shorten
@@ -19,6 +21,10 @@ from coursework.reading.vocabulary import Unreadable
 
 _POINT = re.compile(r"(?:[^\W\d_]\w{0,9}\s*)?[(\[{<](?P<inside>.*)[)\]}>]\s*(?P<unit>.*)", re.DOTALL)
 
+
+_OF_BASE = re.compile(
+    r"(?<=[)\]}])\s*_\s*(?:\{\s*\w{1,2}\s*\}|[^\W\d_](?![^\W_]))"
+)  #: the name of a base, ``(1, 0, 1)_a``
 
 _SIGNED_AFTER_SPACE = re.compile(r"\d\s+[-+\u2212]\d")
 
@@ -68,7 +74,7 @@ def _bare_point(text: str) -> tuple[str, str]:
         if says_value(named[0]):
             raise Stop("two_values", text)
         text = text[named.end() :]
-    found = _POINT.fullmatch(text.rstrip(" .;,"))
+    found = _POINT.fullmatch(_OF_BASE.sub("", text.rstrip(" .;,"), count=1))
     return (found["inside"], found["unit"].lstrip("*").strip()) if found else (text.rstrip(" .;,"), "")
 
 
@@ -90,8 +96,47 @@ def _axis(text: str, count: int) -> tuple[float, ...] | None:
     return tuple(one if k == place else 0.0 for k in range(count))
 
 
+_VECTOR = re.compile(
+    r"\\?(?:vec|overrightarrow)\s*\{?\s*([xyz])\s*\}?(?:\s*_\s*\{?\s*[a-z]\s*\}?)?(?![^\W\d_])"
+    r"|(?<![^\W\d_])([xyz])\u20d7?(?:\s*_\s*\{?\s*[a-z]\s*\}?)?(?![^\W_])"
+)  #: a vector of the base: ``x``, ``\\vec{x}_a``; with a number, ``x_0``, it is one of another base
+
+
+_TWO_SIGNS = re.compile(r"[+-]\s*[+-]")
+_MULTIPLE = re.compile(r"^(?:\\?(?:omega|lambda)|[ωλk])\s*[.*]?\s*(?=\()")  #: ``ω (x_a + z)``
+
+
+def _combination(text: str, count: int) -> tuple[float, ...] | None:
+    """The vector that a sum of vectors of the base is, ``x_a + 1.36 z``, ``(3x - 4y)/5``, or ``None``."""
+    names = tuple("xyz"[:count])
+    bare = _MULTIPLE.sub("", text, count=1)
+    spelled = _VECTOR.sub(lambda found: f" {found[1] or found[2]} ", bare)
+    if spelled == bare or _TWO_SIGNS.search(bare):
+        return None
+    try:
+        expression = plain_expression(spelled.strip(), names)
+        values = [expression.evaluate(dict(zip(names, at, strict=True))) for at in _trials(count)]
+    except Unreadable:
+        return None
+    *columns, nothing, together = values
+    if isinstance(together, complex) or not expression.variables or nothing:
+        return None
+    total = sum(t * c for t, c in zip(_TOGETHER, columns, strict=False))
+    return tuple(columns) if math.isclose(together, total, rel_tol=1e-9, abs_tol=1e-12) else None
+
+
+_TOGETHER = (2.0, 3.0, 5.0)  #: what a square or a product would not pass
+
+
+def _trials(count: int) -> list[tuple[float, ...]]:
+    """Where a form is tried: at each vector of the base, at nothing, at a sum of all."""
+    each = [tuple(float(k == place) for k in range(count)) for place in range(count)]
+    return [*each, (0.0,) * count, _TOGETHER[:count]]
+
+
 def _point(text: str, original: str, target: Unit, count: int) -> Reading:
-    if target.dimension == RATIO and (axis := _axis(text.rstrip(" .;,"), count)):
+    said = text.rstrip(" .;,")
+    if target.dimension == RATIO and (axis := _axis(said, count) or _combination(said, count)):
         return Reading(original, "read", (axis,), ("(" + "; ".join(f"{c:g}" for c in axis) + ")",))
     inside, unit = _bare_point(text)
     source = target
@@ -128,7 +173,8 @@ def _point(text: str, original: str, target: Unit, count: int) -> Reading:
 def read_point(text: Any, unit: str, count: int) -> Reading:
     """The ``count`` coordinates of a point or a vector, each value a tuple of floats in ``unit``; an axis is a direction.
 
-    ``(12,3 ; 4,5) mm``, ``12.3, 4.5``, ``[1, 0, 1]``, ``(1 0 1)``, ``x = 1; y = 2``, or a list. A unit
+    ``(12,3 ; 4,5) mm``, ``12.3, 4.5``, ``[1, 0, 1]``, ``(1 0 1)_a``, ``x = 1; y = 2``, or a list; a direction also as a sum,
+    ``x_a + 1.36 z``. A unit
     behind the brackets or behind the last coordinate serves for all.
     """
     target, text = target_unit(unit), bare_value(text)

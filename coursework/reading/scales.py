@@ -11,7 +11,7 @@ _FOR = r"(?:pour|for|représentent|représente|represents?|stands? for|vaut|équ
 _NAME = r"(?:(?:[^\W\d_]\w*|[ée]chelle|scale)\s*[=:]?\s*)?"
 _STATED = re.compile(rf"{_NAME}(?:{_PAPER}\s*(?:=|:|{_FOR})\s*{_MEANT})", re.I)
 _TURNED = re.compile(rf"{_NAME}(?:{_MEANT}?)\s*{_FOR}\s*{_PAPER}", re.I)
-_RATIO = re.compile(rf"{_NAME}({_NUMBER})\s*[:/]\s*({_NUMBER})", re.I)
+_RATIO = re.compile(rf"{_NAME}({_NUMBER})(?:\s*:\s*|/)({_NUMBER})", re.I)
 
 
 def is_of_paper(unit: str) -> bool:
@@ -22,7 +22,7 @@ def is_of_paper(unit: str) -> bool:
 def restated(text: str, unit: str) -> tuple[str, ...]:
     """The texts to be read in place of a scale: ``100 mm/cm`` for ``1 cm = 100 mm``, or the text as it is.
 
-    A ratio of lengths has two honest readings: ``1:2`` is 2 mm for one of paper, or half of one.
+    A ratio of lengths has two honest readings, ``1:2`` or ``1/2`` is 2 mm for one of paper, or half of one.
     """
     if unit == "mm/mm" and (ratio := _RATIO.fullmatch(text)):
         one, other = ratio.groups()

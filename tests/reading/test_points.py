@@ -49,7 +49,46 @@ def test_an_axis_is_a_direction(text, value):
     assert (reading.values, reading.read_as) == ((value,), (f"({value[0]:g}; {value[1]:g}; {value[2]:g})",))
 
 
-@pytest.mark.parametrize("text", ["w", "xy", "x, y", "x+y", "5", "y2", "2y", "axe", "\\vec", "--y"])
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("x_a + z", (1, 0, 1)),
+        ("\\vec{x}_a + 1,36\\,\\vec{z}", (1, 0, 1.36)),
+        ("ω(x\u20d7_a + z\u20d7)", (1, 0, 1)),
+        ("(3x - 4y)/5", (0.6, -0.8, 0)),
+        ("2y", (0, 2, 0)),
+        ("(1, 0, 1)_a", (1, 0, 1)),
+        ("(1 ; 0 ; 1)_{a}", (1, 0, 1)),
+    ],
+)
+def test_a_sum_of_vectors_of_the_base_is_a_direction(text, value):
+    assert read_point(text, "1", 3).values == (pytest.approx(value),)
+
+
+def test_a_point_may_name_its_base_but_is_no_sum_of_vectors():
+    assert read_point("(7 cm; 0; 0)_a", "mm", 3).values == ((70, 0, 0),)
+    assert read_point("70 x_a", "mm", 3).status == "unreadable"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "w",
+        "xy",
+        "x, y",
+        "5",
+        "y2",
+        "axe",
+        "\\vec",
+        "--y",
+        "x + 1",
+        "x^2",
+        "x*z",
+        "1/x",
+        "x_0 + z_0",
+        "Ax + z",
+    ],
+)
 def test_what_is_no_axis_is_no_direction(text):
     assert read_point(text, "1", 3).status == "unreadable"
 
