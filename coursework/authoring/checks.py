@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from coursework.authoring.check_alone import check_alone
 from coursework.authoring.check_answers import (
     check_follow_through,
     check_mistakes,
@@ -159,6 +160,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
     check_mechanism(drawn, report)
     check_formulas(drawn, report)
     check_units(drawn, report)
+    check_alone(drawn, report)
     for name in exercise.solution.mistakes:
         tally = report.mistakes.setdefault(name, Counter())
         if count >= 50 and not tally["shown"]:

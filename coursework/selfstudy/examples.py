@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import math
+<<<<<<< HEAD
 import re
 from collections.abc import Container, Mapping, Sequence
+=======
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
+>>>>>>> 128e5358d08159a2d177945c0b3abf3751f56203
 from typing import TYPE_CHECKING, Any
 
 from coursework.errors import Starved
@@ -12,7 +17,7 @@ from coursework.making.issuing import distinct_variants
 from coursework.rendering.views import chain_on_lines
 from coursework.selfstudy import hints
 from coursework.selfstudy.theory import unchanging
-from coursework.sheets.answer_sheet import answer_sheet
+from coursework.sheets.answer_sheet import answer_sheet, question_called
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
@@ -48,42 +53,65 @@ def has_example(variant: Variant) -> bool:
     return variant.exercise.folder.has_solutions and bool(blanks(variant, 1))
 
 
-def blanks(variant: Variant, level: int) -> tuple[Part, ...]:
+def blanks(variant: Variant, level: int, *, in_lesson: bool = False) -> tuple[Part, ...]:
     """The questions that are left blank at a level: the last one, a third, two thirds, all; in the order of the solution.
 
-    Not what has one answer in every variant: it would be that of the variant that is asked.
+    In a study session not what has one answer in every variant: it would be that of the variant that is asked; nor what
+    is judged together. A lesson asks nothing else, and may leave both: what is judged together counts as one question.
     """
     places = {step.name: k for k, step in enumerate(_steps(variant))}
-    asked = sorted(
-        (p for p in variant.parts if _can_be_blank(variant, p, places)), key=lambda p: places[p.quantity]
-    )
+    may_be = _may_be_blank_in_lesson if in_lesson else _may_be_blank
+    asked = _together([p for p in variant.parts if p.quantity in places and may_be(variant, p)], places)
     count = (1, math.ceil(len(asked) / 3), math.ceil(2 * len(asked) / 3), len(asked))[level - 1]
-    return tuple(asked[max(0, len(asked) - count) :])
+    return tuple(chain.from_iterable(asked[max(0, len(asked) - count) :]))
 
 
-def _can_be_blank(variant: Variant, part: Part, steps: Container[str]) -> bool:
-    if part.sort.is_open or part.judge or part.loop or part.quantity not in steps:
+def _may_be_blank_in_lesson(variant: Variant, part: Part) -> bool:
+    return not part.sort.is_open
+
+
+def _may_be_blank(variant: Variant, part: Part) -> bool:
+    if part.sort.is_open or part.judge or part.loop:
         return False
     return part.id not in unchanging(variant.exercise)
+
+
+def _together(parts: Iterable[Part], places: Mapping[str, int]) -> list[list[Part]]:
+    """Parts in the order of the solution, those that are judged together as one, at the place of the first."""
+    groups: dict[tuple[str, str], list[Part]] = {}
+    for part in sorted(parts, key=lambda p: places[p.quantity]):
+        judge = part.judge or part.loop
+        groups.setdefault((judge, "" if judge else part.id), []).append(part)
+    return list(groups.values())
 
 
 def _steps(variant: Variant) -> Sequence[Step]:
     return answer_sheet(variant, polygons=False).steps
 
 
-def _blank(part: Part, step: Step, keys: Mapping[str, str], said: Any) -> str:
-    """The room of an answer, behind its symbol where it has one."""
+def _blank(variant: Variant, part: Part, step: Step, keys: Mapping[str, str], said: Any) -> str:
+    """The room of an answer, behind its symbol, or behind the number of its question where no symbol says anything."""
     form = said["blank" if part.sort.has_symbol else "unnamed"]
-    return str(form.format(symbol=f"${step.symbol}$", key=f"`{keys[part.id]}`"))
+    question, key = question_called(variant, part), f"`{keys[part.id]}`"
+    return str(form.format(symbol=f"${step.symbol}$", question=question, key=key))
 
 
-def told_steps(variant: Variant, level: int, left: Sequence[Part], keys: Mapping[str, str], said: Any) -> str:
+def told_steps(
+    variant: Variant,
+    level: int,
+    left: Sequence[Part],
+    keys: Mapping[str, str],
+    said: Any,
+    *,
+    in_lesson: bool = False,
+) -> str:
     """The steps of the solution as Markdown: whole up to the first blank; from there on no number stands in them.
 
-    What has one answer in every variant is left out: it is asked, and not told.
+    In a study session what has one answer in every variant is left out: it is asked, and not told.
     """
     by_quantity = {p.quantity: p for p in left}
-    hidden = {p.quantity for p in variant.parts if p.id in unchanging(variant.exercise)}
+    shared = () if in_lesson else unchanging(variant.exercise)
+    hidden = {p.quantity for p in variant.parts if p.id in shared}
     lines: list[str] = []
     is_whole = True
     for step in _steps(variant):
@@ -95,9 +123,13 @@ def told_steps(variant: Variant, level: int, left: Sequence[Part], keys: Mapping
             pieces = [step.words, f"$${chain_on_lines(step)}$$" if step.value else ""]
         else:
             formula = hints.formula(variant, step.name) if level <= WITH_FORMULA or part is None else ""
+<<<<<<< HEAD
             if not (part or formula) and _ANNOUNCES.fullmatch(step.words.strip()):
                 continue
             blank = _blank(part, step, keys, said) if part else ""
+=======
+            blank = _blank(variant, part, step, keys, said) if part else ""
+>>>>>>> 128e5358d08159a2d177945c0b3abf3751f56203
             pieces = [hints.words_of(variant, step.name), formula, blank]
         if any(pieces):
             lines.append(f"**{len(lines) + 1}.** " + "\n\n".join(filter(None, pieces)))

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from coursework.course.answer_keys import answer_keys
+from coursework.course.exercise import ALL, USUAL
 from coursework.errors import BadCourse, WrongValue, unknown
 from coursework.language.words import words
 from coursework.marking.marking import mark as grade
@@ -41,11 +42,11 @@ class Worked(Shown):
         """The questions that are left to who reads."""
         if self.level == BARE:
             return self.parts
-        return blanks(self._asking, self.level) if self.level else ()
+        return blanks(self._asking, self.level, in_lesson=True) if self.level else ()
 
     @property
     def _keys(self) -> Mapping[str, str]:
-        return answer_keys(self.variant.parts)
+        return answer_keys(self.parts)  # questions are numbered as they stand here
 
     def _posed(self) -> list[str | Picture]:
         """The statement, the figure, the data, and what is asked."""
@@ -79,7 +80,8 @@ class Worked(Shown):
         if not self.level:
             return "\n\n".join([title, *map(_step, _leading_to(self._asking, wanted))])
         said = words(self.lang)["lesson"]
-        return f"{title}\n\n{told_steps(self._asking, self.level, self.left, self._keys, said)}"
+        told = told_steps(self._asking, self.level, self.left, self._keys, said, in_lesson=True)
+        return f"{title}\n\n{told}"
 
     @property
     def _asking(self) -> Variant:
@@ -112,7 +114,7 @@ class Worked(Shown):
         for name in given:
             if name not in by_key and name not in by_key.values():
                 raise unknown("question", name, tuple(by_key), self.variant.exercise.name)
-        asked = self.variant.asking(self.left)
+        asked = self._asking
         marking = grade(asked, {by_key.get(name, name): answer for name, answer in given.items()})
         lines = (
             f"- {sign_of(mark)} `{self._keys[mark.part]}` — {sentence_of(asked, mark, '')}"
@@ -137,12 +139,10 @@ def _named(question: Question) -> str:
 
 def _leading_to(variant: Variant, wanted: set[str]) -> list[Step]:
     """The steps of the solution that lead to some quantities."""
-    steps = answer_sheet(variant, polygons=False).steps
-    graph = variant.exercise.solution.graph.textbook
-    needed = set(wanted)
-    for name in wanted & set(graph.names):
-        needed |= set(graph.ancestors((name,)))
-    return [step for step in steps if step.name in needed]
+    graph = variant.exercise.solution.graph
+    met = graph.walk(sorted(wanted & graph.names), variant.used, variant.effects)
+    needed = wanted | set(met)
+    return [step for step in answer_sheet(variant, polygons=False).steps if step.name in needed]
 
 
 def _step(step: Step) -> str:
@@ -165,13 +165,16 @@ def worked(
     """
     if level not in range(BARE + 1):
         raise WrongValue(f"a worked example has a level from 0, the whole, to {BARE}, bare; found {level!r}")
-    variant = course[exercise].variant(seed, lang)
-    variant.exercise.solution  # noqa: B018  what has none is refused here
+    opened = course[exercise]
+    opened.solution  # noqa: B018  what has none is refused here
+    chosen = opened.chosen_parts(parts or None)
+    variant = opened.variant(seed, lang, None if chosen is None else (USUAL, *(p.id for p in chosen)))
     by_id = {part.id: part for part in variant.parts}
     for part in parts:
-        if part not in by_id:
+        if part not in {*by_id, USUAL, ALL}:
             raise unknown("part", part, tuple(by_id), f"{exercise}, variant {seed}")
-    return Worked(variant, level, [by_id[p] for p in parts] if parts else variant.parts)
+    asked = variant.parts if chosen is None else [part for part in chosen if part.id in by_id]
+    return Worked(variant, level, asked)
 
 
 @lru_cache(maxsize=64)

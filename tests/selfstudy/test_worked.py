@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
+from sweeps import sampled
 
 import coursework
+from coursework.authoring.check_alone import asked_alone
 from coursework.errors import UnknownName, WrongValue
 from coursework.language.words import languages, words
+from coursework.selfstudy.examples import has_example
 
 NAME, PARTS = "four_bar_motion", ("theta3", "omega3")
 
@@ -37,6 +42,11 @@ def test_only_the_steps_to_what_is_asked_are_told():
     text = str(coursework.worked(NAME, seed=3, lang="en", parts=("theta3",)).pieces)
     assert r"\theta_3" in text
     assert r"\alpha_3" not in text.partition("Solution")[2]
+
+
+def test_what_a_formula_is_stated_with_is_told_before_it():
+    told = coursework.worked("slider_crank", seed=2, lang="en", parts=("omega3",)).pieces[-1]
+    assert told.index(r"\theta_3 &= \arcsin") < told.index(r"\omega_3 &=")
 
 
 def test_what_is_put_into_the_blanks_is_marked():
@@ -89,9 +99,103 @@ def test_choices_are_lettered_as_their_answer_is(lang):
     assert f"\n   - {letter} " in bare.pieces[-1]
     half = coursework.worked("grashof", seed=5, lang=lang, level=2)
     assert "linkage" not in half.pieces[-1].rpartition("=")[0].rpartition("\n")[2]
+<<<<<<< HEAD
     assert words(lang)["lesson"]["unnamed"] in half.pieces[-1]
 
 
 def test_a_step_that_only_announces_a_hidden_value_is_left_out():
     told = str(coursework.worked("complex_chain", seed=10, lang="en", level=3).pieces)
     assert "The input is on this body" not in told
+=======
+    assert words(lang)["lesson"]["unnamed"].format(question="*Question 3.*") in half.pieces[-1]
+
+
+def left_at(name, level, **named):
+    return [part.id for part in coursework.worked(name, seed=2, lang="en", level=level, **named).left]
+
+
+def test_what_is_judged_together_is_left_together():
+    drawn = ["kv", "p", "a", "b", "ab", "pv_b", "v_B", "omega3", "omega4"]
+    assert left_at("velocity_polygon", 1) == drawn
+    assert left_at("velocity_polygon", 2) == ["known_B", *drawn]
+    assert left_at("velocity_polygon", 3) == ["known_BA", "known_B", *drawn]
+    assert left_at("velocity_polygon", 1, parts=("omega4", "known_B")) == drawn
+
+
+@pytest.mark.parametrize("lang", languages())
+def test_a_drawing_that_is_left_is_marked_as_one(lang):
+    shown = coursework.worked("velocity_polygon", seed=2, lang=lang, level=1)
+    values = shown.variant.solution()
+    right = {
+        p.id: values[p.quantity].tolist() if p.kind == "point" else values[p.quantity] for p in shown.left
+    }
+    assert str(shown.check(right)).count("✓") == len(right) == 9
+    right["b"] = [-right["b"][1], right["b"][0]]
+    assert "✗" in str(shown.check(right))
+
+
+def test_what_every_variant_shares_is_left_in_a_lesson_and_not_in_a_study_session():
+    asked = coursework.open_course()["vocabulary"].variant(2, "en").part_ids
+    for level, count in ((1, 1), (2, -(-len(asked) // 3)), (3, -(-2 * len(asked) // 3))):
+        assert left_at("vocabulary", level) == list(asked[-count:])
+    assert not has_example(coursework.open_course()["vocabulary"].variant(2, "en"))
+
+
+@pytest.mark.parametrize("lang", languages())
+def test_a_choice_that_is_left_stands_by_its_question_and_the_others_are_told(lang):
+    shown = coursework.worked("vocabulary", seed=2, lang=lang, level=1)
+    (left,) = shown.left
+    *told, blank = shown.pieces[-1].split("\n\n**")
+    room = words(lang)["lesson"]["unnamed"].format(question=f"*Question {len(shown.parts)}.*")
+    assert blank.endswith(f".** {room}")
+    for part, text in zip(shown.parts, told[-len(shown.parts) + 1 :], strict=False):
+        assert f"**{shown.variant.label(part.id, shown.variant.reference(part.quantity))}**" in text
+    assert shown.variant.label(left.id, shown.variant.reference(left.quantity)) not in blank
+
+
+def test_the_equations_of_a_loop_are_left_together_and_may_be_asked_for_by_name():
+    shown = coursework.worked(
+        "slider_crank", seed=2, lang="en", level=1, parts=("theta3", "loop_1_x", "loop_1_y")
+    )
+    assert [part.id for part in shown.left] == ["loop_1_x", "loop_1_y"]
+    right = {
+        "loop_1_x": "r2*cos(theta2) + r3*cos(theta3) = r1",
+        "loop_1_y": "r2*sin(theta2) + r3*sin(theta3) = e",
+    }
+    assert re.findall(r"✓ (\w+) — Question (\d)", str(shown.check(right))) == [("q2", "2"), ("q3", "3")]
+    assert "≈" in str(shown.check({**right, "loop_1_y": "r2*sin(theta2) - r3*sin(theta3) = e"}))
+
+
+every_exercise = pytest.mark.parametrize(
+    "name",
+    sampled(coursework.open_course().names, {"four_bar_torque", "grashof", "velocity_polygon", "vocabulary"}),
+)
+
+
+@every_exercise
+@pytest.mark.parametrize("lang", languages())
+def test_every_exercise_has_an_example_of_every_level(name, lang):
+    shown = [coursework.worked(name, seed=1, lang=lang, level=level) for level in range(5)]
+    left = [len(one.left) for one in shown]
+    judged = [part for part in shown[0].parts if not part.sort.is_open]
+    assert left[0] == 0
+    assert left[1:] == sorted(left[1:])
+    assert left[1] > 0
+    assert left[3] <= left[4] == len(shown[0].parts)
+    if not any(part.judge for part in judged) and len(judged) > 1:
+        assert left[1] == 1
+        assert left[3] == -(-2 * len(judged) // 3) < left[4] or len(judged) < 3
+
+
+@every_exercise
+@pytest.mark.parametrize("lang", languages())
+def test_each_question_alone_is_a_worked_example_of_every_level(name, lang):
+    for parts in asked_alone(coursework.open_course()[name]):
+        if parts[0].id not in coursework.open_course()[name].variant(1, lang, [parts[0].id]).part_ids:
+            continue
+        for level in range(5):
+            shown = coursework.worked(name, seed=1, lang=lang, level=level, parts=(parts[0].id,))
+            assert [part.id for part in shown.parts] == [part.id for part in parts]
+            assert len(shown.right) == len(shown.left) == (len(parts) if level else 0)
+            assert shown.pieces[-1] or level == 4
+>>>>>>> 128e5358d08159a2d177945c0b3abf3751f56203
