@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import math
-<<<<<<< HEAD
 import re
-from collections.abc import Container, Mapping, Sequence
-=======
 from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
->>>>>>> 128e5358d08159a2d177945c0b3abf3751f56203
 from typing import TYPE_CHECKING, Any
 
 from coursework.errors import Starved
@@ -123,13 +119,9 @@ def told_steps(
             pieces = [step.words, f"$${chain_on_lines(step)}$$" if step.value else ""]
         else:
             formula = hints.formula(variant, step.name) if level <= WITH_FORMULA or part is None else ""
-<<<<<<< HEAD
             if not (part or formula) and _ANNOUNCES.fullmatch(step.words.strip()):
                 continue
-            blank = _blank(part, step, keys, said) if part else ""
-=======
             blank = _blank(variant, part, step, keys, said) if part else ""
->>>>>>> 128e5358d08159a2d177945c0b3abf3751f56203
             pieces = [hints.words_of(variant, step.name), formula, blank]
         if any(pieces):
             lines.append(f"**{len(lines) + 1}.** " + "\n\n".join(filter(None, pieces)))

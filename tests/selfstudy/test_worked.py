@@ -99,15 +99,12 @@ def test_choices_are_lettered_as_their_answer_is(lang):
     assert f"\n   - {letter} " in bare.pieces[-1]
     half = coursework.worked("grashof", seed=5, lang=lang, level=2)
     assert "linkage" not in half.pieces[-1].rpartition("=")[0].rpartition("\n")[2]
-<<<<<<< HEAD
-    assert words(lang)["lesson"]["unnamed"] in half.pieces[-1]
+    assert words(lang)["lesson"]["unnamed"].format(question="*Question 3.*") in half.pieces[-1]
 
 
 def test_a_step_that_only_announces_a_hidden_value_is_left_out():
     told = str(coursework.worked("complex_chain", seed=10, lang="en", level=3).pieces)
     assert "The input is on this body" not in told
-=======
-    assert words(lang)["lesson"]["unnamed"].format(question="*Question 3.*") in half.pieces[-1]
 
 
 def left_at(name, level, **named):
@@ -198,4 +195,3 @@ def test_each_question_alone_is_a_worked_example_of_every_level(name, lang):
             assert [part.id for part in shown.parts] == [part.id for part in parts]
             assert len(shown.right) == len(shown.left) == (len(parts) if level else 0)
             assert shown.pieces[-1] or level == 4
->>>>>>> 128e5358d08159a2d177945c0b3abf3751f56203
