@@ -224,7 +224,7 @@ def polygons(
                 Side("p_v", "a'", r"\vec{V}_{A/A_2}", L_dot * along, r"\parallel BA", r"\left|\dot{L}\right|"),
                 turning("a'", "a", "A_2", "BA", BA, omega2),
                 turning("p_v", "a", "A", "OA", OA, omega4),
-                turning("p_v", "g", "G", "OG", OG, omega4, "c V_A / a"),
+                turning("p_v", "g", "G", "OG", OG, omega4, r"c\,V_A / a"),
             )
         ),
         polygon_of_accelerations(
@@ -242,7 +242,7 @@ def polygons(
                 tangential("k", "a", "A_2", "BA", BA, alpha2),
                 tangential("a'", "a", "A", "OA", OA, alpha4),
                 normal("p_a", "g'", "G", "OG", OG, omega4, "V_G^2 / c"),
-                tangential("g'", "g", "G", "OG", OG, alpha4, "c a_A^t / a"),
+                tangential("g'", "g", "G", "OG", OG, alpha4, r"c\,a_A^t / a"),
                 Side("p_a", "g", r"\vec{a}_G", (1j * alpha4 - omega4**2) * OG),
             )
         ),

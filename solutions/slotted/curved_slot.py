@@ -254,21 +254,21 @@ def polygons(r1, r2, rho, theta2, theta3, omega2, omega4, v_rel, alpha4, a_rel_t
         polygon_of_velocities(
             crank_v("A", "OA", OA, omega2),
             (
-                turning("p_v", "a_4", "A_4", "DA", DA, omega4),
-                turning("a_4", "a", "A/A_4", "CA", CA, v_rel / rho),
+                turning("p_v", "a_4", "A_4", "AD", DA, omega4),
+                turning("a_4", "a", "A/A_4", "AC", CA, v_rel / rho),
             ),
         ),
         polygon_of_accelerations(
             crank_a("A", "OA", OA, omega2),
             (
                 Side(
-                    "k", "a", r"\vec{a}^c_{A/A_4}", polar(a_coriolis, theta3), r"\parallel CA",
+                    "k", "a", r"\vec{a}^c_{A/A_4}", polar(a_coriolis, theta3), r"\parallel AC",
                     r"2 \left|\omega_4\right| V_{A/A_4}",
                 ),
-                normal("k'", "k", "A/A_4", "CA", CA, v_rel / rho, r"V_{A/A_4}^2 / \rho"),
-                normal("p_a", "a_4'", "A_4", "DA", DA, omega4, "V_{A_4}^2 / AD"),
-                tangential("a_4'", "a_4", "A_4", "DA", DA, alpha4),
-                tangential("a_4", "k'", "A/A_4", "CA", CA, a_rel_t / rho),
+                normal("k'", "k", "A/A_4", "AC", CA, v_rel / rho, r"V_{A/A_4}^2 / \rho"),
+                normal("p_a", "a_4'", "A_4", "AD", DA, omega4, "V_{A_4}^2 / AD"),
+                tangential("a_4'", "a_4", "A_4", "AD", DA, alpha4),
+                tangential("a_4", "k'", "A/A_4", "AC", CA, a_rel_t / rho),
             ),
         ),
     )  # fmt: skip
