@@ -37,6 +37,10 @@ def four_bar(v):
     return found | ({"g_3": A + v["s3"] * coupler} if "s3" in v else {})
 
 
+def coupler_curve(v):
+    return four_bar(v) | {"p": polar(v["r2"], v["theta2"]) + polar(v["AP"], v["theta3"] + v["beta"])}
+
+
 def slider_extras(v):
     return four_bar(v) | {"p": v["r6"] + 0j}
 
@@ -49,6 +53,12 @@ def quick_return(v):
 def slotted(v):
     A = polar(v["r1"], v["theta1"]) + polar(v["r2"], v["theta2"])
     return {"a_2": A, "a_4": polar(still(v["rA"]), v["theta4"])}
+
+
+def curved_slot(v):
+    """As seen from D: the lever's point keeps the place on the lever at which the pin is now."""
+    DA = polar(v["r2"], v["theta2"]) - v["r1"]
+    return {"a": DA, "a_4": still(DA) * polar(1, v["theta4"] - still(v["theta4"]))}
 
 
 def slotted_ram(v):
@@ -86,7 +96,11 @@ def toggle_press(v):
     return {"a": polar(v["r2"], v["theta2"]), "b": polar(v["r4"], v["theta4"]), "c": 1j * v["yC"]}
 
 
-#: The given angle that moves the mechanism, its crank's angle, the quantities that place it, its points.
+def jack(v):
+    return {"a": polar(v["a"], v["theta4"]), "g": polar(v["c"], v["theta4"] + v["eta"])}
+
+
+#: The given angle or length that moves the mechanism, that of its drive, the quantities that place it, its points.
 PLACES = {
     "slider_crank": ("theta2", "theta2", ("p", "q"), crank_rod("b")),
     "slider_crank_torque": ("theta2", "theta2", ("p", "q"), crank_rod("b")),
@@ -95,17 +109,22 @@ PLACES = {
     "four_bar_motion": ("theta2", "theta2", ("theta3",), four_bar),
     "four_bar_torque": ("theta2", "theta2", ("theta3",), four_bar),
     "mechanical_advantage": ("theta2", "theta2", ("theta3",), four_bar),
+    "coupler_curve": ("theta2", "theta2", ("theta3",), coupler_curve),
     "slider_extras": ("theta2", "theta2", ("theta3", "r6"), slider_extras),
     "quick_return": ("angle_OAB", "theta2", ("theta2", "theta3", "theta5"), quick_return),
     "toggle_press": ("phi", "theta2", ("theta2", "theta4", "yC"), toggle_press),
     "slotted_mechanism": ("theta2", "theta2", ("rA", "theta4"), slotted),
+    "curved_slot": ("theta2", "theta2", ("theta4",), curved_slot),
     "quick_return_whitworth": ("theta2", "theta2", ("rA", "theta4", "xC"), slotted_ram),
     "quick_return_shaper": ("theta2", "theta2", ("rA", "theta4", "xC"), slotted_ram),
     "shaper_torque": ("theta2", "theta2", ("rA", "theta4", "xC"), slotted_ram),
     "havens_planetary": ("theta1", "theta1", ("rA", "theta4"), havens),
+    "jack_mechanism": ("L", "L", ("theta4",), jack),
     "two_loop_linkage": ("theta2", "theta2", ("theta3", "theta5", "theta6"), two_loops),
     "three_loop_shaper": ("theta2", "theta2", ("theta3", "theta6", "theta5", "d5", "x8"), three_loops),
 }
+#: Rate and gain of the drive, where they are not those of crank 2.
+DRIVES = {"havens_planetary": ("omega1", "alpha1"), "jack_mechanism": ("L_dot", "L_ddot")}
 VARIANTS = 20
 every_exercise = pytest.mark.parametrize("name", PLACES)
 every_language = pytest.mark.parametrize("lang", languages())

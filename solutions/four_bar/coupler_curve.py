@@ -8,6 +8,7 @@ from coursework.degrees import angle, atan2, cos, polar, sin
 from coursework.figures import Figure, ground_pivot, line, link, pin, trace, vector
 from coursework.kinematics.dyads import rrr, side_of
 from coursework.mechanics import Body, Mechanism
+from coursework.polygons import Side, crank_v, polygon_of_velocities, turning, two_bars_v
 from coursework.solution import given, mistake, stable
 
 from ._four_bar import *
@@ -138,6 +139,21 @@ def curve_of_the_other_mode(arrangement):
 @mistake("curve")
 def curve_of_a_point_laid_off_at_B(arrangement):
     return _drawing_of(3, arrangement)
+
+
+def polygons(r2, r3, r4, AP, beta, theta2, theta3, theta4, omega2, omega3, omega4, v_P_x, v_P_y):
+    """Two bars meet at B; P turns with B about A: the triangle abp is similar to ABP."""
+    AB, CB = polar(r3, theta3), polar(r4, theta4)
+    return (
+        polygon_of_velocities(
+            crank_v("A", "OA", polar(r2, theta2), omega2),
+            two_bars_v("B", "A", "C", AB, omega3, CB, omega4),
+            (
+                turning("a", "p", "P/A", "AP", _arm(AP, beta, theta3), omega3, r"AP\,V_{B/A} / r_3"),
+                Side("p_v", "p", r"\vec{V}_P", v_P_x + 1j * v_P_y),
+            ),
+        ),
+    )
 
 
 def figure(r1, r2, r3, r4, theta2, theta3, mode, AP, beta, xP, yP, v_P_x, v_P_y):

@@ -12,6 +12,14 @@ from coursework.figures import Figure, ground_pivot, line, link, pin, point, vec
 from coursework.kinematics.chains import Vector
 from coursework.kinematics.triangles import corner
 from coursework.mechanics import Body, Mechanism, Slide
+from coursework.polygons import (
+    Side,
+    normal,
+    polygon_of_accelerations,
+    polygon_of_velocities,
+    tangential,
+    turning,
+)
 from coursework.solution import Moving, formula, given, mistake, stable
 
 UNITS = {"OB": "mm", "beta": "deg", "gamma": "deg", "mu": "deg"}
@@ -202,6 +210,43 @@ def no_coriolis(a, alpha4, omega4, mu, L):
 @mistake("a_G")
 def a_G_tangential_only(c, alpha4):
     return c * abs(alpha4)
+
+
+def polygons(
+    a, c, eta, L, L_dot, L_ddot, theta2, theta4, omega2, omega4, alpha2, alpha4, a_coriolis
+):  # fmt: skip
+    """A_2 is the cylinder's point under A: what the jack gives is laid off first, along it; G turns with A about O."""
+    along, OA, OG = polar(1, theta2), polar(a, theta4), polar(c, theta4 + eta)
+    BA = L * along
+    return (
+        polygon_of_velocities(
+            (
+                Side("p_v", "a'", r"\vec{V}_{A/A_2}", L_dot * along, r"\parallel BA", r"\left|\dot{L}\right|"),
+                turning("a'", "a", "A_2", "BA", BA, omega2),
+                turning("p_v", "a", "A", "OA", OA, omega4),
+                turning("p_v", "g", "G", "OG", OG, omega4, r"c\,V_A / a"),
+            )
+        ),
+        polygon_of_accelerations(
+            (
+                normal("p_a", "a_2'", "A_2", "BA", BA, omega2, "V_{A_2}^2 / L"),
+                Side(
+                    "a_2'", "k'", r"\vec{a}^c_{A/A_2}", 1j * a_coriolis * along, r"\perp BA",
+                    r"2 \left|\omega_2\right| V_{A/A_2}",
+                ),
+                Side(
+                    "k'", "k", r"\vec{a}^s_{A/A_2}", L_ddot * along, r"\parallel BA",
+                    r"\left|\ddot{L}\right|",
+                ),
+                normal("p_a", "a'", "A", "OA", OA, omega4, "V_A^2 / a"),
+                tangential("k", "a", "A_2", "BA", BA, alpha2),
+                tangential("a'", "a", "A", "OA", OA, alpha4),
+                normal("p_a", "g'", "G", "OG", OG, omega4, "V_G^2 / c"),
+                tangential("g'", "g", "G", "OG", OG, alpha4, r"c\,a_A^t / a"),
+                Side("p_a", "g", r"\vec{a}_G", (1j * alpha4 - omega4**2) * OG),
+            )
+        ),
+    )  # fmt: skip
 
 
 def motion(a, c, eta, theta4, omega4, alpha4):

@@ -14,6 +14,16 @@ from coursework.kinematics.chains import Vector
 from coursework.kinematics.dyads import side_of
 from coursework.kinematics.four_bar import FourBar
 from coursework.mechanics import Body, Mechanism
+from coursework.polygons import (
+    Side,
+    crank_a,
+    crank_v,
+    normal,
+    polygon_of_accelerations,
+    polygon_of_velocities,
+    tangential,
+    turning,
+)
 from coursework.solution import formula, given, mistake, stable
 
 UNITS = {"AD": "mm", "phi": "deg", "psi": "deg", "side": "1"}
@@ -234,6 +244,34 @@ def lever_without_acceleration(r2, omega2, theta2, theta3):
 @mistake("a_rel_t")
 def lever_without_normal_acceleration(r2, omega2, theta2, theta3, alpha4, d, theta4, rho):
     return r2 * omega2**2 * sin(theta2 - theta3) + alpha4 * (d * cos(theta4 - theta3) - rho)
+
+
+def polygons(r1, r2, rho, theta2, theta3, omega2, omega4, v_rel, alpha4, a_rel_t, a_coriolis):
+    """The pin is A, the lever's point under it A_4; seen from the lever the pin turns about C."""
+    OA, CA = polar(r2, theta2), -polar(rho, theta3)
+    DA = OA - r1
+    return (
+        polygon_of_velocities(
+            crank_v("A", "OA", OA, omega2),
+            (
+                turning("p_v", "a_4", "A_4", "AD", DA, omega4),
+                turning("a_4", "a", "A/A_4", "AC", CA, v_rel / rho),
+            ),
+        ),
+        polygon_of_accelerations(
+            crank_a("A", "OA", OA, omega2),
+            (
+                Side(
+                    "k", "a", r"\vec{a}^c_{A/A_4}", polar(a_coriolis, theta3), r"\parallel AC",
+                    r"2 \left|\omega_4\right| V_{A/A_4}",
+                ),
+                normal("k'", "k", "A/A_4", "AC", CA, v_rel / rho, r"V_{A/A_4}^2 / \rho"),
+                normal("p_a", "a_4'", "A_4", "AD", DA, omega4, "V_{A_4}^2 / AD"),
+                tangential("a_4'", "a_4", "A_4", "AD", DA, alpha4),
+                tangential("a_4", "k'", "A/A_4", "AC", CA, a_rel_t / rho),
+            ),
+        ),
+    )  # fmt: skip
 
 
 def figure(r1, r2, theta2, omega2, rho, theta3, tau, omega4, v_rel):

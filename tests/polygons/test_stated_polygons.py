@@ -10,6 +10,7 @@ import pytest
 from animations import WITH_POINTS, points_at
 from courses_polygons import (
     COURSE,
+    DRIVES,
     PLACES,
     constructions,
     every_exercise,
@@ -18,14 +19,16 @@ from courses_polygons import (
 
 
 def test_every_exercise_that_asks_a_rate_states_its_polygons():
-    """All but those whose rates are one vector, or arrows each at its own point."""
+    """All but those whose rates are one vector, or arrows each at its own point, or torsors in space."""
     asking = {
         name
         for name in COURSE.names
         if any(part.unit in ("mm/s", "mm/s^2", "rad/s", "rad/s^2") for part in COURSE[name].spec.parts)
     }
     stating = {name for name in COURSE.names if COURSE[name].solution.polygons is not None}
-    assert asking - stating <= {"coriolis", "ball_reducer", "havens_construction"}
+    one_vector, arrows = {"coriolis", "flat_faced_cam"}, {"ball_reducer", "havens_construction"}
+    in_space = {"joint_twist", "geometrical_closure"}
+    assert asking - stating <= one_vector | arrows | in_space
     # Polygons that are themselves the answer are compared with those of these exercises elsewhere.
     assert {name for name in stating if not COURSE[name].spec.drawing_mm} == set(PLACES)
 
@@ -34,13 +37,13 @@ def derivatives(name, variant):
     """Velocity and acceleration of every point, from positions at nearby angles of the crank."""
     moved, crank, wanted, points = PLACES[name]
     given = dict(variant.used)
+    velocity, gain = DRIVES.get(name, ("omega2", "alpha2"))
     samples = given[moved] + np.linspace(-0.4, 0.4, 9)
     found = variant.exercise.solve(**{**given, moved: samples}, only=wanted)
     values = {**given, moved: samples, **found}
-    along = np.radians(np.unwrap(values[crank], period=360))
+    along = values[crank] if crank == "L" else np.radians(np.unwrap(values[crank], period=360))
     along = along - along[4]
-    rate = given["omega1" if name == "havens_planetary" else "omega2"]
-    growth = given.get("alpha2", 0.0)
+    rate, growth = given[velocity], given.get(gain, 0.0)
     width = np.abs(along).max()
     for point, place in points(values).items():
         fit = np.polynomial.polynomial.polyfit(along / width, np.broadcast_to(place, along.shape), 6)
