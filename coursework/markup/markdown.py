@@ -167,7 +167,7 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
         case "root" | "inline" | "list_item" | "thead" | "tbody":
             return inside()
         case "paragraph":
-            return inside() + "\n\n"
+            return f"#lead[{inside()}]\n\n" if _leads(node) else inside() + "\n\n"
         case "text":
             return typst_text(node.content, lang)
         case "softbreak":
@@ -203,6 +203,12 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
         case "table":
             return _typst_table(node, lang)
     raise BadStatement(f"the text holds a {node.type}, which a sheet cannot print")
+
+
+def _leads(node: SyntaxTreeNode) -> bool:
+    """Whether a paragraph stands before a formula on a line of its own."""
+    after = node.next_sibling
+    return after is not None and after.type in ("math_block", "math_block_label")
 
 
 #: What a link leads to that is no link: a term of the index, whose entry is the link's title.

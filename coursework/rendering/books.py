@@ -11,6 +11,7 @@ from typing import Any
 from jinja2 import Environment
 from markupsafe import Markup
 
+from coursework.language.typography import typeset
 from coursework.language.words import words
 from coursework.markup.links import TERM, Link, relinked
 from coursework.markup.markdown import INDEX, anchor, sort_key
@@ -59,7 +60,7 @@ def _typst_pieces(env: Environment, book: Book, lesson: LessonText, pieces: Sequ
 
     def write(link: Link) -> str:
         if link.kind == TERM:
-            return f'[{link.said}]({INDEX} "{link.name}")'
+            return f'[{link.said}]({INDEX} "{typeset(link.name, book.lang)}")'
         if link.name not in here[link.kind == "lesson"]:
             return link.said
         section = f"-{link.section}" if link.section else ""
@@ -113,7 +114,7 @@ def pages(
 def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
     entries = sorted(book.terms.items(), key=lambda item: sort_key(item[0]))
     listed = [
-        (entry, [(f"{name}.html#{anchor(entry)}", _title_of(book, name)) for name in lessons])
+        (typeset(entry, book.lang), [(f"{name}.html#{anchor(entry)}", _title_of(book, name)) for name in lessons])
         for entry, lessons in entries
     ]
     more = {"terms": listed, "title": words(book.lang)["book"]["index"]}

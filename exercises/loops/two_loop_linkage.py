@@ -255,7 +255,7 @@ EXERCISE = Exercise(
     figure=figure,
     version=2,
     symbols={
-        "mobility": "m",
+        "mobility": "w",
         "cycles": r"\gamma",
         "mode_1": r"\mathrm{mode 1}",
         "mode_2": r"\mathrm{mode 2}",
