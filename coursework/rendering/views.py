@@ -361,6 +361,7 @@ def margin_words(answer: Answer, lang: str) -> str:
 #: What a table's row on one line takes, without an arrow over a letter and with one, mm; and the sides of a cell.
 _ROW, _ROW_WITH_ARROW, _SIDES = 6.2, 7.0, 4.5
 _ARROW = re.compile(r"\\(?:vec|overrightarrow)")
+_BRACKET = re.compile(r"\\left|\\right.\^?")
 _MACRO = re.compile(r"\\(?:[A-Za-z]+|.)", re.DOTALL)
 #: Macros that make a formula no taller than a line of text with its scripts; any other may.
 _LOW = frozenset(
@@ -401,7 +402,18 @@ def _row(lang: str, *cells: tuple[str, float]) -> str:
 
 
 def _is_low(markdown: str) -> bool:
-    return not _BLOCK.match(markdown) and _LOW.issuperset(_MACRO.findall(markdown))
+    low = not _BLOCK.match(markdown) and _LOW.issuperset(_MACRO.findall(markdown))
+    return low and not _has_power_inside(markdown)
+
+
+def _has_power_inside(latex: str) -> bool:
+    """Whether a bracket holds another one with an exponent, and so is drawn taller than a line."""
+    depth = 0
+    for bracket in _BRACKET.findall(latex):
+        depth += 1 if bracket == r"\left" else -1
+        if depth and bracket.endswith("^"):
+            return True
+    return False
 
 
 @lru_cache(maxsize=2048)

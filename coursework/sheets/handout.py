@@ -105,6 +105,7 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
         unit="" if part.asks_unit else units_text(part, variant.lang),
         kind=part.kind,
         is_exact=part.is_exact,
+        is_open=part.sort.is_open,
         box="millimetre" if part.millimetre else part.sort.box,
         rule=engine_words(variant.lang)["rules"][part.kind] if part.sort.has_rule else "",
         room=part.room,

@@ -46,6 +46,7 @@ class Question:
     points: float
     tolerance: str  #: in words a student understands; empty for exact kinds
     is_exact: bool = False  #: judged without a margin
+    is_open: bool = False  #: a person marks it: what is written is prose, or a drawing
     box: str = "usual"  #: room for the answer: usual, wide, line, several, lines, blank, millimetre
     hint: str = ""  #: the form of an answer, where the engine's words have none for the kind
     asks_unit: bool = False  #: the answer is to come with its unit, which the sheet does not print

@@ -264,7 +264,7 @@ def test_the_sheets_say_the_form_and_the_rule(tmp_path):
     assert run([*build, "--out", str(tmp_path)]) == 0
     pages = tmp_path / "handouts" / "joint_graph"
     page = next(pages.glob("*.en.html")).read_text("utf-8")
-    assert "<textarea" in page
+    assert 'autocorrect="off"' in page.partition("<textarea")[2].partition(">")[0], "P12 is no word to mend"
     assert "half of it where only its kind is wrong" in page
     assert "comme 1-2 pivot, 1-4 glissière" in next(pages.glob("*.fr.ipynb")).read_text("utf-8")
     assert "la moitié si seule sa nature" in next(pages.glob("*.fr.tex")).read_text("utf-8").replace(

@@ -225,6 +225,9 @@ def test_room_that_is_none_is_refused(stated, said):
 def test_sheets_leave_room_and_say_the_rule(built):
     page = next((built / "handouts" / "coil").glob("*.en.html")).read_text("utf-8")
     assert '<textarea id="answer-why" name="why" rows="3"' in page
+    assert "autocorrect" not in page.partition("<textarea")[2].partition(">")[0], (
+        "prose is helped as it is typed"
+    )
     assert page.count('type="checkbox"') == 4 + 1, "one says that none is right: nothing ticked is no answer"
     assert read_choices(re.search(r'value="(none)"> none of them', page)[1], {"a": ("one",)}).values == (
         frozenset(),
