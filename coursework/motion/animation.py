@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,9 @@ import numpy as np
 
 from coursework.course.variant import Variant
 from coursework.errors import WrongValue, unknown
+from coursework.figures.base import Element
+from coursework.figures.elements import bar
+from coursework.figures.marks import angle_mark, dimension, line
 from coursework.figures.moving import PAPER_MM, Arrow, Drawing, Key, Spot, drawing, extent
 from coursework.figures.moving_svg import moving_svg, still_svg
 from coursework.language.numbers import unit_text
@@ -134,8 +138,13 @@ class Animation(Reel):
 
     # -------------------------------------------------------------------- picture
 
-    def drawing(self, effects: Sequence[str], paper_mm: tuple[float, float] = PAPER_MM) -> Drawing:
-        """Everything at every instant, with what these effects show, in a box of this size."""
+    def drawing(
+        self,
+        effects: Sequence[str],
+        paper_mm: tuple[float, float] = PAPER_MM,
+        frames: Sequence[tuple[Element, ...]] | None = None,
+    ) -> Drawing:
+        """Everything at every instant, with what these effects show, in a box of this size; ``frames`` stand in place of its own."""
         arrows, spots = [], []
         for name, effect, v in self._vectors:
             if effect in effects and effect in self.scales:
@@ -146,7 +155,12 @@ class Animation(Reel):
             spots = [Spot(point.position, name, self.closed) for name, point in self.points.items()]
         keys = self._keys({a.effect for a in arrows})
         return drawing(
-            self.frames, arrows=arrows, spots=spots, keys=keys, closed=self.closed, paper_mm=paper_mm
+            frames or self.frames,
+            arrows=arrows,
+            spots=spots,
+            keys=keys,
+            closed=self.closed,
+            paper_mm=paper_mm,
         )
 
     def _keys(self, effects: set[str]) -> list[Key]:
@@ -193,8 +207,10 @@ class Animation(Reel):
         )
 
     def stills(self, count: int, paper_mm: tuple[float, float]) -> tuple[str, ...]:
-        """So many instants of the cycle as SVG, evenly spread, the statement's first, each in a box of this size."""
-        shown, instants = self.drawing(self.effects, paper_mm), len(self.angles)
+        """So many instants of the cycle as SVG, evenly spread, the statement's first, each in a box of this size, which has no room
+        for the letters of lengths and angles."""
+        frames = [_without_sizes(frame) for frame in self.frames]
+        shown, instants = self.drawing(self.effects, paper_mm, frames), len(self.angles)
         turned = [(self.first + round(k * instants / count)) % instants for k in range(count)]
         said = {"title": self.title, "words": self.words, "lang": self.variant.lang}
         return tuple(still_svg(shown, instant, **said) for instant in turned)
@@ -207,6 +223,17 @@ class Animation(Reel):
 
     def _repr_html_(self) -> str:
         return Picture(self.svg(), self.words).html
+
+
+def _without_sizes(frame: Sequence[Element]) -> tuple[Element, ...]:
+    """A figure without its angles and the letters of its lengths; points keep their names, bodies their numbers."""
+    kept = (one for one in frame if not isinstance(one, (angle_mark, dimension)))
+    return tuple(
+        replace(one, label=None)
+        if isinstance(one, (bar, line)) and one.label and not one.label.isdigit()
+        else one
+        for one in kept
+    )
 
 
 def _round_below(value: float) -> float:

@@ -13,7 +13,7 @@ from coursework.errors import BadCourse, WrongValue, unknown
 from coursework.language.words import words
 from coursework.marking.marking import mark as grade
 from coursework.markup.shown import Picture, Shown
-from coursework.rendering.views import chain_on_lines, offered
+from coursework.rendering.views import ROOM_ALONE, ROOM_BESIDE, chain_on_lines, offered
 from coursework.selfstudy import hints
 from coursework.selfstudy.answers import sentence_of, sign_of
 from coursework.selfstudy.examples import LEVELS, blanks, told_steps
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from coursework.model import Part
     from coursework.sheets.sheet import Question, Step
 
+_ROOM = ROOM_BESIDE[0], ROOM_ALONE[1]  #: of the figure, mm
 BARE = LEVELS  #: the level that tells nothing but what is asked
 
 
@@ -55,7 +56,7 @@ class Worked(Shown):
         head = told["whole" if not self.level else "bare" if self.level == BARE else "part"]
         pieces: list[str | Picture] = [f"**{head}{said['colon']} {sheet.title}.** {sheet.statement}"]
         if sheet.figure is not None:
-            pieces.append(Picture(sheet.figure.outlined_svg(), sheet.figure_alt))
+            pieces.append(Picture(sheet.figure.fitted(*_ROOM).outlined_svg(), sheet.figure_alt))
         pieces += [Picture(figure.outlined_svg(), alt) for figure, alt in sheet.more_figures]
         given = ", ".join(hints._given(self.variant, g.name) for g in sheet.given)
         if given:

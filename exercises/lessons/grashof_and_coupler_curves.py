@@ -105,13 +105,13 @@ def four_types():
     drawings = [_with_paths(*case) for case in CASES.values()]
     found = []
     for number, elements in enumerate(drawings):
-        origin = complex(FAR[number], -132 * (number // 2))
+        origin = complex(FAR[number], 0.0)
         found += moved(elements, origin)
-        found.append(note(origin + 30 - (44j if number < 2 else 80j), f"({'abcd'[number]})"))
-    return Figure(*found, paper_mm=(150, 140))
+        found.append(note(origin + 30 - 80j, f"({'abcd'[number]})"))
+    return Figure(*found, paper_mm=(165, 70))
 
 
-FAR = (0.0, 150.0, 20.0, 160.0)  #: where the four types stand, from left to right
+FAR = (0.0, 150.0, 300.0, 430.0)  #: where the four types stand, from left to right
 
 #: Frame, input, coupler, output; where the input is drawn. The shortest bar beside the frame, beside it, as it, opposite it.
 CASES = {
@@ -270,7 +270,7 @@ def atlas():
         *curves,
         *_drawn(O, A, B, C, numbers=False),
         *[contact(A + z) for z in places],
-        paper_mm=(140, 120),
+        paper_mm=(130, 78),
     )
 
 

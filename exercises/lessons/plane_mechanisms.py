@@ -63,7 +63,7 @@ def parallel_planes():
     elements += [link(_flat(O), _flat(A)), link(_flat(C), _flat(B))]
     elements += [pin(_flat(z)) for z in (A, B, P)] + [ground_pivot(_flat(z)) for z in (O, C)]
     elements.append(vector(_seen(-40 - 30j, 0j), 30j, r"\vec{z}"))
-    return Figure(*elements, paper_mm=(120, 110))
+    return Figure(*elements, paper_mm=(120, 70))
 
 
 def _coupler_point(theta2):
@@ -234,8 +234,8 @@ def parameters():
 def inversions():
     """One chain, each of its four bars held in turn."""
     return Figure(
-        *panels(*[_held(bar) for bar in (1, 2, 3, 4)], across=100, down=24, columns=2, drop=84),
-        paper_mm=(140, 105),
+        *panels(*[_held(bar) for bar in (1, 2, 3, 4)], across=96, down=24),
+        paper_mm=(165, 60),
     )
 
 

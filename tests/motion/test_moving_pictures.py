@@ -13,10 +13,12 @@ from sweeps import sampled
 
 import coursework
 from coursework.cli import run
-from coursework.figures import link, pin, rail, rotation_arrow
+from coursework.figures import angle_mark, dimension, link, pin, rail, rotation_arrow
+from coursework.figures.elements import bar
 from coursework.figures.moving import drawing
 from coursework.figures.riding import ride
 from coursework.figures.text import read
+from coursework.motion.animation import _without_sizes
 from coursework.motion.gauges import EFFECTS
 
 #: A crank, a coupler, and the film of a ball always; all that move, slow.
@@ -215,3 +217,18 @@ def test_the_command_writes_both_files(tmp_path, capsys):
 def test_a_notebook_shows_the_moving_picture(name):
     shown = coursework.show_motion(COURSE[name].variant(1))
     assert shown._repr_html_().startswith('<img src="data:image/svg+xml;base64,')
+
+
+def test_stills_have_no_room_for_lengths_and_angles():
+    """They keep the figure's points and bodies: as many drawn things but its labels of sizes."""
+    shaper = animation("three_loop_shaper", 2)
+    frame = shaper.frames[0]
+    bare = _without_sizes(frame)
+    assert any(isinstance(one, angle_mark) for one in frame)
+    assert not any(isinstance(one, (angle_mark, dimension)) for one in bare)
+    assert [one.label for one in bare if isinstance(one, pin)] == [
+        one.label for one in frame if isinstance(one, pin)
+    ]
+    assert any(isinstance(one, bar) and one.label for one in frame)
+    assert not any(isinstance(one, bar) and one.label and not one.label.isdigit() for one in bare)
+    assert len(shaper.stills(4, (80.0, 46.0))) == 4

@@ -84,7 +84,8 @@ def test_full_circles_are_drawn_where_a_pin_goes_round():
     """One in each of the two first drawings, two in that of the double crank, none in the last."""
     circles = [element.center for element in GRASHOF.four_types().elements if isinstance(element, circle)]
     assert len(circles) == 4
-    assert sum(center.imag < -100 for center in circles) == 2
+    left, right = GRASHOF.FAR[2], GRASHOF.FAR[3]
+    assert sum(left <= center.real < right for center in circles) == 2
 
 
 def test_the_flat_triangles_have_the_sides_of_the_rule():
