@@ -103,6 +103,7 @@ EXERCISE = Exercise(
     keep=(input_turns_visibly, input_accelerates_visibly, acceleration_unlike_velocity),
     parts=(
         Part("graph", kind="graph", room=2, points=2),
+        Part("bases", kind="drawing", room=(150, 45), points=2, by_request=True),
         Part(
             "omega_why",
             kind="choice",

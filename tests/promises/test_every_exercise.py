@@ -121,6 +121,8 @@ def test_a_request_computes_what_it_needs_and_nothing_else(name):
     exercise = COURSE[name]
     graph = exercise.solution.graph
     for part in exercise.spec.parts:
+        if part.sort.is_open:
+            continue  # no quantity: a person marks it
         plan = exercise.plan((part.quantity,))
         assert plan[-1] == part.quantity
         # Taking any step out starves the request: every step is needed.
