@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from coursework.errors import BadCourse, nearest
+from coursework.errors import BadCourse, closest, nearest
 
 SHOWN, NOTEBOOK, STILL = "shown", "notebook", "still"
 #: What a cell's tags say: its code is printed; it stands in the notebook alone; its code is printed and not run for the book.
@@ -21,7 +21,10 @@ TAGS = (SHOWN, NOTEBOOK, STILL)
 
 @dataclass(frozen=True)
 class Prose:
+    """Running text; ``line`` is that of its first line in the file."""
+
     text: str
+    line: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True)
@@ -35,9 +38,10 @@ class Cell:
 
 @dataclass(frozen=True)
 class Answer:
-    """The answer to the question above it, Markdown."""
+    """The answer to the question above it, Markdown; ``line`` is that of its first line in the file."""
 
     text: str
+    line: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True)
@@ -56,6 +60,9 @@ Block: TypeAlias = Prose | Cell | Answer | Image
 _FENCE = re.compile(
     r"^(```+)(\w*)[ \t]*(?:\{tags=([\w,-]+)\})?[ \t]*\n(.*?)^\1[ \t]*$", re.DOTALL | re.MULTILINE
 )
+_MARK = re.compile(r"^(```+)(.*?)[ \t]*$")
+_OPENED = re.compile(r"(\w*)[ \t]*(?:\{tags=[\w,-]+\})?")
+_WORDS = ("python", "answer")  #: of fences that are more than text in a fixed pitch
 _IMAGE = re.compile(r"^!\[(?P<caption>.*)\]\((?P<target>[^()\s]+)\)[ \t]*$", re.MULTILINE)
 _TARGET = re.compile(r"(figure|exercise):(\w+)(?:\?(\S*))?")
 
@@ -66,16 +73,17 @@ def blocks(text: str, file: str) -> tuple[Block, ...]:
     Raises
     ------
     BadCourse
-        A tag or a picture that is none.
+        A fence, a tag or a picture that is none.
     """
+    _check_fences(text, file)
     found: list[Block] = []
     end = 0
     for fence in _FENCE.finditer(text):
-        if fence[2] not in ("python", "answer"):
+        if fence[2] not in _WORDS:
             continue
         found += _prose(text, end, fence.start(), file)
         if fence[2] == "answer":
-            found.append(Answer(fence[4].strip()))
+            found.append(Answer(fence[4].strip(), _line(text, fence.start(4), fence[4])))
         else:
             found.append(_cell(fence, text, file))
         end = fence.end()
@@ -94,15 +102,51 @@ def _cell(fence: re.Match[str], text: str, file: str) -> Cell:
 def _prose(text: str, start: int, stop: int, file: str) -> Iterator[Block]:
     end = start
     for image in _IMAGE.finditer(text, start, stop):
-        yield from _words(text[end : image.start()])
+        yield from _words(text, end, image.start())
         yield _image(image, file, 1 + text.count("\n", 0, image.start()))
         end = image.end()
-    yield from _words(text[end:stop])
+    yield from _words(text, end, stop)
 
 
-def _words(text: str) -> Iterator[Prose]:
-    if text.strip():
-        yield Prose(text.strip())
+def _words(text: str, start: int, stop: int) -> Iterator[Prose]:
+    if words := text[start:stop].strip():
+        yield Prose(words, _line(text, start, text[start:stop]))
+
+
+def _line(text: str, start: int, piece: str) -> int:
+    """The line of the first letter of a piece of the text."""
+    before = len(piece) - len(piece.lstrip())
+    return 1 + text.count("\n", 0, start + before)
+
+
+def _check_fences(text: str, file: str) -> None:
+    """Stop at a fence that is never closed, or whose word is nearly one that says something."""
+    opened, at = "", 0
+    for number, line in enumerate(text.split("\n"), 1):
+        mark = _MARK.match(line)
+        if mark is None or (opened and mark[1] != opened):
+            continue
+        if opened and mark[2]:
+            raise BadCourse(
+                f"{file}, line {at}: the fence that opens here is not closed before line {number}"
+            )
+        if not opened:
+            _check_opening(mark[2].strip(), f"{file}, line {number}")
+        opened, at = ("" if opened else mark[1]), number
+    if opened:
+        raise BadCourse(f"{file}, line {at}: the fence that opens here is never closed")
+
+
+def _check_opening(said: str, place: str) -> None:
+    """What stands behind the opening of a fence."""
+    known = _OPENED.fullmatch(said)
+    if known is None:
+        raise BadCourse(
+            f"{place}: a fence opens with a word, and tags if wanted: python {{tags=shown}}; found {said!r}"
+        )
+    word = known[1]
+    if word not in _WORDS and (near := closest(word.lower(), _WORDS)):
+        raise BadCourse(f"{place}: no fence {word!r}; did you mean {near!r}?")
 
 
 def _image(image: re.Match[str], file: str, line: int) -> Image:

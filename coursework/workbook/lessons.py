@@ -5,15 +5,18 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 from coursework.course.course import Course
+from coursework.course.folder import Folder
 from coursework.course.lessons import lesson_file, lesson_sections, lesson_title
 from coursework.errors import BadCourse, CourseworkError, counted, nearest
-from coursework.markup.links import TERM, links
+from coursework.markup.links import TERM, Link, links
 from coursework.sheets.book import Code, Head, Later, LessonText, Piece, Prose
 from coursework.workbook import lesson_source as source
 from coursework.workbook.pictures import drawn
+from coursework.workbook.proofread import lines_of_words, place_of, proofread
 from coursework.workbook.running import Session, Shows
 
 _TITLE = re.compile(r"\A# +[^\n]*\n*")
@@ -32,16 +35,20 @@ def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
         It is not written in this language, a cell raises, or a picture or a link leads nowhere.
     """
     path = lesson_file(course.folder, name, lang)
-    text = path.read_text("utf-8-sig")
-    check_links(course, name, lang)
-    # Beside the course's folder, which a cell so opens by its name.
-    session = Session(course.folder.relative(path), course.folder.root.parent)
-    made = _Lesson(course, name, lang, session)
-    for block in source.blocks(_TITLE.sub("", text), course.folder.relative(path)):
-        made.add(block)
+    check_words(course, name, lang)
+    file = course.folder.relative(path)
+    with Session(file, course.folder.root) as session:
+        made = _Lesson(course, name, lang, session)
+        for block in source.blocks(_untitled(_read(path)), file):
+            made.add(block)
     number = 1 + course.folder.lessons.index(name)
     title = lesson_title(course.folder, name, lang)
     return LessonText(name, number, lang, title, tuple(made.pieces), tuple(made.answers))
+
+
+def _untitled(text: str) -> str:
+    """A text without its title, each line in its place."""
+    return _TITLE.sub(lambda found: "\n" * found[0].count("\n"), text)
 
 
 class _Lesson:
@@ -91,28 +98,52 @@ def _parted(text: str) -> Iterator[Piece]:
         yield Prose(after)
 
 
-def check_links(course: Course[Any], name: str, lang: str) -> None:
-    """Stop at a link of a lesson that leads nowhere.
+def check_words(course: Course[Any], name: str, lang: str) -> None:
+    """Stop at words of a lesson that no book could print, and at a link that leads nowhere.
 
     Raises
     ------
     BadCourse
-        It names an exercise, a lesson or a section that there is not.
+        A formula, a fence or a picture is none; a link names an exercise, a lesson or a section that there is not.
     """
-    folder = course.folder
-    path = lesson_file(folder, name, lang)
-    for link in links(path.read_text("utf-8-sig")):
-        if link.kind == TERM:
-            continue
-        known = folder.names if link.kind == "exercise" else folder.lessons
-        if link.name not in known:
-            raise BadCourse(
-                f"{folder.relative(path)} links to the {link.kind} {link.name!r}, which there is not{nearest(link.name, known)}"
-            )
-        if link.section and link.section not in lesson_sections(folder, link.name, lang):
-            raise BadCourse(
-                f"{folder.relative(path)} links to section {link.section} of {link.name}, which it has not"
-            )
+    path = lesson_file(course.folder, name, lang)
+    text, file = _read(path), course.folder.relative(path)
+    proofread(text, file)
+    for words, line in lines_of_words(source.blocks(text, file)):
+        for link in links(words):
+            if link.kind != TERM:
+                _check_link(
+                    course.folder, link, lang, place_of(words, line, file, f"{link.kind}:{link.name}")
+                )
+
+
+def _check_link(folder: Folder, link: Link, lang: str, place: str) -> None:
+    known = folder.names if link.kind == "exercise" else folder.lessons
+    if link.name not in known:
+        raise BadCourse(
+            f"{place}: a link to the {link.kind} {link.name!r}, which there is not{nearest(link.name, known)}"
+        )
+    if link.section and link.section not in (there := lesson_sections(folder, link.name, lang)):
+        numbers = ", ".join(map(str, there)) or "none"
+        raise BadCourse(
+            f"{place}: a link to section {link.section} of {link.name}, which it has not; there is {numbers}"
+        )
+
+
+def _read(path: Path) -> str:
+    """The text of a file.
+
+    Raises
+    ------
+    BadCourse
+        It is not UTF-8.
+    """
+    try:
+        return path.read_text("utf-8-sig")
+    except UnicodeDecodeError as fault:
+        raise BadCourse(
+            f"{path.name} is not written in UTF-8, from byte {fault.start} on; save it in UTF-8"
+        ) from fault
 
 
 def faults(course: Course[Any], name: str) -> tuple[str, ...]:
@@ -121,7 +152,7 @@ def faults(course: Course[Any], name: str) -> tuple[str, ...]:
     found, shapes = [], {}
     for lang in course.folder.languages:
         try:
-            text = lesson_file(course.folder, name, lang).read_text("utf-8-sig")
+            text = _read(lesson_file(course.folder, name, lang))
             lesson_text(course, name, lang)
         except CourseworkError as fault:
             found.append(f"{name}, {lang}: {fault}")

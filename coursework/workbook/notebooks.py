@@ -15,7 +15,7 @@ from coursework.markup.markdown import to_notebook_markdown
 from coursework.rendering.renderer import renderer_of
 from coursework.sheets.book import Drawn
 from coursework.workbook import lesson_source as source
-from coursework.workbook.lessons import check_links
+from coursework.workbook.lessons import check_words
 from coursework.workbook.pictures import drawn
 
 _PPI = 150
@@ -38,7 +38,7 @@ def lesson_notebook(course: Course[Any], name: str, lang: str) -> str:
     """
     folder = course.folder
     path = lesson_file(folder, name, lang)
-    check_links(course, name, lang)
+    check_words(course, name, lang)
     pieces: list[str] = []
     pictures: dict[str, Mapping[str, str]] = {}
     for block in source.blocks(path.read_text("utf-8-sig"), folder.relative(path)):

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from reprlib import repr as short
+from traceback import extract_tb
 from typing import Any
 
 from coursework.course.course import Course
 from coursework.course.folder import Folder
-from coursework.errors import BadCourse, BadInput, UnknownName, WrongValue, nearest
+from coursework.course.lessons import lesson_file
+from coursework.errors import BadCourse, BadInput, CourseworkError, nearest
 from coursework.figures import Figure, Picture
 from coursework.figures.moving import drawing
 from coursework.figures.moving_svg import moving_svg, still_svg
@@ -28,13 +31,14 @@ def drawn(course: Course[Any], lesson: str, image: Image, lang: str) -> Drawn:
     Raises
     ------
     BadCourse
-        There is no such figure, or none of that exercise, or nothing of it moves.
+        There is no such figure, or none of that exercise, or nothing of it moves; says file and line.
     """
     try:
         made = _of_lesson if image.kind == "figure" else _of_exercise
         return made(course, lesson, image, lang)
-    except (BadInput, UnknownName, WrongValue) as fault:
-        raise BadCourse(f"the lesson {lesson}, line {image.line}: {fault}") from fault
+    except CourseworkError as fault:
+        file = course.folder.relative(lesson_file(course.folder, lesson, lang))
+        raise BadCourse(f"{file}, line {image.line}: {fault}") from fault
 
 
 def _of_lesson(course: Course[Any], lesson: str, image: Image, lang: str) -> Drawn:
@@ -43,13 +47,15 @@ def _of_lesson(course: Course[Any], lesson: str, image: Image, lang: str) -> Dra
             f"the figure {image.name} has no caption, which tells what it shows to who does not see it"
         )
     made = _call(course.folder, lesson, image.name)
+    if isinstance(made, Picture):
+        made = made.beside(course.folder.lesson_place)
     said = plain_line(image.caption, lang)
     if isinstance(made, (Figure, Picture)):
         return Drawn(said, image.caption, figure=made)
     if isinstance(made, Sequence) and made and all(isinstance(one, Figure) for one in made):
         return _moving(made, said, image.caption, lang)
     raise BadCourse(
-        f"the lesson {lesson}: {image.name}() gives a Figure, a Picture, or a list of Figures that follow one another; found {made!r}"
+        f"{image.name}() gives a Figure, a Picture, or a list of Figures that follow one another; found {short(made)}"
     )
 
 
@@ -58,8 +64,15 @@ def _call(folder: Folder, lesson: str, name: str) -> Any:
     make = getattr(module, name, None)
     if not callable(make):
         known = [n for n, one in vars(module).items() if callable(one) and not n.startswith("_")]
-        raise BadCourse(f"the lesson {lesson}: no figure {name!r}{nearest(name, known)}")
-    return make()
+        raise BadCourse(f"no figure {name!r}{nearest(name, known)}")
+    try:
+        return make()
+    except CourseworkError:
+        raise
+    except Exception as fault:
+        lines = [f.lineno for f in extract_tb(fault.__traceback__) if f.filename == module.__file__]
+        where = f" in line {lines[-1]} of {lesson}.py" if lines else ""
+        raise BadCourse(f"the figure {name} fails{where}: {type(fault).__name__}: {fault}") from fault
 
 
 def _moving(frames: Sequence[Figure], said: str, caption: str, lang: str) -> Drawn:

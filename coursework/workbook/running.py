@@ -5,13 +5,15 @@ from __future__ import annotations
 import ast
 import contextlib
 import io
+import re
 import traceback
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
-from coursework.errors import BadCourse
+from coursework.errors import BadCourse, CourseworkError
 from coursework.figures import Figure, Picture
 from coursework.markup.shown import Picture as ShownPicture
 from coursework.markup.shown import Shown
@@ -21,6 +23,11 @@ from coursework.selfstudy.worked import Worked
 from coursework.sheets.book import Drawn, Piece, Printed, Prose
 from coursework.workbook.lesson_source import Cell
 from coursework.workbook.pictures import moving
+
+LINES = 200  #: that a cell may print into a book
+_IN_MEMORY = re.compile(r"<[^<>\n]* at 0x[0-9a-fA-F]+>")
+#: Signs that no page shows: colours of a terminal, and what has no form.
+_UNSEEN = re.compile(r"\x1b\[[0-9;]*[A-Za-z]|\r(?=\n)|[\x00-\x08\x0b-\x1f\x7f]")
 
 
 @dataclass(frozen=True)
@@ -32,11 +39,28 @@ class Shows:
 
 
 class Session:
-    """A lesson's cells, run one after another in one namespace, as in a notebook that stands in a folder."""
+    """A lesson's cells, run one after another in one namespace, as in a notebook that stands in a folder: an empty one, beside the
+    course's own, so that nothing is read or left where the book is bound.
 
-    def __init__(self, file: str, folder: Path):
-        self._file, self._folder = file, folder
+    Parameters
+    ----------
+    file
+        What messages call the lesson.
+    root
+        The course's folder.
+    """
+
+    def __init__(self, file: str, root: Path):
+        self._file, self._root = file, root
+        self._kept = TemporaryDirectory(prefix="lesson-", ignore_cleanup_errors=True)
+        self._folder = _beside(root, Path(self._kept.name))
         self._names: dict[str, Any] = {"__name__": "__lesson__"}
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(self, *fault: object) -> None:
+        self._kept.cleanup()
 
     def run(self, cell: Cell) -> Shows:
         """Run a cell.
@@ -44,34 +68,82 @@ class Session:
         Raises
         ------
         BadCourse
-            It raises; the message has the line of the lesson.
+            It is no Python, it raises, it ends Python, or it prints what no book could; the message has the line of the lesson.
         """
+        printed = io.StringIO()
+        try:
+            with contextlib.redirect_stdout(printed), contextlib.chdir(self._folder):
+                value = self._value(cell)
+        except (Exception, SystemExit) as fault:
+            raise BadCourse(self._said(fault, cell)) from fault
+        shown, told = shows(value), tuple(self._clean(Printed(printed.getvalue()), cell))
+        if isinstance(value, Compared):
+            return Shows((), (*told, *shown.later))  # what it prints would tell what is to be predicted
+        now = (piece for one in shown.now for piece in self._clean(one, cell))
+        return Shows((*told, *now), shown.later)
+
+    def _value(self, cell: Cell) -> Any:
+        """What the last line gives, once the cell is run."""
         # Line numbers are those of the lesson's file.
         tree = ast.parse("\n" * (cell.line - 1) + cell.code, self._file)
         last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
-        printed, value = io.StringIO(), None
-        try:
-            with contextlib.redirect_stdout(printed), contextlib.chdir(self._folder):
-                exec(compile(tree, self._file, "exec"), self._names)
-                if isinstance(last, ast.Expr):
-                    value = eval(compile(ast.Expression(last.value), self._file, "eval"), self._names)
-        except Exception as fault:
-            raise BadCourse(
-                f"{self._file}, line {self._line(fault, cell)}: {type(fault).__name__}: {fault}"
-            ) from fault
-        said = printed.getvalue().rstrip()
-        shown, told = shows(value), (Printed(said),) if said else ()
-        if isinstance(value, Compared):
-            return Shows((), (*told, *shown.later))  # what it prints would tell what is to be predicted
-        return Shows((*told, *shown.now), shown.later)
+        exec(compile(tree, self._file, "exec"), self._names)
+        if not isinstance(last, ast.Expr):
+            return None
+        return eval(compile(ast.Expression(last.value), self._file, "eval"), self._names)
 
-    def _line(self, fault: Exception, cell: Cell) -> int:
+    def _said(self, fault: BaseException, cell: Cell) -> str:
+        """A fault in one line."""
+        if isinstance(fault, SyntaxError) and fault.filename == self._file:
+            return f"{self._file}, line {fault.lineno}: the cell is no Python: {fault.msg}"
+        place = f"{self._file}, line {self._line(fault, cell)}"
+        if isinstance(fault, SystemExit):
+            return f"{place}: the cell ends Python; a lesson's cells run to their last line"
+        return (
+            f"{place}: {fault if isinstance(fault, CourseworkError) else f'{type(fault).__name__}: {fault}'}"
+        )
+
+    def _line(self, fault: BaseException, cell: Cell) -> int:
         own = [
             frame.lineno
             for frame in traceback.extract_tb(fault.__traceback__)
             if frame.filename == self._file
         ]
         return own[-1] or cell.line if own else cell.line
+
+    def _clean(self, piece: Piece, cell: Cell) -> Iterator[Piece]:
+        """What a cell shows as a book may hold it: the same for ever, and not without end."""
+        if not isinstance(piece, Printed):
+            yield piece
+            return
+        text = _UNSEEN.sub("", piece.text).rstrip()
+        lines, here = 1 + text.count("\n"), self._of_here(text)
+        if here:
+            what = f"shows {here!r}, which is not the same on another machine"
+        elif lines > LINES:
+            what = f"prints {lines} lines; a book has room for {LINES}"
+        else:
+            yield from [Printed(text)] if text else []
+            return
+        raise BadCourse(
+            f"{self._file}, line {cell.line}: the cell {what}; show something else, or tag it notebook"
+        )
+
+    def _of_here(self, text: str) -> str:
+        """What of a text holds for this machine, or this moment, alone: a place in memory, a folder."""
+        here = [self._kept.name, str(Path(self._kept.name).resolve()), str(self._root)]
+        places = [line for line in text.splitlines() if any(one in line for one in here)]
+        objects = _IN_MEMORY.findall(text)
+        return (*places, *objects, "")[0]
+
+
+def _beside(root: Path, place: Path) -> Path:
+    """A folder beside which the course stands, under its name."""
+    try:
+        (place / root.name).symlink_to(root, target_is_directory=True)
+    except OSError:  # a system, or a user, without links
+        return root.parent
+    return place
 
 
 def shows(value: Any) -> Shows:

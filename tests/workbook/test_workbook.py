@@ -31,7 +31,7 @@ exercises = ["crank_pin"]
 """
 
 FIGURES = """
-from coursework.figures import Figure, link, pin
+from coursework.figures import Figure, Picture, link, pin
 
 
 def one_rod():
@@ -41,6 +41,18 @@ def one_rod():
 def turning_rod():
     import cmath
     return [Figure(link(0, 100 * cmath.exp(1j * k)), pin(0, "A")) for k in range(6)]
+
+
+def no_rod():
+    return Figure(link(0, 1 / 0))
+
+
+def lost():
+    return Picture("lost.svg")
+
+
+def drawn_elsewhere():
+    return Picture("mark.svg")
 """
 
 LESSON = """# Rods & <pins>
@@ -252,14 +264,60 @@ def test_a_book_prints_no_variant_that_a_class_is_given(small):
 @pytest.mark.parametrize(
     ("was", "now", "told"),
     [
-        ("lesson:rods#1", "lesson:rods#7", "section 7 of rods"),
-        ("lesson:rods#1", "lesson:rod", "the lesson 'rod', which there is not; did you mean 'rods'"),
-        ("exercise:crank_pin)", "exercise:crank_pim)", "'crank_pim'"),
-        ("figure:one_rod", "figure:one_road", "no figure 'one_road'; did you mean 'one_rod'"),
-        ("x = 41 + 1", "x = 41 + y", "line 33: NameError"),
-        ("figure:turning_rod", "exercise:crank_pin?sed=1", "'sed'"),
-        ("![A rod that turns]", "![]", "line 41: the figure turning_rod has no caption"),
-        ("level=2", "level=9", "line 25: WrongValue"),
+        (
+            "lesson:rods#1",
+            "lesson:rods#7",
+            "line 47: a link to section 7 of rods, which it has not; there is 1, 2",
+        ),
+        (
+            "lesson:rods#1",
+            "lesson:rod",
+            "line 47: a link to the lesson 'rod', which there is not; did you mean 'rods'",
+        ),
+        ("exercise:crank_pin)", "exercise:crank_pim)", "line 47: a link to the exercise 'crank_pim'"),
+        (
+            "(exercise:crank_pin)",
+            "(exercice:crank_pin)",
+            "line 47: the link 'exercice:crank_pin' leads nowhere",
+        ),
+        ('#index "étai"', '#indx "étai"', "line 3: the link '#indx' leads nowhere"),
+        ("It **is**", "It [is](lesson:rod)", "line 52: a link to the lesson 'rod'"),
+        ("as $x = 42$", "as $x = 42", "line 52: the paragraph “It **is**, as $x = 42.” has 1 $"),
+        ("as $x = 42$", r"as $x = \thetaa$", "line 52: formula $x = \\thetaa$"),
+        ("(figure:one_rod)", "(figure:one_rod) and more", "line 11: a picture stands on a line of its own"),
+        ("(figure:one_rod)", "(figure:one rod)", "line 11: a picture stands on a line of its own"),
+        ("figure:one_rod", "figure:one_road", "line 11: no figure 'one_road'; did you mean 'one_rod'"),
+        ("figure:one_rod", "figure:link", "line 11: the figure link fails: TypeError"),
+        (
+            "figure:one_rod",
+            "figure:no_rod",
+            "line 11: the figure no_rod fails in line 15 of rods.py: ZeroDivisionError",
+        ),
+        ("figure:one_rod", "figure:lost", "line 11: no picture"),
+        ("figure:turning_rod", "exercise:crank_pin?sed=1", "line 43: nothing called 'sed'"),
+        ("![A rod that turns]", "![]", "line 43: the figure turning_rod has no caption"),
+        ("level=2", "level=9", "line 27: a worked example has a level from 0"),
+        ("x = 41 + 1", "x = 41 + y", "line 35: NameError"),
+        ("x = 41 + 1", "x = 41 +", "line 35: the cell is no Python: invalid syntax"),
+        ("x = 41 + 1", "raise SystemExit", "line 35: the cell ends Python"),
+        ("x = 41 + 1", "x = object()", "line 35: the cell shows '<object object at 0x"),
+        ("x = 41 + 1", "import os; x = os.getcwd()", "line 35: the cell shows "),
+        (
+            "x = 41 + 1",
+            "x = '\\n'.join('abc' * 100)",
+            "line 35: the cell prints 300 lines; a book has room for 200",
+        ),
+        ("```answer", "```anwser", "line 51: no fence 'anwser'; did you mean 'answer'?"),
+        ("```python {tags=still}", "```python {tag=still}", "line 39: a fence opens with a word"),
+        (
+            "x = 41 + 1\nx\n```",
+            "x = 41 + 1\nx\n",
+            "line 34: the fence that opens here is not closed before line 39",
+        ),
+        ("42$.\n```", "42$.\n", "line 51: the fence that opens here is never closed"),
+        ("# Rods & <pins>\n", "", "line 1: a lesson begins with its title"),
+        ("## 2. Two rods", "# 2. Two rods", "line 45: a lesson has one title"),
+        ("## 2. Two rods", "## 1. Two rods", "line 45: section 1 stands twice"),
     ],
 )
 def test_what_is_wrong_in_a_lesson_is_said_with_its_place(folder, was, now, told):
@@ -270,8 +328,49 @@ def test_what_is_wrong_in_a_lesson_is_said_with_its_place(folder, was, now, told
     course = coursework.open_course(folder)
     with pytest.raises(BadCourse) as caught:
         lesson_text(course, "rods", "en")
-    assert told in str(caught.value)
+    assert f"exercises/lessons/rods.en.md, {told}" in str(caught.value)
     assert len(faults(course, "rods")) == 1
+
+
+def test_a_lesson_shows_a_picture_that_lies_beside_it(folder):
+    lessons = folder / "exercises/lessons"
+    svg = (
+        '<svg xmlns="http://www.w3.org/2000/svg" width="90" height="30"><circle cx="20" cy="15" r="9"/></svg>'
+    )
+    (lessons / "mark.svg").write_text(svg, "utf-8")
+    path = lessons / "rods.en.md"
+    path.write_text(path.read_text("utf-8").replace("figure:one_rod", "figure:drawn_elsewhere"), "utf-8")
+    course = coursework.open_course(folder)
+    page = made(course, formats=["html"])["pages/rods.html"]
+    shown = [base64.b64decode(one) for one in re.findall(rb"svg\+xml;base64,([\w+/=]+)", page)]
+    assert any(b'cx="20"' in one for one in shown)
+    assert made(course, formats=["pdf"])["workbook.en.pdf"][:5] == b"%PDF-"
+
+
+def test_what_a_cell_writes_or_keeps_stays_out_of_the_folders_and_of_the_book(folder):
+    """A session of self-study keeps a file, which another run would read."""
+    path = folder / "exercises/lessons/rods.en.md"
+    study = 'study = coursework.study("crank_pin", seed=1, lang="en", course="small")'
+    writes = f"from pathlib import Path\nPath('left.txt').write_text('x')\n{study}\nstudy.check({{'x': '1 mm'}})\nx = 42"
+    path.write_text(path.read_text("utf-8").replace("x = 41 + 1", writes), "utf-8")
+    before = sorted(folder.parent.iterdir())
+    course = coursework.open_course(folder)
+    first = lesson_text(course, "rods", "en")
+    assert sorted(folder.parent.iterdir()) == before
+    assert lesson_text(course, "rods", "en") == first
+
+
+def test_signs_that_no_page_shows_are_left_out_of_what_a_cell_prints(folder):
+    path = folder / "exercises/lessons/rods.en.md"
+    path.write_text(path.read_text("utf-8").replace("x = 41 + 1", r"x = 'a\x1b[31m b\x00'"), "utf-8")
+    course = coursework.open_course(folder)
+    assert "a b" in [getattr(one, "text", "") for one in lesson_text(course, "rods", "en").pieces]
+
+
+def test_a_text_in_another_encoding_is_told(folder, capsys):
+    (folder / "exercises/lessons/rods.fr.md").write_bytes("# Étais\n".encode("latin-1"))
+    assert run(["--course", str(folder), "lesson", "--check"]) == 1
+    assert "rods.fr.md is not written in UTF-8, from byte 2 on" in capsys.readouterr().out
 
 
 def test_lessons_that_differ_between_languages_are_told(folder, capsys):

@@ -1,0 +1,103 @@
+"""What of a lesson's words no book could print as it was meant, said with file and line."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence, Set
+from functools import partial
+from urllib.parse import unquote
+
+from coursework.errors import BadCourse
+from coursework.markup.markdown import INDEX, tree
+from coursework.markup.proofreading import pair_dollars, read_formulas
+from coursework.workbook import lesson_source as source
+
+_FORMS = 'exercise:NAME, lesson:NAME, lesson:NAME#3, #index "entry" or https://…'
+_LEADS = re.compile(r"(exercise:\w+|lesson:\w+(#\d+)?|(https?://|mailto:).+)")
+_PICTURE = re.compile(r"!\[[^\]]*\]\(")
+_CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
+_SECTION = re.compile(r"^## +(\d+)\.", re.MULTILINE)
+
+
+def proofread(text: str, file: str) -> None:
+    """Stop at what of a lesson's words cannot be printed as it was meant.
+
+    Parameters
+    ----------
+    text
+        The whole file.
+    file
+        What messages call it.
+
+    Raises
+    ------
+    BadCourse
+        It does not begin with its title, or has two; a section stands twice; a formula, a fence, a picture or a link is none.
+    """
+    found = source.blocks(text, file)
+    _check_title(found, file)
+    sections: set[str] = set()
+    for words, line in lines_of_words(found):
+        place = partial(place_of, words, line, file)
+        pair_dollars(words, place)
+        read_formulas(words, place)
+        _check_pictures(words, place)
+        _check_leads(words, place)
+        sections |= _sections(words, sections, place)
+
+
+def lines_of_words(found: Sequence[source.Block]) -> Iterator[tuple[str, int]]:
+    """The texts of a lesson, each with the line of its first line."""
+    for block in found:
+        if isinstance(block, source.Image):
+            yield block.caption, block.line
+        elif not isinstance(block, source.Cell):
+            yield block.text, block.line
+
+
+def place_of(words: str, line: int, file: str, piece: str) -> str:
+    """Where a piece of some words stands: the file, and the line of its own first line."""
+    first = piece.split("\n")[0]
+    further = next((k for k, one in enumerate(words.split("\n")) if first in one), 0)
+    return f"{file}, line {line + further}"
+
+
+def _check_title(found: Sequence[source.Block], file: str) -> None:
+    """A lesson begins with its title, and has no other."""
+    first = found[0] if found else None
+    if not isinstance(first, source.Prose) or not first.text.startswith("# "):
+        raise BadCourse(f"{file}, line 1: a lesson begins with its title, # TITLE")
+    titles = [
+        (line + node.map[0], node.children[0].content)
+        for words, line in lines_of_words(found)
+        for node in tree(words).walk()
+        if node.type == "heading" and node.tag == "h1" and node.map
+    ]
+    for line, title in titles[1:]:
+        raise BadCourse(f"{file}, line {line}: a lesson has one title; write ## before {title!r}")
+
+
+def _check_pictures(words: str, place: Callable[[str], str]) -> None:
+    if picture := _PICTURE.search(_CODE.sub("", words)):
+        raise BadCourse(
+            f"{place(picture[0])}: a picture stands on a line of its own: ![caption](figure:NAME)"
+        )
+
+
+def _check_leads(words: str, place: Callable[[str], str]) -> None:
+    for node in tree(words).walk():
+        href = unquote(str(node.attrs["href"])) if node.type == "link" else INDEX
+        if href != INDEX and not _LEADS.fullmatch(href):
+            raise BadCourse(f"{place(f']({href}')}: the link {href!r} leads nowhere: write {_FORMS}")
+
+
+def _sections(words: str, before: Set[str], place: Callable[[str], str]) -> set[str]:
+    """The numbers of sections that begin in some words, each new."""
+    found: set[str] = set()
+    for number in _SECTION.findall(words):
+        if number in before | found:
+            raise BadCourse(
+                f"{place(f'## {number}.')}: section {number} stands twice; number one of them anew"
+            )
+        found.add(number)
+    return found
