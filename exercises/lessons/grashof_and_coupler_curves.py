@@ -111,7 +111,7 @@ def four_types():
     return Figure(*found, paper_mm=(165, 70))
 
 
-FAR = (0.0, 150.0, 300.0, 430.0)  #: where the four types stand, from left to right
+FAR = (0.0, 130.0, 310.0, 460.0)  #: where the four types stand, from left to right
 
 #: Frame, input, coupler, output; where the input is drawn. The shortest bar beside the frame, beside it, as it, opposite it.
 CASES = {
