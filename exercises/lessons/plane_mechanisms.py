@@ -63,7 +63,7 @@ def parallel_planes():
     elements += [link(_flat(O), _flat(A)), link(_flat(C), _flat(B))]
     elements += [pin(_flat(z)) for z in (A, B, P)] + [ground_pivot(_flat(z)) for z in (O, C)]
     elements.append(vector(_seen(-40 - 30j, 0j), 30j, r"\vec{z}"))
-    return Figure(*elements, paper_mm=(120, 70))
+    return Figure(*elements, paper_mm=(120, 58))
 
 
 def _coupler_point(theta2):
