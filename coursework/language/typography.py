@@ -6,7 +6,9 @@ import re
 
 from coursework.language.numbers import NARROW_SPACE
 
-_APOSTROPHE = re.compile(r"(?<=\w)'(?=[\w*$]|\Z)")  # also before a word in italics, a formula, the next piece
+_APOSTROPHE = re.compile(
+    r"(?<=\w)'(?=[\w*$«]|\Z)"
+)  # also before italics, a formula, a quotation, the next piece
 _UNIT = re.compile(
     r"(?<=\d)[ \u00a0](?=%|(?:[kcmµ]?m|k?g|[kmM]?N|[kMm]?W|[kMm]?J|Hz|m?s|min|h|rad|tr|rev|rpm)"
     r"(?:[²³/·.,;:)\s]|$))"

@@ -206,9 +206,9 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
 
 
 def _leads(node: SyntaxTreeNode) -> bool:
-    """Whether a paragraph stands before a formula on a line of its own."""
+    """Whether a paragraph stands before a formula on a line of its own, or a table."""
     after = node.next_sibling
-    return after is not None and after.type in ("math_block", "math_block_label")
+    return after is not None and after.type in ("math_block", "math_block_label", "table")
 
 
 #: What a link leads to that is no link: a term of the index, whose entry is the link's title.

@@ -109,3 +109,9 @@ def test_an_image_in_a_text_is_refused():
 def test_what_follows_a_formula_in_a_text_is_text(lang):
     sheet = replace(handout(lang), statement="$x$(y) $x$.width *a*(b) `c`[d] **e**.f $\\num{1}$[g]")
     assert RENDERER.pdf(sheet).startswith(b"%PDF")
+
+
+@pytest.mark.parametrize("after", ["$$x = 1$$", "| a |\n|---|\n| 1 |"])
+def test_a_paragraph_keeps_to_the_formula_or_table_behind_it(after):
+    assert to_typst_markup(f"so that\n\n{after}", "en").startswith("#lead[so that]")
+    assert "#lead[" not in to_typst_markup(f"{after}\n\nso that\n\nand", "en")
