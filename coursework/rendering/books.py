@@ -114,7 +114,10 @@ def pages(
 def _terms(env: Environment, book: Book, names: Mapping[str, Any]) -> str:
     entries = sorted(book.terms.items(), key=lambda item: sort_key(item[0]))
     listed = [
-        (typeset(entry, book.lang), [(f"{name}.html#{anchor(entry)}", _title_of(book, name)) for name in lessons])
+        (
+            typeset(entry, book.lang),
+            [(f"{name}.html#{anchor(entry)}", _title_of(book, name)) for name in lessons],
+        )
         for entry, lessons in entries
     ]
     more = {"terms": listed, "title": words(book.lang)["book"]["index"]}
