@@ -160,7 +160,7 @@ _REMARK = re.compile(r"(?P<said>[^()]+?)\s*\((?P<remark>[^()]+)\)\s*")
 
 
 def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
-    """The choices that stand before a remark in brackets which names no other: ``oscille (r2 < r1)``."""
+    """The choices that stand before a remark in brackets which neither names another nor is its own: ``oscille (r2 < r1)``."""
     found = _REMARK.fullmatch(text)
     if found is None:
         return []
@@ -168,10 +168,19 @@ def _by_remark(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     if len(keys) != 1 or any(key not in keys for key in _called(found["remark"], choices)):
         return []
     remark = f" {folded(found['remark'])} "
+    own, foreign = (_remarks(choices, [k for k in choices if (k in keys) == mine]) for mine in (True, False))
+    if remark in foreign and remark not in own:
+        return []
     others = (
         s for key, labels in choices.items() if key not in keys for s in (key, *labels, *map(head, labels))
     )
     return [] if any(f" {folded(s)} " in remark for s in others if folded(s)) else keys
+
+
+def _remarks(choices: Mapping[str, Sequence[str]], keys: Sequence[str]) -> str:
+    """What the labels of some choices say in brackets, folded."""
+    labels = " ".join(label for key in keys for label in choices[key])
+    return f" {' | '.join(map(folded, re.findall(r'[(]([^()]+)[)]', labels)))} "
 
 
 @lru_cache(maxsize=4096)

@@ -6,7 +6,7 @@ from decimal import Decimal
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from strategies import CHOICES, FINITE, NARROW, NBSP, ODD, SPACES, THIN
 
@@ -230,6 +230,7 @@ def test_an_angle_and_itself_in_radians_are_one_answer():
 )
 @settings(max_examples=1000, deadline=None)
 def test_two_numbers_are_one_only_where_they_agree(one, other, form):
+    assume(min(abs(one), abs(other)) > 4)  # half a digit of a smaller one is more than 1.5 % of it
     reading = read_number(form.format(one, other), "mm")
     if abs(one - other) <= Decimal("0.05"):
         assert reading.values == (float(other if "=" in form else one),)
