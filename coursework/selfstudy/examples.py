@@ -11,7 +11,7 @@ from coursework.making.issuing import distinct_variants
 from coursework.rendering.views import chain_on_lines
 from coursework.selfstudy import hints
 from coursework.selfstudy.theory import unchanging
-from coursework.sheets.answer_sheet import answer_sheet
+from coursework.sheets.answer_sheet import answer_sheet, which_question
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
@@ -74,6 +74,7 @@ def told_steps(variant: Variant, level: int, left: Sequence[Part], keys: Mapping
     What has one answer in every variant is left out: it is asked, and not told.
     """
     by_quantity = {p.quantity: p for p in left}
+    asked = {p.quantity: p for p in reversed(variant.parts)}
     hidden = {p.quantity for p in variant.parts if p.id in unchanging(variant.exercise)}
     lines: list[str] = []
     is_whole = True
@@ -87,7 +88,9 @@ def told_steps(variant: Variant, level: int, left: Sequence[Part], keys: Mapping
         else:
             formula = hints.formula(variant, step.name) if level <= WITH_FORMULA or part is None else ""
             blank = said["blank"].format(symbol=f"${step.symbol}$", key=f"`{keys[part.id]}`") if part else ""
-            pieces = [hints.words_of(variant, step.name), formula, blank]
+            words = hints.words_of(variant, step.name)
+            head = which_question(variant, asked[step.name]) if step.name in asked else ""
+            pieces = [f"{head} {words}".strip() if words or formula or blank else "", formula, blank]
         if any(pieces):
-            lines.append(f"**{len(lines) + 1}.** " + "\n\n".join(filter(None, pieces)))
+            lines.append("\n\n".join(filter(None, pieces)))
     return "\n\n".join(lines)

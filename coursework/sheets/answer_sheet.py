@@ -61,11 +61,11 @@ def _models(variant: Variant, text: Text) -> Iterator[Step]:
     """The model answers of the questions that a person marks: sections of the solution's text."""
     for part in variant.parts:
         if part.sort.is_open and (section := text.sections.get(part.id)) is not None:
-            said = f"{_question(variant, part)} {section.text}"
+            said = f"{which_question(variant, part)} {section.text}"
             yield Step(part.id, "", "", "", "", said, (), asked=True)
 
 
-def _question(variant: Variant, part: Part) -> str:
+def which_question(variant: Variant, part: Part) -> str:
     """Which question it is, at the head of a step: ``*Question 3.*``"""
     number = 1 + variant.parts.index(part)
     asks = f"{engine_words(variant.lang)['sheet']['question']['one']} {number}."
@@ -176,7 +176,7 @@ def _words_of(variant: Variant, name: str, found: Any, reason: str) -> str:
     if not number:
         return reason
     said, part = engine_words(variant.lang), variant.parts[number - 1]
-    words = [_question(variant, part), reason]
+    words = [which_question(variant, part), reason]
     case = part.sort.words(found, partial(variant.label, part.id))
     if case:
         # At the end of the reason's last sentence, or after it.

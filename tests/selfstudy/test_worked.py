@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 import coursework
@@ -67,3 +69,11 @@ def test_named_mistakes_are_told_in_the_exercise_s_words(lang):
     told = exercise.variant(0, lang).solution_text
     (lines,) = shown.pieces
     assert lines.splitlines() == ["- " + " ".join(told.sections[f"mistake {n}"].text.split()) for n in names]
+
+
+@pytest.mark.parametrize("level", [0, 1, 2, 3])
+def test_each_step_says_which_question_it_answers_and_bears_no_other_number(level):
+    text = coursework.worked(NAME, seed=3, lang="en", level=level).pieces[-1]
+    count = len(coursework.open_course()[NAME].variant(3).parts)
+    assert [f"*Question {k}.*" in text for k in range(1, count + 1)] == [True] * count
+    assert not re.search(r"\*\*\d+\.\*\*", text)
