@@ -79,6 +79,7 @@ def test_named_mistakes_are_told_in_the_exercise_s_words(lang):
     assert lines.splitlines() == ["- " + " ".join(told.sections[f"mistake {n}"].text.split()) for n in names]
 
 
+<<<<<<< HEAD
 @pytest.mark.parametrize("lang", languages())
 def test_a_question_names_its_symbol_once(lang):
     shown = coursework.worked(
@@ -195,3 +196,11 @@ def test_each_question_alone_is_a_worked_example_of_every_level(name, lang):
             assert [part.id for part in shown.parts] == [part.id for part in parts]
             assert len(shown.right) == len(shown.left) == (len(parts) if level else 0)
             assert shown.pieces[-1] or level == 4
+=======
+@pytest.mark.parametrize("level", [0, 1, 2, 3])
+def test_each_step_says_which_question_it_answers_and_bears_no_other_number(level):
+    text = coursework.worked(NAME, seed=3, lang="en", level=level).pieces[-1]
+    count = len(coursework.open_course()[NAME].variant(3).parts)
+    assert [f"*Question {k}.*" in text for k in range(1, count + 1)] == [True] * count
+    assert not re.search(r"\*\*\d+\.\*\*", text)
+>>>>>>> 03b68c770c4a4b40e9a046817861dd8d88a01453
