@@ -13,11 +13,7 @@ from coursework.making.issuing import distinct_variants
 from coursework.rendering.views import chain_on_lines
 from coursework.selfstudy import hints
 from coursework.selfstudy.theory import unchanging
-<<<<<<< HEAD
 from coursework.sheets.answer_sheet import answer_sheet, question_called
-=======
-from coursework.sheets.answer_sheet import answer_sheet, which_question
->>>>>>> 03b68c770c4a4b40e9a046817861dd8d88a01453
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
@@ -110,13 +106,8 @@ def told_steps(
     In a study session what has one answer in every variant is left out: it is asked, and not told.
     """
     by_quantity = {p.quantity: p for p in left}
-<<<<<<< HEAD
     shared = () if in_lesson else unchanging(variant.exercise)
     hidden = {p.quantity for p in variant.parts if p.id in shared}
-=======
-    asked = {p.quantity: p for p in reversed(variant.parts)}
-    hidden = {p.quantity for p in variant.parts if p.id in unchanging(variant.exercise)}
->>>>>>> 03b68c770c4a4b40e9a046817861dd8d88a01453
     lines: list[str] = []
     is_whole = True
     for step in _steps(variant):
@@ -128,17 +119,10 @@ def told_steps(
             pieces = [step.words, f"$${chain_on_lines(step)}$$" if step.value else ""]
         else:
             formula = hints.formula(variant, step.name) if level <= WITH_FORMULA or part is None else ""
-<<<<<<< HEAD
             if not (part or formula) and _ANNOUNCES.fullmatch(step.words.strip()):
                 continue
             blank = _blank(variant, part, step, keys, said) if part else ""
             pieces = [hints.words_of(variant, step.name), formula, blank]
-=======
-            blank = said["blank"].format(symbol=f"${step.symbol}$", key=f"`{keys[part.id]}`") if part else ""
-            words = hints.words_of(variant, step.name)
-            head = which_question(variant, asked[step.name]) if step.name in asked else ""
-            pieces = [f"{head} {words}".strip() if words or formula or blank else "", formula, blank]
->>>>>>> 03b68c770c4a4b40e9a046817861dd8d88a01453
         if any(pieces):
             lines.append("\n\n".join(filter(None, pieces)))
     return "\n\n".join(lines)

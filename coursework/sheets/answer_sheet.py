@@ -61,19 +61,11 @@ def _models(variant: Variant, text: Text) -> Iterator[Step]:
     """The model answers of the questions that a person marks: sections of the solution's text."""
     for part in variant.parts:
         if part.sort.is_open and (section := text.sections.get(part.id)) is not None:
-<<<<<<< HEAD
             said = f"{question_called(variant, part)} {section.text}"
             yield Step(part.id, "", "", "", "", said, (), asked=True)
 
 
 def question_called(variant: Variant, part: Part) -> str:
-=======
-            said = f"{which_question(variant, part)} {section.text}"
-            yield Step(part.id, "", "", "", "", said, (), asked=True)
-
-
-def which_question(variant: Variant, part: Part) -> str:
->>>>>>> 03b68c770c4a4b40e9a046817861dd8d88a01453
     """Which question it is, at the head of a step: ``*Question 3.*``"""
     number = 1 + variant.parts.index(part)
     asks = f"{engine_words(variant.lang)['sheet']['question']['one']} {number}."
@@ -193,11 +185,7 @@ def _words_of(variant: Variant, name: str, found: Any, reason: str) -> str:
     if not number:
         return reason
     said, part = engine_words(variant.lang), variant.parts[number - 1]
-<<<<<<< HEAD
     words = [question_called(variant, part), reason]
-=======
-    words = [which_question(variant, part), reason]
->>>>>>> 03b68c770c4a4b40e9a046817861dd8d88a01453
     case = part.sort.words(found, partial(variant.label, part.id))
     if case:
         # At the end of the reason's last sentence, or after it.
