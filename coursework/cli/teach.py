@@ -26,7 +26,7 @@ from coursework.cli.options import (
     unknown_language,
 )
 from coursework.cli.printing import progress_bar
-from coursework.errors import BadInput, counted
+from coursework.errors import BadInput, counted, unknown
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
@@ -53,10 +53,11 @@ def lesson(
 
     course = opened(context)
     asked = lessons or course.folder.lessons
+    if check:
+        return _check_lessons(course, lessons)
+    _check_language(lang)
     for name in asked:
         lesson_file(course.folder, name, lang)
-    if check:
-        return _check_lessons(course, asked)
     if out is None:
         for name in asked:
             click.echo(name)
@@ -69,10 +70,20 @@ def lesson(
     return DONE
 
 
-def _check_lessons(course: Course, names: Sequence[str]) -> int:
-    from coursework.workbook.lessons import faults
+def _check_language(lang: str) -> None:
+    """A lesson and a book are in one language that the package has words for."""
+    if lang not in known_languages():
+        raise BadInput(unknown_language(lang))
 
-    found: list[str] = []
+
+def _check_lessons(course: Course, asked: Sequence[str]) -> int:
+    from coursework.workbook.lessons import faults, order_faults
+
+    names = asked or course.folder.lessons
+    for name in asked:
+        if name not in course.folder.lessons:
+            raise unknown("lesson", name, course.folder.lessons, course.folder.label)
+    found = [] if asked else list(order_faults(course))
     with progress_bar("checking", len(names)) as advance:
         for name in names:
             found += faults(course, name)
@@ -204,6 +215,7 @@ def workbook(
     from coursework.workbook.writing import files
 
     course = opened(context)
+    _check_language(lang)
     wanted = _numbers(chapters)
     with progress_bar("reading", pieces_of(course)) as advance:
         book = bound(course, lang, seed, chapters=wanted, solved=solutions == "end", advance=advance)

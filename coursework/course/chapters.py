@@ -110,6 +110,8 @@ def _chapter(number: int, stated: Mapping[str, Any], where: str) -> Chapter:
 def _section(stated: Mapping[str, Any], where: str) -> Section:
     _only(stated, {"lesson", "title", "needs", "exercises"}, where)
     lesson = stated.get("lesson", "")
+    if lesson and "title" in stated:
+        raise BadCourse(f"{where} has a lesson, whose title it bears: leave out title, or lesson")
     placed = [_placed(one, where) for one in _list(stated.get("exercises", []), f"{where}: exercises")]
     needs = {name: told for name, told in placed if told}
     if own := _names(stated.get("needs", []), f"{where}: needs"):
@@ -172,12 +174,19 @@ def _check_names(
 def _check_order(found: Sequence[Chapter], source: str) -> None:
     """Everything once, and after what it needs."""
     every = [name for section in sections(found) for name in section.names]
+    lessons = {section.lesson for section in sections(found)}
+    for name in (one for chapter in found for one in chapter.exercises if one in lessons):
+        raise BadCourse(
+            f"{source}: a lesson and an exercise are called {name!r}, and would have one page; rename one of them"
+        )
     seen: set[str] = set()
     for section in sections(found):
         for name in section.names:
             if name in seen:
                 raise BadCourse(f"{source}: {name!r} stands twice in the chapters; keep one of them")
             for needed in section.needs.get(name, ()):
+                if needed == name:
+                    raise BadCourse(f"{source}: {name} needs itself first; leave it out of its needs")
                 if needed not in every:
                     raise BadCourse(
                         f"{source}: {name} needs {needed!r}, which no chapter has{nearest(needed, every)}"

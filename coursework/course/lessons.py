@@ -18,6 +18,7 @@ from coursework.errors import BadCourse, nearest, unknown
 
 _FORM = 'NAME = { lesson = "rods", sections = [1, 2] }'
 _SOURCE = "exercises/course.toml: [lessons]"
+PAGES = ("index", "terms")  #: of a book, besides those of its lessons and exercises
 _TITLE = re.compile(r"^# +(.+?) *$", re.MULTILINE)
 _SECTION = re.compile(r"^## +((\d+)\..*?) *$", re.MULTILINE)
 
@@ -39,14 +40,50 @@ def lesson_file(folder: Folder, name: str, lang: str) -> Path:
     UnknownName
         No such lesson.
     BadCourse
-        The lesson is not written in this language.
+        The lesson is not written in this language, or its name is none that a lesson may have.
     """
     if name not in folder.lessons:
         raise unknown("lesson", name, folder.lessons, folder.label)
+    _check_name(folder, name)
     path = folder.lesson_place / f"{name}.{lang}.md"
     if not path.exists():
-        raise BadCourse(f"the lesson {name} has no text in {lang!r}: {path.name} is missing")
+        raise BadCourse(f"the lesson {name} has no text in {lang!r}: {folder.relative(path)} is missing")
     return path
+
+
+def _check_name(folder: Folder, name: str) -> None:
+    """A lesson's name is that of a file in books, of a module, and of a target of links."""
+    taken = (
+        "is an exercise"
+        if name in folder.names
+        else "is a page of every book"
+        if name.lower() in PAGES
+        else ""
+    )
+    if taken:
+        raise BadCourse(f"the lesson {name} has a name that {taken} as well; rename its files")
+    if not name.isidentifier():
+        would = re.sub(r"\W+", "_", name)
+        would = would if would.isidentifier() else f"lesson_{would}"
+        raise BadCourse(
+            f"the lesson {name!r}: a name is letters, digits and _, and begins with a letter; rename its files, {would}.LANG.md"
+        )
+
+
+def read_text(path: Path) -> str:
+    """The text of a lesson's file.
+
+    Raises
+    ------
+    BadCourse
+        It is not UTF-8.
+    """
+    try:
+        return path.read_text("utf-8-sig")
+    except UnicodeDecodeError as fault:
+        raise BadCourse(
+            f"{path.name} is not written in UTF-8, from byte {fault.start} on; save it in UTF-8"
+        ) from fault
 
 
 def lesson_title(folder: Folder, name: str, lang: str) -> str:
@@ -129,7 +166,7 @@ def _sections(exercise: str, lesson: str, asked: Any, headings: Mapping[int, str
 @lru_cache(maxsize=64)
 def _headings(path: Path, changed: int) -> tuple[str, Mapping[int, str]]:
     """The title of a lesson, and the headings of its numbered sections."""
-    text = path.read_text("utf-8-sig")
+    text = read_text(path)
     title = _TITLE.search(text)
     return title[1] if title else path.name.split(".")[0], {
         int(n): said for said, n in _SECTION.findall(text)

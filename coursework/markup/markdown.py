@@ -13,6 +13,7 @@ from collections.abc import Callable, Sequence
 from functools import cache, lru_cache
 from html import escape
 from typing import Any
+from urllib.parse import unquote
 
 from markdown_it import MarkdownIt
 from markdown_it.renderer import RendererHTML
@@ -218,7 +219,7 @@ INDEX = "#index"
 def _typst_link(href: str, title: str, inside: str) -> str:
     if href == INDEX:
         return f"#term({typst_string(title)}, {typst_string(sort_key(title))})[{inside}];"
-    place = f"label({typst_string(href[1:])})" if href.startswith("#") else typst_string(href)
+    place = f"label({typst_string(unquote(href[1:]))})" if href.startswith("#") else typst_string(href)
     return f"#link({place})[{inside}];"
 
 

@@ -8,8 +8,8 @@ from typing import Any
 from coursework.course.chapters import Chapter
 from coursework.course.chapters import Section as Placed
 from coursework.course.course import Course
-from coursework.course.lessons import taught_by
-from coursework.errors import BadInput
+from coursework.course.lessons import PAGES, taught_by
+from coursework.errors import BadCourse, BadInput
 from coursework.language.words import words
 from coursework.making.issuing import distinct_variants
 from coursework.sheets.answer_sheet import answer_sheet
@@ -52,9 +52,13 @@ def bound(
     BadInput
         No such chapter.
     BadCourse
-        A lesson cannot be read, drawn or run.
+        An exercise has the name of a page that every book has; a lesson cannot be read, drawn or run.
     """
     course.folder.check_speaks(lang)
+    for name in set(course.folder.names) & set(PAGES):
+        raise BadCourse(
+            f"the exercise {name} has a name that is a page of every book as well; rename its files"
+        )
     found = tuple(_all_chapters(course, lang))
     numbers = [chapter.number for chapter in found]
     for number in chapters:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from pathlib import Path
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+from coursework.course.chapters import Chapter
 from coursework.course.course import Course
 from coursework.course.folder import Folder
-from coursework.course.lessons import lesson_file, lesson_sections, lesson_title
+from coursework.course.lessons import lesson_file, lesson_sections, lesson_title, read_text, taught_by
 from coursework.errors import BadCourse, CourseworkError, counted, nearest
 from coursework.markup.links import TERM, Link, links
 from coursework.sheets.book import Code, Head, Later, LessonText, Piece, Prose
@@ -39,7 +39,7 @@ def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
     file = course.folder.relative(path)
     with Session(file, course.folder.root) as session:
         made = _Lesson(course, name, lang, session)
-        for block in source.blocks(_untitled(_read(path)), file):
+        for block in source.blocks(_untitled(read_text(path)), file):
             made.add(block)
     number = 1 + course.folder.lessons.index(name)
     title = lesson_title(course.folder, name, lang)
@@ -107,7 +107,7 @@ def check_words(course: Course[Any], name: str, lang: str) -> None:
         A formula, a fence or a picture is none; a link names an exercise, a lesson or a section that there is not.
     """
     path = lesson_file(course.folder, name, lang)
-    text, file = _read(path), course.folder.relative(path)
+    text, file = read_text(path), course.folder.relative(path)
     proofread(text, file)
     for words, line in lines_of_words(source.blocks(text, file)):
         for link in links(words):
@@ -130,29 +130,13 @@ def _check_link(folder: Folder, link: Link, lang: str, place: str) -> None:
         )
 
 
-def _read(path: Path) -> str:
-    """The text of a file.
-
-    Raises
-    ------
-    BadCourse
-        It is not UTF-8.
-    """
-    try:
-        return path.read_text("utf-8-sig")
-    except UnicodeDecodeError as fault:
-        raise BadCourse(
-            f"{path.name} is not written in UTF-8, from byte {fault.start} on; save it in UTF-8"
-        ) from fault
-
-
 def faults(course: Course[Any], name: str) -> tuple[str, ...]:
     """What is wrong with a lesson, in a sentence each: a language in which it cannot be read, drawn or run, and languages of which
     one has other cells, pictures or answers than another."""
     found, shapes = [], {}
     for lang in course.folder.languages:
         try:
-            text = _read(lesson_file(course.folder, name, lang))
+            text = read_text(lesson_file(course.folder, name, lang))
             lesson_text(course, name, lang)
         except CourseworkError as fault:
             found.append(f"{name}, {lang}: {fault}")
@@ -166,6 +150,34 @@ def faults(course: Course[Any], name: str) -> tuple[str, ...]:
     return tuple(found)
 
 
+def order_faults(course: Course[Any]) -> tuple[str, ...]:
+    """What is wrong with the order of a course, in a sentence each: titles that a language lacks, and what ``[lessons]`` names
+    that there is not."""
+    folder = course.folder
+    found = [
+        f"exercises/course.toml: chapter {chapter.number}{where} has no title in {lang!r}"
+        for chapter in folder.chapters
+        for where, titles in _titles(chapter)
+        for lang in folder.languages
+        if lang not in titles
+    ]
+    for lang in folder.languages:
+        try:
+            for name in folder.names:
+                taught_by(folder, name, lang)
+        except CourseworkError as fault:
+            return (*found, str(fault))
+    return tuple(found)
+
+
+def _titles(chapter: Chapter) -> Iterator[tuple[str, Mapping[str, str]]]:
+    """The titles of a chapter, and those of its sections that have one."""
+    yield "", chapter.titles
+    for number, section in enumerate(chapter.sections, 1):
+        if section.titles:
+            yield f", section {number}", section.titles
+
+
 def _cut_formulas(text: str, name: str, lang: str) -> list[str]:
     """Rows of tables in which a bar of a formula ends a cell."""
     return [
@@ -176,10 +188,10 @@ def _cut_formulas(text: str, name: str, lang: str) -> list[str]:
 
 
 def _counted(shape: Sequence[str]) -> str:
-    return ", ".join(counted(n, kind.lower()) for kind, n in sorted(Counter(shape).items()))
+    return ", ".join(counted(n, kind.lower()) for kind, n in sorted(Counter(shape).items())) or "none"
 
 
 def terms(course: Course[Any], name: str, lang: str) -> tuple[str, ...]:
     """The entries of the index that a lesson's text has, each once."""
-    text = lesson_file(course.folder, name, lang).read_text("utf-8-sig")
+    text = read_text(lesson_file(course.folder, name, lang))
     return tuple(dict.fromkeys(link.name for link in links(text) if link.kind == TERM))

@@ -8,7 +8,7 @@ from typing import Any
 from urllib.parse import quote
 
 from coursework.course.course import Course
-from coursework.course.lessons import lesson_file, lesson_sections, practised
+from coursework.course.lessons import lesson_file, lesson_sections, practised, read_text
 from coursework.language.words import words
 from coursework.markup.links import TERM, Link, relinked
 from coursework.markup.markdown import to_notebook_markdown
@@ -41,7 +41,7 @@ def lesson_notebook(course: Course[Any], name: str, lang: str) -> str:
     check_words(course, name, lang)
     pieces: list[str] = []
     pictures: dict[str, Mapping[str, str]] = {}
-    for block in source.blocks(path.read_text("utf-8-sig"), folder.relative(path)):
+    for block in source.blocks(read_text(path), folder.relative(path)):
         if isinstance(block, source.Image):
             shown = drawn(course, name, block, lang)
             file = f"picture-{len(pictures) + 1}.{'svg' if shown.svg else 'png'}"

@@ -35,7 +35,7 @@ exercises = ["three"]
 
 
 def read(text: str):
-    return chapters(tomllib.loads(text)["chapters"], EXERCISES, LESSONS, "course.toml")
+    return chapters(tomllib.loads(text)["chapters"], (*EXERCISES, "slides"), LESSONS, "course.toml")
 
 
 def test_chapters_are_read_in_their_order():
@@ -56,7 +56,14 @@ def test_chapters_are_read_in_their_order():
         ('lesson = "slides"', 'lesson = "slide"', "no lesson 'slide'; did you mean 'slides'"),
         ('needs = ["one"]', 'needs = ["three"]', "two needs 'three' first, which comes later"),
         ('needs = ["one"]', 'needs = ["on"]', "two needs 'on', which no chapter has; did you mean 'one'"),
+        ('needs = ["one"]', 'needs = ["two"]', "two needs itself first"),
         ('["three"]', '["three", "one"]', "'one' stands twice"),
+        (
+            'lesson = "rods"',
+            'lesson = "rods"\ntitle = { en = "Rods" }',
+            "section 1 has a lesson, whose title it bears",
+        ),
+        ('["three"]', '["slides"]', "a lesson and an exercise are called 'slides'"),
         ("lesson = ", "lessons = ", "no setting 'lessons'; did you mean 'lesson'"),
         ('title = { en = "Second" }', "", "chapter 2 has no title"),
         ('title = { en = "Second" }', 'title = "Second"', "write title = "),
@@ -75,7 +82,7 @@ def test_what_is_wrong_is_said_with_its_place(was, now, told):
 @pytest.mark.parametrize("stated", [3, [3], {"title": "x"}])
 def test_chapters_of_another_form_are_refused(stated):
     with pytest.raises(BadCourse, match=r"\[\[chapters\]\]"):
-        chapters(stated, EXERCISES, LESSONS, "course.toml")
+        chapters(stated, (*EXERCISES, "slides"), LESSONS, "course.toml")
 
 
 def test_the_built_in_course_places_everything_once():

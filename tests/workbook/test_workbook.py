@@ -373,6 +373,87 @@ def test_a_text_in_another_encoding_is_told(folder, capsys):
     assert "rods.fr.md is not written in UTF-8, from byte 2 on" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("crank_pin", "is an exercise as well"),
+        ("index", "is a page of every book as well"),
+        ("two rods", "two_rods.LANG.md"),
+        ("2-rods", "lesson_2_rods.LANG.md"),
+    ],
+)
+def test_a_name_that_no_lesson_can_have_is_told(folder, name, told, capsys):
+    lessons = folder / "exercises/lessons"
+    for lang in ("en", "fr"):
+        (lessons / f"{name}.{lang}.md").write_text("# Two rods\n", "utf-8")
+    for command in (["lesson", "--check"], ["workbook", "--lang", "en", "--out", str(folder / "out")]):
+        assert run(["--course", str(folder), *command]) == 1 + (command[0] == "workbook")
+        assert told in "".join(capsys.readouterr())
+
+
+def test_a_name_may_have_letters_of_any_language(folder):
+    lessons = folder / "exercises/lessons"
+    (lessons / "épure.en.md").write_text("# Épure\n\n## 1. See\n\nSee [one](lesson:épure#1).\n", "utf-8")
+    course = coursework.open_course(folder)
+    found = made(course, formats=["pdf", "html"])
+    assert found["workbook.en.pdf"][:5] == b"%PDF-"
+    assert 'href="%C3%A9pure.html#section-1"' in found["pages/épure.html"].decode()
+
+
+def test_an_exercise_that_would_take_the_contents_place_is_told(folder):
+    for path in [*folder.glob("*/crank_pin.*")]:
+        path.rename(path.with_name(path.name.replace("crank_pin", "index")))
+    settings = folder / "exercises/course.toml"
+    settings.write_text(settings.read_text("utf-8").replace("crank_pin", "index"), "utf-8")
+    with pytest.raises(BadCourse, match="the exercise index has a name that is a page of every book"):
+        bound(coursework.open_course(folder), "en")
+
+
+@pytest.mark.parametrize(
+    ("was", "now", "told"),
+    [
+        (', fr = "Pivots"', "", "chapter 1 has no title in 'fr'"),
+        (
+            "exercises = [",
+            'exercises = []\n\n[[chapters.sections]]\ntitle = { fr = "Un" }\nexercises = [',
+            "section 2 has no title in 'en'",
+        ),
+        (
+            "[[chapters]]",
+            '[lessons]\ncrank_pin = "rod"\n\n[[chapters]]',
+            "[lessons]: crank_pin: no lesson 'rod'",
+        ),
+    ],
+)
+def test_the_check_reads_the_order_of_the_course_as_well(folder, was, now, told, capsys):
+    settings = folder / "exercises/course.toml"
+    text = settings.read_text("utf-8")
+    assert was in text
+    settings.write_text(text.replace(was, now), "utf-8")
+    assert run(["--course", str(folder), "lesson", "--check"]) == 1
+    assert told in capsys.readouterr().out
+
+
+def test_the_check_goes_on_where_a_language_is_missing(folder, capsys):
+    lessons = folder / "exercises/lessons"
+    (lessons / "rods.fr.md").unlink()
+    (lessons / "pins.en.md").write_text("# Pins\n\n[x](lesson:rod)\n", "utf-8")
+    assert run(["--course", str(folder), "lesson", "--check"]) == 1
+    told = capsys.readouterr().out
+    assert "rods, fr: the lesson rods has no text in 'fr': exercises/lessons/rods.fr.md is missing" in told
+    assert "pins, en: exercises/lessons/pins.en.md, line 3: a link to the lesson 'rod'" in told
+    assert run(["--course", str(folder), "lesson", "--check", "rod"]) == 2
+    assert "no lesson 'rod'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["lesson", "workbook"])
+def test_a_book_is_in_one_language_that_there_is(folder, command, capsys):
+    out = folder / "out"
+    assert run(["--course", str(folder), command, "--lang", "en,fr", "--out", str(out)]) == 2
+    assert "no language 'en,fr'; there is en, fr" in capsys.readouterr().err
+    assert not out.exists()
+
+
 def test_lessons_that_differ_between_languages_are_told(folder, capsys):
     path = folder / "exercises/lessons/rods.fr.md"
     path.write_text(path.read_text("utf-8").partition("**Question")[0], "utf-8")
