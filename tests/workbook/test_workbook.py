@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
+import os
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -206,19 +207,20 @@ class _Pages(HTMLParser):
         self.ids += [named["id"]] if "id" in named else []
 
 
-@pytest.mark.parametrize("solutions", ["end", "none"])
-def test_every_link_of_the_pages_leads_to_a_place_that_is_there(small, solutions):
-    found = {
-        path.removeprefix("pages/"): _Pages(text.decode())
-        for path, text in made(small, formats=["html"], solved=solutions == "end").items()
-    }
-    assert {"index.html", "terms.html", "rods.html", "crank_pin.html"} <= set(found)
-    assert ("solutions/crank_pin.html" in found) is (solutions == "end")
+@pytest.mark.parametrize(
+    ("solutions", "place"), [("end", "pages/solutions"), ("none", None), ("apart", "solutions")]
+)
+def test_every_link_of_the_pages_leads_to_a_place_that_is_there(small, solutions, place):
+    asked = {"solved": solutions == "end", "apart": solutions == "apart"}
+    found = {path: _Pages(text.decode()) for path, text in made(small, formats=["html"], **asked).items()}
+    assert {f"pages/{one}.html" for one in ("index", "terms", "rods", "crank_pin")} <= set(found)
+    solved = [path for path in found if "solutions/" in path]
+    assert solved == ([f"{place}/crank_pin.html"] if place else [])
     for path, page in found.items():
         assert len(set(page.ids)) == len(page.ids)
         for href in page.hrefs:
             file, _, place = href.partition("#")
-            target = path if not file else str(Path(path).parent / file).replace("solutions/../", "")
+            target = path if not file else os.path.normpath(Path(path).parent / file).replace(os.sep, "/")
             assert target in found, href
             assert not place or place in found[target].ids, href
 
@@ -254,6 +256,33 @@ def test_what_is_given_away_has_no_solution_where_they_stand_apart(small):
     assert "Solutions" not in "".join(page_texts(found["workbook.en.pdf"]))
     assert "Solutions" in "".join(page_texts(found["solutions.en.pdf"]))
     assert not any(b"solutions/" in text for path, text in found.items() if path.startswith("pages/"))
+
+
+def test_the_contents_of_solutions_apart_name_each(small):
+    text = page_texts(made(small, formats=["pdf"], solved=False, apart=True)["solutions.en.pdf"])
+    assert re.search(r"Solutions.*1\.1\. ", " ".join(text[1].split()))
+
+
+def test_a_section_without_a_lesson_bears_its_title(folder):
+    settings = folder / "exercises/course.toml"
+    was = 'lesson = "rods"\n'
+    now = f'{was}\n[[chapters.sections]]\ntitle = {{ en = "More & more", fr = "Encore" }}\n'
+    settings.write_text(settings.read_text("utf-8").replace(was, now), "utf-8")
+    found = made(coursework.open_course(folder), formats=["pdf", "html"])
+    assert '<li class="section">More &amp; more</li>' in found["pages/index.html"].decode()
+    pages = page_texts(found["workbook.en.pdf"])
+    assert [k for k, page in enumerate(pages) if "More & more" in page][:1] == [1]
+    assert sum("More & more" in page for page in pages) == 2
+
+
+def test_a_word_that_is_longer_than_a_line_is_broken(folder):
+    """On one line it would run off the paper, all on one page."""
+    path = folder / "exercises/lessons/rods.en.md"
+    path.write_text(path.read_text("utf-8").replace("x = 41 + 1", "x = 9000 * 'W'"), "utf-8")
+    pages = page_texts(made(coursework.open_course(folder), formats=["pdf"])["workbook.en.pdf"])
+    counts = [page.count("W") for page in pages]
+    assert sum(counts) >= 9000
+    assert max(counts) < 7000
 
 
 def test_a_book_prints_no_variant_that_a_class_is_given(small):
