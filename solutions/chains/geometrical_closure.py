@@ -2,7 +2,7 @@
 
 from coursework.degrees import acos, atan, atan2, cos, polar, sin
 from coursework.figures import Figure, angle_mark, ball, ground_pivot, line, slot_link, vector
-from coursework.solution import Moving, given, mistake, stable
+from coursework.solution import Moving, given, mistake, stable, stable
 
 UNITS = {"y": "mm"}
 SYMBOLS = {"y": "y"}
@@ -46,6 +46,13 @@ def closure_angle():
     return "cos(epsilon) = sin(theta1)*cos(theta3)"
 
 
+def _crank_and_normal(theta1, theta3):
+    """Their angle by the sine too, which keeps its digits where the cosine is near 1."""
+    across = (sin(theta3) ** 2 + (cos(theta1) * cos(theta3)) ** 2) ** 0.5
+    return atan2(across, sin(theta1) * cos(theta3))
+
+
+@stable(_crank_and_normal)
 def epsilon(theta1, theta3):
     """Between the crank and the normal of the fork's faces, by the product of their vectors."""
     return acos(sin(theta1) * cos(theta3))

@@ -189,6 +189,8 @@ def test_each_question_alone_is_a_worked_example_of_every_level(name, lang):
     for parts in asked_alone(coursework.open_course()[name]):
         if parts[0].id not in coursework.open_course()[name].variant(1, lang, [parts[0].id]).part_ids:
             continue
+        if parts[0].sort.is_open:
+            continue  # it has a model answer, and no blank
         for level in range(5):
             shown = coursework.worked(name, seed=1, lang=lang, level=level, parts=(parts[0].id,))
             assert [part.id for part in shown.parts] == [part.id for part in parts]
