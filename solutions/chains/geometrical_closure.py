@@ -2,7 +2,7 @@
 
 from coursework.degrees import acos, atan, atan2, cos, polar, sin
 from coursework.figures import Figure, angle_mark, ball, ground_pivot, line, slot_link, vector
-from coursework.solution import Moving, given, mistake, stable, stable
+from coursework.solution import Moving, given, mistake, stable
 
 UNITS = {"y": "mm"}
 SYMBOLS = {"y": "y"}
