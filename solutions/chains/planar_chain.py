@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from coursework.errors import WrongValue
 from coursework.quantities.columns import each_stacked
 from coursework.solids import aligned, each_distinct, joints_of, planar_kind
 from coursework.solution import given, mistake
@@ -47,14 +46,13 @@ def _space(joints):
     return _chain_of(joints)
 
 
-def _joint(chain, number):
-    if len(chain.joints) < number:
-        raise WrongValue(f"the list holds {len(chain.joints)} joints; joint {number} was asked for")
-    return chain.joints[number - 1]
+def _kind(chain, number):
+    """The joint of the plane that one of the list is; empty where the list is shorter."""
+    return planar_kind(chain.joints[number - 1]) if number <= len(chain.joints) else ""
 
 
 def _kinds(chains, number):
-    return each_stacked(lambda one: planar_kind(_joint(one, number)), chains)
+    return each_stacked(lambda one: _kind(one, number), chains)
 
 
 def planar_1(_solids):

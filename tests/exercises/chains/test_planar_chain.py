@@ -55,6 +55,13 @@ def wedge(slope):
     return [{"between": [k, (k + 1) % 3], "joint": "prismatic", "axis": a} for k, a in enumerate(slides)]
 
 
+def test_a_chain_of_three_joints_is_solved_whole():
+    """What is asked of a fourth joint is empty; everything else is told."""
+    found = EXERCISE.solve(joints=wedge((1, 1, 0)))
+    assert [found[f"planar_{k}"] for k in (1, 2, 3, 4)] == ["prismatic", "prismatic", "prismatic", ""]
+    assert (found["Nc"], found["rc"], found["m"]) == (3, 2, 1)
+
+
 def test_a_wedge_is_a_plane_chain_whatever_its_slope():
     for slope in ((3, 4, 0), (1, 0.1, 0), (-1e-3, 1, 0), (1e6, 1, 0)):
         found = EXERCISE.solve(joints=wedge(slope), only=("planar_2", "Nc", "rc", "m", "h", "h_space"))
