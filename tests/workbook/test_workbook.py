@@ -511,3 +511,17 @@ def test_a_course_without_chapters_is_bound_as_well(small_course):
     (chapter,) = bound(course, "fr").chapters
     assert [one.handout.exercise for one in chapter.exercises] == ["crank_pin"]
     assert renderer_of(course.folder).book_pdf(bound(course, "fr"))[:5] == b"%PDF-"
+
+
+def test_pages_fit_a_telephone_and_print_what_is_folded(small):
+    """The rule for narrow screens must weigh more than the one that it takes back, ``.columns-4``; a folded answer is no gap on
+    paper."""
+    found = made(small, formats=["html"])
+    narrow = re.search(
+        r"@media \(max-width: 40rem\) \{(.*?\})\s*\}", found["pages/crank_pin.html"].decode(), re.DOTALL
+    )
+    assert re.search(r"fieldset\[class\] \{ grid-template-columns: 1fr; \}", narrow[1])
+    printed = re.search(
+        r"@media print \{\s*nav\.book(.*?\})\s*\}", found["pages/rods.html"].decode(), re.DOTALL
+    )
+    assert "details::details-content { content-visibility: visible; block-size: auto; }" in printed[1]
