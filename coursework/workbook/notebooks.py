@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 from urllib.parse import quote
 
@@ -26,8 +26,15 @@ def notebook_name(name: str, lang: str) -> str:
     return f"{name}.{lang}.ipynb"
 
 
-def lesson_notebook(course: Course[Any], name: str, lang: str) -> str:
+def lesson_notebook(course: Course[Any], name: str, lang: str, beside: Collection[str] | None = None) -> str:
     """A lesson as a notebook (JSON, nbformat 4.5).
+
+    Parameters
+    ----------
+    course, name, lang
+        An open course, a lesson of it, a language.
+    beside
+        The lessons and exercises whose notebooks stand beside it: links lead to these alone. All of the course unless told.
 
     Raises
     ------
@@ -39,6 +46,7 @@ def lesson_notebook(course: Course[Any], name: str, lang: str) -> str:
     folder = course.folder
     path = lesson_file(folder, name, lang)
     check_words(course, name, lang)
+    there = {*folder.lessons, *folder.names} if beside is None else beside
     pieces: list[str] = []
     pictures: dict[str, Mapping[str, str]] = {}
     for block in source.blocks(read_text(path), folder.relative(path)):
@@ -48,26 +56,30 @@ def lesson_notebook(course: Course[Any], name: str, lang: str) -> str:
             pictures[file] = _attached(shown)
             pieces.append(_picture(file, shown, lang))
         else:
-            pieces.append(_written(course, block, lang))
-    text = "\n\n".join([*pieces, *_practise(course, name, lang)]) + "\n"
+            pieces.append(_written(course, block, lang, there))
+    text = "\n\n".join([*pieces, *_practise(course, name, lang, there)]) + "\n"
     return renderer_of(folder).lesson(name, text, lang, folder.install, pictures)
 
 
-def _written(course: Course[Any], block: source.Prose | source.Cell | source.Answer, lang: str) -> str:
+def _written(
+    course: Course[Any], block: source.Prose | source.Cell | source.Answer, lang: str, there: Collection[str]
+) -> str:
     if isinstance(block, source.Cell):
         return f"```python\n{block.code}\n```"
-    text = to_notebook_markdown(_linked(course, block.text, lang), lang)
+    text = to_notebook_markdown(_linked(course, block.text, lang, there), lang)
     if isinstance(block, source.Answer):
         return f"<details><summary>{words(lang)['lesson']['answer']}</summary>\n\n{text}\n\n</details>"
     return text
 
 
-def _linked(course: Course[Any], text: str, lang: str) -> str:
+def _linked(course: Course[Any], text: str, lang: str, there: Collection[str]) -> str:
     """The text with links to the notebooks beside this one; terms in italics."""
 
     def write(link: Link) -> str:
         if link.kind == TERM:
             return f"*{link.said}*"
+        if link.name not in there:
+            return link.said
         place = ""
         if link.section:
             place = "#" + quote(
@@ -92,9 +104,9 @@ def _picture(file: str, shown: Drawn, lang: str) -> str:
     return f"![{said}](attachment:{file})" + (f"\n\n*{caption}*" if caption else "")
 
 
-def _practise(course: Course[Any], name: str, lang: str) -> list[str]:
+def _practise(course: Course[Any], name: str, lang: str, there: Collection[str]) -> list[str]:
     """The exercises of the lesson, each a link to its notebook."""
-    exercises = practised(course.folder, name, lang)
+    exercises = [one for one in practised(course.folder, name, lang) if one in there]
     if not exercises:
         return []
     lines = [f"- [{course[one].title(lang)}]({notebook_name(one, lang)})" for one in exercises]

@@ -67,8 +67,9 @@ def _encoded(make: Callable[[], str]) -> bytes:
 
 def _notebooks(course: Course[Any], book: Book) -> Iterator[File]:
     folder = Path("notebooks")
+    there = {*(one.name for one in book.lessons), *(one.handout.exercise for one in book.exercises)}
     for lesson in book.lessons:
-        make = partial(lesson_notebook, course, lesson.name, book.lang)
+        make = partial(lesson_notebook, course, lesson.name, book.lang, there)
         yield File(folder / notebook_name(lesson.name, book.lang), partial(_encoded, make))
     for one in book.exercises:
         make = partial(_study, course, one.handout.exercise, one.handout.seed, book.lang)

@@ -511,3 +511,50 @@ def test_a_course_without_chapters_is_bound_as_well(small_course):
     (chapter,) = bound(course, "fr").chapters
     assert [one.handout.exercise for one in chapter.exercises] == ["crank_pin"]
     assert renderer_of(course.folder).book_pdf(bound(course, "fr"))[:5] == b"%PDF-"
+
+
+def test_pages_fit_a_telephone_and_print_what_is_folded(small):
+    """The rule for narrow screens must weigh more than the one that it takes back, ``.columns-4``; a folded answer is no gap on
+    paper."""
+    found = made(small, formats=["html"])
+    narrow = re.search(
+        r"@media \(max-width: 40rem\) \{(.*?\})\s*\}", found["pages/crank_pin.html"].decode(), re.DOTALL
+    )
+    assert re.search(r"fieldset\[class\] \{ grid-template-columns: 1fr; \}", narrow[1])
+    printed = re.search(
+        r"@media print \{\s*nav\.book(.*?\})\s*\}", found["pages/rods.html"].decode(), re.DOTALL
+    )
+    assert "details::details-content { content-visibility: visible; block-size: auto; }" in printed[1]
+
+
+def test_the_notebooks_of_a_chapter_lead_to_one_another_alone(folder):
+    (folder / "exercises/lessons/pins.en.md").write_text("# Pins\n", "utf-8")
+    path = folder / "exercises/lessons/rods.en.md"
+    path.write_text(path.read_text("utf-8").replace("(lesson:rods#1)", "(lesson:pins)"), "utf-8")
+    course = coursework.open_course(folder)
+    for chapters, expected in (((), {"pins", "crank_pin"}), ((1,), {"crank_pin"})):
+        book = bound(course, "en", chapters=chapters)
+        written = {str(file.path): file.make().decode() for file in files(course, book, ["ipynb"])}
+        assert set(re.findall(r"\]\((\w+)\.en\.ipynb", written["notebooks/rods.en.ipynb"])) == expected
+
+
+def test_the_lesson_of_the_documentation_passes_its_check(tmp_path, capsys):
+    page = Path(__file__).parents[2] / "docs/workbook.md"
+    text = page.read_text("utf-8")
+    lesson = re.search(r"^````markdown\n(.*?)^````$", text, re.DOTALL | re.MULTILINE)[1]
+    (module,) = [
+        one
+        for one in re.findall(r"^```python\n(.*?)^```$", text, re.DOTALL | re.MULTILINE)
+        if "def circle" in one
+    ]
+    mine = tmp_path / "mine"
+    assert run(["new", str(mine), "--lang", "en"]) == 0
+    exercise = mine / "exercises/crank_pin.py"
+    driven = exercise.read_text("utf-8").replace("import Exercise", "import Driver, Exercise")
+    driven = driven.replace("figure=figure,", 'figure=figure,\n    driver=Driver("theta", speed="omega"),')
+    exercise.write_text(driven, "utf-8")
+    lessons = mine / "exercises/lessons"
+    lessons.mkdir()
+    (lessons / "pins.en.md").write_text(lesson, "utf-8")
+    (lessons / "pins.py").write_text(module, "utf-8")
+    assert run(["--course", str(mine), "lesson", "--check"]) == 0, capsys.readouterr()
