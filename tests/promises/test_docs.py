@@ -15,6 +15,7 @@ import coursework
 from coursework.cli import run
 from coursework.cli.commands import commands as cli
 from coursework.making.assignment import OPTIONS, read_assignment
+from coursework.markup.mathml import to_mathml
 from coursework.rendering.renderer import renderer_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -167,6 +168,14 @@ def test_the_page_on_architecture_tells_of_every_room_and_draws_it():
     assert all(height[below] < height[room] for room, needs in rooms.items() for below in needs)
     drawn = house.drawing().svg()
     assert all(f">{room}<" in drawn for room in rooms)
+
+
+def test_every_formula_of_the_errata_can_be_set():
+    text = re.sub(r"`[^`\n]*`", "", (DOCS / "errata.md").read_text("utf-8"))
+    found = re.findall(r"(?<!\\)\$([^$\n]+)\$", text)
+    assert len(found) > 100
+    for formula in found:
+        to_mathml(formula, "en")
 
 
 # ---------------------------------------------------------------------- gallery
