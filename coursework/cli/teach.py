@@ -217,6 +217,13 @@ def workbook(
     course = opened(context)
     _check_language(lang)
     wanted = _numbers(chapters)
+    if not course.folder.has_solutions:
+        solutions = "none"
+        tell(
+            [
+                f"{course.folder.label} has no solutions/: the book has no solutions, and no self-study notebooks"
+            ]
+        )
     with progress_bar("reading", pieces_of(course)) as advance:
         book = bound(course, lang, seed, chapters=wanted, solved=solutions == "end", advance=advance)
     made = list(files(course, book, formats, paper=paper, apart=solutions == "apart"))

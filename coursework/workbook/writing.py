@@ -67,11 +67,13 @@ def _encoded(make: Callable[[], str]) -> bytes:
 
 def _notebooks(course: Course[Any], book: Book) -> Iterator[File]:
     folder = Path("notebooks")
-    there = {*(one.name for one in book.lessons), *(one.handout.exercise for one in book.exercises)}
+    # Who studies alone asks the solutions.
+    exercises = book.exercises if course.folder.has_solutions else ()
+    there = {*(one.name for one in book.lessons), *(one.handout.exercise for one in exercises)}
     for lesson in book.lessons:
         make = partial(lesson_notebook, course, lesson.name, book.lang, there)
         yield File(folder / notebook_name(lesson.name, book.lang), partial(_encoded, make))
-    for one in book.exercises:
+    for one in exercises:
         make = partial(_study, course, one.handout.exercise, one.handout.seed, book.lang)
         yield File(folder / notebook_name(one.handout.exercise, book.lang), partial(_encoded, make))
     wheel = course.folder.wheel
