@@ -5,7 +5,7 @@ import numpy as np
 
 from coursework.marking.drawn_polygons import Asked, Read, verdicts
 from coursework.polygons import crank_v, guide_v, polygon_of_velocities
-from coursework.solution import given, judge, mistake
+from coursework.solution import given, judge, mistake, stable
 
 from ._drawn_velocity import *
 from ._slotted import *
@@ -36,6 +36,7 @@ def way(_rates):
     return np.sign(_rates[1])
 
 
+@stable(lambda _rates: _rates[1])
 def rA_dot(way, kv, ab):
     return way * kv * ab
 
