@@ -48,8 +48,6 @@ def lesson(
 ) -> int:
     """Write the course's lessons as notebooks; without --out, list them."""
     from coursework.course.lessons import lesson_file
-    from coursework.system.writing import write_whole
-    from coursework.workbook.notebooks import lesson_notebook, notebook_name
 
     course = opened(context)
     asked = lessons or course.folder.lessons
@@ -62,6 +60,9 @@ def lesson(
         for name in asked:
             click.echo(name)
         return DONE
+    from coursework.system.writing import write_whole
+    from coursework.workbook.notebooks import lesson_notebook, notebook_name
+
     paths = {name: out / notebook_name(name, lang) for name in asked}
     _spare(list(paths.values()), overwrite)
     for name, path in paths.items():
@@ -146,11 +147,12 @@ def notebook(
     from coursework.making.issuing import distinct_variants
     from coursework.rendering.renderer import renderer_of
     from coursework.system.writing import write_whole
+    from coursework.workbook.notebooks import notebook_name
 
     course = opened(context)
     wheel = course.folder.wheel
     paths = {
-        (name, lang): out / f"{name}.{lang}.ipynb"
+        (name, lang): out / notebook_name(name, lang)
         for name in exercise_names(course, exercises)
         for lang in langs
     }

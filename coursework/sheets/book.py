@@ -7,7 +7,7 @@ As in :mod:`coursework.sheets.sheet`, texts are Markdown with ``$LaTeX$``. Links
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
@@ -76,6 +76,7 @@ class LessonText:
     title: str
     pieces: tuple[Piece, ...]
     answers: tuple[tuple[int, tuple[Piece, ...]], ...]  #: by their numbers, which :class:`Later` names
+    terms: tuple[str, ...] = ()  #: entries of the index
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,6 @@ class Book:
     seed: int
     chapters: tuple[BookChapter, ...]
     solved: bool  #: whether the solutions stand at its end, and its pages lead to them
-    terms: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  #: of the index: lessons by entry
 
     @property
     def exercises(self) -> tuple[Practised, ...]:
@@ -130,3 +130,12 @@ class Book:
     @property
     def lessons(self) -> tuple[LessonText, ...]:
         return tuple(one for chapter in self.chapters for one in chapter.lessons)
+
+    @property
+    def terms(self) -> Mapping[str, tuple[str, ...]]:
+        """The names of the lessons that have each entry of the index."""
+        found: dict[str, tuple[str, ...]] = {}
+        for lesson in self.lessons:
+            for entry in lesson.terms:
+                found[entry] = (*found.get(entry, ()), lesson.name)
+        return found

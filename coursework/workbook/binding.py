@@ -15,7 +15,7 @@ from coursework.making.issuing import distinct_variants
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.book import Book, BookChapter, Practised, Section
 from coursework.sheets.handout import handout
-from coursework.workbook.lessons import lesson_text, terms
+from coursework.workbook.lessons import lesson_text
 
 _FAR = 500_000  #: seeds away from those of a class and of self-study: a book prints its solutions
 _APART = 1_000  #: seeds between two books
@@ -66,8 +66,7 @@ def bound(
             raise BadInput(f"no chapter {number}; there is {', '.join(map(str, numbers)) or 'none'}")
     wanted = [chapter for chapter in found if not chapters or chapter.number in chapters]
     made = tuple(_chapter(course, chapter, lang, seed, advance) for chapter in wanted)
-    index = _index(course, [n for chapter in wanted for n in chapter.lessons], lang)
-    return Book(lang, course.folder.title(lang), seed, made, solved, index)
+    return Book(lang, course.folder.title(lang), seed, made, solved)
 
 
 def pieces_of(course: Course[Any]) -> int:
@@ -112,11 +111,3 @@ def _practised(course: Course[Any], name: str, lang: str, seed: int, number: str
     taught = tuple((one.name, one.title) for one in taught_by(course.folder, name, lang))
     solution = answer_sheet(variant) if course.folder.has_solutions else None
     return Practised(number, handout(variant), solution, taught)
-
-
-def _index(course: Course[Any], lessons: Sequence[str], lang: str) -> dict[str, tuple[str, ...]]:
-    found: dict[str, tuple[str, ...]] = {}
-    for name in lessons:
-        for entry in terms(course, name, lang):
-            found[entry] = (*found.get(entry, ()), name)
-    return found

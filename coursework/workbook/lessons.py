@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 from coursework.course.chapters import Chapter
 from coursework.course.course import Course
@@ -24,6 +25,42 @@ _CELL = re.compile(r"(?<!\\)\|")
 _HEAD = re.compile(r"^(##+) +(?:(\d+)\. +)?(.*?) *$", re.MULTILINE)
 
 
+class Opened(NamedTuple):
+    """A lesson's file, read once: what messages call it, its text, and its blocks, whose words can be printed."""
+
+    file: str
+    text: str
+    blocks: tuple[source.Block, ...]
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """The entries of the index that the lesson has, each once."""
+        return tuple(dict.fromkeys(link.name for link in links(self.text) if link.kind == TERM))
+
+
+def opened(course: Course[Any], name: str, lang: str) -> Opened:
+    """A lesson's file, proofread.
+
+    Raises
+    ------
+    UnknownName
+        No such lesson.
+    BadCourse
+        It is not written in this language; a formula, a fence or a picture is none; a link names an exercise, a lesson or a section that
+        there is not.
+    """
+    path = lesson_file(course.folder, name, lang)
+    text, file = read_text(path), course.folder.relative(path)
+    blocks = source.blocks(text, file)
+    proofread(blocks, file)
+    for words, line in lines_of_words(blocks):
+        for link in links(words):
+            if link.kind != TERM:
+                place = place_of(words, line, file, f"{link.kind}:{link.name}")
+                _check_link(course.folder, link, lang, place)
+    return Opened(file, text, blocks)
+
+
 def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
     """A lesson with its pictures drawn and its cells run.
 
@@ -34,21 +71,25 @@ def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
     BadCourse
         It is not written in this language, a cell raises, or a picture or a link leads nowhere.
     """
-    path = lesson_file(course.folder, name, lang)
-    check_words(course, name, lang)
-    file = course.folder.relative(path)
-    with Session(file, course.folder.root) as session:
+    return _told(course, name, lang, opened(course, name, lang))
+
+
+def _told(course: Course[Any], name: str, lang: str, lesson: Opened) -> LessonText:
+    with Session(lesson.file, course.folder.root) as session:
         made = _Lesson(course, name, lang, session)
-        for block in source.blocks(_untitled(read_text(path)), file):
+        for block in _untitled(lesson.blocks):
             made.add(block)
     number = 1 + course.folder.lessons.index(name)
     title = lesson_title(course.folder, name, lang)
-    return LessonText(name, number, lang, title, tuple(made.pieces), tuple(made.answers))
+    return LessonText(name, number, lang, title, tuple(made.pieces), tuple(made.answers), lesson.terms)
 
 
-def _untitled(text: str) -> str:
-    """A text without its title, each line in its place."""
-    return _TITLE.sub(lambda found: "\n" * found[0].count("\n"), text)
+def _untitled(blocks: Sequence[source.Block]) -> Iterator[source.Block]:
+    """The blocks without the title, with which the first one begins."""
+    first, *others = blocks
+    assert isinstance(first, source.Prose)  # proofread
+    yield replace(first, text=_TITLE.sub("", first.text))
+    yield from others
 
 
 class _Lesson:
@@ -98,25 +139,6 @@ def _parted(text: str) -> Iterator[Piece]:
         yield Prose(after)
 
 
-def check_words(course: Course[Any], name: str, lang: str) -> None:
-    """Stop at words of a lesson that no book could print, and at a link that leads nowhere.
-
-    Raises
-    ------
-    BadCourse
-        A formula, a fence or a picture is none; a link names an exercise, a lesson or a section that there is not.
-    """
-    path = lesson_file(course.folder, name, lang)
-    text, file = read_text(path), course.folder.relative(path)
-    proofread(text, file)
-    for words, line in lines_of_words(source.blocks(text, file)):
-        for link in links(words):
-            if link.kind != TERM:
-                _check_link(
-                    course.folder, link, lang, place_of(words, line, file, f"{link.kind}:{link.name}")
-                )
-
-
 def _check_link(folder: Folder, link: Link, lang: str, place: str) -> None:
     known = folder.names if link.kind == "exercise" else folder.lessons
     if link.name not in known:
@@ -136,14 +158,13 @@ def faults(course: Course[Any], name: str) -> tuple[str, ...]:
     found, shapes = [], {}
     for lang in course.folder.languages:
         try:
-            text = read_text(lesson_file(course.folder, name, lang))
-            lesson_text(course, name, lang)
+            lesson = opened(course, name, lang)
+            _told(course, name, lang, lesson)
         except CourseworkError as fault:
             found.append(f"{name}, {lang}: {fault}")
             continue
-        found += _cut_formulas(text, name, lang)
-        blocks = source.blocks(text, name)
-        shapes[lang] = [type(b).__name__ for b in blocks if not isinstance(b, source.Prose)]
+        found += _cut_formulas(lesson.text, name, lang)
+        shapes[lang] = [type(b).__name__ for b in lesson.blocks if not isinstance(b, source.Prose)]
     if len({tuple(shape) for shape in shapes.values()}) > 1:
         told = "; ".join(f"{lang}: {_counted(shape)}" for lang, shape in shapes.items())
         found.append(f"{name} is not the same in every language: {told}")
@@ -189,9 +210,3 @@ def _cut_formulas(text: str, name: str, lang: str) -> list[str]:
 
 def _counted(shape: Sequence[str]) -> str:
     return ", ".join(counted(n, kind.lower()) for kind, n in sorted(Counter(shape).items())) or "none"
-
-
-def terms(course: Course[Any], name: str, lang: str) -> tuple[str, ...]:
-    """The entries of the index that a lesson's text has, each once."""
-    text = read_text(lesson_file(course.folder, name, lang))
-    return tuple(dict.fromkeys(link.name for link in links(text) if link.kind == TERM))

@@ -8,14 +8,14 @@ from typing import Any
 from urllib.parse import quote
 
 from coursework.course.course import Course
-from coursework.course.lessons import lesson_file, lesson_sections, practised, read_text
+from coursework.course.lessons import lesson_sections, practised
 from coursework.language.words import words
 from coursework.markup.links import TERM, Link, relinked
 from coursework.markup.markdown import to_notebook_markdown
 from coursework.rendering.renderer import renderer_of
 from coursework.sheets.book import Drawn
 from coursework.workbook import lesson_source as source
-from coursework.workbook.lessons import check_words
+from coursework.workbook.lessons import opened
 from coursework.workbook.pictures import drawn
 
 _PPI = 150
@@ -44,12 +44,10 @@ def lesson_notebook(course: Course[Any], name: str, lang: str, beside: Collectio
         It is not written in this language, or a picture or a link leads nowhere.
     """
     folder = course.folder
-    path = lesson_file(folder, name, lang)
-    check_words(course, name, lang)
     there = {*folder.lessons, *folder.names} if beside is None else beside
     pieces: list[str] = []
     pictures: dict[str, Mapping[str, str]] = {}
-    for block in source.blocks(read_text(path), folder.relative(path)):
+    for block in opened(course, name, lang).blocks:
         if isinstance(block, source.Image):
             shown = drawn(course, name, block, lang)
             file = f"picture-{len(pictures) + 1}.{'svg' if shown.svg else 'png'}"

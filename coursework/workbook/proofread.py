@@ -19,13 +19,13 @@ _CODE = re.compile(r"```.*?```|`[^`\n]*`", re.DOTALL)
 _SECTION = re.compile(r"^## +(\d+)\.", re.MULTILINE)
 
 
-def proofread(text: str, file: str) -> None:
+def proofread(found: Sequence[source.Block], file: str) -> None:
     """Stop at what of a lesson's words cannot be printed as it was meant.
 
     Parameters
     ----------
-    text
-        The whole file.
+    found
+        The blocks of the whole file.
     file
         What messages call it.
 
@@ -34,7 +34,6 @@ def proofread(text: str, file: str) -> None:
     BadCourse
         It does not begin with its title, or has two; a section stands twice; a formula, a fence, a picture or a link is none.
     """
-    found = source.blocks(text, file)
     _check_title(found, file)
     sections: set[str] = set()
     for words, line in lines_of_words(found):

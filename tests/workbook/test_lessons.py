@@ -17,7 +17,7 @@ from coursework.language.words import languages
 from coursework.sheets.book import Code, Printed
 from coursework.sheets.book import Prose as Prose_
 from coursework.workbook.lesson_source import Answer, Cell, Image, Prose, blocks
-from coursework.workbook.lessons import faults, lesson_text, terms
+from coursework.workbook.lessons import faults, lesson_text, opened
 from coursework.workbook.notebooks import lesson_notebook
 
 every_language = pytest.mark.parametrize("lang", languages())
@@ -90,7 +90,7 @@ def test_a_lesson_teaches_and_lets_try(course, name, lang):
     assert re.search(r"coursework\.worked\((?![^)]*level=)", code), "a whole example"
     assert sum(isinstance(one, Answer) for one in found) >= 3
     assert sum(isinstance(one, Image) for one in found) >= 2
-    assert len(terms(course, name, lang)) >= 3
+    assert len(opened(course, name, lang).terms) >= 3
 
 
 def test_every_exercise_leads_to_its_lesson_and_back(course):
