@@ -20,6 +20,7 @@ COMMANDS = {
     "build": ("make", "build"),
     "check": ("author", "check"),
     "demo": ("make", "demo"),
+    "export": ("platforms", "export"),
     "grade": ("mark", "grade"),
     "lesson": ("teach", "lesson"),
     "list": ("look", "list_exercises"),

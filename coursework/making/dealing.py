@@ -199,7 +199,7 @@ class _Hand:
         taken = {tuple(v.given.values()) for v in found.values()}
         drawn = {}
         if asked.seed is not None:
-            one = _worth(exercise.variant(asked.seed, self.langs[0], asked.parts), asked)
+            one = worth(exercise.variant(asked.seed, self.langs[0], asked.parts), asked)
             drawn = {who: one for k, who in missing.items() if sittings[k][1] == 1}
         drawn |= self._drawn(
             exercise, asked, [w for w in dict.fromkeys(missing.values()) if w not in drawn], taken
@@ -238,10 +238,10 @@ class _Hand:
                 f"{exercise.name}: {len(shared)} of {counted(len(people), 'paper')} share a variant with another; so many "
                 "different ones do not exist"
             )
-        return {who: _worth(variant, asked) for who, variant in found.items()}
+        return {who: worth(variant, asked) for who, variant in found.items()}
 
 
-def _worth(variant: V, asked: AskedExercise) -> V:
+def worth(variant: V, asked: AskedExercise) -> V:
     """The variant with the points that the assignment gives."""
     if asked.points is None:
         return variant

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol, Self, TypeVar
 
@@ -32,10 +32,12 @@ def distinct_variants(
     lang: str,
     refused: Counter[str] | None = None,
     parts: Sequence[str] | None = None,
+    fits: Callable[[V], bool] | None = None,
 ) -> list[V]:
     """``count`` variants of different given values that are worth issuing, from the first seed on.
 
-    ``parts`` are the ids of those to ask; a variant that asks none of them is passed over.
+    ``parts`` are the ids of those to ask; a variant that asks none of them is passed over, and so is one that
+    does not fit, where ``fits`` is told.
 
     Equal ones are passed over, and so are those that mark badly (:mod:`coursework.making.flaws`), if the course
     folder has solutions to tell; ``refused`` counts these by their flaw.
@@ -54,9 +56,11 @@ def distinct_variants(
         good = (len(found) + 1) / (seed - first_seed + 1)
         batch = range(seed, min(limit, seed + max(16, math.ceil((count - len(found)) / good))))
         drawn = exercise.variants(batch, lang, parts)
-        asking = [variant for variant in drawn if variant.parts]
+        asking = _that_ask(drawn, fits)
         if len(asking) < len(drawn):
-            refused["asks none of the parts"] += len(drawn) - len(asking)
+            refused["asks none of the parts" if fits is None else "asks other parts"] += len(drawn) - len(
+                asking
+            )
             drawn = asking
         if exercise.folder.has_solutions:
             drawn = worthy(exercise, drawn, refused)
@@ -75,6 +79,11 @@ def distinct_variants(
             "ask for fewer, widen a range or make a step finer"
         )
     return list(found.values())
+
+
+def _that_ask(variants: Sequence[V], fits: Callable[[V], bool] | None) -> list[V]:
+    """Those that ask something, and fit."""
+    return [v for v in variants if v.parts and (fits is None or fits(v))]
 
 
 SEEDS = 1_000_000  #: seeds that are drawn by student have six digits at most
@@ -96,10 +105,12 @@ def drawn_by(
     lang: str,
     parts: Sequence[str] | None = None,
     taken: set[tuple[Any, ...]] | None = None,
+    fits: Callable[[V], bool] | None = None,
 ) -> tuple[dict[str, V], list[str]]:
     """A variant for each of some people that hangs on them and not on their order, and who shares theirs with another.
 
-    All are different, and none has the given values that are ``taken``, while variants last.
+    All are different, and none has the given values that are ``taken``, while variants last; each ``fits``,
+    where that is told.
 
     Raises
     ------
@@ -115,7 +126,7 @@ def drawn_by(
     while waiting and round_ < (_ALIKE if spare.keys() >= set(waiting) else _ROUNDS):
         rounds = range(round_, min(round_ + together, _ROUNDS))
         seeds = {(r, who): seed_for(stream, exercise.name, who, r) for r in rounds for who in waiting}
-        drawn = [v for v in exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts) if v.parts]
+        drawn = _that_ask(exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts), fits)
         good = worthy(exercise, drawn, refused) if exercise.folder.has_solutions else drawn
         by_seed = {v.seed: v for v in good}
         for r in rounds:

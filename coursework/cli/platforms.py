@@ -1,0 +1,201 @@
+"""Commands of the platforms: export."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from coursework.cli.assignments import is_assignment
+from coursework.cli.options import (
+    UNLESS_TOLD,
+    Lists,
+    Whole,
+    decimal_option,
+    exercise_names,
+    exercises_argument,
+    known_languages,
+    opened,
+    parts_option,
+    seed_option,
+    split_list,
+    spoken,
+    tell,
+    unknown_language,
+)
+from coursework.cli.printing import progress_bar
+from coursework.errors import BadInput, counted
+
+if TYPE_CHECKING:
+    from click.shell_completion import CompletionItem
+
+    from coursework.course.course import Course
+    from coursework.making.assignment import Assignment
+    from coursework.platforms.pools import Drawn
+
+_VARIANTS = 20  #: of a pool, where nothing says how many
+
+
+class _PlatformName(click.ParamType):
+    """One of the platforms there are."""
+
+    name = "platform"
+
+    def shell_complete(
+        self, ctx: click.Context, param: click.Parameter, incomplete: str
+    ) -> list[CompletionItem]:
+        from click.shell_completion import CompletionItem
+
+        from coursework.platforms.platform import platforms
+
+        return [CompletionItem(name) for name in platforms() if name.startswith(incomplete)]
+
+
+@click.command()
+@click.argument("platform", type=_PlatformName())
+@exercises_argument
+@click.option(
+    "--variants",
+    "count",
+    type=Whole(1),
+    help=f"How many variants of each exercise; unless told, as many as the roster has students, else {_VARIANTS}.",
+)
+@click.option(
+    "--roster",
+    type=click.Path(path_type=Path),
+    help="CSV of the students, as the platform exports it: answers that come back are told apart by it.",
+)
+@seed_option
+@click.option(
+    "--lang",
+    "langs",
+    type=Lists(known_languages, unknown_language),
+    callback=spoken,
+    help=f"Languages of the questions: fr, en, or both as fr,en. Unless told, {UNLESS_TOLD}.",
+)
+@parts_option
+@click.option("--strict", is_flag=True, help="Stop where anything is lost, and write nothing.")
+@decimal_option
+@click.option(
+    "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."
+)
+@click.option("--overwrite", is_flag=True, help="Replace another pool that was exported there before.")
+@click.pass_context
+def export(
+    context: click.Context,
+    platform: str,
+    exercises: Sequence[str],
+    count: int | None,
+    roster: Path | None,
+    seed: int,
+    langs: Sequence[str],
+    parts: str,
+    strict: bool,
+    decimal: str,
+    out: Path,
+    overwrite: bool,
+) -> None:
+    """Write what a PLATFORM imports: moodle, qti3, qti21, canvas, stack or gradescope.
+
+    Of exercises, or of an assignment's file. The export holds the answers: it is for the staff. What the platform cannot do is
+    told, and listed in lost.csv; what comes back from it is marked by 'coursework grade' against issued.json.
+    """
+    from coursework.making.roster import read_roster
+    from coursework.platforms.exporting import export as exported
+    from coursework.platforms.losses import told
+    from coursework.platforms.platform import platform_of
+    from coursework.system.tables import SPREADSHEETS
+    from coursework.system.writing import write_tree
+
+    chosen = platform_of(platform)
+    course = opened(context)
+    notes: list[str] = []
+    students = read_roster(roster, notes.append) if roster else []
+    drawn = _drawn(course, context, exercises, count or len(students), seed, langs, parts)
+    made = exported(chosen, drawn, students, SPREADSHEETS[decimal])
+    lines = list(told(made.lost, drawn.langs[0]))
+    if strict and lines:
+        raise BadInput(
+            f"--strict: {platform} loses {counted(len(lines), 'feature')}, and nothing is written: {' | '.join(lines)}"
+        )
+    if not overwrite:
+        _check_folder(out, drawn)
+    with progress_bar("exporting", len(made.files)) as advance:
+        notes += write_tree(out, made.files, advance, anew=overwrite)
+    tell(notes)
+    for line in lines:
+        click.echo(line)
+    click.echo(
+        f"{counted(len(drawn.issues), 'variant')} for {platform} in {out}, with the answers, for the staff alone: "
+        f"how to import them is in IMPORT.{drawn.langs[0]}.txt, what is lost part by part in lost.csv"
+    )
+
+
+def _drawn(
+    course: Course[Any],
+    context: click.Context,
+    exercises: Sequence[str],
+    count: int,
+    seed: int,
+    langs: Sequence[str],
+    parts: str,
+) -> Drawn:
+    from coursework.platforms.pools import of_assignment, of_exercises
+
+    if not course.folder.has_solutions:
+        raise BadInput(f"{course.folder.label} has no solutions: a platform is told the answers")
+    if not is_assignment(exercises):
+        names = exercise_names(course, exercises)
+        return of_exercises(course, names, count or _VARIANTS, seed, langs, split_list(parts) or None)
+    from coursework.making.assignment import read_assignment
+
+    path = Path(exercises[0])
+    assignment = read_assignment(path, course)
+    _refuse_options(context, path)
+    if count and assignment.versions and count > assignment.versions:
+        count = 0
+    return of_assignment(
+        course, assignment, count or assignment.versions or _VARIANTS, _langs(context, assignment, langs)
+    )
+
+
+def _refuse_options(context: click.Context, path: Path) -> None:
+    default = click.core.ParameterSource.DEFAULT
+    for option in ("seed", "parts"):
+        if context.get_parameter_source(option) is not default:
+            raise BadInput(
+                f"--{option} is for exercises named on the command line; {path} says it for each of its own"
+            )
+
+
+def _langs(context: click.Context, assignment: Assignment, langs: Sequence[str]) -> Sequence[str]:
+    """The languages told, else those of the assignment."""
+    stated = assignment.options.get("lang")
+    is_told = context.get_parameter_source("langs") is not click.core.ParameterSource.DEFAULT
+    if is_told or stated is None:
+        return langs
+    return split_list(stated) if isinstance(stated, str) else tuple(map(str, stated))
+
+
+def _check_folder(out: Path, drawn: Drawn) -> None:
+    """An export takes the place of one of the same pool, or of a smaller one; not of another."""
+    import json
+
+    path = out / "issued.json"
+    if not path.is_file():
+        return
+    try:
+        before = {_place(item["record"]) for item in json.loads(path.read_bytes())["issued"]}
+    except (ValueError, KeyError, TypeError):
+        before = {("", 0)}
+    if not before <= {_place(issue.variant.record) for issue in drawn.issues}:
+        raise BadInput(
+            f"{path} holds other variants, exported before; choose another --out, or --overwrite to replace them "
+            "(answers to them could no longer be marked from there)"
+        )
+
+
+def _place(record: Any) -> tuple[str, int]:
+    return record["exercise"], record["seed"]

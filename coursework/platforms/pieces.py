@@ -1,0 +1,72 @@
+"""Pieces of pages that platforms show: HTML that needs no style, no script and no network; formulas as MathML, figures as SVG."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from coursework.language.words import words
+from coursework.markup.markdown import plain_line
+from coursework.platforms.items import Item
+from coursework.platforms.posed import Option, Posed
+from coursework.rendering import views
+from coursework.rendering.environment import render
+from coursework.rendering.html import environment_of
+
+_INLINE = re.compile(r'src="data:image/(svg\+xml|png|jpeg);base64,([A-Za-z0-9+/=]+)"')
+_ENDINGS = {"svg+xml": "svg", "png": "png", "jpeg": "jpg"}
+
+
+class Image(NamedTuple):
+    """A picture that a piece shows."""
+
+    name: str  #: of the file; it hangs on what it holds
+    data: bytes
+
+
+class Pieces:
+    """Makes the pieces of a language through templates of these folders."""
+
+    def __init__(self, folders: Sequence[Path], lang: str):
+        self.folders, self.lang = tuple(folders), lang
+        self._env = environment_of(self.folders, lang)
+
+    def opening(self, item: Item, *, named: bool = True) -> str:
+        """All of an item before its questions: statement, figure, data, margins, and, where it is ``named``, its label."""
+        names = views.context(item.handout)
+        names |= {"label": item.label if named else "", "level": 4}
+        return render(self._env, "_platform_opening.html.j2", names)
+
+    def prompt(self, posed: Posed, *, box: str = "", numbered: bool = True) -> str:
+        """A question with the ``box`` (HTML) that is typed in: its symbol before it, its unit behind; no options."""
+        names = {"question": posed.question, "box": box, "numbered": numbered, "words": words(self.lang)}
+        return render(self._env, "_platform_question.html.j2", names)
+
+    def option(self, option: Option) -> str:
+        """An option as it is offered, with its letter, which reports tell it by."""
+        return render(self._env, "_platform_option.html.j2", {"option": option, "words": words(self.lang)})
+
+    def inline(self, markdown: str) -> str:
+        """A line of Markdown as HTML."""
+        return render(self._env, "_platform_line.html.j2", {"line": markdown})
+
+    def plain(self, markdown: str) -> str:
+        """A line of Markdown as plain text, for whatever shows no HTML."""
+        return plain_line(markdown, self.lang)
+
+
+def with_files(html: str, address: str = "{}") -> tuple[str, tuple[Image, ...]]:
+    """The same with its pictures as files: where each stood in the page, the ``address`` of its file stands, ``{}`` for its name."""
+    images: dict[str, Image] = {}
+
+    def out(match: re.Match[str]) -> str:
+        data = base64.b64decode(match[2])
+        image = Image(f"{hashlib.sha256(data).hexdigest()[:16]}.{_ENDINGS[match[1]]}", data)
+        images[image.name] = image
+        return f'src="{address.format(image.name)}"'
+
+    return _INLINE.sub(out, html), tuple(images.values())

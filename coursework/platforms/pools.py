@@ -1,0 +1,156 @@
+"""Pools: variants that a platform deals out, of exercises or of an assignment."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import Any, TypeVar
+
+from coursework.course.course import Course
+from coursework.course.exercise import CourseExercise
+from coursework.course.variant import Variant
+from coursework.errors import BadInput
+from coursework.language.words import words
+from coursework.making.assignment import AskedExercise, Assignment, text_in
+from coursework.making.dealing import worth
+from coursework.making.flaws import try_judges
+from coursework.making.issuing import Issue, chosen_parts, distinct_variants, drawn_by
+from coursework.markup.markdown import plain_line
+from coursework.platforms.items import Pool, section
+from coursework.rendering.renderer import renderer_of
+
+_TRIED = 24  #: variants that tell what most ask
+_USUAL = 1 / 3  #: of them that ask the same at least, where a pool is of those
+
+T = TypeVar("T", bound=Any)
+
+
+class Drawn:
+    """The variants of a pool, drawn once and posed in each language."""
+
+    def __init__(
+        self,
+        course: Course[Any],
+        asked: Sequence[AskedExercise],
+        count: int,
+        *,
+        first_seed: int = 0,
+        langs: Sequence[str],
+        assignment: Assignment | None = None,
+    ):
+        self.course, self.assignment, self.langs = course, assignment, tuple(langs)
+        for exercise in asked:
+            _check_languages(course[exercise.name], langs)
+        self.variants = [self._drawn(course[one.name], one, count, first_seed) for one in asked]
+
+    @property
+    def name(self) -> str:
+        """What identifiers begin with."""
+        told = self.assignment.name if self.assignment else "coursework"
+        return re.sub(r"[^A-Za-z0-9_-]+", "-", told).strip("-") or "coursework"
+
+    def _drawn(
+        self, exercise: CourseExercise[Any], asked: AskedExercise, count: int, first_seed: int
+    ) -> list[Any]:
+        """Variants that ask the same parts, all different while there are such."""
+        lang = self.langs[0]
+        if asked.seed is not None:
+            found: list[Any] = [exercise.variant(asked.seed, lang, asked.parts)]
+        else:
+            fits = alike(exercise, first_seed, asked.parts)
+            if self.assignment is None:
+                found = distinct_variants(exercise, first_seed, count, lang, parts=asked.parts, fits=fits)
+            else:
+                places = [f"pool {place}" for place in range(count)]
+                drawn, _ = drawn_by(self.assignment.name, exercise, places, lang, asked.parts, fits=fits)
+                found = [drawn[place] for place in places]
+        try_judges(found[0].key)
+        return [worth(variant, asked) for variant in found]
+
+    @property
+    def issues(self) -> tuple[Issue, ...]:
+        """Every variant, which belongs to nobody."""
+        return tuple(
+            Issue("", variant, self.langs, f"{variant.seed:05d}")
+            for variants in self.variants
+            for variant in variants
+        )
+
+    def pool(self, lang: str) -> Pool:
+        """The pool in a language."""
+        sections = tuple(section([v.in_language(lang) for v in some], self.name) for some in self.variants)
+        return Pool(
+            self.name,
+            self._title(lang),
+            lang,
+            sections,
+            self.issues,
+            renderer_of(self.course.folder).template_folders,
+            Path(self.course.folder.root),
+            self.assignment,
+        )
+
+    def _title(self, lang: str) -> str:
+        told = text_in(self.assignment.title, lang) or self.assignment.name if self.assignment else ""
+        return told or plain_line(self.course.folder.title(lang), lang)
+
+
+def of_exercises(
+    course: Course[Any],
+    names: Sequence[str],
+    count: int,
+    first_seed: int,
+    langs: Sequence[str],
+    parts: Sequence[str] | None,
+) -> Drawn:
+    """A pool of exercises by name, from the first seed on.
+
+    Raises
+    ------
+    BadInput, Starved, UnknownName
+        As :func:`coursework.making.issuing.issue`.
+    """
+    chosen = chosen_parts(course, names, parts)
+    asked = [AskedExercise(name, chosen[name]) for name in names]
+    return Drawn(course, asked, count, first_seed=first_seed, langs=langs)
+
+
+def of_assignment(course: Course[Any], assignment: Assignment, count: int, langs: Sequence[str]) -> Drawn:
+    """A pool of each exercise of an assignment, whose variants hang on its name."""
+    return Drawn(course, assignment.exercises, count, langs=langs, assignment=assignment)
+
+
+def alike(
+    exercise: CourseExercise[Any], first_seed: int, parts: Sequence[str] | None
+) -> Callable[[Variant], bool]:
+    """Whether a variant may be of a pool: it asks what most ask; where variants ask this and that, it is worth what most are."""
+    tried = [v for v in exercise.variants(range(first_seed, first_seed + _TRIED), None, parts) if v.parts]
+    if not tried:
+        raise BadInput(f"{exercise.name}: its variants ask none of the parts; name others, or none")
+    usual, often = _most_common(v.part_ids for v in tried)
+    if often >= _USUAL * len(tried):
+        return lambda variant: variant.part_ids == usual
+    points, _ = _most_common(_points(v) for v in tried)
+    return lambda variant: _points(variant) == points
+
+
+def _points(variant: Variant) -> tuple[float, int]:
+    """What a variant is worth, and in how many questions."""
+    return sum(part.points for part in variant.parts), len(variant.parts)
+
+
+def _most_common(found: Iterable[T]) -> tuple[T, int]:
+    """What there is most of, the largest of several, and how much there is."""
+    counts = Counter(found)
+    most = max(counts, key=lambda one: (counts[one], one))
+    return most, counts[most]
+
+
+def _check_languages(exercise: CourseExercise[Any], langs: Sequence[str]) -> None:
+    for lang in langs:
+        words(lang)
+        if lang not in exercise.languages:
+            have = ", ".join(exercise.languages) or "none"
+            raise BadInput(f"{exercise.name} has no text in {lang!r}; it has {have}")

@@ -1,0 +1,215 @@
+"""What a platform can judge by itself: a question with its right answers and those that known errors give.
+
+An answer that a platform is to know is marked by the marker first: what it is worth, and what is said of it, are the mark's.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from coursework.course.answer_key import Key
+from coursework.course.variant import Variant
+from coursework.kinds.choices import cases_of
+from coursework.language.numbers import plain, significant
+from coursework.marking.mark import Mark
+from coursework.marking.marking import mark
+from coursework.model import Part
+from coursework.sheets.sheet import Question
+
+NUMBER, CHOICE, CHOICES, COLLECTED = KINDS = ("number", "choice", "choices", "collected")
+_DIGITS = 4  #: of a wrong answer in the sentence about it
+_SAME = 1e-9  #: of a value: what two ways to compute it may differ by
+_TURNS = (0, 1, -1)  #: whole turns more or fewer that an angle is written with
+
+
+@dataclass(frozen=True)
+class Interval:
+    """Numbers that are taken for one answer, in the part's unit; the ends belong to it."""
+
+    low: float
+    high: float
+    value: float  #: what the answer is, between them
+    share: float = 1.0  #: of the points
+    says: str = ""  #: Markdown; nothing of a right answer
+    verdict: str = "correct"
+    turns: int = 0  #: whole turns from the value that the solution gives
+
+    @property
+    def is_right(self) -> bool:
+        return self.verdict == "correct"
+
+
+@dataclass(frozen=True)
+class Option:
+    """A case that is offered."""
+
+    case: str
+    letter: str  #: as printed before it; empty of a sheet that was issued without
+    label: str  #: Markdown
+    share: float  #: of the points; of several that may be chosen, what this one adds or takes
+    says: str = ""  #: Markdown
+
+
+@dataclass(frozen=True)
+class Posed:
+    """A question as a platform poses it. What is ``collected`` is kept as it was typed, and judged by nobody there."""
+
+    question: Question
+    kind: str  #: number, choice, choices, collected
+    intervals: tuple[
+        Interval, ...
+    ] = ()  #: the right ones first, then what errors give: the first that holds an answer counts
+    options: tuple[Option, ...] = ()  #: in the order printed
+    features: frozenset[str] = (
+        frozenset()
+    )  #: what our marking does with it, by the words of :mod:`~coursework.platforms.losses`
+
+    @property
+    def points(self) -> float:
+        return self.question.points
+
+
+def posed(variant: Variant, question: Question, part: Part) -> Posed:
+    """A question of a variant's sheet, for a platform."""
+    key = variant.key
+    features = frozenset(_features(variant, key, part))
+    if "collected" in features:
+        return Posed(question, COLLECTED, features=features)
+    if part.choices:
+        return Posed(
+            question,
+            CHOICES if question.box == "several" else CHOICE,
+            options=tuple(_options(variant, key, question, part)),
+            features=features,
+        )
+    return Posed(question, NUMBER, tuple(_intervals(variant, key, part)), features=features)
+
+
+# ------------------------------------------------------------------------ features
+
+
+def _features(variant: Variant, key: Key, part: Part) -> Iterator[str]:
+    """What our marking does with a part that a platform may not do."""
+    if why := _why_collected(variant, key, part):
+        yield from ("collected", why)
+    elif part.sort.is_scalar:
+        yield "unreadable"
+        if not part.is_exact:
+            yield "comma"
+        if part.unit != "1":
+            yield from ("unit_written", "unit_refused")
+        if part.sort.turn:
+            yield "turns"
+    if part.sort.share_stands or part.sort.has_rule:
+        yield "partial"
+    if not part.sort.is_open:
+        yield from _from_errors(variant, key, part)
+
+
+def _why_collected(variant: Variant, key: Key, part: Part) -> str:
+    """Why no platform can judge a part by what it knows; nothing where it can."""
+    if part.sort.is_open:
+        return "open"
+    if part.judge:
+        return "judged_together"
+    if any(part.id in group for group in variant.exercise.spec.either_order):
+        return "either_order"
+    if part.choices:
+        several_of_none = part.sort.box == "several" and not cases_of(key.reference[part.quantity])
+        return "none_right" if several_of_none else ""
+    if not part.sort.is_scalar:
+        return "form"
+    if part.asks_unit:
+        return "unit_asked"
+    return "" if math.isfinite(key.reference[part.quantity]) else "form"
+
+
+def _from_errors(variant: Variant, key: Key, part: Part) -> Iterator[str]:
+    before = variant.parts[: variant.parts.index(part)]
+    above = (p.quantity for p in before if p.sort.is_followed)
+    if part.sort.follows and any(part.quantity in key.solution.depending_on(q) for q in above):
+        yield "follow_through"
+    if any(True for _ in key.wrong_ways(part.quantity)):
+        yield "mistakes"
+    if part.sort.is_scalar and not part.judge:
+        yield "usual_errors"
+
+
+# ------------------------------------------------------------------------- numbers
+
+
+def _intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interval]:
+    reference, width = float(key.reference[part.quantity]), key.half_width(part)
+    yield from _turned(Interval(reference - width, reference + width, reference), part)
+    seen: list[Interval] = []
+    for value, half in _wrong_values(key, part):
+        found = _wrong_interval(variant, part, value, half)
+        if found is not None and not any(_same(found, other) for other in seen):
+            seen.append(found)
+            yield from _turned(found, part)
+
+
+def _turned(interval: Interval, part: Part) -> Iterator[Interval]:
+    """The same, and for an angle whole turns more and fewer."""
+    for turns in _TURNS if part.sort.turn else (0,):
+        by = turns * part.sort.turn
+        yield replace(
+            interval,
+            low=interval.low + by,
+            high=interval.high + by,
+            value=interval.value + by,
+            turns=turns,
+        )
+
+
+def _wrong_values(key: Key, part: Part) -> Iterator[tuple[float, float]]:
+    """The values that named mistakes give, then those of slips, each with its half-width."""
+    width = key.envelope.get(part.quantity, 0.0)
+    for _, value in key.wrong_ways(part.quantity):
+        if isinstance(value, (int, float)) and math.isfinite(value):
+            yield float(value), 0.0 if part.is_exact else max(part.half_width(value), width)
+    reference = float(key.reference[part.quantity])
+    for slip in key.slips(part):
+        yield slip.made(reference), abs(slip.made(1.0)) * key.half_width(part)
+    for value in key.other_cases(part):
+        if isinstance(value, (int, float)) and math.isfinite(value):
+            yield float(value), 0.0 if part.is_exact else max(part.half_width(value), width)
+
+
+def _wrong_interval(variant: Variant, part: Part, value: float, half: float) -> Interval | None:
+    """What is taken for a wrong value; None where our marking does not take it for one that it knows."""
+    text = significant(value, _DIGITS) if not part.is_exact else plain(value)
+    made = marked_alone(variant, part, text)
+    if made.verdict == "correct" or not made.verdict.startswith(("mistake:", "slip:")):
+        return None
+    return Interval(value - half, value + half, value, made.points / made.out_of, made.says, made.verdict)
+
+
+def _same(one: Interval, other: Interval) -> bool:
+    """Whether one is told already: it adds nothing where another holds all of it, but for last bits."""
+    slack = _SAME * max(abs(one.low), abs(one.high))
+    return other.low - slack <= one.low and one.high <= other.high + slack
+
+
+def marked_alone(variant: Variant, part: Part, answer: Any) -> Mark:
+    """The mark of an answer on a sheet that is blank but for it."""
+    return mark(variant, {part.id: answer})[part.id]
+
+
+# ------------------------------------------------------------------------- choices
+
+
+def _options(variant: Variant, key: Key, question: Question, part: Part) -> Iterator[Option]:
+    letters = variant.letters(part)
+    right = cases_of(key.reference[part.quantity]) if question.box == "several" else frozenset()
+    for case, label in question.choices:
+        letter = letters.get(case, "")
+        if right:
+            yield Option(case, letter, label, (1 if case in right else -1) / len(right))
+            continue
+        made = marked_alone(variant, part, case)
+        says = "" if made.verdict == "correct" else made.says
+        yield Option(case, letter, label, made.points / made.out_of, says)
