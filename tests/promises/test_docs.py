@@ -21,10 +21,10 @@ from coursework.rendering.renderer import renderer_of
 ROOT = Path(__file__).resolve().parents[2]
 DOCS = ROOT / "docs"
 # Beside an installed wheel there is no README.
-PAGES = [*sorted(DOCS.glob("*.md")), *(p for p in [ROOT / "README.md"] if p.exists())]
+PAGES = [*sorted(DOCS.rglob("*.md")), *(p for p in [ROOT / "README.md"] if p.exists())]
 COURSE = coursework.open_course()
 
-every_page = pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+every_page = pytest.mark.parametrize("page", PAGES, ids=lambda p: p.relative_to(ROOT).as_posix())
 every_exercise = pytest.mark.parametrize("name", COURSE.names)
 
 FENCE = re.compile(r"^(?P<ticks>`{3,})(\S*)\n(.*?)^(?P=ticks)$", re.MULTILINE | re.DOTALL)
@@ -95,16 +95,27 @@ def test_every_internal_link_leads_somewhere(page):
             assert anchor in anchors(there), target
 
 
-def test_every_page_is_in_the_table_of_contents():
-    index = (DOCS / "index.md").read_text("utf-8")
-    listed = re.search(r"```\{toctree\}\n:hidden:\n\n(.*?)```", index, re.DOTALL)[1].split()
-    assert {p.stem for p in DOCS.glob("*.md")} - {"index"} | {"gallery/index"} == set(listed)
+def listed(index: Path) -> set[str]:
+    """The pages of the hidden table of contents of a page."""
+    found = re.search(r"```\{toctree\}\n:hidden:\n\n(.*?)```", index.read_text("utf-8"), re.DOTALL)
+    return set(found[1].split())
+
+
+@pytest.mark.parametrize("folder", sorted({p.parent for p in DOCS.rglob("*.md")}), ids=lambda p: p.name)
+def test_every_page_is_in_the_table_of_contents(folder):
+    below = {f"{p.parent.name}/index" for p in folder.glob("*/index.md")}
+    made = {"gallery/index"} if folder == DOCS else set()
+    assert {p.stem for p in folder.glob("*.md")} - {"index"} | below | made == listed(folder / "index.md")
 
 
 def test_the_site_names_no_other_place():
-    sources = [*DOCS.glob("*.md"), *DOCS.glob("*.py"), *DOCS.glob("_static/*")]
+    """But hosts that stand for any."""
+    sources = [*DOCS.rglob("*.md"), *DOCS.glob("*.py"), *DOCS.glob("_static/*")]
     for source in sources:
-        assert not re.search(r"https?://", source.read_text("utf-8")), source.name
+        found = re.findall(r"https?://([\w.-]+)", source.read_text("utf-8"))
+        assert all(
+            re.search(r"(^|\.)example\.(org|com)$|^(localhost|127\.0\.0\.1)$", host) for host in found
+        ), source.name
 
 
 # --------------------------------------------------------------------- commands
@@ -120,7 +131,7 @@ def test_every_command_shown_exists_with_its_options(page):
 
 
 def test_pages_do_show_commands():
-    found = {read_command(a)[0] for page in DOCS.glob("*.md") for a in commands(page)}
+    found = {read_command(a)[0] for page in DOCS.rglob("*.md") for a in commands(page)}
     assert {"list", "show", "build", "grade", "report", "check", "new", "accuracy", "lesson"} <= found
 
 
