@@ -3,30 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from coursework.errors import BadInput, counted
 from coursework.language.words import languages
+from coursework.making.identity import EMAIL, FIRST_NAME, NUMBER, SURNAME, WHOLE, plain, told_apart
+from coursework.making.platform_rosters import first_name_first, without_marks
 from coursework.making.students import folded
 from coursework.system.tables import decode, delimiter_of, record
 
-_WHOLE = (
-    "student", "étudiant", "etudiant", "élève", "eleve", "full name", "nom complet", "nom et prénom", "nom prénom",
-)  # fmt: skip
-_SURNAME = (
-    "nom", "name", "surname", "last name", "lastname", "family name", "nom de famille", "nom usuel",
-)  # fmt: skip
-_FIRST_NAME = (
-    "prénom", "prenom", "prénoms", "prenoms", "first name", "firstname", "given name", "forename",
-)  # fmt: skip
 _LANG = ("lang", "language", "langue")
-_NUMBER = (
-    "number", "student number", "student id", "id", "id number", "numéro", "numero", "numéro d'étudiant", "n°", "no",
-    "matricule", "ine",
-)  # fmt: skip
-_EMAIL = ("email", "e-mail", "mail", "email address", "courriel", "adresse de courriel", "adresse e-mail")
 
 
 @dataclass(frozen=True)
@@ -40,15 +29,17 @@ class Student:
     @property
     def who(self) -> str:
         """What draws hang on: the number or e-mail where the roster has one, else the name."""
-        plain = {_plain(title): value for title, value in self.columns.items() if value}
-        own = next((plain[title] for title in (*_NUMBER, *_EMAIL) if title in plain), "")
+        found = {plain(title): value for title, value in self.columns.items() if value}
+        own = next((found[title] for title in (*NUMBER, *EMAIL) if title in found), "")
         return own.strip().casefold() or folded(self.name)
 
 
 def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> list[Student]:
-    """The students of a CSV with a column ``student``, or with surname and first name, and, if wanted, ``lang``.
+    """The students of a CSV with a column ``student``, or with surname and first name, and, if wanted, ``lang``; or of what
+    Moodle and Canvas export, as it comes. Two people of one name are told apart by their numbers or e-mails.
 
-    ``tell`` is called with what should be known and is no error: a column that is not used, an odd encoding.
+    ``tell`` is called with what should be known and is no error: a column that is not used, a line that is nobody's, an odd
+    encoding.
 
     Raises
     ------
@@ -56,19 +47,21 @@ def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> 
         The file cannot be read, has a row without a name or with too many cells, names no student, or one twice.
     """
     header, *rows = _rows(path, tell) or [(1, [])]
-    titles = [_plain(cell) for cell in header[1]]
+    titles = [plain(cell) for cell in header[1]]
     named = _name_columns(titles)
     if not named:
         found = ", ".join(cell.strip() for cell in header[1] if cell.strip()) or "nothing"
         raise BadInput(f"the roster {path} needs a column named student; found {found}")
     lang_column = next((titles.index(c) for c in _LANG if c in titles), None)
+    rows, unused = without_marks(header[1], rows)
+    for note in unused.notes:
+        tell(f"the roster {path}: {note}")
     others = [
         column
         for column, title in enumerate(header[1])
-        if column not in named and column != lang_column and title.strip()
+        if column not in (*named, *unused.columns) and column != lang_column and title.strip()
     ]
-    students: list[Student] = []
-    seen: dict[str, int] = {}
+    lines = []
     for number, cells in rows:
         place = f"the roster {path}, line {number}"
         if any(cell.strip() for cell in cells[len(titles) :]):
@@ -78,20 +71,15 @@ def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> 
             )
         cells += [""] * (len(titles) - len(cells))
         name = " ".join(" ".join(cells[column] for column in named).split())
+        name = first_name_first(name) if unused.turned else name
         lang = cells[lang_column].strip().lower() if lang_column is not None else ""
         if not name:
             raise BadInput(f"{place}: no name; write it, or take the line away")
         if lang and lang not in languages():
             raise BadInput(f"{place}: no language {lang!r}; there is {', '.join(languages())}")
-        if folded(name) in seen:
-            raise BadInput(
-                f"{place}: {name} stands on line {seen[folded(name)]} already; "
-                "tell them apart, by a number for instance"
-            )
-        seen[folded(name)] = number
         own = {header[1][c].strip(): cells[c].strip() for c in others}
-        students.append(Student(name, lang, own))
-    if not students:
+        lines.append((number, Student(name, lang, own)))
+    if not lines:
         raise BadInput(f"the roster {path} names no student")
     untitled = [
         column
@@ -102,20 +90,34 @@ def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> 
         tell(
             f"the roster {path} has a column without a title, which is not used; give it one to carry it through"
         )
+    return _apart(path, lines)
+
+
+def _apart(path: Path, lines: Sequence[tuple[int, Student]]) -> list[Student]:
+    """The students, whose names are all different: those of one name have their number or e-mail behind it."""
+    often = Counter(folded(student.name) for _, student in lines)
+    students: list[Student] = []
+    seen: dict[str, int] = {}
+    for number, student in lines:
+        if often[folded(student.name)] > 1 and (by := told_apart(student.columns)):
+            student = replace(student, name=f"{student.name} ({by})")
+        if folded(student.name) in seen:
+            raise BadInput(
+                f"the roster {path}, line {number}: {student.name} stands on line {seen[folded(student.name)]} already; "
+                "tell them apart, by a number for instance"
+            )
+        seen[folded(student.name)] = number
+        students.append(student)
     return students
-
-
-def _plain(title: str) -> str:
-    return " ".join(re.split(r"[\s_]+", title.strip())).casefold()
 
 
 def _name_columns(titles: list[str]) -> list[int]:
     """The column of whole names; or those of surnames and first names, in the file's order."""
     for column, title in enumerate(titles):
-        if title in _WHOLE:
+        if title in WHOLE:
             return [column]
-    surname = next((titles.index(c) for c in _SURNAME if c in titles), None)
-    first_name = next((titles.index(c) for c in _FIRST_NAME if c in titles), None)
+    surname = next((titles.index(c) for c in SURNAME if c in titles), None)
+    first_name = next((titles.index(c) for c in FIRST_NAME if c in titles), None)
     if surname is None:
         return []
     return sorted({surname, surname if first_name is None else first_name})

@@ -1,9 +1,11 @@
 """Rosters as they come: nothing in them is dropped without a word."""
 
 import pytest
+from collected_pools import RECORDED
 
 from coursework.cli import run
 from coursework.cli.options import DONE
+from coursework.errors import BadInput
 from coursework.making.roster import Student, read_roster
 
 
@@ -70,3 +72,88 @@ def test_a_language_that_the_roster_overrides_is_told(small_course, tmp_path, ca
     )
     made = {p.name for p in (tmp_path / "two" / "handouts").rglob("*.html")}
     assert made == {"ann.en.html", "bo.fr.html", "bo.en.html"}
+
+
+# ------------------------------------------------------------------------ as platforms export them
+
+
+def recorded(name):
+    notes = []
+    return read_roster(RECORDED / name, notes.append), notes
+
+
+def test_moodles_list_of_participants_is_a_roster():
+    students, notes = recorded("moodle_participants.csv")
+    assert [s.name for s in students] == ["Ann Doe", "Émile D’Été", "Bob Ray"]
+    assert [s.who for s in students] == ["ann@example.org", "emile@example.org", "bob@example.org"]
+    assert notes == []
+
+
+@pytest.mark.parametrize(
+    ("name", "mail"),
+    [("moodle_gradebook.csv", "Email address"), ("moodle_gradebook_fr.csv", "Adresse de courriel")],
+)
+def test_moodles_gradebook_is_a_roster_without_its_marks(name, mail):
+    students, (note,) = recorded(name)
+    assert [s.name for s in students] == [
+        "Ann Doe (wb-1)",
+        "Ann Doe (wb-2)",
+        "Émile D’Été",
+        "Bob Ray",
+        "Cy Wu",
+    ]
+    assert students[1].columns == {
+        "ID number": "wb-2",
+        "Institution": "",
+        "Department": "",
+        mail: "wb.ann2@example.org",
+    }
+    assert "4 columns of marks not carried: Week 3, marked (Real), Quiz: Week 3 (Real), …" in note
+
+
+def test_canvass_gradebook_is_a_roster_without_maxima_and_without_its_invented_student():
+    students, notes = recorded("canvas_gradebook.csv")
+    assert [s.name for s in students] == ["Ann Doe (4711)", "Ann Doe (4712)", "Émile D’Été", "Bob Ray"]
+    assert students[2].columns == {
+        "ID": "4713",
+        "SIS User ID": "s-3",
+        "SIS Login ID": "emile@example.org",
+        "Section": "Mechanisms A",
+    }
+    assert "2 lines of no student left out: Points Possible, Student, Test" in notes[0]
+    assert "3 columns of marks not carried" in notes[1]
+
+
+def test_blackboards_and_sakais_gradebooks_are_rosters():
+    assert [s.name for s in recorded("blackboard_gradebook.txt")[0]] == [
+        "Doe Ann (s-1)",
+        "Doe Ann (s-2)",
+        "D’Été Émile",
+    ]
+    students, _ = recorded("sakai_gradebook.csv")
+    assert [(s.name, s.columns) for s in students] == [
+        ("Ann Doe", {"Student ID": "adoe"}),
+        ("Émile D’Été", {"Student ID": "edete"}),
+    ]
+
+
+def test_an_average_of_moodles_is_no_student_and_a_surname_alone_is_one(tmp_path):
+    header = "Nom de famille,Prénom,Adresse de courriel\n"
+    students, notes = read(tmp_path, header + "Doe,Ann,a@b.c\nMoyenne globale,,\nPelé,,\n")
+    assert [s.name for s in students] == ["Doe Ann", "Pelé"]
+    assert "1 line of no student left out: Moyenne globale" in notes[0]
+
+
+def test_two_of_one_name_are_told_apart_by_what_identifies_them_or_refused(tmp_path):
+    students, _ = read(tmp_path, "student,number\nAnn Doe,7\nann  doe,8\nBo,9\n")
+    assert [(s.name, s.who) for s in students] == [("Ann Doe (7)", "7"), ("ann doe (8)", "8"), ("Bo", "9")]
+    with pytest.raises(BadInput, match="stands on line 2 already; tell them apart, by a number"):
+        read(tmp_path, "student,group\nAnn Doe,A\nAnn Doe,B\n")
+    with pytest.raises(BadInput, match=r"line 3: Ann Doe \(7\) stands on line 2 already"):
+        read(tmp_path, "student,number\nAnn Doe,7\nAnn Doe,7\n")
+
+
+def test_a_list_of_ones_own_keeps_every_column(tmp_path):
+    students, notes = read(tmp_path, "student,id,section,email\nAnn,1,A,a@b.c\n")
+    assert students[0].columns == {"id": "1", "section": "A", "email": "a@b.c"}
+    assert notes == []

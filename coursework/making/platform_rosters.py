@@ -1,0 +1,116 @@
+"""Lists of people as platforms export them: which lines are nobody's, and which columns are marks."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from coursework.errors import counted
+from coursework.making.identity import EMAIL, FIRST_NAME, is_called, plain
+
+RosterLine = tuple[int, list[str]]  #: a line's number and its cells
+
+
+class Unused(NamedTuple):
+    """What of a platform's list is no student."""
+
+    columns: frozenset[int] = frozenset()
+    notes: tuple[str, ...] = ()
+    turned: bool = False  #: names are written surname first, ``Doe, Ann``
+
+
+def without_marks(header: Sequence[str], rows: Sequence[RosterLine]) -> tuple[list[RosterLine], Unused]:
+    """The lines of students of a platform's list, and what else it holds; all lines of any other list."""
+    titles = [plain(title) for title in header]
+    for is_this, marks in _LISTS:
+        if is_this(titles):
+            kept = [line for line in rows if not _is_nobody(header, line[1])]
+            gone = [" ".join(line[1][0].split()) for line in rows if _is_nobody(header, line[1])]
+            columns = frozenset(marks(header, rows))
+            notes = []
+            if gone:
+                named = ", ".join(name or "(no name)" for name in gone[:3])
+                notes.append(
+                    f"{counted(len(gone), 'line')} of no student left out: {named}{', …' if len(gone) > 3 else ''}"
+                )
+            if columns:
+                named = ", ".join(header[c].strip() for c in sorted(columns)[:2])
+                notes.append(
+                    f"{counted(len(columns), 'column')} of marks not carried: {named}{', …' if len(columns) > 2 else ''}"
+                )
+            return kept, Unused(columns, tuple(notes), is_this in (_is_canvas, _is_sakai))
+    return list(rows), Unused()
+
+
+def first_name_first(name: str) -> str:
+    """``Doe, Ann`` as it is read."""
+    surname, comma, first = name.partition(",")
+    return f"{first.strip()} {surname.strip()}" if comma and first.strip() else name
+
+
+def _is_canvas(titles: Sequence[str]) -> bool:
+    return titles[:1] == ["student"] and {"sis login id", "section"} <= {*titles}
+
+
+def _is_moodle(titles: Sequence[str]) -> bool:
+    """Of participants, of a gradebook, of a report of a quiz: first name and e-mail are apart."""
+    return any(t in FIRST_NAME for t in titles) and any(t in EMAIL for t in titles)
+
+
+def _is_blackboard(titles: Sequence[str]) -> bool:
+    return "username" in titles and "last name" in titles and any("|" in t for t in titles)
+
+
+def _is_sakai(titles: Sequence[str]) -> bool:
+    return titles[:1] == ["student id"] and titles[1:2] in (["student name"], ["name"])
+
+
+_POINTS = ("points possible", "manual posting", "muted")
+_AVERAGE = ("average", "moyenne", "durchschnitt", "promedio", "gemiddelde")
+TEST_STUDENT = ("student, test", "test student")
+
+
+def _is_nobody(header: Sequence[str], cells: Sequence[str]) -> bool:
+    """A line of maxima, an average, the student that Canvas invents."""
+    filled = [cell.strip().casefold() for cell in cells if cell.strip()]
+    if not filled or filled[0] in _POINTS or filled[0] in TEST_STUDENT:
+        return True
+    mail = next((k for k, title in enumerate(header) if is_called(title, EMAIL)), None)
+    alone = mail is not None and not "".join(cells[mail : mail + 1]).strip()
+    if alone and any(word in filled[0] for word in _AVERAGE):
+        return True
+    return not cells[0].strip() and filled[0].startswith("manual posting")
+
+
+def _canvas_marks(header: Sequence[str], rows: Sequence[RosterLine]) -> range:
+    section = [plain(title) for title in header].index("section")
+    return range(section + 1, len(header))
+
+
+def _bracketed(header: Sequence[str], rows: Sequence[RosterLine]) -> list[int]:
+    return [k for k, title in enumerate(header) if "|" in title]
+
+
+_SHOWN = re.compile(r".*\S\s*\((?P<how>[^()]+)\)\s*")
+
+
+def _moodle_marks(header: Sequence[str], rows: Sequence[RosterLine]) -> list[int]:
+    """The columns of a gradebook, ``Quiz: Week 3 (Real)``, the last of which is when it was downloaded."""
+    last = len(header) - 1
+    times = [cells[last].strip() for _, cells in rows if len(cells) > last]
+    if not times or not all(re.fullmatch("[0-9]{9,11}", time) for time in times):
+        return []
+    return [k for k, title in enumerate(header) if _SHOWN.fullmatch(title)] + [last]
+
+
+def _sakai_marks(header: Sequence[str], rows: Sequence[RosterLine]) -> range:
+    return range(2, len(header))
+
+
+_LISTS = (
+    (_is_canvas, _canvas_marks),
+    (_is_blackboard, _bracketed),
+    (_is_sakai, _sakai_marks),
+    (_is_moodle, _moodle_marks),
+)
