@@ -92,7 +92,8 @@ def grade(
 ) -> int:
     """Mark CSV, JSON, Parquet and notebooks of answers, files or folders of them.
 
-    Marked again, it says what changed and for whom.
+    What platforms export is read as it comes: the Responses report of Moodle's quiz, Canvas's Student Analysis, results of QTI,
+    the folders of nbgrader, Moodle and Canvas. Marked again, it says what changed and for whom.
     """
     if issued.is_dir():
         inside = issued / "issued.json"
@@ -118,6 +119,8 @@ def grade(
         decimal=decimal,
         form=form,
     )
+    for line in book.seen:
+        click.echo(line)
     told = f"{counted(book.rows_in, 'row')}: {book.marked} marked, {len(book.rejected)} rejected"
     told += f", {book.blanks} blank beside another" if book.blanks else ""
     click.echo(f"{told}; see {out}")

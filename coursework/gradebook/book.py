@@ -17,6 +17,7 @@ from typing import Any
 from coursework.gradebook.columns import (
     MARK,
     SITTING,
+    SUBMITTED,
     carried_columns,
     exercise_columns,
     identity,
@@ -52,6 +53,7 @@ def marks_rows(graded: Graded) -> Iterator[dict[str, Any]]:
             "out_of": f"{line.out_of:g}",
             "feedback": line.feedback,
             SITTING: graded.sitting,
+            SUBMITTED: graded.submitted,
         }
 
 
@@ -98,6 +100,12 @@ class Gradebook:
     )  #: parts by sheet; see ``unread``
     waiting: int = 0  #: answers that wait to be marked by a person
     changes: int = 0  #: marks that differ from those that were there before
+    apart: dict[str, set[str]] = field(
+        default_factory=dict
+    )  #: parts that a platform asked apart, by exercise
+    asked: dict[tuple[Sitting, str], set[str]] = field(default_factory=dict)  #: the same of somebody
+    whole: set[str] = field(default_factory=set)  #: exercises of which a variant came whole
+    seen: tuple[str, ...] = ()  #: what platforms wrote of what was read
 
     @property
     def marked(self) -> int:
@@ -111,6 +119,11 @@ class Gradebook:
         self.handed_in.setdefault(sitting, set()).add(graded.exercise)
         for line in graded.lines.values():
             student.add(line)
+        if graded.apart:
+            self.apart.setdefault(graded.exercise, set()).update(graded.lines)
+            self.asked.setdefault((sitting, graded.exercise), set()).update(graded.lines)
+        else:
+            self.whole.add(graded.exercise)
         own = student.by_exercise
         own[graded.exercise] = own.get(graded.exercise, 0.0) + graded.points
         if graded.student in self._rejected_of:
@@ -155,7 +168,7 @@ class Gradebook:
         own = issued.seeds_of(student, exercise)
         return (
             seed
-            if seed in own or not (own or issued.has_roster)
+            if seed in own or issued.is_pool or not (own or issued.has_roster)
             else issued.seeds.get((student, exercise), -1)
         )
 
@@ -211,7 +224,7 @@ def counted_one(issued: Issued, found: Sequence[Result]) -> Result:
 
 def _result(book: Gradebook, place: Sitting, own: Mapping[tuple[str, int], set[str]]) -> Result:
     total = book.students.get(place, Total())
-    lost = [part for key in _owed(book, place, own) for part in book.issued.records[key]["parts"]]
+    lost = [part for key in _owed(book, place, own) for part in _lost(book, place, key)]
     waiting = sum(map(len, own.values()))
     verdicts = Counter(total.verdicts)
     verdicts["unreadable"] += waiting
@@ -220,15 +233,31 @@ def _result(book: Gradebook, place: Sitting, own: Mapping[tuple[str, int], set[s
     return Result(place[1], total.points, out_of, total.by_exercise, verdicts)
 
 
+def _lost(book: Gradebook, place: Sitting, key: tuple[str, int]) -> list[Mapping[str, Any]]:
+    """The parts of a variant of which nothing came; where a platform asks part by part, those that it asked of others."""
+    parts = book.issued.records[key]["parts"]
+    apart = book.apart.get(key[0])
+    if apart is None or key[0] in book.whole:
+        return list(parts)
+    return [p for p in parts if p["id"] in apart - book.asked.get((place, key[0]), set())]
+
+
 def _owed(book: Gradebook, place: Sitting, own: Iterable[tuple[str, int]]) -> set[tuple[str, int]]:
     """The variants of which nothing could be marked."""
     issued, done = book.issued, book.handed_in.get(place, set())
     owed = {(e, seed) for e, seed in (*issued.issued_to(*place).items(), *own) if e not in done}
-    if issued.assignment is not None and not issued.has_roster:
-        # Nobody's paper asks all the exercises too; which variant was theirs bears on no points.
-        met = {e for e, _ in owed} | done
-        owed |= {next(k for k in issued.records if k[0] == e) for e in issued.exercises if e not in met}
-    return owed
+    met = {e for e, _ in owed} | (done - (book.apart.keys() - book.whole))
+    # Nobody's paper asks all the exercises too; which variant was theirs bears on no points.
+    return owed | {next(k for k in issued.records if k[0] == e) for e in _asked_of_all(book) if e not in met}
+
+
+def _asked_of_all(book: Gradebook) -> tuple[str, ...]:
+    """The exercises of which everybody has some variant, whoever's it is: those of an assignment, or of a pool whatever
+    came back from the platform."""
+    issued = book.issued
+    if issued.assignment is not None:
+        return () if issued.has_roster and not issued.is_pool else issued.exercises
+    return tuple(book.exercises) if issued.is_pool else ()
 
 
 def _number(points: float) -> float:

@@ -85,14 +85,15 @@ class Before:
     def gone(self) -> Iterator[dict[str, Any]]:
         """Marks that are no more."""
         for place, before in self._marks.items():
-            row = dict(zip(_PLACE, place.split("\0"), strict=True))
+            row = dict(zip(_PLACE, place.split("\0"), strict=False))
             yield _change({**row, "student": self._names[row["student"]], "answer": ""}, before, ("", ""))
 
 
 def _place(row: Mapping[str, Any]) -> str:
     """Which answer a row of marks is of; one text, of which a large class has many."""
     student, *rest = (str(row.get(c, "")) for c in _PLACE)
-    return "\0".join((folded(student), *rest))
+    sitting = str(row.get("sitting", ""))
+    return "\0".join((folded(student), *rest, *([sitting] if sitting not in ("", "1") else [])))
 
 
 def _change(row: Mapping[str, Any], before: tuple[str, str], now: tuple[str, str]) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from coursework.course.marking_rules import Rules
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, BadInput, CourseworkError, NoSolution
 from coursework.gradebook.graded import Graded
-from coursework.gradebook.placing import Sheets, as_texts
+from coursework.gradebook.placing import SheetPlace, Sheets, as_texts
 from coursework.gradebook.rows import Rejected
 from coursework.language.words import words
 from coursework.making.issued import Issued
@@ -75,11 +75,16 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
     places = list(sheets.sheets)
     chunks = [places[i : i + CHUNK] for i in range(0, len(places), CHUNK)]
 
-    def record(place: tuple[str, str, int]) -> Mapping[str, Any]:
-        issued_as = issued.record_of(*place)
+    def record(place: SheetPlace) -> Mapping[str, Any]:
+        issued_as = issued.record_of(*place[:3])
+        if place in sheets.apart:
+            issued_as = {
+                **issued_as,
+                "parts": [p for p in issued_as["parts"] if p["id"] in sheets.sheets[place]],
+            }
         return {**issued_as, "lang": sheets.langs[place]} if place in sheets.langs else issued_as
 
-    def jobs(chunk: Sequence[tuple[str, str, int]]) -> list[_Job]:
+    def jobs(chunk: Sequence[SheetPlace]) -> list[_Job]:
         return [
             _Job(record(place), {p: row.answer for p, row in sheets.sheets[place].items()}) for place in chunk
         ]
@@ -95,8 +100,9 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
                 sheets.rejected += [Rejected(row.source, reason, as_texts(row)) for row in rows.values()]
             else:
                 lines = {line.part: line for line in map(Mark.received, result)}
-                sitting = issued.sitting_of(*place)
-                yield Graded(*place, lines, tuple(rows), record(place), sitting=sitting)
+                sitting = place[3] or issued.sitting_of(*place[:3])
+                graded = Graded(*place[:3], lines, tuple(rows), record(place), sitting=sitting)
+                yield graded._replace(submitted=sheets.submitted.get(place, ""), apart=place in sheets.apart)
     for (exercise, why), count in unmarked.items():
         what = "1 sheet" if count == 1 else f"{count} sheets"
         sheets.warnings.append(f"{what} of {exercise} cannot be marked, see the rejected rows: {why}")

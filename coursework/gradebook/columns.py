@@ -15,13 +15,16 @@ VERDICTS = (
 )  # fmt: skip
 SUMMARY_COLUMNS = ("student", "points", "out_of", "percent", *VERDICTS)
 SITTING = "sitting"  #: a column of the marks and of the summary where somebody has several
+SUBMITTED = "submitted"  #: a column of the marks where a platform tells it
 REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "reason")
 MARK = "mark"
 
 
-def marks_columns(issued: Issued) -> tuple[str, ...]:
-    """The columns of ``marks.csv``; the sitting is the last where there are several."""
-    return (*MARKS_COLUMNS, SITTING) if issued.has_sittings else MARKS_COLUMNS
+def marks_columns(issued: Issued, *, submitted: bool = False) -> tuple[str, ...]:
+    """The columns of ``marks.csv``; the sitting follows where there are several, and when it was handed in where that
+    is told."""
+    more = (SITTING, issued.has_sittings), (SUBMITTED, submitted)
+    return (*MARKS_COLUMNS, *(column for column, there in more if there))
 
 
 def summary_columns(issued: Issued) -> tuple[str, ...]:

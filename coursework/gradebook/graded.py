@@ -19,6 +19,8 @@ class Graded(NamedTuple):
     record: Mapping[str, Any]  #: what was issued, in the language of the sheet that came back
     unanswered: tuple[str, ...] = ()  #: parts accepted by hand that no row answers
     sitting: int = 1
+    submitted: str = ""  #: when, where a platform tells it
+    apart: bool = False  #: a platform asked these parts alone of this variant
 
     @property
     def points(self) -> float:

@@ -21,7 +21,8 @@ from coursework.gradebook.feedback_form import USUAL, Form, shows_solutions
 from coursework.gradebook.feedback_sheets import write_feedback
 from coursework.gradebook.graded import Graded
 from coursework.gradebook.placing import placed
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.platform_files import told_seen
+from coursework.gradebook.rows import Rejected, Row, Seen
 from coursework.gradebook.standing import Standing, differs
 from coursework.gradebook.submissions import find, read_file
 from coursework.gradebook.to_mark import TO_MARK, TO_MARK_COLUMNS, ToMark, sorted_rows
@@ -69,17 +70,18 @@ def grade_files(
     by_person = ToMark(out / "to_mark.csv")
     before = Before(out / "marks.csv")
 
-    def rows() -> Iterator[Row | Rejected]:
+    def rows() -> Iterator[Row | Rejected | Seen]:
         for found in find(submissions):
-            yield from [found] if isinstance(found, Rejected) else read_file(found)
+            yield from [found] if isinstance(found, (Rejected, Seen)) else read_file(found)
 
     sheets = placed(course, issued, rows())
     if not sheets.sheets:
         raise BadInput(_nothing(submissions, sheets.rejected))
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
+    book.seen = told_seen(sheets.seen)
     shown: list[Graded] = []
     with Tables(out, spreadsheet) as tables:
-        marks = tables.open("marks.csv", marks_columns(issued))
+        marks = tables.open("marks.csv", marks_columns(issued, submitted=bool(sheets.submitted)))
         summary = tables.open("summary.csv", summary_columns(issued))
         rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
         changes = tables.open("changes.csv", CHANGES_COLUMNS) if before.exists else None

@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -24,8 +25,18 @@ from coursework.gradebook.rows import (
 
 # --------------------------------------------------------------------- notebook
 
+_BY = "handed in by"  #: among what a notebook says of itself: who its folder says
 
-def read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
+
+def read_notebook(data: bytes, source: str, by: str = "") -> Iterator[Row | Rejected]:
+    """The rows of a notebook; ``by`` is who handed it in, as its folder says."""
+    for row in _read(data, source, by):
+        if by and isinstance(row, Rejected) and not row.row.get("student"):
+            row = replace(row, row={**row.row, "student": by})
+        yield row
+
+
+def _read(data: bytes, source: str, by: str) -> Iterator[Row | Rejected]:
     text, warning = decoded_text(data, source)
     try:
         notebook = load_json(text)
@@ -48,6 +59,7 @@ def read_notebook(data: bytes, source: str) -> Iterator[Row | Rejected]:
             )
             return
         notes.append(f"{source}: its metadata is gone; whose it is, and of which variant, is as it prints it")
+    about = {**about, _BY: by}
     if isinstance(about.get("sheets"), list):
         yield from _read_paper(about, cells, source, notes)
         return
@@ -133,7 +145,13 @@ def _read_paper(
     read = [(sheet, _answers_in(code)[0], code) for sheet, code in (*codes, *lost)]
     name, warning = _name_in_paper(about, [found for _, found, _ in read], source, "; ".join(notes))
     for (exercise, seed), found, code in read:
-        own = {"student": name, "exercise": exercise, "seed": seed, "lang": about.get("lang")}
+        own = {
+            "student": name,
+            "exercise": exercise,
+            "seed": seed,
+            "lang": about.get("lang"),
+            _BY: about[_BY],
+        }
         place = f"{source}, {exercise}" if exercise else source
         if isinstance(found, str):
             yield Rejected(place, found, _about(own, source) | {"answer": code[:200]})
@@ -194,6 +212,8 @@ def _with_name(
         return about, warning
     if written:
         return {**about, "student": written}, warning
+    if about[_BY]:
+        return {**about, "student": about[_BY]}, warning
     note = "a notebook holds no name; its file's name stands for it"
     return {**about, "student": Path(source).stem}, "; ".join(filter(None, (warning, note)))
 
@@ -201,7 +221,8 @@ def _with_name(
 def _about(about: dict[str, Any], source: str) -> dict[str, str]:
     """What a notebook says of itself; one that was nobody's is called as its file."""
     named = {c: name_in(about.get(c)) for c in ("student", "exercise", "seed")}
-    return {**named, "student": named["student"] or Path(source).stem, "part": "", "answer": ""}
+    name = named["student"] or about.get(_BY) or Path(source).stem
+    return {**named, "student": name, "part": "", "answer": ""}
 
 
 def _tags(cell: dict[str, Any]) -> list[Any]:

@@ -7,7 +7,27 @@ from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from coursework.making.identity import Ids
 from coursework.system.tables import decode
+
+
+class Collected(NamedTuple):
+    """What a platform tells of the sheet that an answer is of."""
+
+    ids: Ids = ()  #: of the student: e-mail, number
+    by: tuple[str, ...] = ()  #: who handed it in, as folders and files name them
+    sitting: int = 0  #: which attempt of the student; 0 unless told
+    submitted: str = ""  #: when, as the platform writes it
+    version: str = ""  #: of the exercise
+    apart: bool = False  #: the platform asks part by part, each of a variant of its own
+
+
+class Seen(NamedTuple):
+    """A file, or a tree of them, that a platform wrote."""
+
+    source: str
+    what: str
+    is_tree: bool = False  #: told once for each file
 
 
 class Row(NamedTuple):
@@ -16,11 +36,12 @@ class Row(NamedTuple):
     student: str
     exercise: str
     seed: str
-    part: str
+    part: str  #: empty where nothing came to any
     answer: Any  #: a text, a number, or None
     source: str  #: file and place, for reports
     warning: str = ""
     lang: str = ""  #: of the sheet that it was written on, where that is told
+    origin: Collected | None = None  #: where a platform collected it
 
 
 @dataclass(frozen=True)
@@ -101,7 +122,10 @@ def sheet_rows(
             yield Rejected(where, "an answer is a text or a number", row)
             continue
         lang = name_in(about.get("lang"))
-        yield Row(**names, part=part, answer=answer, source=where, warning=warning, lang=lang)
+        yield Row(names["student"], names["exercise"], names["seed"], part, answer, where, warning, lang)
+
+
+# , answer=answer, source=where, warning=warning, lang=lang)
 
 
 def as_answer(answer: Any) -> Any:

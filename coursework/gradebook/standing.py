@@ -9,17 +9,19 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from coursework.course.course import Course
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.changes import rows_of
-from coursework.gradebook.columns import MARKS_COLUMNS, REJECTED_COLUMNS, VERDICTS
+from coursework.gradebook.columns import MARKS_COLUMNS, REJECTED_COLUMNS, SITTING, VERDICTS
 from coursework.gradebook.graded import Graded
 from coursework.gradebook.placing import Sheets, placed
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import Collected, Rejected, Row
+from coursework.making.identity import identifies
 from coursework.making.issued import Issued
 from coursework.making.students import folded
 from coursework.marking.feedback import Told
@@ -50,8 +52,13 @@ class Standing:
 
     def __init__(self, course: Course, issued: Issued, path: Path) -> None:
         self.path = path
+        self._is_pool = issued.is_pool
         self._lines: dict[str, _Line] = {}
-        self.sheets: Sheets = placed(course, issued, self._rows())
+        rows: Iterable[Row] = self._rows()
+        if issued.is_pool:
+            rows = _collected(issued, list(rows))
+            _know(issued, path.with_name("summary.csv"))
+        self.sheets: Sheets = placed(course, issued, rows)
         self.refuse(self.sheets.rejected)
         if not self.sheets.sheets:
             raise BadInput(f"{path} holds no mark, so nothing is written; 'coursework grade' writes it")
@@ -67,7 +74,8 @@ class Standing:
         met: dict[tuple[str, ...], str] = {}
         for number, row in _table(self.path):
             place = f"{self.path}, line {number}"
-            named = folded(row["student"]), row["exercise"], row["seed"], row["part"]
+            sitting = row.get(SITTING, "")
+            named = folded(row["student"]), row["exercise"], row["seed"], row["part"], sitting
             if named in met:
                 raise BadInput(f"{place}: repeats {met[named]}; leave one mark an answer")
             met[named] = f"line {number}"
@@ -75,7 +83,9 @@ class Standing:
             self._lines[place] = _Line(
                 place, row["verdict"], row["points"], row["out_of"], row.get("feedback")
             )
-            yield Row(row["student"], row["exercise"], row["seed"], row["part"], row["answer"], place)
+            origin = Collected(sitting=int(sitting) if sitting.isdecimal() else 0)
+            names = row["student"], row["exercise"], row["seed"], row["part"]
+            yield Row(*names, row["answer"], place, origin=origin if self._is_pool else None)
 
     def of(self, graded: Graded) -> Graded:
         """The sheet with the marks of the file.
@@ -85,9 +95,37 @@ class Standing:
         BadInput
             Points that are no number from 0 to those of the part, or another number to have than was issued.
         """
-        rows = self.sheets.sheets[graded[:3]]
+        sheets, place = self.sheets.sheets, graded[:3]
+        rows = sheets[(*place, graded.sitting)] if (*place, graded.sitting) in sheets else sheets[(*place, 0)]
         own = {part: _stood(graded.lines[part], self._lines[row.source]) for part, row in rows.items()}
         return graded._replace(lines={**graded.lines, **own})
+
+
+def _collected(issued: Issued, rows: Sequence[Row]) -> list[Row]:
+    """The rows of a pool; a sheet of which fewer came than its variant asks is of a platform that asks part by part."""
+    came = Counter(_sheet_of(row) for row in rows)
+    asked = {(e, str(seed)): len(record["parts"]) for (e, seed), record in issued.records.items()}
+
+    def origin(row: Row) -> Collected | None:
+        is_apart = came[_sheet_of(row)] < asked.get((row.exercise, row.seed), 0)
+        return row.origin and row.origin._replace(apart=is_apart)
+
+    return [row._replace(origin=origin(row)) for row in rows]
+
+
+def _sheet_of(row: Row) -> tuple[Any, ...]:
+    return folded(row.student), row.exercise, row.seed, row.origin
+
+
+def _know(issued: Issued, summary: Path) -> None:
+    """Keep what identifies the students of a pool without a roster, which the summary of the platform's report tells."""
+    if not issued.has_roster and summary.exists():
+        with open_csv(summary) as file:
+            delimiter = delimiter_of(file.readline())
+            file.seek(0)
+            for row in csv.DictReader(file, delimiter=delimiter):
+                own = {title: row[title] for title in row if title and row[title] and identifies(title)}
+                issued.columns.setdefault(row.get("student") or "", own)
 
 
 def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:

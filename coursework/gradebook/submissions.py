@@ -1,4 +1,4 @@
-"""Reading what comes back: CSV, JSON and notebooks of answers. Answers are data: nothing is run.
+"""Reading what comes back: CSV, JSON and notebooks of answers, and what platforms export. Answers are data: nothing is run.
 
 Every row of every file comes out, as a :class:`Row` or as a :class:`Rejected` with its reason.
 """
@@ -7,16 +7,19 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
 from coursework.errors import BadInput, closest
 from coursework.gradebook.notebooks import read_notebook
+from coursework.gradebook.platform_files import fault_of, read_records, read_table, reader_of
+from coursework.gradebook.qti_results import read_results
 from coursework.gradebook.rows import (
     Rejected,
     Row,
+    Seen,
     as_answer,
     decoded_text,
     load_json,
@@ -24,11 +27,12 @@ from coursework.gradebook.rows import (
     sheet_rows,
     short_fault,
 )
+from coursework.gradebook.trees import BESIDE, HandedIn, handed_in, latest_first
 from coursework.making.issued import COLUMNS
 from coursework.system.extras import NotAtHand, library
 from coursework.system.tables import as_written, delimiter_of, record
 
-ENDINGS = (".csv", ".json", ".ipynb", ".parquet")
+ENDINGS = (".csv", ".json", ".ipynb", ".parquet", ".xml", ".tsv")
 MAX_BYTES = 1_000_000_000  #: of one file of answers
 
 
@@ -46,8 +50,10 @@ def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
             raise BadInput(f"no such file or folder: {path}{_beside(path)}")
     for path in paths:
         if path.is_dir():
-            files = sorted(p for p in path.rglob("*") if p.is_file() and not _is_hidden(p, path))
-            yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files)
+            files = latest_first(p for p in path.rglob("*") if p.is_file() and not _is_hidden(p, path))
+            yield from (
+                p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files if p.name not in BESIDE
+            )
             if not files:
                 yield Rejected(str(path), "the folder holds no file")
         elif path.suffix.lower() not in ENDINGS:
@@ -70,16 +76,33 @@ def _is_hidden(path: Path, below: Path) -> bool:
     return any(part.startswith(".") for part in path.relative_to(below).parts)
 
 
+_SPREADSHEETS = (".xlsx", ".xls", ".ods")
+
+
 def _odd_file(path: Path) -> Rejected:
+    if path.suffix.lower() in _SPREADSHEETS:
+        return Rejected(
+            str(path), "a spreadsheet is not read: download the table as CSV (comma separated values)"
+        )
     return Rejected(str(path), f"answers come as {', '.join(ENDINGS)}; found {path.suffix or 'no ending'}")
 
 
-def read_file(path: Path) -> Iterator[Row | Rejected]:
+def read_file(path: Path) -> Iterator[Row | Rejected | Seen]:
     """The rows of one file; a file that cannot be read is one rejected row."""
+    place = handed_in(path) if path.suffix.lower() == ".ipynb" else None
+    if place is None:
+        yield from _read(path, None)
+        return
+    yield place.seen
+    for row in _read(path, place):
+        yield row._replace(origin=place.origin) if isinstance(row, Row) else row
+
+
+def _read(path: Path, place: HandedIn | None) -> Iterator[Row | Rejected | Seen]:
     if path.suffix.lower() == ".parquet":
         yield from _read_parquet(path)
         return
-    reader = {".csv": _read_csv, ".json": _read_json, ".ipynb": read_notebook}[path.suffix.lower()]
+    reader = _READERS[path.suffix.lower()]
     try:
         size = path.stat().st_size
         if size > MAX_BYTES:
@@ -89,7 +112,7 @@ def read_file(path: Path) -> Iterator[Row | Rejected]:
     except OSError as fault:
         yield Rejected(str(path), f"cannot be read: {fault.strerror}")
         return
-    rows = reader(data, str(path))
+    rows = reader(data, str(path)) if place is None else read_notebook(data, str(path), place.name)
     del data  # a reader lets go of it, too
     yield from rows
 
@@ -97,7 +120,7 @@ def read_file(path: Path) -> Iterator[Row | Rejected]:
 # ------------------------------------------------------------------------- text
 
 
-def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
+def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
     if not data.strip():
         yield Rejected(source, "the file is empty")
         return
@@ -131,10 +154,13 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected]:
             continue
         header = [c.strip().casefold() for c in cells]
         missing = [c for c in COLUMNS if c not in header]
+        if missing and (table := reader_of(cells)):
+            yield from read_table(table, "\n".join(lines), delimiter, source, warning)
+            return
         if missing:
             found = ", ".join(c for c in header if c) or "nothing"
             wanted = f"the header must name {', '.join(COLUMNS)}; {', '.join(missing)} missing, found {found}"
-            yield Rejected(place, wanted)
+            yield Rejected(place, fault_of(cells) or wanted)
             return
         named = itemgetter(*(header.index(c) for c in COLUMNS))
 
@@ -219,12 +245,15 @@ def _with_commas(header: list[str], cells: list[str]) -> dict[str, str]:
 # ------------------------------------------------------------------------- JSON
 
 
-def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected]:
+def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
     text, warning = decoded_text(data, source)
     try:
         content = load_json(text)
     except (ValueError, RecursionError) as fault:
         yield Rejected(source, f"not JSON: {short_fault(fault)}")
+        return
+    if (rows := read_records(content, source, warning)) is not None:
+        yield from rows
         return
     sheets = content if isinstance(content, list) else [content]
     if not sheets:
@@ -235,3 +264,12 @@ def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected]:
             yield Rejected(place, 'an item is {"student", "exercise", "seed", "answers": {part: text}}')
             continue
         yield from sheet_rows(sheet, sheet["answers"], place, warning)
+
+
+_READERS: Mapping[str, Callable[[bytes, str], Iterator[Row | Rejected | Seen]]] = {
+    ".csv": _read_csv,
+    ".tsv": _read_csv,
+    ".json": _read_json,
+    ".ipynb": read_notebook,
+    ".xml": read_results,
+}

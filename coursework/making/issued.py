@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from coursework.errors import BadInput
+from coursework.making.identity import Ids, ids_of, run_together, same_id, words_of
 from coursework.making.students import folded
 
 if TYPE_CHECKING:
@@ -23,7 +24,8 @@ ISSUED_FORMAT = 1
 class Issued:
     """What was issued: records by exercise and seed, and to whom when there was a roster.
 
-    A record may be of several students, as versions are, and a student may have an exercise in several sittings.
+    A record may be of several students, as versions are, and a student may have an exercise in several sittings. Those of
+    a pool belong to nobody: a platform draws, and whoever is on the roster may have any.
     """
 
     def __init__(self, content: Mapping[str, Any], source: str):
@@ -31,8 +33,9 @@ class Issued:
         if not isinstance(records, list) or not records:
             raise BadInput(f"{source} is no list of issued records; 'coursework build' writes issued.json")
         self.has_roster = bool(content.get("roster"))
+        self.is_pool = bool(content.get("pool"))
         self.assignment = _stated(content.get("assignment"), source)
-        self.columns = _columns(content.get("students"), source)
+        self.columns: dict[str, Mapping[str, str]] = _columns(content.get("students"), source)
         self.records: dict[tuple[str, int], Mapping[str, Any]] = {}
         self.owners: dict[tuple[str, int], tuple[str, ...]] = {}
         self.versions: dict[
@@ -62,10 +65,12 @@ class Issued:
                     self._langs[student, *key] = str(record.get("lang"))
                 self._own(student, key, sitting)
         self.exercises = tuple(dict.fromkeys(exercise for exercise, _ in self.records))
-        self.students = tuple(dict.fromkeys(student for student, _ in self._sittings))
+        listed = self.columns if self.is_pool and self.has_roster else ()
+        self.students = tuple(dict.fromkeys((*(student for student, _ in self._sittings), *listed)))
         self.has_sittings = any(max(own) > 1 for own in self._sittings.values())
         self._named = frozenset(self.students)
         self._known = {folded(s): s for s in self.students}
+        self._people = _People(self.students, self.columns)
 
     def _own(self, student: str, key: tuple[str, int], sitting: int) -> None:
         exercise, seed = key
@@ -91,13 +96,35 @@ class Issued:
         except (json.JSONDecodeError, UnicodeDecodeError) as fault:
             raise BadInput(f"{path} is not JSON: {str(fault)[:100]}") from fault
 
-    def student(self, name: str) -> str | None:
-        """The student's name as issued, or without a roster as it came first; None for a stranger to the roster."""
+    def student(self, name: str, ids: Ids | None = None) -> str | None:
+        """The student's name as issued, or without a roster as it came first; None for a stranger to the roster.
+
+        ``ids`` are what a platform tells of them: these go before the name, whose words are then in any order.
+        """
+        if ids and (known := self._people.of_ids(ids)):
+            return known
         if name in self._named:
             return name
         if not self.has_roster:
-            return self._known.setdefault(folded(name), name)
-        return self._known.get(folded(name))
+            return self._met(name, ids) if ids else self._known.setdefault(folded(name), name)
+        return self._known.get(folded(name)) or (None if ids is None else self._people.called(name))
+
+    def account(self, names: Sequence[str]) -> str | None:
+        """The student of the roster whom a platform calls so, by a number, a login or a name; None for a stranger."""
+        told = (
+            self._people.of_ids([("", n)]) or self._known.get(folded(n)) or self._people.called(n)
+            for n in names
+        )
+        return next(filter(None, told), None) if self.has_roster else None
+
+    def _met(self, name: str, ids: Ids) -> str:
+        """Somebody whom no roster names; two of one name are told apart by what identifies them."""
+        found = self._known.setdefault(folded(name), name)
+        if self.columns.setdefault(found, dict(ids)) != dict(ids):
+            found = f"{name} ({ids[0][1]})"
+            self.columns[found] = dict(ids)
+        self._people.add(found, dict(ids))
+        return found
 
     def issued_to(self, student: str, sitting: int | None = None) -> dict[str, int]:
         """The seeds that a student of the roster was issued, by exercise: of a sitting, else the latest of each."""
@@ -121,6 +148,35 @@ class Issued:
         record = self.records[exercise, seed]
         lang = self._langs.get((student, exercise, seed))
         return record if lang is None else {**record, "lang": lang}
+
+
+class _People:
+    """Students by what platforms tell of them; what two of them have in common tells nobody."""
+
+    def __init__(self, students: Iterable[str], columns: Mapping[str, Mapping[str, str]]):
+        self._by_id: dict[str, str | None] = {}
+        self._by_words: dict[tuple[str, ...], str | None] = {}
+        self._together: dict[str, str | None] = {}
+        for student in students:
+            self.add(student, columns.get(student, {}))
+            _enter(self._by_words, words_of(student), student)
+            for name in run_together(student):
+                _enter(self._together, name, student)
+
+    def add(self, student: str, columns: Mapping[str, str]) -> None:
+        for one in ids_of(columns):
+            _enter(self._by_id, one, student)
+
+    def of_ids(self, ids: Ids) -> str | None:
+        return next(filter(None, (self._by_id.get(same_id(value)) for _, value in ids if value)), None)
+
+    def called(self, name: str) -> str | None:
+        """The student of a name whose words are in another order, or run together."""
+        return self._by_words.get(words_of(name)) or self._together.get(folded(name))
+
+
+def _enter(found: dict[Any, str | None], key: Any, student: str) -> None:
+    found[key] = student if found.get(key, student) == student else None
 
 
 def _stated(content: Any, source: str) -> Mapping[str, Any] | None:

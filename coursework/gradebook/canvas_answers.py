@@ -1,0 +1,89 @@
+"""Canvas's Student Analysis of a quiz: a line an attempt; a question's column is titled ``12345: its text``, its points beside it."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from coursework.errors import counted
+from coursework.gradebook.item_label import NO_LABEL, label_in
+from coursework.gradebook.rows import Collected, Rejected, Row, Seen
+from coursework.system.tables import as_written
+
+WHAT = "Canvas's Student Analysis"
+_QUESTION = re.compile(r"\s*[0-9]+\s*:\s")
+_IDS = ("sis_id", "id")
+
+
+class AnalysisColumns(NamedTuple):
+    name: int
+    ids: tuple[int, ...]
+    submitted: int | None
+    attempt: int | None
+    questions: tuple[int, ...]
+
+
+def columns_of(header: Sequence[str]) -> AnalysisColumns | None:
+    """The places of the columns; None where this is no Student Analysis."""
+    titles = [title.strip().casefold() for title in header]
+    questions = tuple(k for k, title in enumerate(header) if _QUESTION.match(title))
+    if not questions or not {"name", "id", "attempt"} <= set(titles):
+        return None
+    place = {title: k for k, title in reversed([*enumerate(titles)])}
+    ids = tuple(place[title] for title in _IDS if title in place)
+    return AnalysisColumns(place["name"], ids, place.get("submitted"), place.get("attempt"), questions)
+
+
+def is_another(header: Sequence[str]) -> str:
+    """What is wrong with Canvas's other report of a quiz; nothing where it is none."""
+    titles = {title.strip().casefold() for title in header}
+    if {"question id", "question title", "answered student count"} <= titles:
+        return "this is Canvas's Item Analysis, which holds nobody's answers: download the Student Analysis"
+    return ""
+
+
+def read_answers(
+    header: Sequence[str], rows: Iterable[tuple[str, Sequence[str]]], source: str, warning: str
+) -> Iterator[Row | Rejected | Seen]:
+    """The answers of the report, question by question: each names its variant and its part in its text."""
+    columns = columns_of(header)
+    assert columns is not None, "only a header that has them comes here"
+    labels = {k: label_in(header[k]) for k in columns.questions}
+    attempts: Counter[str] = Counter()
+    for place, cells in rows:
+        cells = [*map(as_written, cells), *[""] * (len(header) - len(cells))]
+        student, origin = cells[columns.name].strip(), _origin(header, columns, cells)
+        attempts[student] += 1
+        for k in columns.questions:
+            label, answer = labels[k], cells[k].strip()
+            where = f"{place}, {header[k].partition(':')[0].strip()}"
+            if not answer:
+                continue  # a question that a group did not draw for this student is as blank as one that waits
+            if label is None:
+                yield Rejected(where, NO_LABEL, {"student": student, "answer": answer})
+            elif not label.part:
+                reason = "the question's label names no part, and a question of Canvas asks one"
+                yield Rejected(
+                    where, reason, {"student": student, "exercise": label.exercise, "answer": answer}
+                )
+            else:
+                names = student, label.exercise, label.seed, label.part
+                own = origin._replace(version=label.version, apart=True)
+                yield Row(*names, answer, where, warning, label.lang, own)
+    yield Seen(
+        source, f"{WHAT}, {counted(sum(attempts.values()), 'attempt')} of {counted(len(attempts), 'student')}"
+    )
+
+
+def _origin(header: Sequence[str], columns: AnalysisColumns, cells: Sequence[str]) -> Collected:
+    attempt = cells[columns.attempt].strip() if columns.attempt is not None else ""
+    submitted = cells[columns.submitted].strip() if columns.submitted is not None else ""
+    ids = tuple(
+        (_TITLES[header[k].strip().casefold()], cells[k].strip()) for k in columns.ids if cells[k].strip()
+    )
+    return Collected(ids, (), int(attempt) if attempt.isdecimal() else 0, submitted)
+
+
+_TITLES = {"sis_id": "SIS User ID", "id": "ID"}  #: as Canvas's gradebook calls them

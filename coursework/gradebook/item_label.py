@@ -1,0 +1,30 @@
+"""The label that an exported question prints in its text, by which a platform's report tells the variant."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+_LABEL = re.compile(
+    r"\[\s*(?P<exercise>\w+)\s*·\s*(?P<seed>[0-9]{1,30})\s*·\s*v(?P<version>\w+)"
+    r"(?:\s*·\s*(?P<lang>[a-z]{2,3}))?(?:\s*·\s*(?P<part>\w+))?\s*\]"
+)
+
+
+class ItemLabel(NamedTuple):
+    """``[slotted_mechanism · 4 · v1 · fr · rA]``: language and part where the question prints them."""
+
+    exercise: str
+    seed: str
+    version: str
+    lang: str = ""
+    part: str = ""  #: of a question that asks one part alone
+
+
+NO_LABEL = "the question's text has no label as [slotted_mechanism · 4 · v1 · en], which says whose answers these are"
+
+
+def label_in(text: str) -> ItemLabel | None:
+    """The label of a question's text, the last where figures or data look alike; None where it has none."""
+    found = [*_LABEL.finditer(text)]
+    return ItemLabel(*(group or "" for group in found[-1].groups())) if found else None

@@ -1,0 +1,205 @@
+"""Moodle's Responses report of a quiz, as Moodle writes it: CSV in the language of whoever downloads it, or JSON.
+
+Its columns are known by their places and numbers, since Moodle translates their titles: who, then state, start, end and
+duration of the attempt and its grade, then for each question its text and the response, ``Question 1``, ``Response 1``.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from coursework.errors import counted
+from coursework.gradebook.item_label import NO_LABEL, ItemLabel, label_in
+from coursework.gradebook.rows import Collected, Rejected, Row, Seen
+from coursework.making.identity import EMAIL, FIRST_NAME, SURNAME, WHOLE, identifies, is_called
+from coursework.system.tables import as_written
+
+_NUMBERED = re.compile(r"(?P<what>\D*?[^\W\d])\s*(?P<number>[0-9]{1,3})")
+_GRADE = re.compile(r"[^\d/]+/?[0-9]+(?:[.,][0-9]+)?")  #: ``Grade/9.00``; in JSON ``grade900``
+_GRADES_REPORT = re.compile(r"\D{1,12}[0-9]+\s*/\s*[0-9]+(?:[.,][0-9]+)?")  #: ``Q. 1 /9.00``
+_NONE = ("", "-")  #: what Moodle writes for nothing
+_AVERAGE = ("average", "moyenne", "durchschnitt", "promedio", "media", "média", "gemiddelde", "średnia")
+
+WHAT = "Moodle's Responses report"
+NO_RESPONSES = (
+    "the Responses report tells neither questions nor responses: tick 'question text' and 'response' among what it displays, and "
+    "download it again"
+)
+
+
+class ResponseColumns(NamedTuple):
+    """Where what stands."""
+
+    name: tuple[int, ...]  #: of the first name and the surname
+    ids: tuple[int, ...]
+    state: int
+    completed: int
+    questions: tuple[tuple[int, int], ...]  #: of text and response
+
+
+def columns_of(header: Sequence[str]) -> ResponseColumns | None:
+    """The places of the columns; None where this is no Responses report."""
+    found = [_NUMBERED.fullmatch(title.strip()) for title in header]
+    numbers = [one["number"] if one and not _is_grade(header, k) else "" for k, one in enumerate(found)]
+    first = next((k for k, (a, b) in enumerate(itertools.pairwise(numbers)) if a and a == b), None)
+    if first is None or first < 6:
+        return None
+    about = first - (5 if _GRADE.fullmatch(header[first - 1].strip()) else 4)
+    starts = {number: k for k, number in reversed([*enumerate(numbers)]) if number and k >= first}
+    questions = tuple(
+        (k, k + 1)
+        for number, k in sorted(starts.items(), key=lambda one: one[1])
+        if numbers[k + 1 : k + 2] == [number]
+    )
+    who = header[:about]
+    return ResponseColumns(
+        _name(who), tuple(k for k, title in enumerate(who) if identifies(title)), about, about + 2, questions
+    )
+
+
+def _is_grade(header: Sequence[str], place: int) -> bool:
+    return "/" in header[place]
+
+
+def _name(who: Sequence[str]) -> tuple[int, ...]:
+    """The columns of first name and surname, or of the whole name."""
+    for known in (WHOLE, (*FIRST_NAME, *SURNAME)):
+        named = [k for k, title in enumerate(who) if is_called(title, known)]
+        if named:
+            return tuple(sorted(named, key=lambda k: not is_called(who[k], FIRST_NAME)))[:2]
+    return tuple(k for k in range(min(2, len(who))))
+
+
+def is_another(header: Sequence[str]) -> str:
+    """What is wrong with another report of a quiz; nothing where it is none."""
+    if sum(bool(_GRADES_REPORT.fullmatch(title.strip())) for title in header) >= 2 and any(
+        is_called(title, EMAIL) for title in header
+    ):
+        return "this is the Grades report of a Moodle quiz, which holds no answers: download the Responses report"
+    singles = [one["number"] for one in map(_NUMBERED.fullmatch, map(str.strip, header)) if one]
+    if (
+        singles
+        and singles[0] == "1"
+        and len(header) > 6
+        and _GRADE.fullmatch(header[-len(singles) - 1].strip())
+    ):
+        return NO_RESPONSES
+    return ""
+
+
+def read_responses(
+    header: Sequence[str], rows: Iterable[tuple[str, Sequence[str]]], source: str, warning: str
+) -> Iterator[Row | Rejected | Seen]:
+    """The answers of a report, by attempt; each row is given with its place."""
+    columns = columns_of(header)
+    assert columns is not None, "only a header that has them comes here"
+    attempts: Counter[tuple[str, ...]] = Counter()
+    absent = 0
+    who: tuple[str, tuple[tuple[str, str], ...]] = ("", ())
+    for place, cells in rows:
+        cells = [*map(as_written, cells), *[""] * (len(header) - len(cells))]
+        if _is_average(header, columns, cells):
+            continue
+        # Of a question tried several times the name stands once.
+        who = _who(header, columns, cells) or who
+        if all(cells[k].strip() in _NONE for pair in columns.questions for k in pair):
+            absent += 1
+            continue
+        if cells[columns.completed].strip() in _NONE:
+            yield from _unfinished(columns, cells, who[0], place)
+            continue
+        attempts[(who[0], *map(str, who[1]))] += 1
+        origin = Collected(
+            who[1], (), attempts[(who[0], *map(str, who[1]))], cells[columns.completed].strip()
+        )
+        for question, response in columns.questions:
+            where = f"{place}, {header[response].strip()}"
+            yield from _response(cells[question], cells[response], who[0], origin, where, warning)
+    told = f"{counted(sum(attempts.values()), 'finished attempt')} of {counted(len(attempts), 'student')}"
+    told += f", {counted(absent, 'student')} without an attempt" if absent else ""
+    yield Seen(source, f"{WHAT}, {told}")
+
+
+def _is_average(header: Sequence[str], columns: ResponseColumns, cells: Sequence[str]) -> bool:
+    """The last line: an average in the column of names, nobody's e-mail, nothing in the columns of answers."""
+    if any(cells[k].strip() not in _NONE for pair in columns.questions for k in pair):
+        return False
+    said = " ".join(cells[k] for k in columns.name).casefold()
+    return not any(cells[k].strip() for k in columns.ids) and any(word in said for word in _AVERAGE)
+
+
+def _who(
+    header: Sequence[str], columns: ResponseColumns, cells: Sequence[str]
+) -> tuple[str, tuple[tuple[str, str], ...]] | None:
+    name = " ".join(" ".join(cells[k] for k in columns.name).split())
+    ids = tuple((header[k].strip(), cells[k].strip()) for k in columns.ids if cells[k].strip() not in _NONE)
+    return (name, ids) if name or ids else None
+
+
+def _unfinished(
+    columns: ResponseColumns, cells: Sequence[str], student: str, place: str
+) -> Iterator[Rejected]:
+    """The responses of an attempt that was not handed in, which has no end."""
+    state = cells[columns.state].strip()
+    reason = f"the attempt is not finished, it is {state!r}: close it in Moodle, or let it be handed in, and download again"
+    answered = [pair for pair in columns.questions if cells[pair[1]].strip() not in _NONE]
+    if not answered:
+        yield Rejected(place, reason, {"student": student})
+    for question, response in answered:
+        label = label_in(cells[question]) or ItemLabel("", "", "")
+        row = {"student": student, "exercise": label.exercise, "seed": label.seed, "part": label.part}
+        yield Rejected(place, reason, row | {"answer": cells[response].strip()})
+
+
+def _response(
+    question: str, response: str, student: str, origin: Collected, place: str, warning: str
+) -> Iterator[Row | Rejected]:
+    """The answers of one response: all parts of a question with several gaps, or the one that its label names."""
+    label, text = label_in(question), response.strip()
+    if label is None:
+        if text not in _NONE:
+            yield Rejected(place, NO_LABEL, {"student": student, "answer": text})
+        return
+    origin = origin._replace(version=label.version, apart=bool(label.part))
+
+    def row(part: str, answer: str) -> Row:
+        return Row(
+            student, label.exercise, label.seed, part, answer, f"{place}, {part}", warning, label.lang, origin
+        )
+
+    if label.part:
+        yield row(label.part, "" if text in _NONE else text)
+    elif text in _NONE:
+        yield row("", "")
+    elif answers := parts_of(text):
+        yield from (row(f"question_{number}", answer) for number, answer in enumerate(answers, start=1))
+    else:
+        own = {"student": student, "exercise": label.exercise, "seed": label.seed, "answer": text}
+        reason = (
+            "a response of several parts is written 'part 1: …; part 2: …', each once: a person must look"
+        )
+        yield Rejected(place, reason, own)
+
+
+_FIRST = re.compile(r"(?P<before>[^\d:;]{1,30}?)1(?P<colon>\s*[:：])")
+
+
+def parts_of(text: str) -> list[str]:
+    """The answers of ``part 1: 238.4 mm; part 2: …``, in whatever language; none where they cannot be told apart.
+
+    An answer may hold semicolons. Where what parts two answers stands in one of them too, nobody knows which is which.
+    """
+    first = _FIRST.match(text)
+    if first is None:
+        return []
+    before, colon = re.escape(first["before"].strip()), re.escape(first["colon"].strip())
+    begins = re.compile(rf"(?:\A|;\s){before}\s*([0-9]{{1,3}})\s*{colon}\s?")
+    found = [*begins.finditer(text)]
+    if [int(one[1]) for one in found] != [*range(1, len(found) + 1)]:
+        return []
+    ends = [*(one.start() for one in found[1:]), len(text)]
+    return [text[one.end() : end].strip() for one, end in zip(found, ends, strict=True)]

@@ -1,0 +1,83 @@
+"""What platforms export, known by what it holds and not by its name: a table of readers."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from coursework.errors import counted
+from coursework.gradebook import canvas_answers, moodle_responses
+from coursework.gradebook.rows import Rejected, Row, Seen
+
+Rows = Iterator[tuple[str, Sequence[str]]]
+
+
+class PlatformTable(NamedTuple):
+    """A table that a platform writes."""
+
+    is_this: Callable[[Sequence[str]], object]  #: by its header
+    read: Callable[[Sequence[str], Rows, str, str], Iterator[Row | Rejected | Seen]]
+
+
+TABLES = (
+    PlatformTable(moodle_responses.columns_of, moodle_responses.read_responses),
+    PlatformTable(canvas_answers.columns_of, canvas_answers.read_answers),
+)
+FAULTS = (moodle_responses.is_another, canvas_answers.is_another)
+
+
+def reader_of(header: Sequence[str]) -> PlatformTable | None:
+    """Who reads a table; None where no platform is known to write it."""
+    return next((table for table in TABLES if table.is_this(header)), None)
+
+
+def fault_of(header: Sequence[str]) -> str:
+    """What is wrong with a platform's table that holds no answers; nothing where it is not known."""
+    return next(filter(None, (fault(header) for fault in FAULTS)), "")
+
+
+def read_table(
+    table: PlatformTable, text: str, delimiter: str, source: str, warning: str
+) -> Iterator[Row | Rejected | Seen]:
+    """The rows of a platform's CSV; a cell may run over any number of lines."""
+    before = csv.field_size_limit(2**31 - 1)
+    try:
+        reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter)
+        records = [
+            (f"{source}, line {reader.line_num}", cells) for cells in reader if any(c.strip() for c in cells)
+        ]
+    except csv.Error as fault:
+        yield Rejected(source, f"not CSV: {fault}")
+        return
+    finally:
+        csv.field_size_limit(before)
+    yield from table.read(records[0][1], iter(records[1:]), source, warning)
+
+
+def read_records(content: Any, source: str, warning: str) -> Iterator[Row | Rejected | Seen] | None:
+    """The rows of a platform's table as JSON, lists of objects; None where it is none."""
+    sheets = content if isinstance(content, list) and content and isinstance(content[0], list) else [content]
+    items = [item for sheet in sheets if isinstance(sheet, list) for item in sheet]
+    if not items or not all(isinstance(item, Mapping) for item in items):
+        return None
+    header = [*items[0]]
+    if (table := reader_of(header)) is None:
+        return None
+    rows = (
+        (
+            f"{source}, item {number}",
+            ["" if item.get(title) is None else str(item[title]) for title in header],
+        )
+        for number, item in enumerate(items, start=1)
+    )
+    return table.read(header, rows, source, warning)
+
+
+def told_seen(seen: Mapping[Seen, int]) -> tuple[str, ...]:
+    """What was seen, a line each."""
+    return tuple(
+        f"{one.source} is {one.what}" + (f", {counted(count, 'file')}" if one.is_tree else "")
+        for one, count in seen.items()
+    )

@@ -1,0 +1,103 @@
+"""Results of QTI as players report them (``assessmentResult``, versions 2.1 to 3): an item's identifier tells the variant."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+
+from coursework.errors import counted
+from coursework.gradebook.rows import Collected, Rejected, Row, Seen, decoded_text, short_fault
+
+WHAT = "a result of QTI"
+_ITEM = re.compile(
+    r"(?:.*\.)?(?P<exercise>\w+)\.v(?P<version>\w+)\.(?P<seed>[0-9]{1,30})\.(?P<lang>[a-z]{2,3})"
+)
+_NUMBERED = re.compile(r"(?:RESPONSE|R|PART)[_-]?(?P<number>[1-9][0-9]*)", re.I)
+_NO_ANSWERS = ("numattempts", "duration", "completionstatus")
+
+
+def read_results(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
+    """The answers of a file of results; entities that a file declares are never followed."""
+    text, warning = decoded_text(data, source)
+    if "<!DOCTYPE" in text or "<!ENTITY" in text:
+        yield Rejected(source, "results of QTI declare no entities; this file does, and is not read")
+        return
+    try:
+        root = ET.fromstring(data)
+    except (ET.ParseError, LookupError, ValueError) as fault:
+        yield Rejected(source, f"not XML: {short_fault(fault)}")
+        return
+    results = [one for one in root.iter() if _tag(one) == "assessmentResult"]
+    items = 0
+    for result in results:
+        student = _student(result)
+        for item in (one for one in result if _tag(one) == "itemResult"):
+            items += 1
+            yield from _item(item, student, source, warning)
+    if items:
+        yield Seen(source, f"{WHAT}, {counted(items, 'item')} of {counted(len(results), 'student')}")
+    else:
+        yield Rejected(
+            source, f"no answers: XML is read where it is {WHAT}, assessmentResult with itemResult in it"
+        )
+
+
+def _tag(element: ET.Element) -> str:
+    """The name without its namespace, in the spelling of version 2."""
+    name = element.tag.rpartition("}")[2].removeprefix("qti-")
+    head, *rest = name.split("-")
+    return head + "".join(word.capitalize() for word in rest)
+
+
+def _named(element: ET.Element, name: str) -> str:
+    wanted = name.replace("-", "").casefold()
+    return next((v for k, v in element.attrib.items() if k.replace("-", "").casefold() == wanted), "")
+
+
+def _student(result: ET.Element) -> str:
+    context = next((one for one in result if _tag(one) == "context"), None)
+    return "" if context is None else _named(context, "sourcedId").strip()
+
+
+def _item(item: ET.Element, student: str, source: str, warning: str) -> Iterator[Row | Rejected]:
+    identifier = _named(item, "identifier")
+    place, told = f"{source}, {identifier}", _ITEM.fullmatch(identifier)
+    answers = [one for one in item if _tag(one) == "responseVariable"]
+    own = [one for one in answers if _named(one, "identifier").casefold() not in _NO_ANSWERS]
+    if told is None:
+        reason = (
+            "an item is called as exported, set.exercise.v1.4.en: which variant this one is cannot be told"
+        )
+        yield from (Rejected(place, reason, {"student": student, "answer": _values(one)}) for one in own)
+        return
+    origin = Collected(
+        (("login", student),) if student else (), (), 0, _named(item, "datestamp"), told["version"]
+    )
+    for one in own:
+        part = _part(_named(one, "identifier"))
+        yield Row(
+            student,
+            told["exercise"],
+            told["seed"],
+            part,
+            _values(one),
+            f"{place}, {part}",
+            warning,
+            told["lang"],
+            origin,
+        )
+
+
+def _part(identifier: str) -> str:
+    numbered = _NUMBERED.fullmatch(identifier)
+    if numbered:
+        return f"question_{numbered['number']}"
+    return "question_1" if identifier == "RESPONSE" else identifier.removeprefix("RESPONSE_")
+
+
+def _values(variable: ET.Element) -> str:
+    """What was answered; several values parted by semicolons."""
+    given = [one for one in variable if _tag(one) == "candidateResponse"]
+    values = [value.text or "" for one in given for value in one if _tag(value) == "value"]
+    return "; ".join(values)
