@@ -22,6 +22,7 @@ COMMANDS = {
     "demo": ("make", "demo"),
     "export": ("platforms", "export"),
     "grade": ("mark", "grade"),
+    "gradebook": ("gradebooks", "gradebook"),
     "lesson": ("teach", "lesson"),
     "list": ("look", "list_exercises"),
     "new": ("author", "new"),

@@ -1,0 +1,83 @@
+"""What a class has, from the ``summary.csv`` of its marks: whom, by what identifies them, and how much of how many."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from fractions import Fraction
+from pathlib import Path
+from typing import NamedTuple
+
+from coursework.errors import BadInput, nearest
+from coursework.gradebook.changes import rows_of
+from coursework.gradebook.columns import VERDICTS
+from coursework.gradebook.scale import exact
+from coursework.making.identity import Ids, identifies
+
+SCORES = ("points", "mark", "percent")
+
+
+class Scored(NamedTuple):
+    """One student."""
+
+    name: str
+    ids: Ids
+    points: str  #: as they stand, with a decimal point
+    out_of: str  #: of which they are; empty of what has its own scale
+    has_answered: bool = True
+
+    def of(self, most: float | None) -> str:
+        """The points out of another total, to the hundredth, halves up; as they stand where it is the same or not known."""
+        if most is None or not self.out_of or exact(_number(self.out_of)) == exact(most):
+            return self.points
+        total = exact(_number(self.out_of))
+        hundredths = (
+            math.floor(exact(_number(self.points)) * exact(most) * 100 / total + Fraction(1, 2))
+            if total
+            else 0
+        )
+        return f"{hundredths / 100:.10g}"
+
+
+def class_points(marks: Path, score: str) -> list[Scored]:
+    """The students of a folder of marks, or of its ``summary.csv``.
+
+    Raises
+    ------
+    BadInput
+        There is none, or a line of it holds no number.
+    """
+    path = marks / "summary.csv" if marks.is_dir() else marks
+    if not path.is_file():
+        raise BadInput(f"no {path}: name the folder of marks that 'coursework grade' wrote")
+    found = list(_scored(path, score))
+    if not found:
+        raise BadInput(f"{path} has no student")
+    return found
+
+
+def _scored(path: Path, score: str) -> Iterator[Scored]:
+    for number, row in enumerate(rows_of(path), start=2):
+        if score not in row or "student" not in row or "out_of" not in row:
+            told = [name for name in SCORES if name in row]
+            raise BadInput(
+                f"{path} has no column {score!r}{nearest(score, told)}; 'coursework grade' writes it"
+            )
+        points, out_of = (row[c].replace(",", ".") for c in (score, "out_of"))
+        if not points and score != "points":
+            points = "0"
+        if math.isnan(_number(points)):
+            raise BadInput(
+                f"{path}, line {number}: {score} of {row['student']} are a number; found {points[:40]!r}"
+            )
+        ids = tuple((title, value) for title, value in row.items() if value and identifies(title))
+        total = {"points": out_of, "percent": "100"}.get(score, "")
+        answered = any(row.get(verdict, "0") != "0" for verdict in VERDICTS if verdict != "missing")
+        yield Scored(row["student"], ids, points, total, answered)
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan

@@ -1,0 +1,256 @@
+"""A platform's own export of its gradebook, one column of it filled with what a class has."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import NamedTuple
+
+from coursework.errors import BadInput, nearest
+from coursework.gradebook.class_points import Scored
+from coursework.gradebook.platform_gradebooks import People, PlatformGradebook, people_in
+from coursework.making.identity import same_id, words_of
+from coursework.making.platform_rosters import TEST_STUDENT, first_name_first
+from coursework.making.students import folded
+from coursework.system.cells import CellTable, StandingCell
+
+_NUMBER = re.compile(r"\s*-?[0-9]+(?P<sign>[.,])[0-9]+\s*%?\s*")
+_LISTED = 5  #: names that a message lists
+
+
+@dataclass
+class Filled:
+    """The file as it is to be written, and what is to be told of it."""
+
+    data: bytes = b""
+    column: str = ""  #: its title
+    most: float | None = None  #: the item's maximum, where it is known
+    written: int = 0
+    kept: list[str] = field(default_factory=list)  #: who has a mark that stays, such as EX
+    absent: list[str] = field(default_factory=list)  #: in the file, and without marks
+    strangers: list[str] = field(default_factory=list)  #: with marks, and not in the file
+    unclear: list[str] = field(default_factory=list)  #: of whom it cannot be told which line is theirs
+
+
+def fill(
+    platform: PlatformGradebook,
+    template: Path,
+    item: str,
+    scored: Sequence[Scored],
+    *,
+    most: float | None = None,
+    decimal: str = "",
+    zeros: bool = False,
+) -> Filled:
+    """Fill the column of an item; every byte elsewhere stays.
+
+    ``most`` is the item's maximum, unless the file tells it; ``zeros`` gives 0 to who answered nothing.
+
+    Raises
+    ------
+    BadInput
+        The file is none of the platform's, has no such column or several, or somebody has more than the maximum.
+    """
+    table = CellTable(_bytes_of(template))
+    sheet = _sheet(platform, table, item, template)
+    result = Filled(column=sheet.title, most=_most(platform, sheet, most, template))
+    if result.most is None:
+        _check_alike(scored, platform, item)
+    sign = decimal or platform.decimal or _sign_in(sheet) or "."
+    theirs = _matched(sheet, scored, result)
+    for row, one, name in zip(sheet.rows, theirs, sheet.called, strict=True):
+        if one is None or not (one.has_answered or zeros):
+            result.absent.append(name)
+        elif sheet.column >= len(row):
+            raise BadInput(
+                f"{template}: the line of {name} has {len(row)} cells, and {sheet.title} is further on"
+            )
+        elif (stands := _cell(row, sheet.column)) in platform.keeps:
+            result.kept.append(f"{name}: {stands}")
+        else:
+            table.write(row[sheet.column], _points(one, result).replace(".", sign))
+            result.written += 1
+    result.data = table.data()
+    return result
+
+
+class _Sheet(NamedTuple):
+    """A gradebook, parted."""
+
+    people: People
+    column: int  #: of the item
+    title: str
+    rows: list[Sequence[StandingCell]]  #: of students
+    maxima: Sequence[StandingCell] | None
+
+    @property
+    def called(self) -> list[str]:
+        """The names as they are told, each of its own."""
+        names = [first_name_first(_name(row, self.people)) for row in self.rows]
+        ids = [_first_of(row, self.people.ids) for row in self.rows]
+        return [
+            f"{n} ({own})" if names.count(n) > 1 and own else n for n, own in zip(names, ids, strict=True)
+        ]
+
+
+def _sheet(platform: PlatformGradebook, table: CellTable, item: str, source: Path) -> _Sheet:
+    header, *rows = table.records or [[]]
+    titles = [cell.text for cell in header]
+    people = people_in(titles)
+    if not (people.names or people.ids):
+        found = ", ".join(title.strip() for title in titles if title.strip())[:200] or "nothing"
+        raise BadInput(
+            f"{source} names nobody: a gradebook of {platform.called} has columns for names or e-mails; found {found}; "
+            f"download it by {platform.download}"
+        )
+    column = column_of(platform, titles, people, item, source)
+    maxima = next((row for row in rows if platform.maxima and _first(row).startswith(platform.maxima)), None)
+    students: list[Sequence[StandingCell]] = [
+        row for row in rows if row is not maxima and _is_somebody(row, people)
+    ]
+    return _Sheet(people, column, titles[column].strip(), students, maxima)
+
+
+def _bytes_of(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as fault:
+        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+
+
+def _first(row: Sequence[StandingCell]) -> str:
+    return row[0].text.strip().casefold()
+
+
+def _cell(row: Sequence[StandingCell], place: int) -> str:
+    return row[place].text.strip() if place < len(row) else ""
+
+
+def _is_somebody(row: Sequence[StandingCell], people: People) -> bool:
+    return bool(_name(row, people)) and _name(row, people).casefold() not in TEST_STUDENT
+
+
+def _first_of(row: Sequence[StandingCell], places: Iterable[int]) -> str:
+    """The first of some cells that is not empty."""
+    return next(filter(None, (_cell(row, k) for k in places)), "")
+
+
+def _name(row: Sequence[StandingCell], people: People) -> str:
+    return " ".join(filter(None, (_cell(row, k) for k in people.names))) or _first_of(row, people.ids)
+
+
+# ------------------------------------------------------------------------ column
+
+
+def column_of(
+    platform: PlatformGradebook, titles: Sequence[str], people: People, item: str, source: Path
+) -> int:
+    """The column of an item, by its whole title or by its own name in it.
+
+    Raises
+    ------
+    BadInput
+        There is none, or there are several.
+    """
+    places = [k for k in range(len(titles)) if k not in (*people.names, *people.ids)]
+    for called in (str.strip, platform.item_in):
+        found = [k for k in places if folded(called(titles[k])) == folded(item)]
+        if len(found) == 1:
+            return found[0]
+        if found:
+            named = ", ".join(repr(titles[k].strip()) for k in found)
+            raise BadInput(
+                f"{source} has several columns of {item!r}: {named}; name one whole, --item {titles[found[0]].strip()!r}"
+            )
+    names = list(
+        dict.fromkeys(name for k in places if k > people.last and (name := platform.item_in(titles[k])))
+    )
+    raise BadInput(
+        f"{source} has no column of {item!r}{nearest(item, names)}; make the item in {platform.called} first, then export"
+    )
+
+
+def _most(platform: PlatformGradebook, sheet: _Sheet, told: float | None, source: Path) -> float | None:
+    """The item's maximum: as the file tells it, which must agree with what is told."""
+    text = platform.most_in(sheet.title) if sheet.maxima is None else _cell(sheet.maxima, sheet.column)
+    try:
+        found = float(text.replace(",", ".")) if text else None
+    except ValueError:
+        found = None
+    if found is not None and told is not None and found != told:
+        raise BadInput(
+            f"{source} says that {sheet.title} is out of {found:g}; --out-of says {told:g}: leave it away, or change the item"
+        )
+    return told if found is None else found
+
+
+def _check_alike(scored: Iterable[Scored], platform: PlatformGradebook, item: str) -> None:
+    totals = sorted({one.out_of for one in scored if one.out_of})
+    if len(totals) > 1:
+        raise BadInput(
+            f"the class has points out of {' and '.join(totals[:3])}, and {platform.called}'s export does not tell what {item!r} is out of: "
+            "say it, --out-of 20"
+        )
+
+
+def _points(one: Scored, filled: Filled) -> str:
+    points = one.of(filled.most)
+    limit = filled.most if filled.most is not None else float(one.out_of or "inf")
+    if not 0 <= float(points) <= limit:
+        raise BadInput(
+            f"{one.name} has {points}, and {filled.column} is out of {limit:g}: the platform would refuse the file, and nothing "
+            "is written"
+        )
+    return points
+
+
+def _sign_in(sheet: _Sheet) -> str:
+    """The decimal sign of the marks that stand in a file; nothing where none has decimals."""
+    texts = (cell.text for row in sheet.rows for cell in row[sheet.people.last + 1 :])
+    signs = [found["sign"] for text in texts if (found := _NUMBER.fullmatch(text))]
+    return max("".join(dict.fromkeys(signs)), key=signs.count, default="")
+
+
+# ------------------------------------------------------------------------ people
+
+
+def _matched(sheet: _Sheet, scored: Sequence[Scored], filled: Filled) -> list[Scored | None]:
+    """By line, whom it is of: by e-mail or number, else by a name that one line and one student alone have."""
+    ids = _only((same_id(_cell(row, k)), n) for n, row in enumerate(sheet.rows) for k in sheet.people.ids)
+    names = _only((words_of(_name(row, sheet.people)), n) for n, row in enumerate(sheet.rows))
+    found: dict[int, Scored] = {}
+    by_name = []
+    for one in scored:
+        lines = {line for _, value in one.ids if (line := ids.get(same_id(value))) is not None}
+        if len(lines) == 1 and not lines & found.keys():
+            found[lines.pop()] = one
+        elif lines:
+            filled.unclear.append(one.name)
+        else:
+            by_name.append(one)
+    for one in by_name:
+        words = words_of(one.name)
+        line = names.get(words)
+        if line is not None and line not in found and not _differs(sheet.rows[line], sheet.people, one):
+            found[line] = one
+        else:
+            (filled.unclear if words in names and line is None else filled.strangers).append(one.name)
+    return [found.get(n) for n in range(len(sheet.rows))]
+
+
+def _differs(row: Sequence[StandingCell], people: People, one: Scored) -> bool:
+    """Whether both have an e-mail, and these are of two people: a name alone does not make them one."""
+    there = {same_id(_cell(row, k)) for k in people.ids if "@" in _cell(row, k)}
+    told = {same_id(value) for _, value in one.ids if "@" in value}
+    return bool(there and told and not there & told)
+
+
+def _only(pairs: Iterable[tuple[object, int]]) -> dict[object, int | None]:
+    """By key, the one line that has it; None where several do."""
+    found: dict[object, int | None] = {}
+    for key, line in pairs:
+        if key:
+            found[key] = line if found.get(key, line) == line else None
+    return found

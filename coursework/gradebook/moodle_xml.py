@@ -1,0 +1,50 @@
+"""Marks as Moodle's XML import takes them: the item and the students by their ID numbers, with nothing to map."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Sequence
+
+from coursework.errors import BadInput
+from coursework.gradebook.class_points import Scored
+from coursework.making.identity import NUMBER, plain
+
+_NUMBERS = ("id number", "numéro d'identification", *NUMBER)
+
+
+def number_of(one: Scored) -> str:
+    """A student's number; nothing where there is none."""
+    own = {plain(title): value for title, value in one.ids}
+    return next((own[title] for title in _NUMBERS if title in own), "")
+
+
+def moodle_xml(
+    item: str, scored: Sequence[Scored], most: float | None, batch: str
+) -> tuple[bytes, list[str]]:
+    """The file, and who has no number and so is not in it.
+
+    Raises
+    ------
+    BadInput
+        Nobody has a number, or somebody more than the maximum.
+    """
+    root = ET.Element("results", batch=batch)
+    left = [one.name for one in scored if not number_of(one)]
+    if len(left) == len(scored):
+        raise BadInput(
+            "Moodle's XML names students by their ID number, and the class has none: give a roster with a column 'ID number' when "
+            "exporting, or fill a --template"
+        )
+    for one in scored:
+        if number := number_of(one):
+            points = one.of(most)
+            limit = most if most is not None else float(one.out_of or "inf")
+            if not 0 <= float(points) <= limit:
+                raise BadInput(
+                    f"{one.name} has {points} of {limit:g}: Moodle would refuse it, and nothing is written"
+                )
+            result = ET.SubElement(root, "result")
+            for tag, text in (("state", "new"), ("assignment", item), ("student", number), ("score", points)):
+                ET.SubElement(result, tag).text = text
+    ET.indent(root)
+    return ET.tostring(root, encoding="utf-8", xml_declaration=True) + b"\n", left
