@@ -47,7 +47,7 @@ def for_nbgrader(book: Mapping[str, Any], handouts: Sequence[Handout], *, own: b
     nbgrader would write those of one notebook for all into them."""
     waiting = list(handouts)
     cells = []
-    for place, cell in enumerate(book["cells"]):
+    for place, cell in enumerate(map(_with_pictures, book["cells"])):
         if "answers" in cell["metadata"].get("tags", ()):
             handout = waiting.pop(0)
             prefix = f"{len(handouts) - len(waiting)}." if len(handouts) > 1 else ""
@@ -58,6 +58,16 @@ def for_nbgrader(book: Mapping[str, Any], handouts: Sequence[Handout], *, own: b
         else:
             cells.append(_marked(cell, metadata(f"{OURS}text-{place + 1}")))
     return {**book, "cells": cells}
+
+
+def _with_pictures(cell: Cell) -> Cell:
+    """A cell whose pictures stand in its text: nbgrader keeps no attachments, and writes no feedback where one is missing."""
+    source = "".join(cell["source"])
+    for name, kinds in cell.get("attachments", {}).items():
+        for kind, data in kinds.items():
+            source = source.replace(f"(attachment:{name})", f"(data:{kind};base64,{data})")
+    kept = {key: value for key, value in cell.items() if key != "attachments"}
+    return {**kept, "source": source.splitlines(keepends=True)}
 
 
 def _marked(cell: Cell, said: Mapping[str, Any]) -> Cell:
