@@ -111,6 +111,11 @@ def build_assignment(
             only=only,
         )
     )
+    with_nbgrader = "nbgrader" in settings.of("formats") and only is None
+    if with_nbgrader:
+        from coursework.nbgrader import tree as nbgrader
+
+        wanted[:0] = nbgrader.files(course, dealt.issues, assignment, out)
     if not again and not make_up:
         notes += dealt.notes
     tell(notes)
@@ -126,6 +131,10 @@ def build_assignment(
     click.echo(f"{counted(count, 'paper')} in {out}: {counted(len(wanted), 'file')}, {what}")
     if course.folder.has_solutions:
         click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
+    if with_nbgrader:
+        click.echo(
+            f"a course of nbgrader: {out / 'nbgrader'}; how to go on stands there, in {assignment.name}.md"
+        )
 
 
 def _issued_before(path: Path) -> Mapping[str, Any] | None:

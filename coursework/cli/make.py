@@ -150,11 +150,12 @@ def build(
         decimal=decimal,
         overwrite=overwrite,
     )
-    click.echo(
-        f"{counted(written, 'file')} in {out}: handouts/ to give away, issued.json and answers.csv to keep"
-    )
+    away = "handouts/ to give away, " if set(formats) - {"nbgrader"} else ""
+    click.echo(f"{counted(written, 'file')} in {out}: {away}issued.json and answers.csv to keep")
     if course.folder.has_solutions:
         click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
+    if "nbgrader" in formats:
+        click.echo(f"a course of nbgrader: {out / 'nbgrader'}; how to go on stands there, in {names[0]}.md")
 
 
 def build_files(
@@ -204,6 +205,10 @@ def build_files(
             spreadsheet=SPREADSHEETS[decimal],
         )
     )
+    if "nbgrader" in formats:
+        from coursework.nbgrader import tree as nbgrader
+
+        wanted[:0] = nbgrader.files(course, issues, None, out)
     with progress_bar("building", len(wanted)) as advance:
         notes = write_tree(out, wanted, advance, anew=overwrite)
     if booklet or "pdf" in formats:

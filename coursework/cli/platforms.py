@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     from coursework.course.course import Course
     from coursework.making.assignment import Assignment
+    from coursework.platforms.platform import Platform
     from coursework.platforms.pools import Drawn
 
 _VARIANTS = 20  #: of a pool, where nothing says how many
@@ -76,6 +77,11 @@ class _PlatformName(click.ParamType):
     help=f"Languages of the questions: fr, en, or both as fr,en. Unless told, {UNLESS_TOLD}.",
 )
 @parts_option
+@click.option(
+    "--issued",
+    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    help="Of gradescope: the issued.json of the build whose sheets were handed out; no exercises then.",
+)
 @click.option("--strict", is_flag=True, help="Stop where anything is lost, and write nothing.")
 @decimal_option
 @click.option(
@@ -92,6 +98,7 @@ def export(
     seed: int,
     langs: Sequence[str],
     parts: str,
+    issued: Path | None,
     strict: bool,
     decimal: str,
     out: Path,
@@ -111,6 +118,11 @@ def export(
 
     chosen = platform_of(platform)
     course = opened(context)
+    if issued is not None:
+        if exercises:
+            raise BadInput(f"--issued {issued} says what was issued: name no exercises beside it")
+        _export_autograder(chosen, course, issued, out)
+        return
     notes: list[str] = []
     students = read_roster(roster, notes.append) if roster else []
     drawn = _drawn(course, context, exercises, count or len(students), seed, langs, parts)
@@ -131,6 +143,21 @@ def export(
         f"{counted(len(drawn.issues), 'variant')} for {platform} in {out}, with the answers, for the staff alone: "
         f"how to import them is in IMPORT.{drawn.langs[0]}.txt, what is lost part by part in lost.csv"
     )
+
+
+def _export_autograder(platform: Platform, course: Course[Any], issued: Path, out: Path) -> None:
+    """Write what marks a build's answers on a platform that runs it."""
+    from coursework.platforms.gradescope import Gradescope
+    from coursework.system.writing import write_tree
+
+    if not isinstance(platform, Gradescope):
+        raise BadInput(
+            f"--issued is of gradescope, which marks what a build issued; {platform.name} draws its own pool"
+        )
+    files = list(platform.autograder(course.folder, issued))
+    with progress_bar("exporting", len(files)) as advance:
+        tell(write_tree(out, files, advance))
+    click.echo(f"{out / 'autograder.zip'}, for the staff alone; how to put it up is in {files[-1].path}")
 
 
 def _drawn(

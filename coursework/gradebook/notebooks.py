@@ -78,6 +78,7 @@ def _read(data: bytes, source: str, by: str) -> Iterator[Row | Rejected]:
     yield from sheet_rows(about, answers, source, warning)
 
 
+NO_NAME = "a notebook holds no name; its file's name stands for it"
 _NO_TAG = "no cell is tagged 'answers'; the one that says answers = { is read"
 _OTHER = "the cell tagged 'answers' is blank; the answers of another that says answers = { are read"
 _CUT = "the answers cell was cut in pieces; they are put together"
@@ -214,8 +215,7 @@ def _with_name(
         return {**about, "student": written}, warning
     if about[_BY]:
         return {**about, "student": about[_BY]}, warning
-    note = "a notebook holds no name; its file's name stands for it"
-    return {**about, "student": Path(source).stem}, "; ".join(filter(None, (warning, note)))
+    return {**about, "student": Path(source).stem}, "; ".join(filter(None, (warning, NO_NAME)))
 
 
 def _about(about: dict[str, Any], source: str) -> dict[str, str]:

@@ -1,3 +1,3 @@
 """The formats that a build writes."""
 
-FORMATS = ("pdf", "ipynb", "html", "tex")
+FORMATS = ("pdf", "ipynb", "html", "tex", "nbgrader")

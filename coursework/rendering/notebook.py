@@ -39,12 +39,13 @@ _FENCE = re.compile(
 )
 
 
-def notebook(folders: Sequence[Path], handout: Handout) -> str:
+def notebook(folders: Sequence[Path], handout: Handout, *, collected: bool = False) -> str:
     """The notebook to hand in, as JSON text, valid nbformat 4.5; the same text for the same handout.
 
-    It holds the statement, the data and a cell for the answers: nothing in it checks them.
+    It holds the statement, the data and a cell for the answers: nothing in it checks them. One that a platform has
+    ``collected`` asks for no name and is not sent back.
     """
-    return _of_handout(folders, handout, "notebook.md.j2", {})
+    return _of_handout(folders, handout, "notebook.md.j2", {"collected": True} if collected else {})
 
 
 def study(folders: Sequence[Path], sheet: StudySheet) -> str:
@@ -72,10 +73,13 @@ def _of_handout(folders: Sequence[Path], handout: Handout, template: str, more: 
     )
 
 
-def paper(folders: Sequence[Path], handed: Paper) -> str:
-    """The notebook of a paper, as JSON text, valid nbformat 4.5: an answers cell an exercise, which says whose it is."""
+def paper(folders: Sequence[Path], handed: Paper, *, collected: bool = False) -> str:
+    """The notebook of a paper, as JSON text, valid nbformat 4.5: an answers cell an exercise, which says whose it is.
+    ``collected`` is as for :func:`notebook`."""
     env = _environment(tuple(folders), handed.heading.lang)
-    names = papers.context(handed, "md.j2", partial(render, env))
+    more = ({"collected": True},) * len(handed.handouts) if collected else ()
+    names = papers.context(handed, "md.j2", partial(render, env), more)
+    names |= {"collected": True} if collected else {}
     cells = list(_cells(render(env, "paper.md.j2", names), f"{names['variants']} head"))
     for sheet, exercise in zip(handed.handouts, names["exercises"], strict=True):
         cells += _exercise(sheet, exercise["body"], exercise["place"])

@@ -162,11 +162,12 @@ class Renderer:
 
         return papers.tex(self.template_folders, paper, self.paper, figures, polygons)
 
-    def paper_notebook(self, paper: Paper) -> str:
-        """A paper as a notebook to hand in (JSON, nbformat 4.5): an answers cell an exercise, and nothing that checks."""
+    def paper_notebook(self, paper: Paper, *, collected: bool = False) -> str:
+        """A paper as a notebook to hand in (JSON, nbformat 4.5): an answers cell an exercise, and nothing that checks;
+        ``collected`` by a platform that knows whose it is."""
         from coursework.rendering import notebook
 
-        return notebook.paper(self.template_folders, paper)
+        return notebook.paper(self.template_folders, paper, collected=collected)
 
     def feedback_notebook(self, told: FeedbackSheet | FeedbackPaper) -> str:
         """Feedback as a notebook to read (JSON, nbformat 4.5), with cells to try another variant where one is offered."""
@@ -180,11 +181,12 @@ class Renderer:
 
         return html.construction(self.template_folders, construction)
 
-    def notebook(self, handout: Handout) -> str:
-        """A handout as a notebook to hand in (JSON, nbformat 4.5): nothing in it checks an answer."""
+    def notebook(self, handout: Handout, *, collected: bool = False) -> str:
+        """A handout as a notebook to hand in (JSON, nbformat 4.5): nothing in it checks an answer; ``collected`` by a
+        platform that knows whose it is."""
         from coursework.rendering import notebook
 
-        return notebook.notebook(self.template_folders, handout)
+        return notebook.notebook(self.template_folders, handout, collected=collected)
 
     def study(self, sheet: StudySheet) -> str:
         """A self-study notebook (JSON, nbformat 4.5)."""

@@ -1,0 +1,22 @@
+"""nbgrader collects and keeps the points; the answers are marked here, and no cell of a student is run.
+
+``nbgrader_config.py`` names :func:`configure`; the preprocessors need nbgrader installed, and are loaded when they are asked for.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from coursework.nbgrader.configuring import configure
+    from coursework.nbgrader.preprocessors import KeepAnswers, MarkAnswers, RestoreCells, SaveMarks
+
+__all__ = ["KeepAnswers", "MarkAnswers", "RestoreCells", "SaveMarks", "configure"]
+
+
+def __getattr__(name: str) -> object:
+    if name not in __all__:
+        raise AttributeError(f"module 'coursework.nbgrader' has no attribute {name!r}")
+    home = "configuring" if name == "configure" else "preprocessors"
+    return getattr(import_module(f"coursework.nbgrader.{home}"), name)

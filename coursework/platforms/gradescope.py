@@ -1,0 +1,168 @@
+"""Gradescope: an autograder that marks against what a build has issued.
+
+Gradescope hands nothing out: sheets are built first, and ``coursework export gradescope --issued DIR/issued.json`` writes the
+zip that marks what comes back. It holds this package as it is, the course, and ``issued.json``; no answer, though whoever has it can
+compute them.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from collections.abc import Iterable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import coursework
+from coursework.course.builtin import builtin_root
+from coursework.course.folder import Folder
+from coursework.errors import BadInput
+from coursework.language.words import words
+from coursework.making.issued import Issued
+from coursework.platforms._autograder import SETTINGS
+from coursework.platforms.items import Pool
+from coursework.platforms.platform import Platform
+from coursework.system.writing import File
+
+#: What marking needs; what prints sheets is left out. Each is among the package's own requirements.
+REQUIREMENTS = ("jinja2>=3.1", "markdown-it-py>=3.0", "mdit-py-plugins>=0.4", "numpy>=1.26", "scipy>=1.11")
+_COURSE = ("exercises", "solutions", "templates")
+_NO_FILE = ("__pycache__", ".git")
+_TIME = (2020, 1, 1, 0, 0, 0)  #: of every file of the zip: the same export gives the same bytes
+
+_SETUP = """#!/usr/bin/env bash
+# Run once by Gradescope, when it makes the image: a Python that is new enough, and what marking needs.
+set -euo pipefail
+root="${{AUTOGRADER:-/autograder}}"
+find_python() {{
+    for name in python3.14 python3.13 python3.12 python3.11 python3; do
+        if command -v "$name" > /dev/null && "$name" -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2> /dev/null; then
+            echo "$name"
+            return
+        fi
+    done
+}}
+python="$(find_python)"
+if [ -z "$python" ]; then
+    apt-get update
+    apt-get install -y python3.12 python3.12-venv || apt-get install -y python3.11 python3.11-venv
+    python="$(find_python)"
+fi
+"$python" -m venv "$root/venv"
+"$root/venv/bin/python" -m pip install --no-cache-dir {requirements}
+"""
+
+_RUN = """#!/usr/bin/env bash
+# Run by Gradescope for each submission. The submission is read, never run.
+root="${{AUTOGRADER:-/autograder}}"
+export AUTOGRADER="$root" PYTHONPATH="$root/source" PYTHONDONTWRITEBYTECODE=1
+python="${{AUTOGRADER_PYTHON:-$root/venv/bin/python}}"
+mkdir -p "$root/results"
+rm -f "$root/results/results.json"
+cd "$root/results" || exit 1
+"$python" -P -m coursework.platforms._autograder || true
+if [ ! -s "$root/results/results.json" ]; then
+    cat > "$root/results/results.json" <<'RESULTS'
+{stopped}
+RESULTS
+fi
+"""
+
+
+class Gradescope(Platform):
+    """The autograder is of a build, not of a pool: who has which variant is known when it marks."""
+
+    name = "gradescope"
+
+    def files(self, pool: Pool) -> Iterator[File]:
+        raise BadInput(
+            "Gradescope hands nothing out: build the sheets first, coursework build … --out DIR, then "
+            "coursework export gradescope --issued DIR/issued.json --out FOLDER"
+        )
+
+    def autograder(self, folder: Folder, path: Path) -> Iterator[File]:
+        """The zip for what was issued, and how it is put up.
+
+        Raises
+        ------
+        BadInput
+            The file is not what ``build`` writes, or the course has no solutions to mark with.
+        """
+        issued = Issued.read(path)
+        if not folder.has_solutions:
+            raise BadInput(f"{folder.label} has no solutions: it cannot mark")
+        lang = next(str(record.get("lang", "fr")) for record in issued.records.values())
+        yield File(Path("autograder.zip"), partial(_zipped, folder, path, lang))
+        yield File(Path(f"IMPORT.{lang}.txt"), lambda: _steps(issued, lang).encode("utf-8"))
+
+
+PLATFORM = Gradescope()
+
+
+def points_of(issued: Issued) -> float:
+    """What a submission is out of: the points of one variant of each exercise."""
+    worth = {
+        exercise: sum(p["points"] for p in record["parts"])
+        for (exercise, _), record in issued.records.items()
+    }
+    return float(sum(worth.values()))
+
+
+def _steps(issued: Issued, lang: str) -> str:
+    told = words(lang)["platforms"]["steps"]["gradescope"]
+    points = f"{points_of(issued):g}"
+    return "".join(f"{place}. {step.format(points=points)}\n" for place, step in enumerate(told, start=1))
+
+
+# ---------------------------------------------------------------------------- zip
+
+
+def _zipped(folder: Folder, issued: Path, lang: str) -> bytes:
+    own = folder.root != builtin_root().resolve()
+    settings = {"course": "course" if own else "", "lang": lang}
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as file:
+        _put(
+            file,
+            "setup.sh",
+            _SETUP.format(requirements=" ".join(f"'{one}'" for one in REQUIREMENTS)),
+            run=True,
+        )
+        _put(file, "run_autograder", _RUN.format(stopped=_stopped(lang)), run=True)
+        _put(file, SETTINGS, json.dumps(settings, indent=1) + "\n")
+        _put(file, "issued.json", issued.read_bytes())
+        package = Path(coursework.__file__).parent
+        for path in _files(package, skip="_course"):
+            _put(file, f"coursework/{path.relative_to(package).as_posix()}", path.read_bytes())
+        for name, root in (
+            ("coursework/_course", builtin_root()),
+            *((("course", folder.root),) if own else ()),
+        ):
+            for kind in _COURSE:
+                for path in _files(root / kind):
+                    _put(file, f"{name}/{path.relative_to(root).as_posix()}", path.read_bytes())
+    return data.getvalue()
+
+
+def _stopped(lang: str) -> str:
+    """What stands where the marking was stopped from outside."""
+    told: dict[str, Any] = {"score": 0, "output": words(lang)["gradescope"]["stopped"], "tests": []}
+    return json.dumps(told, ensure_ascii=True)
+
+
+def _files(folder: Path, skip: str = "") -> Iterable[Path]:
+    """The files below a folder, in order, without what Python leaves there."""
+    return sorted(
+        path
+        for path in folder.rglob("*")
+        if path.is_file() and not {*_NO_FILE, skip} & set(path.relative_to(folder).parts)
+    )
+
+
+def _put(file: zipfile.ZipFile, name: str, content: str | bytes, *, run: bool = False) -> None:
+    info = zipfile.ZipInfo(name, _TIME)
+    info.external_attr = (0o100755 if run else 0o100644) << 16
+    info.compress_type = zipfile.ZIP_DEFLATED
+    file.writestr(info, content)
