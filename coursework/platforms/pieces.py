@@ -12,7 +12,7 @@ from typing import NamedTuple
 from coursework.language.words import words
 from coursework.markup.markdown import plain_line
 from coursework.platforms.items import Item
-from coursework.platforms.posed import Option, Posed
+from coursework.platforms.posed import COLLECTED, Option, Posed
 from coursework.rendering import views
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
@@ -42,8 +42,10 @@ class Pieces:
         return render(self._env, "_platform_opening.html.j2", names)
 
     def prompt(self, posed: Posed, *, box: str = "", numbered: bool = True) -> str:
-        """A question with the ``box`` (HTML) that is typed in: its symbol before it, its unit behind; no options."""
+        """A question with the ``box`` (HTML) that is typed in: its symbol before it, its unit behind; options only where they
+        are what is to be typed, of a choice that is collected."""
         names = {"question": posed.question, "box": box, "numbered": numbered, "words": words(self.lang)}
+        names["listed"] = posed.kind == COLLECTED
         return render(self._env, "_platform_question.html.j2", names)
 
     def option(self, option: Option) -> str:
