@@ -9,12 +9,12 @@ from __future__ import annotations
 import base64
 import hashlib
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import ROUND_UP, Decimal
 from fractions import Fraction
 from functools import partial
 from pathlib import Path
-from xml.etree import ElementTree
+from xml.dom.minidom import Document, Element
 
 from coursework.language.numbers import plain
 from coursework.language.words import words
@@ -29,6 +29,12 @@ _OFF = 1e-3  #: share of a half-width that rounding an answer may move it by
 _PERCENT = 7  #: decimals of a share, as many as Moodle keeps
 _FINEST = 1000  #: a weight is a whole number: of so many parts of a point at most
 _ID = 100  #: characters of an ``idnumber``
+#: What a style sheet of ours does elsewhere: a figure as narrow as a telephone; a formula and its comma on one line.
+_STYLES = {
+    "<img ": '<img style="max-width: 100%; height: auto" ',
+    '<span class="kept">': '<span style="white-space: nowrap">',
+}
+_WIDE = {"wide": 30, "line": 50, "lines": 60}  #: characters that a box of such a question shows
 _BOX = "\N{OBJECT REPLACEMENT CHARACTER}"  #: where a box is to stand
 
 
@@ -45,38 +51,41 @@ PLATFORM = Moodle()
 def quiz(pool: Pool) -> bytes:
     """The file that is imported."""
     pieces = Pieces(pool.folders, pool.lang)
-    root = ElementTree.Element("quiz")
+    page = Document()
+    root = _element(page, page, "quiz")
     for section in pool.sections:
-        place = (pool.title, f"{section.title} ({section.exercise}, {pool.lang})")
-        root.append(_category(place))
-        root.extend(_question(item, pieces) for item in section.items)
-    ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+        _category(root, page, (pool.title, f"{section.title} ({section.exercise}, {pool.lang})"))
+        for item in section.items:
+            _question(root, page, item, pieces)
+    return page.toprettyxml(indent=" ", encoding="utf-8")
 
 
-def _category(names: Sequence[str]) -> ElementTree.Element:
+def _category(root: Element, page: Document, names: Sequence[str]) -> None:
     """The category of what follows; a slash in a name is written twice."""
     path = "/".join(("$course$", "top", *(name.replace("/", "//") for name in names)))
-    return _element("question", _element("category", _text(path)), type="category")
+    _text(_element(_element(root, page, "question", type="category"), page, "category"), page, path)
 
 
-def _question(item: Item, pieces: Pieces) -> ElementTree.Element:
+def _question(root: Element, page: Document, item: Item, pieces: Pieces) -> None:
     html, images = _page(item, pieces)
-    files = (_file(image) for image in images)
-    return _element(
-        "question",
-        _element("name", _text(item.label[1:-1])),
-        _element("questiontext", _text(html), *files, format="html"),
-        _element("idnumber", text=_idnumber(item.identifier)),
-        type="cloze",
-    )
+    question = _element(root, page, "question", type="cloze")
+    _text(_element(question, page, "name"), page, item.label[1:-1])
+    asked = _element(question, page, "questiontext", format="html")
+    _text(asked, page, html)
+    for image in images:
+        data = base64.b64encode(image.data).decode()
+        file = _element(asked, page, "file", name=image.name, path="/", encoding="base64")
+        file.appendChild(page.createTextNode(data))
+    _element(question, page, "idnumber").appendChild(page.createTextNode(_idnumber(item.identifier)))
 
 
 def _page(item: Item, pieces: Pieces) -> tuple[str, tuple[Image, ...]]:
     """Statement and questions with their boxes, and the pictures that the statement shows."""
-    asked = [_asked(posed, pieces) for posed in item.questions]
+    asked = (f'<div style="margin-top: 1em">{_asked(posed, pieces)}</div>' for posed in item.questions)
     told = f'<div lang="{pieces.lang}">{pieces.opening(item)}{"".join(asked)}</div>'
     html, images = with_files(told, "@@PLUGINFILE@@/{}")
+    for plain_tag, styled in _STYLES.items():
+        html = html.replace(plain_tag, styled)
     scale = _scale(posed.points for posed in item.questions)
     boxes = (_box(posed, round(posed.points * scale), pieces) for posed in item.questions)
     return _filled(html, boxes), images
@@ -103,14 +112,19 @@ def _box(posed: Posed, weight: int, pieces: Pieces) -> str:
     if posed.kind == NUMBER:
         return _cloze(weight, "NUMERICAL", (_number(one, pieces) for one in posed.intervals))
     if posed.kind == COLLECTED:
-        told = words(pieces.lang)["platforms"]["moodle"]
-        return _cloze(0, "SHORTANSWER", (f"={escaped(told['later'])}", f"%50%*#{escaped(told['kept'])}"))
+        return _cloze(0, "SHORTANSWER", _kept(posed, words(pieces.lang)["platforms"]["moodle"]))
     kind = "MULTICHOICE_V" if posed.kind == CHOICE else "MULTIRESPONSE"
     answers = (
         _answer(one.share, escaped(pieces.option(one)), one.says, pieces, whole=posed.kind == CHOICE)
         for one in posed.options
     )
     return _cloze(weight, kind, answers)
+
+
+def _kept(posed: Posed, told: Mapping[str, str]) -> tuple[str, str]:
+    """What stands for a right answer that Moodle does not know, then whatever is written; the box is as wide as its longest."""
+    later = told["later"].ljust(_WIDE.get(posed.question.box, 0), "\N{NO-BREAK SPACE}")
+    return f"={escaped(later)}", f"%50%*#{escaped(told['kept'])}"
 
 
 def _cloze(weight: int, kind: str, answers: Iterable[str]) -> str:
@@ -176,20 +190,18 @@ def _scale(points: Iterable[float]) -> int:
 # ----------------------------------------------------------------------------- XML
 
 
-def _element(tag: str, *inside: ElementTree.Element, text: str = "", **marks: str) -> ElementTree.Element:
-    made = ElementTree.Element(tag, marks)
-    made.text = text or None
-    made.extend(inside)
+def _element(parent: Element | Document, page: Document, tag: str, **marks: str) -> Element:
+    made = page.createElement(tag)
+    for name, value in marks.items():
+        made.setAttribute(name, value)
+    parent.appendChild(made)
     return made
 
 
-def _text(text: str) -> ElementTree.Element:
-    return _element("text", text=text)
-
-
-def _file(image: Image) -> ElementTree.Element:
-    data = base64.b64encode(image.data).decode()
-    return _element("file", text=data, name=image.name, path="/", encoding="base64")
+def _text(parent: Element, page: Document, text: str) -> None:
+    """A text, in one piece: of one with entities Moodle loses the spaces between two of them."""
+    whole = text.replace("]]>", "]]&gt;")
+    _element(parent, page, "text").appendChild(page.createCDATASection(whole))
 
 
 def _idnumber(identifier: str) -> str:
