@@ -12,10 +12,11 @@ from typing import NamedTuple
 from coursework.language.words import words
 from coursework.markup.markdown import plain_line
 from coursework.platforms.items import Item
-from coursework.platforms.posed import Option, Posed
+from coursework.platforms.posed import COLLECTED, Option, Posed
 from coursework.rendering import views
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
+from coursework.sheets.sheet import Question
 
 _INLINE = re.compile(r'src="data:image/(svg\+xml|png|jpeg);base64,([A-Za-z0-9+/=]+)"')
 _ENDINGS = {"svg+xml": "svg", "png": "png", "jpeg": "jpg"}
@@ -42,9 +43,16 @@ class Pieces:
         return render(self._env, "_platform_opening.html.j2", names)
 
     def prompt(self, posed: Posed, *, box: str = "", numbered: bool = True) -> str:
-        """A question with the ``box`` (HTML) that is typed in: its symbol before it, its unit behind; no options."""
+        """A question with the ``box`` (HTML) that is typed in: its symbol before it, its unit behind. What is collected says
+        what an answer looks like, and lists the options of a choice."""
         names = {"question": posed.question, "box": box, "numbered": numbered, "words": words(self.lang)}
+        names["listed"] = posed.kind == COLLECTED
+        names["form"] = self._form(posed.question) if names["listed"] else ""
         return render(self._env, "_platform_question.html.j2", names)
+
+    def _form(self, question: Question) -> str:
+        """The form of an answer, in words."""
+        return str(words(self.lang)["hints"].get(question.kind, question.hint))
 
     def option(self, option: Option) -> str:
         """An option as it is offered, with its letter, which reports tell it by."""
