@@ -25,6 +25,8 @@ _OF_FORMULAS = (
     "width", "columnalign", "rowspacing", "columnspacing", "linethickness", "displaystyle", "scriptlevel",
     "largeop", "movablelimits", "symmetric", "minsize", "maxsize", "height", "depth",
 )  # fmt: skip
+#: Between two braces: a player that makes a template of what it shows would work out what stands within them.
+_JOINED = "\N{WORD JOINER}"
 BOX = "input"  #: stands in a page where its answer is typed
 
 
@@ -64,6 +66,7 @@ class _Reader(HTMLParser):
         self._in_formula -= tag == "math"
 
     def handle_data(self, data: str) -> None:
+        data = data.replace("{{", f"{{{_JOINED}{{")
         place = self._place()
         if len(place):
             place[-1].tail = (place[-1].tail or "") + data
@@ -77,7 +80,8 @@ class _Reader(HTMLParser):
     def _made(self, tag: str, attributes: dict[str, str]) -> Element | None:
         """The element of a tag; None of one that is no content of QTI."""
         if self._in_formula:
-            kept = {name: value for name, value in attributes.items() if name in _OF_FORMULAS}
+            names = () if tag == "math" else ("class", "style")
+            kept = {k: v for k, v in attributes.items() if k in _OF_FORMULAS or k in names}
             return Element(f"{{{MATHML}}}{tag}", kept)
         if tag == BOX:
             return Element(BOX, attributes)

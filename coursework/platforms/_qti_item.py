@@ -15,7 +15,7 @@ from xml.etree.ElementTree import Element
 from coursework.language.numbers import significant
 from coursework.language.words import words
 from coursework.platforms._qti_body import elements, html, is_inline, put_in_box
-from coursework.platforms._qti_tree import LANG, add, decimal
+from coursework.platforms._qti_tree import FORMULA, LANG, add, decimal
 from coursework.platforms.items import Item
 from coursework.platforms.pieces import Image, Pieces, with_files
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Interval, Option, Posed
@@ -76,6 +76,8 @@ def item_file(item: Item, pieces: Pieces) -> ItemFile:
     add(root, "stylesheet", href=STYLE, type="text/css")
     root.append(_body(item, opening, asked, pieces))
     root.append(_processing(asked))
+    for formula in root.iter(FORMULA):  # whose words for who cannot see it are of this language
+        formula.set(LANG, sheet.lang)
     return ItemFile(identifier_of(item), sheet.title, root, images)
 
 
@@ -250,7 +252,7 @@ class _Asked:
         """What students are told of an answer that nobody marks there: its form, and that it is marked later."""
         question = self.posed.question
         form = words(self.lang)["hints"].get(question.kind, question.hint)
-        told = self.words["later_form" if form else "later"].format(form=form)
+        told = self.words["later_form" if form else "later"].format(form=form[:1].upper() + form[1:])
         return elements(f"<p><small>{self.pieces.inline(told)}</small></p>")[0]
 
     def _feedback(self, name: str, told: str) -> Element:

@@ -13,6 +13,7 @@ from xml.etree.ElementTree import Element
 
 HTML = "html"  #: of no namespace in the end: QTI has taken the tags of HTML into its own
 MATHML = "http://www.w3.org/1998/Math/MathML"
+FORMULA = f"{{{MATHML}}}math"
 _XSI = "http://www.w3.org/2001/XMLSchema-instance"
 _XML = "http://www.w3.org/XML/1998/namespace"
 LANG = f"{{{_XML}}}lang"
@@ -43,7 +44,7 @@ class Spelling:
         return f"qti-{kebab(name)}" if self.is_kebab else name
 
     def attribute(self, name: str) -> str:
-        return kebab(name) if self.is_kebab and not name.startswith("{") else name
+        return kebab(name) if self.is_kebab else name
 
 
 QTI_3 = Spelling(
@@ -115,13 +116,13 @@ def _tag(tag: str, spelling: Spelling) -> str:
 
 
 def _attributes(element: Element, spelling: Spelling) -> dict[str, str]:
+    found = {"xml:lang" if name == LANG else name: value for name, value in element.attrib.items()}
     if element.tag.startswith("{"):
-        own = {name: value for name, value in element.attrib.items() if name != LANG}
         # A formula's root opens its namespace for all below it.
-        return {"xmlns": MATHML, **own} if element.tag == f"{{{MATHML}}}math" else own
+        return {"xmlns": MATHML, **found} if element.tag == FORMULA else found
     return {
-        "xml:lang" if name == LANG else spelling.attribute(name): value
-        for name, value in element.attrib.items()
+        spelling.attribute(name): value
+        for name, value in found.items()
         if spelling.is_kebab or not (name in _NEW or "-" in name)
     }
 
