@@ -58,6 +58,10 @@ class Pieces:
         """An option as it is offered, with its letter, which reports tell it by."""
         return render(self._env, "_platform_option.html.j2", {"option": option, "words": words(self.lang)})
 
+    def style(self) -> str:
+        """What a platform that takes a style sheet is given for these pieces."""
+        return render(self._env, "_platform_style.css.j2", {})
+
     def inline(self, markdown: str) -> str:
         """A line of Markdown as HTML."""
         return render(self._env, "_platform_line.html.j2", {"line": markdown})

@@ -1,0 +1,21 @@
+"""QTI 2.1: the same package as of QTI 3, in the letters of the version that most platforms import."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from coursework.platforms._qti_package import package
+from coursework.platforms._qti_tree import QTI_21
+from coursework.platforms.items import Pool
+from coursework.platforms.platform import Platform
+from coursework.system.writing import File
+
+
+class Qti21(Platform):
+    name = "qti21"
+
+    def files(self, pool: Pool) -> Iterator[File]:
+        yield package(pool, self.name, QTI_21)
+
+
+PLATFORM = Qti21()

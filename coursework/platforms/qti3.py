@@ -1,0 +1,21 @@
+"""QTI 3: a package that players of that version import."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from coursework.platforms._qti_package import package
+from coursework.platforms._qti_tree import QTI_3
+from coursework.platforms.items import Pool
+from coursework.platforms.platform import Platform
+from coursework.system.writing import File
+
+
+class Qti3(Platform):
+    name = "qti3"
+
+    def files(self, pool: Pool) -> Iterator[File]:
+        yield package(pool, self.name, QTI_3)
+
+
+PLATFORM = Qti3()
