@@ -1,0 +1,129 @@
+"""Canvas: a quiz of QTI 1.2, where each question of each variant is a question of a group of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import ClassVar
+from xml.etree import ElementTree as ET
+
+from coursework.language.words import words
+from coursework.platforms._canvas_groups import Group, groups, left_out
+from coursework.platforms._canvas_questions import FOLDER, Questions, identified
+from coursework.platforms._packages import below, package, xml_bytes
+from coursework.platforms.items import Pool
+from coursework.platforms.losses import Loss
+from coursework.platforms.pieces import Image
+from coursework.platforms.platform import Platform
+from coursework.system.writing import File
+
+_QTI = "http://www.imsglobal.org/xsd/ims_qtiasiv1p2"
+_META = "http://canvas.instructure.com/xsd/cccv1p0"
+_MANIFEST = "http://www.imsglobal.org/xsd/imsccv1p1/imscp_v1p1"
+_TEST, _BESIDE, _CONTENT = (
+    "imsqti_xmlv1p2",
+    "associatedcontent/imscc_xmlv1p1/learning-application-resource",
+    "webcontent",
+)
+
+
+class Canvas(Platform):
+    """A package a language: ``canvas.LANG.zip``."""
+
+    name: ClassVar[str] = "canvas"
+
+    def files(self, pool: Pool) -> Iterator[File]:
+        yield File(Path(f"canvas.{pool.lang}.zip"), partial(_package, pool))
+
+    def losses(self, pool: Pool) -> Iterable[Loss]:
+        said = words(pool.lang)["platforms"]["canvas"]
+        for section in pool.sections:
+            for group in groups(section):
+                if group.is_scaled:
+                    instead = said["scaled"].format(unit=group.unit, asked=group.question.unit or "1")
+                    yield Loss(section.exercise, group.part, "tolerance", instead)
+                elif group.is_coarse:
+                    yield Loss(section.exercise, group.part, "tolerance", said["coarse"])
+            for part, count in left_out(section).items():
+                yield Loss(section.exercise, part, "one_variant", said["left_out"].format(count=count))
+
+
+def _package(pool: Pool) -> bytes:
+    quiz = identified("quiz", pool.name, pool.lang)
+    test, images = _test(pool, quiz)
+    files = {
+        f"{quiz}/{quiz}.xml": test,
+        f"{quiz}/assessment_meta.xml": _settings(pool, quiz),
+        **{f"{FOLDER}/{image.name}": image.data for image in images},
+    }
+    return package({"imsmanifest.xml": _manifest(quiz, images), **files})
+
+
+def _test(pool: Pool, quiz: str) -> tuple[bytes, list[Image]]:
+    """The quiz: a group for each question of each exercise, of which a student gets one."""
+    root = ET.Element("questestinterop", xmlns=_QTI)
+    test = below(root, "assessment", ident=quiz, title=pool.title)
+    top = below(test, "section", ident="root_section")
+    made = Questions(pool)
+    for section in pool.sections:
+        for group in groups(section):
+            place = _group(top, pool, group, section.title)
+            for asked in group.asked:
+                made.add(place, asked, group)
+    return xml_bytes(root), made.images
+
+
+def _group(parent: ET.Element, pool: Pool, group: Group, title: str) -> ET.Element:
+    ident = identified("group", pool.name, pool.lang, group.exercise, str(group.number))
+    place = below(parent, "section", ident=ident, title=f"{title} · {group.number}")
+    selection = below(below(place, "selection_ordering"), "selection")
+    below(selection, "selection_number", "1")
+    below(below(selection, "selection_extension"), "points_per_item", f"{group.points:g}")
+    return place
+
+
+def _settings(pool: Pool, quiz: str) -> bytes:
+    """What Canvas is to do with the quiz: one attempt, nothing shuffled, not published yet."""
+    root = ET.Element("quiz", xmlns=_META, identifier=quiz)
+    points = sum(group.points for section in pool.sections for group in groups(section))
+    told = {
+        "title": pool.title,
+        "description": f"<p>{words(pool.lang)['platforms']['canvas']['how']}</p>",
+        "shuffle_answers": "false",
+        "scoring_policy": "keep_highest",
+        "quiz_type": "assignment",
+        "points_possible": f"{points:g}",
+        "show_correct_answers": "false",
+        "allowed_attempts": "1",
+        "one_question_at_a_time": "false",
+        "available": "false",
+    }
+    for name, value in told.items():
+        below(root, name, value)
+    return xml_bytes(root)
+
+
+def _manifest(quiz: str, images: Iterable[Image]) -> bytes:
+    root = ET.Element("manifest", xmlns=_MANIFEST, identifier=f"{quiz}_manifest")
+    told = below(root, "metadata")
+    below(told, "schema", "IMS Content")
+    below(told, "schemaversion", "1.1.3")
+    below(root, "organizations")
+    resources = below(root, "resources")
+    test = below(resources, "resource", identifier=quiz, type=_TEST)
+    below(test, "file", href=f"{quiz}/{quiz}.xml")
+    below(test, "dependency", identifierref=f"{quiz}_meta")
+    meta = f"{quiz}/assessment_meta.xml"
+    beside = below(resources, "resource", identifier=f"{quiz}_meta", type=_BESIDE, href=meta)
+    below(beside, "file", href=meta)
+    for image in images:
+        href = f"{FOLDER}/{image.name}"
+        one = below(
+            resources, "resource", identifier=identified("file", image.name), type=_CONTENT, href=href
+        )
+        below(one, "file", href=href)
+    return xml_bytes(root)
+
+
+PLATFORM = Canvas()
