@@ -19,7 +19,7 @@ from coursework.errors import BadInput, CourseworkError
 from coursework.gradebook.feedback_sheets import feedback_sheet
 from coursework.gradebook.graded import Graded
 from coursework.gradebook.handed_in import HandedIn, for_student, handed_in, student_known_by
-from coursework.gradebook.rows import Rejected, Row
+from coursework.gradebook.rows import Rejected, Row, Seen
 from coursework.gradebook.scale import mark_of
 from coursework.gradebook.submissions import find, read_file
 from coursework.language.numbers import localise
@@ -108,7 +108,8 @@ def _rows(submission: Path) -> Iterator[Row | Rejected]:
         if isinstance(found, Rejected):
             yield _below(found, submission)
         elif found.resolve().is_relative_to(submission.resolve()):
-            yield from (_below(row, submission) for row in read_file(found))
+            rows = (row for row in read_file(found) if not isinstance(row, Seen))
+            yield from (_below(row, submission) for row in rows)
 
 
 def _below(row: Row | Rejected, submission: Path) -> Row | Rejected:

@@ -99,7 +99,11 @@ def elements(page: str, **attributes: str) -> Element:
     reader.feed(page.strip())
     reader.close()
     found = reader.root
-    if len(found) == 1 and found[0].tag == html("div") and not ((found.text or "") + (found[0].tail or "")).strip():
+    if (
+        len(found) == 1
+        and found[0].tag == html("div")
+        and not ((found.text or "") + (found[0].tail or "")).strip()
+    ):
         found = found[0]
         found.tail = None
     found.attrib.update(attributes)

@@ -260,7 +260,9 @@ class _Asked:
             "feedbackBlock",
             {"outcomeIdentifier": self.named("FEEDBACK"), "identifier": name, "showHide": "show"},
         )
-        content = elements(f"<p>{self.pieces.inline(told)}</p>", **{"class": f"feedback {name.split('_')[0]}"})
+        content = elements(
+            f"<p>{self.pieces.inline(told)}</p>", **{"class": f"feedback {name.split('_')[0]}"}
+        )
         add(block, "contentBody").append(content)
         return block
 

@@ -162,7 +162,9 @@ def numerical(interval: Interval) -> tuple[str, str]:
     half = (interval.high - interval.low) / 2
     if not half:
         return plain(interval.value), "0"
-    step = min(_step(_OFF * half), max(_step(interval.value) * Decimal(10) ** (1 - _SHOWN), _step(_OFF**2 * half)))
+    step = min(
+        _step(_OFF * half), max(_step(interval.value) * Decimal(10) ** (1 - _SHOWN), _step(_OFF**2 * half))
+    )
     shown = Decimal(interval.value).quantize(step)
     reach = max(Decimal(interval.high) - shown, shown - Decimal(interval.low))
     margin = reach.quantize(_step(float(reach)) * Decimal(10) ** (1 - _SHOWN), ROUND_UP)

@@ -108,7 +108,18 @@ def same_question(read, question):
 @pytest.mark.parametrize("name", ["slotted_mechanism", "vocabulary", "four_bar_positions", "mobility"])
 def test_classic_quizzes_translate_it_with_margins_and_pictures(packages, tmp_path, name):
     run = subprocess.run(
-        [PYTHON, "-W", "ignore", f"{TOOL}/migrate.py", "--ucvars", "--nogui", "--nocomment", "--overwrite", f"--cpout={tmp_path}", str(packages / name)],
+        [
+            PYTHON,
+            "-W",
+            "ignore",
+            f"{TOOL}/migrate.py",
+            "--ucvars",
+            "--nogui",
+            "--nocomment",
+            "--overwrite",
+            f"--cpout={tmp_path}",
+            str(packages / name),
+        ],
         capture_output=True,
         text=True,
         check=True,
