@@ -14,6 +14,7 @@ from coursework.course.answer_key import Key
 from coursework.course.variant import Variant
 from coursework.kinds.choices import cases_of
 from coursework.language.numbers import plain, significant
+from coursework.marking.explaining import CLOSE
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
 from coursework.model import Part
@@ -21,6 +22,7 @@ from coursework.sheets.sheet import Question
 
 NUMBER, CHOICE, CHOICES, COLLECTED = KINDS = ("number", "choice", "choices", "collected")
 _DIGITS = 4  #: of a wrong answer in the sentence about it
+_ALL_DIGITS = 9  #: of one that two errors may give, in the same place
 _SAME = 1e-9  #: of a value: what two ways to compute it may differ by
 _TURNS = (0, 1, -1)  #: whole turns more or fewer that an angle is written with
 
@@ -40,6 +42,15 @@ class Interval:
     @property
     def is_right(self) -> bool:
         return self.verdict == "correct"
+
+    @property
+    def half(self) -> float:
+        return (self.high - self.low) / 2
+
+    @property
+    def core(self) -> Interval:
+        """The answers that are what an error gives; those further out may be of another."""
+        return replace(self, low=self.value - CLOSE * self.half, high=self.value + CLOSE * self.half)
 
 
 @dataclass(frozen=True)
@@ -143,13 +154,38 @@ def _from_errors(variant: Variant, key: Key, part: Part) -> Iterator[str]:
 
 def _intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interval]:
     reference, width = float(key.reference[part.quantity]), key.half_width(part)
-    yield from _turned(Interval(reference - width, reference + width, reference), part)
-    seen: list[Interval] = []
+    right = Interval(reference - width, reference + width, reference)
+    for interval in (right, *_wrong_intervals(variant, key, part)):
+        yield from _turned(interval, part)
+
+
+def _wrong_intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interval]:
+    """What known errors give. Where two take the same answers, what is close to one is of that one, then as marking ranks them."""
+    found: list[Interval] = []
     for value, half in _wrong_values(key, part):
-        found = _wrong_interval(variant, part, value, half)
-        if found is not None and not any(_same(found, other) for other in seen):
-            seen.append(found)
-            yield from _turned(found, part)
+        one = _wrong_interval(variant, part, value, half)
+        if one is not None and not any(_same(one, other) for other in found):
+            found.append(one)
+    shared = {one for one in found if any(_meet(one, other, part) for other in found if other is not one)}
+    told = {one: _wrong_interval(variant, part, one.value, one.half, _ALL_DIGITS) for one in shared}
+    yield from (one.core for one in told.values() if one is not None)
+    kept = [one for one in (told.get(one, one) for one in found) if one is not None]
+    yield from sorted(kept, key=lambda one: _rank(one, key, part))
+
+
+def _meet(one: Interval, other: Interval, part: Part) -> bool:
+    """Whether two take an answer in common, of an angle whole turns apart."""
+    apart = other.value - one.value
+    turn = part.sort.turn
+    return abs(math.remainder(apart, turn) if turn else apart) <= one.half + other.half
+
+
+def _rank(interval: Interval, key: Key, part: Part) -> int:
+    """Of answers that are close to nothing: first mistakes about this very quantity, then slips, then mistakes made elsewhere."""
+    kind, _, name = interval.verdict.partition(":")
+    if kind != "mistake":
+        return 1
+    return 0 if part.quantity in key.solution.mistakes[name].targets else 2
 
 
 def _turned(interval: Interval, part: Part) -> Iterator[Interval]:
@@ -179,9 +215,11 @@ def _wrong_values(key: Key, part: Part) -> Iterator[tuple[float, float]]:
             yield float(value), 0.0 if part.is_exact else max(part.half_width(value), width)
 
 
-def _wrong_interval(variant: Variant, part: Part, value: float, half: float) -> Interval | None:
+def _wrong_interval(
+    variant: Variant, part: Part, value: float, half: float, digits: int = _DIGITS
+) -> Interval | None:
     """What is taken for a wrong value; None where our marking does not take it for one that it knows."""
-    text = significant(value, _DIGITS) if not part.is_exact else plain(value)
+    text = significant(value, digits) if not part.is_exact else plain(value)
     made = marked_alone(variant, part, text)
     if made.verdict == "correct" or not made.verdict.startswith(("mistake:", "slip:")):
         return None
@@ -189,9 +227,9 @@ def _wrong_interval(variant: Variant, part: Part, value: float, half: float) -> 
 
 
 def _same(one: Interval, other: Interval) -> bool:
-    """Whether one is told already: it adds nothing where another holds all of it, but for last bits."""
+    """Whether one is told already: it adds nothing where another of the same verdict holds all of it, but for last bits."""
     slack = _SAME * max(abs(one.low), abs(one.high))
-    return other.low - slack <= one.low and one.high <= other.high + slack
+    return one.verdict == other.verdict and other.low - slack <= one.low and one.high <= other.high + slack
 
 
 def marked_alone(variant: Variant, part: Part, answer: Any) -> Mark:

@@ -1,0 +1,149 @@
+"""A real Moodle takes what is exported, and judges it as our marking does but for what ``lost.csv`` lists.
+
+Runs where ``COURSEWORK_MOODLE`` names the folder of Moodle's code (with its ``config.php``; PHP on the path). What is tried stays in
+a course of its own, deleted at the end. ``COURSEWORK_MOODLE_ADMIN``, ``name:password``, lets the tests of pages log in.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from clients.answer_samples import answers_to
+from clients.moodle_site import MOODLE, ask
+
+import coursework
+from coursework.platforms.losses import losses
+from coursework.platforms.moodle import PLATFORM
+from coursework.platforms.pools import of_exercises
+from coursework.platforms.posed import CHOICES, COLLECTED, marked_alone
+
+pytestmark = pytest.mark.skipif(not MOODLE, reason="COURSEWORK_MOODLE names no folder of a Moodle's code")
+
+COURSE = coursework.open_course()
+LANGS = ("en", "fr")
+ANSWERS = 160  #: to an exercise
+NAME = "coursework_tests"
+
+every_exercise = pytest.mark.parametrize("name", COURSE.names)
+every_language = pytest.mark.parametrize("lang", LANGS)
+
+
+class Imported:
+    """The pool of an exercise, and the questions that Moodle made of it."""
+
+    def __init__(self, name, lang, folder):
+        self.drawn = of_exercises(COURSE, [name], 2, 0, LANGS, None)
+        self.pool = self.drawn.pool(lang)
+        (file,) = PLATFORM.files(self.pool)
+        path = folder / file.path
+        path.write_bytes(file.make())
+        self.told = ask("import", course=NAME, file=str(path), lang=lang)
+        self.questions = self.told["questions"]
+        self.variants = [variant.in_language(lang) for variant in self.drawn.variants[0]]
+        self.lost = {(loss.part, loss.feature) for loss in losses(self.pool, "moodle")}
+
+
+@pytest.fixture(scope="session")
+def imported(tmp_path_factory):
+    made = {}
+
+    def of(name, lang):
+        if (name, lang) not in made:
+            made[name, lang] = Imported(name, lang, tmp_path_factory.mktemp("moodle"))
+        return made[name, lang]
+
+    ask("reset", course=NAME)
+    yield of
+    ask("reset", course=NAME)
+
+
+@pytest.fixture(scope="session")
+def figures():
+    """Answers by language and by what became of them; written where ``COURSEWORK_MOODLE_FIGURES`` says, for the docs."""
+    counts = Counter()
+    yield counts
+    if path := os.environ.get("COURSEWORK_MOODLE_FIGURES"):
+        rows = "".join(f"{lang},{sort},{count}\n" for (lang, sort), count in sorted(counts.items()))
+        Path(path).write_text(f"lang,sort,answers\n{rows}", "utf-8")
+
+
+@every_language
+@every_exercise
+def test_every_exercise_is_imported_whole(imported, name, lang):
+    one = imported(name, lang)
+    assert (one.told["done"], one.told["said"]) == (True, "")
+    assert [q["name"] for q in one.questions] == [item.label[1:-1] for item in one.pool.items]
+    for question, item in zip(one.questions, one.pool.items, strict=True):
+        judged = [posed for posed in item.questions if posed.kind != COLLECTED]
+        assert float(question["defaultmark"]) == sum(posed.points for posed in judged)
+        assert len(question["boxes"]) == len(item.questions)
+
+
+@every_language
+@every_exercise
+def test_right_answers_get_full_marks(imported, name, lang):
+    """The answers that Moodle itself shows as right, and ours; a question of which it judges nothing has no mark."""
+    one = imported(name, lang)
+    attempts = [{"id": q["id"], "data": "right"} for q in one.questions]
+    for question, item in zip(one.questions, one.pool.items, strict=True):
+        attempts.append(
+            {"id": question["id"], "data": {k: _right(p) for k, p in enumerate(item.questions, 1)}}
+        )
+    expected = [1 if float(q["defaultmark"]) else None for q in one.questions] * 2
+    assert [made["fraction"] for made in ask("answer", lang=lang, attempts=attempts)] == expected
+
+
+def _right(posed):
+    if posed.kind == COLLECTED:
+        return "whatever"
+    if posed.options:
+        right = [place for place, option in enumerate(posed.options) if option.share > 0]
+        return right if posed.kind == CHOICES else max(right, key=lambda place: posed.options[place].share)
+    return f"{posed.intervals[0].value:.6g}"
+
+
+def _as_ours(posed, answer):
+    """An answer as our marking reads it: options by their cases."""
+    if isinstance(answer, list):
+        return ", ".join(posed.options[place].case for place in answer) or "none"
+    return posed.options[answer].case if isinstance(answer, int) else answer
+
+
+def compared(one, lang):
+    """Every answer with what Moodle and what our marking gives for it."""
+    asked = []
+    for question, item, variant in zip(one.questions, one.pool.items, one.variants, strict=True):
+        a_part = -(-ANSWERS // (len(one.questions) * len(item.questions)))
+        for place, (posed, part) in enumerate(zip(item.questions, variant.parts, strict=True), 1):
+            for given in answers_to(posed, part, max(a_part, 36), f"{item.identifier} {part.id}"):
+                asked.append((question["id"], place, posed, part, variant, given))
+    attempts = [{"id": id, "data": {place: given.answer}} for id, place, *_, given in asked]
+    made = ask("answer", lang=lang, attempts=attempts)
+    for (_, place, posed, part, variant, given), theirs in zip(asked, made, strict=True):
+        ours = marked_alone(variant, part, _as_ours(posed, given.answer))
+        yield posed, part, given, theirs["shares"][str(place)] or 0.0, ours.points / ours.out_of, ours.verdict
+
+
+@every_language
+@every_exercise
+def test_moodle_judges_as_we_do_but_for_what_is_listed(imported, figures, name, lang):
+    one = imported(name, lang)
+    unlisted, count = [], 0
+    for posed, part, given, theirs, ours, verdict in compared(one, lang):
+        count += 1
+        excuses = [excuse for excuse in given.excuses if (part.id, excuse) in one.lost]
+        if posed.kind == COLLECTED:
+            sort = "collected"
+        elif abs(theirs - ours) < 1e-6:
+            sort = "same"
+        elif excuses:
+            sort = excuses[0]
+        else:
+            sort = "unlisted"
+            unlisted.append((part.id, given.sort, given.answer, theirs, ours, verdict))
+        figures[lang, sort] += 1
+    assert count >= ANSWERS
+    assert not unlisted
