@@ -6,8 +6,11 @@ a course of its own, deleted at the end. ``COURSEWORK_MOODLE_ADMIN``, ``name:pas
 
 from __future__ import annotations
 
+import html
 import os
+import re
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,7 +19,8 @@ from clients.moodle_site import MOODLE, ask
 
 import coursework
 from coursework.platforms.losses import losses
-from coursework.platforms.moodle import PLATFORM
+from coursework.platforms.moodle import PLATFORM, quiz
+from coursework.platforms.pieces import Pieces
 from coursework.platforms.pools import of_exercises
 from coursework.platforms.posed import CHOICES, COLLECTED, marked_alone
 
@@ -147,3 +151,34 @@ def test_moodle_judges_as_we_do_but_for_what_is_listed(imported, figures, name, 
         figures[lang, sort] += 1
     assert count >= ANSWERS
     assert not unlisted
+
+
+HOSTILE = '} ~ # " & = % \\ \\} \\# {1:SA:=x} 50%~b#c &amp; &lt;b&gt; {#1} $a$ a/b'
+
+
+def test_hostile_labels_and_odd_shares_come_through(tmp_path):
+    """Labels as students read them, shares that are in none of Moodle's lists, to its seven decimals."""
+    pool = of_exercises(COURSE, ["grashof"], 1, 0, ("en",), None).pool("en")
+    (item,) = pool.items
+    choice = item.questions[-1]
+    labels = [re.sub(r"([\\`*_{}\[\]<>#~$&])", r"\\\1", f"{HOSTILE} {k}") for k in range(len(choice.options))]
+    options = tuple(
+        replace(one, label=label, share=one.share or 0.3712345, says=label)
+        for one, label in zip(choice.options, labels, strict=True)
+    )
+    hostile = replace(item, questions=(*item.questions[:-1], replace(choice, options=options)))
+    section = replace(pool.sections[0], items=(hostile,), title=HOSTILE)
+    path = tmp_path / "hostile.xml"
+    path.write_bytes(quiz(replace(pool, title="Week 3/4", sections=(section,))))
+    told = ask("import", course=NAME, file=str(path))
+    assert (told["done"], told["said"]) == (True, "")
+    (question,) = told["questions"]
+    made = question["boxes"][-1]["answers"]
+    pieces = Pieces(pool.folders, "en")
+    assert [_shown(one["answer"]) for one in made] == [_shown(pieces.option(one)) for one in options]
+    assert [one["share"] for one in made] == pytest.approx([one.share for one in options], abs=1e-7)
+    assert HOSTILE.split("$")[0] in html.unescape(made[0]["answer"])
+
+
+def _shown(text):
+    return html.unescape(text)

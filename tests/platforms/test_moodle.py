@@ -1,0 +1,201 @@
+"""What is written for Moodle says what the pool says, by the grammar that Moodle documents; read by a parser of its own."""
+
+from __future__ import annotations
+
+import base64
+import re
+from xml.etree import ElementTree
+from xml.parsers import expat
+
+import pytest
+from platforms.cloze import boxes_of
+
+import coursework
+from coursework.language.words import words
+from coursework.platforms.items import Pool, Section
+from coursework.platforms.moodle import escaped, numerical, quiz
+from coursework.platforms.pieces import Pieces
+from coursework.platforms.pools import of_exercises
+from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Interval
+
+COURSE = coursework.open_course()
+LANGS = ("en", "fr")
+KINDS = {NUMBER: "NUMERICAL", CHOICE: "MULTICHOICE_V", CHOICES: "MULTIRESPONSE", COLLECTED: "SHORTANSWER"}
+
+every_exercise = pytest.mark.parametrize("name", COURSE.names)
+every_language = pytest.mark.parametrize("lang", ["en", pytest.param("fr", marks=pytest.mark.slow)])
+
+
+@pytest.fixture(scope="module")
+def written():
+    """The pool of an exercise in a language, and what is written of it."""
+    made = {}
+
+    def of(name, lang):
+        if (name, lang) not in made:
+            pool = of_exercises(COURSE, [name], 1, 0, [lang], None).pool(lang)
+            made[name, lang] = pool, quiz(pool)
+        return made[name, lang]
+
+    return of
+
+
+def questions(data):
+    """Name, idnumber, text and files of each question, and the categories between them."""
+    for question in ElementTree.fromstring(data):
+        if question.get("type") == "category":
+            yield "category", question.findtext("category/text")
+        else:
+            files = {f.get("name"): base64.b64decode(f.text) for f in question.findall("questiontext/file")}
+            text = question.findtext("questiontext/text")
+            yield question.findtext("name/text"), question.findtext("idnumber"), text, files
+
+
+@every_language
+@every_exercise
+def test_every_question_has_its_box(written, name, lang):
+    """Type, weight, intervals, shares: as posed; what is collected weighs nothing and takes whatever is written."""
+    pool, data = written(name, lang)
+    category, question = questions(data)
+    (item,) = pool.items
+    assert category[1].startswith("$course$/top/")
+    assert question[0] == item.label[1:-1]
+    boxes, around = boxes_of(question[2])
+    assert [box.kind for box in boxes] == [KINDS[posed.kind] for posed in item.questions]
+    assert item.label in "".join(around)
+    assert not re.search(r"[{}]", "".join(around))
+    for posed, box in zip(item.questions, boxes, strict=True):
+        assert box.weight == (0 if posed.kind == COLLECTED else posed.points)
+        if posed.kind == NUMBER:
+            assert [one.share for one in box.answers] == pytest.approx([one.share for one in posed.intervals])
+            for answer, one in zip(box.answers, posed.intervals, strict=True):
+                _check_interval(answer, one)
+        elif posed.kind == COLLECTED:
+            assert [(one.share, one.text) for one in box.answers[1:]] == [(0.5, "*")]
+            assert box.answers[0].text.strip() == words(lang)["platforms"]["moodle"]["later"]
+        else:
+            pieces = Pieces(pool.folders, lang)
+            assert [one.text for one in box.answers] == [pieces.option(one) for one in posed.options]
+            assert [one.share for one in box.answers] == pytest.approx([one.share for one in posed.options])
+
+
+def _check_interval(answer, interval):
+    """The whole interval, and hardly more; the answer that students are shown is short."""
+    value, half = float(answer.text), interval.half
+    slack = 1e-12 * max(abs(interval.low), abs(interval.high))
+    assert value - answer.margin <= interval.low + slack
+    assert interval.high - slack <= value + answer.margin
+    assert answer.margin <= half * 1.0021 + slack
+    if half >= 0.01 * abs(interval.value):
+        assert len(answer.text.strip("-0.").replace(".", "").rstrip("0")) <= 6
+
+
+@every_exercise
+def test_pictures_travel_with_their_question(written, name):
+    """Each is named in the text and there as a file; nothing is fetched, nothing needs a filter."""
+    *_, (_, _, text, files) = questions(written(name, "en")[1])
+    assert set(re.findall(r'src="@@PLUGINFILE@@/([^"]+)"', text)) == set(files)
+    assert all(data.lstrip().startswith((b"<svg", b"<?xml")) for data in files.values())
+    assert not re.search(r"https?://(?!www\.w3\.org)|data:image|\\\(|\$\$|<script", text)
+
+
+def test_the_same_pool_gives_the_same_bytes_and_identifiers():
+    first, second = (
+        of_exercises(COURSE, ["grashof", "slotted_mechanism"], 3, 0, LANGS, None) for _ in range(2)
+    )
+    for lang in LANGS:
+        assert quiz(first.pool(lang)) == quiz(second.pool(lang))
+    found = [one for lang in LANGS for one in questions(quiz(first.pool(lang))) if one[0] != "category"]
+    assert len({one[1] for one in found}) == len(found) == 12
+    assert all(len(one[1]) <= 100 for one in found)
+
+
+def test_a_long_name_of_a_pool_leaves_identifiers_short_and_different(written):
+    pool, _ = written("grashof", "en")
+    ids = set()
+    for tail in "ab":
+        items = tuple(type(item)(item.handout, item.questions, "week " * 40 + tail) for item in pool.items)
+        section = Section("grashof", "Grashof", items)
+        data = quiz(Pool("x", "X", "en", (section,), pool.issues, pool.folders, pool.course))
+        ids |= {one[1] for one in questions(data) if one[0] != "category"}
+    assert {len(one) for one in ids} == {100}
+    assert len(ids) == 2
+
+
+def test_texts_come_in_one_piece():
+    """Moodle's reader drops a piece of white space between two entities: a text that holds tags is one section."""
+    data = quiz(of_exercises(COURSE, ["slotted_mechanism"], 1, 0, ("fr",), None).pool("fr"))
+    outside, inside = [], []
+    reader = expat.ParserCreate()
+    reader.StartCdataSectionHandler = lambda: inside.append(True)
+    reader.EndCdataSectionHandler = inside.clear
+    reader.CharacterDataHandler = lambda text: outside.append(text) if not inside else None
+    reader.Parse(data, True)
+    assert not any("<" in piece or ">" in piece for piece in outside)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["}", "~", "#", '"', "&amp;", "=", "%50%", "\\", "a\\}b", "a\\#b", "x~%100%y#z}", "&amp;#35;", "{1:SA:=x}", "5 &lt; 6"],
+)  # fmt: skip
+def test_what_stands_in_an_answer_comes_back_as_it_was(text):
+    """HTML is compared as a browser shows it: a backslash may be written by its number."""
+    (box,), _ = boxes_of(f"{{1:MULTICHOICE_V:={escaped('a' + text)}~b{escaped(text)}#{escaped(text)}}}")
+    assert [one.text.replace("&#92;", "\\") for one in box.answers] == [f"a{text}", f"b{text}"]
+    assert box.answers[1].says.replace("&#92;", "\\") == text
+
+
+HOSTILE = "a } brace, 50% ~ # \"quoted\" & 1 = 2 {1:NUMERICAL:=3} \\ ]]> <b> / {#1}"
+
+
+def test_hostile_words_of_a_course_open_no_box(small_course):
+    """Braces, tildes, hashes, slashes of statement, options and titles are what students read."""
+    for lang in LANGS:
+        path = small_course / "exercises" / f"crank_pin.{lang}.md.j2"
+        path.write_text(f"{{% raw %}}{path.read_text('utf-8')}{{% endraw %}}".replace("\n\n", f"\n\n{_markdown(HOSTILE)} ", 1), "utf-8")  # fmt: skip
+    course = coursework.open_course(small_course)
+    pool = of_exercises(course, ["crank_pin"], 2, 0, LANGS, None).pool("en")
+    titled = Pool(pool.name, "Week 3/4", "en", pool.sections, pool.issues, pool.folders, pool.course)
+    category, *found = questions(quiz(titled))
+    assert "/top/Week 3//4/" in category[1]
+    for (_, _, text, _), item in zip(found, pool.items, strict=True):
+        boxes, around = boxes_of(text)
+        assert [len(box.answers) for box in boxes] == [len(posed.intervals) for posed in item.questions]
+        assert "{1:NUMERICAL:=3}" not in text
+        assert "&#123;1:NUMERICAL:=3&#125;" in "".join(around)
+
+
+def _markdown(text):
+    return re.sub(r"([\\`*_{}\[\]<>#~])", r"\\\1", text)
+
+
+def _interval(value, half):
+    return Interval(value - half, value + half, value)
+
+
+@pytest.mark.parametrize(
+    ("value", "half", "shown"),
+    [
+        (238.43712345, 2.3843712345, "238.437"),
+        (3, 0, "3"),
+        (12345678.25, 0, "12345678.25"),
+        (1e-17, 0.01, "0"),
+        (-0.00023812345678, 2.4e-6, "-0.000238123"),
+        (0.1234567891, 1e-7, "0.1234567891"),
+        (-51234.5678, 500, "-51234.6"),
+        (1.5e9, 1e7, "1500000000"),
+    ],
+)
+def test_numbers_are_shown_short_and_keep_their_interval(value, half, shown):
+    text, margin = numerical(_interval(value, half))
+    assert text == shown
+    assert "e" not in text + margin or not half
+    assert float(text) - float(margin) <= value - half
+    assert value + half <= float(text) + float(margin)
+
+
+def test_weights_are_whole_where_points_are_not(tmp_path):
+    """Halves and thirds of points keep their proportions."""
+    from coursework.platforms.moodle import _scale
+
+    assert [_scale(points) for points in ((1, 2), (0.5, 1), (1 / 3, 1), (0.25, 0.1))] == [1, 2, 3, 20]
