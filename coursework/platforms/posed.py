@@ -154,9 +154,15 @@ def _from_errors(variant: Variant, key: Key, part: Part) -> Iterator[str]:
 
 def _intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interval]:
     reference, width = float(key.reference[part.quantity]), key.half_width(part)
-    right = Interval(reference - width, reference + width, reference)
-    for interval in (right, *_wrong_intervals(variant, key, part)):
-        yield from _turned(interval, part)
+    yield from _turned(Interval(reference - width, reference + width, reference), part)
+    for interval in _wrong_intervals(variant, key, part):
+        yield from (one for one in _turned(interval, part) if not one.turns or _is_told(one, variant, part))
+
+
+def _is_told(turned: Interval, variant: Variant, part: Part) -> bool:
+    """Whether our marking takes an error whole turns away for the same: not degrees for radians."""
+    made = _wrong_interval(variant, part, turned.value, turned.half, _ALL_DIGITS)
+    return made is not None and made.verdict == turned.verdict
 
 
 def _wrong_intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interval]:
@@ -166,7 +172,7 @@ def _wrong_intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interva
         one = _wrong_interval(variant, part, value, half)
         if one is not None and not any(_same(one, other) for other in found):
             found.append(one)
-    shared = {one for one in found if any(_meet(one, other, part) for other in found if other is not one)}
+    shared = [one for one in found if any(_meet(one, other, part) for other in found if other is not one)]
     told = {one: _wrong_interval(variant, part, one.value, one.half, _ALL_DIGITS) for one in shared}
     yield from (one.core for one in told.values() if one is not None)
     kept = [one for one in (told.get(one, one) for one in found) if one is not None]
