@@ -145,7 +145,7 @@ def test_what_stands_in_an_answer_comes_back_as_it_was(text):
     assert box.answers[1].says.replace("&#92;", "\\") == text
 
 
-HOSTILE = "a } brace, 50% ~ # \"quoted\" & 1 = 2 {1:NUMERICAL:=3} \\ ]]> <b> / {#1}"
+HOSTILE = 'a } brace, 50% ~ # "quoted" & 1 = 2 {1:NUMERICAL:=3} \\ ]]> <b> / {#1}'
 
 
 def test_hostile_words_of_a_course_open_no_box(small_course):

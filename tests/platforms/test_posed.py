@@ -96,10 +96,18 @@ def test_every_part_is_posed_and_says_why_where_it_is_collected(name, seed):
     assert made.points == sum(part.points for part in variant.parts)
     for posed, part in zip(made.questions, variant.parts, strict=True):
         assert posed.kind in KINDS
-        assert ("collected" in posed.features) == (posed.kind == COLLECTED) == (not posed.intervals + posed.options)
+        assert (
+            ("collected" in posed.features)
+            == (posed.kind == COLLECTED)
+            == (not posed.intervals + posed.options)
+        )
         if posed.kind == COLLECTED:
             assert not posed.features.intersection(COUNTED)
-            assert part.judge or not part.sort.is_scalar or posed.features & {"either_order", "unit_asked", "form"}
+            assert (
+                part.judge
+                or not part.sort.is_scalar
+                or posed.features & {"either_order", "unit_asked", "form"}
+            )
 
 
 @every_exercise
