@@ -238,9 +238,10 @@ class Variant:
         for lang in self._langs:
             yield (label := self.label(part, case, lang))
             if "$" in label:
-                from coursework.markup.markdown import plain_line
+                from coursework.markup.markdown import html_words, plain_line
 
                 yield plain_line(label, lang)  # what is offered is read
+                yield html_words(label, lang)  # and what a platform's report makes of it
             for article in words(lang)["choices"]["articles"]:
                 start = article if article.endswith("'") else f"{article} "
                 if label.replace("’", "'").lower().startswith(start):

@@ -11,7 +11,7 @@ import textwrap
 import unicodedata
 from collections.abc import Callable, Sequence
 from functools import cache, lru_cache
-from html import escape
+from html import escape, unescape
 from typing import Any
 from urllib.parse import unquote
 
@@ -269,6 +269,11 @@ def html_inline(markdown: str, lang: str) -> str:
     shown = to_html(markdown, lang)
     one = shown.startswith("<p>") and shown.endswith("</p>") and shown.count("<p>") == 1
     return shown.removeprefix("<p>").removesuffix("</p>") if one else shown
+
+
+def html_words(markdown: str, lang: str) -> str:
+    """The same without its tags: what is left of a line and its formulas where a page is made plain text."""
+    return unescape(re.sub(r"<[^>]*>", "", html_inline(markdown, lang)))
 
 
 def formula_words(markdown: str, lang: str) -> str:

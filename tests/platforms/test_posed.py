@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import html
+import re
+
 import pytest
 from course_of_every_kind import write_course
 
 import coursework
 from coursework.language.numbers import plain, significant
 from coursework.platforms.items import item
+from coursework.platforms.pieces import Pieces
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, KINDS, NUMBER
+from coursework.rendering.renderer import renderer_of
 
 COURSE = coursework.open_course()
 SEEDS = (3, pytest.param(8, marks=pytest.mark.slow))
@@ -141,3 +146,15 @@ def test_several_right_ones_share_the_points(tmp_path):
             assert earned(variant, part, answer)[0] == pytest.approx(share)
     assert kinds["true_of_it"] == CHOICES
     assert {kinds[one] for one in ("Z", "I", "drops", "M", "why", "sketch")} == {COLLECTED}
+
+
+@pytest.mark.parametrize("lang", ["en", "fr"])
+@every_exercise
+def test_options_are_read_as_reports_make_plain_text_of_them(name, lang):
+    """Letter and words as a platform's report has them, formulas without their layout: the same as the letter alone."""
+    variant = COURSE[name].variant(3, lang)
+    pieces = Pieces(renderer_of(COURSE.folder).template_folders, lang)
+    for posed, part in zip(item(variant, "pool").questions, variant.parts, strict=True):
+        for option in posed.options:
+            flat = " ".join(html.unescape(re.sub(r"<[^>]*>", "", pieces.option(option))).split())
+            assert earned(variant, part, flat) == earned(variant, part, option.letter), (part.id, flat)
