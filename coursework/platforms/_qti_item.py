@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 from xml.etree.ElementTree import Element
 
@@ -285,19 +286,23 @@ class _Asked:
         ).strip()  # fmt: skip
 
     def _errors(self) -> Iterator[tuple[str, str, float, str]]:
-        for place, (first, _) in enumerate(self.errors, start=1):
-            yield f"said_{place}", first.verdict, first.share, first.says
+        for some in self.errors:
+            yield self._name(some[0]), some[0].verdict, some[0].share, some[0].says
         for option in self.posed.options:
             if option.says:
                 verdict = "mistake" if option.share > 0 else "wrong"
                 yield f"said_{choice_name(option, self.posed)}", verdict, option.share, option.says
 
-    @property
-    def errors(self) -> list[tuple[Interval, list[Interval]]]:
-        """The intervals of each known error, in the order in which they count, an angle's turns together."""
+    @cached_property
+    def errors(self) -> list[list[Interval]]:
+        """The intervals of the known errors in the order in which they count, an angle's turns together."""
         wrong = [one for one in self.posed.intervals if not one.is_right]
-        groups = groupby(wrong, key=lambda one: (one.verdict, one.share, one.says))
-        return [(some[0], some) for some in (list(members) for _, members in groups)]
+        return [list(some) for _, some in groupby(wrong, key=_told)]
+
+    def _name(self, error: Interval) -> str:
+        """What shows an error: the same of all of its intervals."""
+        told = list(dict.fromkeys(_told(some[0]) for some in self.errors))
+        return f"said_{told.index(_told(error)) + 1}"
 
     # -- what it is worth
 
@@ -325,8 +330,8 @@ class _Asked:
         if self.posed.kind == NUMBER:
             right = [one for one in self.posed.intervals if one.is_right]
             yield self._within(right), 1.0, _RIGHT
-            for place, (first, some) in enumerate(self.errors, start=1):
-                yield self._within(some), first.share, f"said_{place}"
+            for some in self.errors:
+                yield self._within(some), some[0].share, self._name(some[0])
             return
         for option in self.posed.options:
             name = _RIGHT if option.share >= 1 else f"said_{choice_name(option, self.posed)}"
@@ -373,6 +378,10 @@ def _processing(asked: Sequence[_Asked]) -> Element:
     for one in asked:
         add(total, "variable", identifier=one.named("SCORE"))
     return made
+
+
+def _told(error: Interval) -> tuple[str, float, str]:
+    return error.verdict, error.share, error.says
 
 
 def choice_name(option: Option, posed: Posed) -> str:

@@ -6,7 +6,7 @@ An answer that a platform is to know is marked by the marker first: what it is w
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,6 +22,7 @@ from coursework.sheets.sheet import Question
 NUMBER, CHOICE, CHOICES, COLLECTED = KINDS = ("number", "choice", "choices", "collected")
 _DIGITS = 4  #: of a wrong answer in the sentence about it
 _SAME = 1e-9  #: of a value: what two ways to compute it may differ by
+_CLOSE = 0.2  #: of the margin: an answer so near to what an error gives is of that error
 _TURNS = (0, 1, -1)  #: whole turns more or fewer that an angle is written with
 
 
@@ -144,12 +145,22 @@ def _from_errors(variant: Variant, key: Key, part: Part) -> Iterator[str]:
 def _intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interval]:
     reference, width = float(key.reference[part.quantity]), key.half_width(part)
     yield from _turned(Interval(reference - width, reference + width, reference), part)
-    seen: list[Interval] = []
+    wrong: list[Interval] = []
     for value, half in _wrong_values(key, part):
         found = _wrong_interval(variant, part, value, half)
-        if found is not None and not any(_same(found, other) for other in seen):
-            seen.append(found)
-            yield from _turned(found, part)
+        if found is not None and not any(_same(found, other) for other in wrong):
+            wrong.append(found)
+    for one in (*_close(wrong), *wrong):
+        yield from _turned(one, part)
+
+
+def _close(wrong: Sequence[Interval]) -> Iterator[Interval]:
+    """The middle of each interval that shares numbers with one of another price: what lies close to an error is of that error,
+    as our marking has it, and not of one that merely comes near."""
+    for one in wrong:
+        if any(one.share != other.share and one.low <= other.high and other.low <= one.high for other in wrong):
+            half = _CLOSE * (one.high - one.low) / 2
+            yield replace(one, low=one.value - half, high=one.value + half)
 
 
 def _turned(interval: Interval, part: Part) -> Iterator[Interval]:
@@ -185,6 +196,8 @@ def _wrong_interval(variant: Variant, part: Part, value: float, half: float) -> 
     made = marked_alone(variant, part, text)
     if made.verdict == "correct" or not made.verdict.startswith(("mistake:", "slip:")):
         return None
+    if value and abs(value) <= half and marked_alone(variant, part, "0").verdict != made.verdict:
+        return None  # a nought earns nothing, and an interval has no hole
     return Interval(value - half, value + half, value, made.points / made.out_of, made.says, made.verdict)
 
 
