@@ -55,7 +55,10 @@ def answers(variant, posed: Posed, part) -> Iterator[Answer]:
 def _numbers(variant, posed: Posed, part) -> Iterator[tuple[str, str]]:
     right, value = posed.intervals[0], posed.intervals[0].value
     unit = "" if part.unit == "1" else part.unit
-    yield "right", significant(value, 6) if right.low <= float(significant(value, 6)) <= right.high else repr(value)
+    yield (
+        "right",
+        significant(value, 6) if right.low <= float(significant(value, 6)) <= right.high else repr(value),
+    )
     yield "right", repr(value)
     yield "right", f" {value!r} "
     yield "right", f"{value:.12e}"

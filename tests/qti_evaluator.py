@@ -106,7 +106,9 @@ class Player:
     def _mapped(self, name):
         mapping = self.declared[name].find("mapping")
         worth = {one.get("mapKey"): float(one.get("mappedValue")) for one in mapping}
-        total = sum(worth.get(one, float(mapping.get("defaultValue"))) for one in set(self.values[name] or ()))
+        total = sum(
+            worth.get(one, float(mapping.get("defaultValue"))) for one in set(self.values[name] or ())
+        )
         low, high = mapping.get("lowerBound"), mapping.get("upperBound")
         total = total if low is None else max(total, float(low))
         return total if high is None else min(total, float(high))

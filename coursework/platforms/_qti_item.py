@@ -50,7 +50,7 @@ def identifier_of(item: Item) -> str:
 
 
 def identifier(text: str) -> str:
-    """A text as QTI lets things be called; another for every other text."""
+    """A text as QTI lets things be called: letters, digits, ``_`` and ``-``, and for any other sign its number."""
     name = re.sub(r"[^A-Za-z0-9_-]", lambda found: f"_{ord(found[0]):x}_", text)
     return name if re.match("[A-Za-z_]", name) else f"_{name}"
 
@@ -211,10 +211,10 @@ class _Asked:
         """An interaction that holds its prompt, or stands below it where that is more than a line."""
         prompt = elements(self.pieces.prompt(self.posed))
         made = self._choices() if self.posed.options else self._lines()
-        if is_inline(prompt):
-            prompt.tag = "prompt"
-            prompt.tail = None
-            made.insert(0, prompt)
+        line = prompt[0] if len(prompt) == 1 and prompt[0].tag == html("p") else prompt
+        if is_inline(line):
+            line.tag, line.tail = "prompt", None
+            made.insert(0, line)
         else:
             yield prompt
         yield made
@@ -250,11 +250,8 @@ class _Asked:
         )
 
     def _note(self) -> Element:
-        """What students are told of an answer that nobody marks there: its form, and that it is marked later."""
-        question = self.posed.question
-        form = words(self.lang)["hints"].get(question.kind, question.hint)
-        told = self.words["later_form" if form else "later"].format(form=form[:1].upper() + form[1:])
-        return elements(f"<p><small>{self.pieces.inline(told)}</small></p>")[0]
+        """What students are told of an answer that nobody marks there."""
+        return elements(f"<p><small>{self.pieces.inline(self.words['later'])}</small></p>")[0]
 
     def _feedback(self, name: str, told: str) -> Element:
         block = Element(

@@ -158,7 +158,9 @@ def _close(wrong: Sequence[Interval]) -> Iterator[Interval]:
     """The middle of each interval that shares numbers with one of another price: what lies close to an error is of that error,
     as our marking has it, and not of one that merely comes near."""
     for one in wrong:
-        if any(one.share != other.share and one.low <= other.high and other.low <= one.high for other in wrong):
+        if any(
+            one.share != other.share and one.low <= other.high and other.low <= one.high for other in wrong
+        ):
             half = _CLOSE * (one.high - one.low) / 2
             yield replace(one, low=one.value - half, high=one.value + half)
 

@@ -222,7 +222,12 @@ def page(request, browser, address):
     page = browser.new_page(viewport={"width": 1280, "height": 900})
     page.set_default_timeout(120_000)
     page.elsewhere = []
-    page.on("request", lambda one: None if one.url.startswith((address, "data:", "blob:")) else page.elsewhere.append(one.url))
+    page.on(
+        "request",
+        lambda one: (
+            None if one.url.startswith((address, "data:", "blob:")) else page.elsewhere.append(one.url)
+        ),
+    )
     page.goto(f"{address}/qti_{request.param}.html")
     page.wait_for_function("window.ready")
     yield page
@@ -251,8 +256,9 @@ def test_what_is_typed_is_marked_and_told(page, package):
     page.evaluate(f"load('/package/items/{identifier_of(given)}.xml')")
     boxes = page.locator("qti-text-entry-interaction input, input.text-entry-default")
     assert boxes.count() == 9
-    right, error = given.questions[0].intervals[0], next(
-        one for one in given.questions[1].intervals if not one.is_right and one.says
+    right, error = (
+        given.questions[0].intervals[0],
+        next(one for one in given.questions[1].intervals if not one.is_right and one.says),
     )
     boxes.nth(0).press_sequentially(f"{right.value:.6g}")
     boxes.nth(1).press_sequentially(f"{error.value:.6g}")
