@@ -27,13 +27,14 @@ import threading
 import zipfile
 from pathlib import Path
 
-import coursework
 import pytest
+from qti_answers import items_of, judged, lost_of, recorded, sheets
+from qti_evaluator import Player
+
+import coursework
 from coursework.platforms._qti_item import identifier_of
 from coursework.platforms.platform import platform_of
 from coursework.platforms.pools import of_exercises
-from qti_answers import items_of, judged, lost_of, recorded, sheets
-from qti_evaluator import Player
 
 COURSE = coursework.open_course()
 HERE = Path(__file__).parent

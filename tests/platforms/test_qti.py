@@ -18,8 +18,7 @@ from sweeps import sampled
 import coursework
 from coursework.making.assignment import read_assignment
 from coursework.marking.marking import mark
-from coursework.platforms._qti_item import identifier, identifier_of, item_file
-from coursework.platforms._qti_package import files
+from coursework.platforms._qti_item import identifier, item_file
 from coursework.platforms._qti_tree import QTI_3, QTI_21, decimal, kebab, written
 from coursework.platforms.losses import losses
 from coursework.platforms.pieces import Pieces
