@@ -6,7 +6,7 @@ import io
 import re
 import zipfile
 from dataclasses import replace
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from xml.etree import ElementTree as ET
 
 import pytest
@@ -16,9 +16,11 @@ from qti_evaluator import Player, plain
 from sweeps import sampled
 
 import coursework
+from coursework.gradebook.qti_results import read_results
+from coursework.gradebook.rows import Row, Seen
 from coursework.making.assignment import read_assignment
 from coursework.marking.marking import mark
-from coursework.platforms._qti_item import identifier, item_file
+from coursework.platforms._qti_item import identifier, identifier_of, item_file
 from coursework.platforms._qti_tree import QTI_3, QTI_21, decimal, kebab, written
 from coursework.platforms.losses import losses
 from coursework.platforms.pieces import Pieces
@@ -342,3 +344,33 @@ def test_points_of_an_assignment_are_those_of_its_items(tmp_path):
     test = plain(ET.fromstring(found["test.xml"]))
     assert test.get("title") == "Week 3 & more"
     assert float(test.findall("outcomeDeclaration")[1].findtext("defaultValue/value")) == 11
+
+
+# ------------------------------------------------------------------------ way back
+
+
+def test_what_a_player_reported_of_an_export_is_read_row_by_row():
+    """``recorded/qti_sitting.xml`` is what the qti-sdk reported of a student who sat an exported test."""
+    data = (Path(__file__).parent / "recorded" / "qti_sitting.xml").read_bytes()
+    found = [one for one in read_results(data, "sitting.xml") if not isinstance(one, Seen)]
+    assert all(isinstance(one, Row) for one in found)
+    asked = {"slotted_mechanism", "grashof", "velocity_polygon"}
+    assert {(one.exercise, one.student) for one in found} == {(name, "s3") for name in asked}
+    parts = {part.id for name in asked for part in COURSE[name].spec.parts}
+    assert {one.part for one in found} <= parts
+    recorded = len(re.findall(rb'identifier="RESPONSE_', data))
+    assert len(found) == recorded
+    texts = {one.part: one.answer for one in found}
+    assert "12.5 ; 3" in texts.values()
+    assert texts["linkage_type"] in "abcdefg"
+
+
+def test_identifiers_are_read_as_they_are_written(drawn):
+    from coursework.gradebook.qti_results import _ITEM
+
+    for lang in ("en", "fr"):
+        for given in drawn.pool(lang).items:
+            told = _ITEM.fullmatch(identifier_of(given))
+            sheet = given.handout
+            assert told
+            assert (told["exercise"], told["seed"], told["lang"]) == (sheet.exercise, str(sheet.seed), lang)
