@@ -29,8 +29,12 @@ _RIGHT, _WRONG, _NONE = "right", "wrong", "missing"
 _DIGITS = 6  #: of the right number that a player may show
 #: Letters that a box of a number takes: a comma or a unit is refused as it is typed, and never marked as something else.
 _MASK = "[0-9.eE+-]*"
-#: Letters that a box shows at once, of the widths that players know.
-_WIDTHS = {"usual": 10, "wide": 20, "line": 72}
+#: Letters that a box shows at once, and what players and the style sheet know this width by.
+_WIDTHS = {
+    "usual": (10, "qti-input-width-10"),
+    "wide": (20, "qti-input-width-20"),
+    "line": (72, "line"),
+}
 _LINES = 4  #: of a box of several, where the part says nothing
 
 
@@ -195,11 +199,11 @@ class _Asked:
     def _entry(self) -> Element:
         """The box of a number, or of an answer of one line that is kept as it is typed."""
         question = self.posed.question
-        width = _WIDTHS.get(question.box, _WIDTHS["usual"])
+        letters, width = _WIDTHS.get(question.box, _WIDTHS["usual"])
         attributes = {
             "responseIdentifier": self.named("RESPONSE"),
-            "expectedLength": str(width),
-            "class": f"qti-input-width-{width}",
+            "expectedLength": str(letters),
+            "class": width,
             "placeholderText": self.words["answer"].format(question.number),
             "aria-label": self.words["answer"].format(question.number),
         }
@@ -231,9 +235,11 @@ class _Asked:
             },
         )
         for option in self.posed.options:
-            choice = elements(self.pieces.option(option))
-            choice.tag, choice.attrib = "simpleChoice", {"identifier": choice_name(option, self.posed)}
-            made.append(choice)
+            choice = add(made, "simpleChoice", identifier=choice_name(option, self.posed))
+            label = elements(self.pieces.option(option))
+            if is_inline(label):  # in one piece: there are players that set the pieces of a choice apart
+                label.tag = html("span")
+            choice.append(label)
         return made
 
     def _lines(self) -> Element:

@@ -276,7 +276,9 @@ def test_what_is_typed_is_marked_and_told(page, package):
 
 @needs_players
 @pytest.mark.parametrize("width", [1280, 390])
-@pytest.mark.parametrize("name", ["slotted_mechanism", "velocity_polygon", "serial_joints"])
+@pytest.mark.parametrize(
+    "name", ["slotted_mechanism", "velocity_polygon", "serial_joints", "geometrical_closure", "joint_twist"]
+)
 def test_nothing_hangs_over_and_formulas_are_laid_out(name, width, page, package):
     _Files.package = package(name, "qti3")
     (_, given) = items_of(pool_of(name), "en")[0]

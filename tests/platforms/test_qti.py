@@ -265,6 +265,14 @@ def test_each_language_has_its_package_and_every_item_its_label(drawn, platform)
             assert {one.get("lang") for one in root.iter("math")} == {lang}
 
 
+def test_a_choice_is_one_piece(drawn):
+    """Players lay out the pieces of a choice side by side, and lose the spaces between them."""
+    for data in items(package(drawn, "qti3")).values():
+        for choice in plain(ET.fromstring(data)).iter("simpleChoice"):
+            assert len(choice) == 1
+            assert not (choice.text or "").strip() + (choice[0].tail or "").strip()
+
+
 def test_numbers_are_plain_decimals_compared_by_their_ends(drawn):
     for data in items(package(drawn, "qti3")).values():
         root = plain(ET.fromstring(data))
