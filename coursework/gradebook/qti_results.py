@@ -11,7 +11,7 @@ from coursework.gradebook.rows import Collected, Rejected, Row, Seen, decoded_te
 
 WHAT = "a result of QTI"
 _ITEM = re.compile(
-    r"(?:.*\.)?(?P<exercise>\w+)\.v(?P<version>\w+)\.(?P<seed>[0-9]{1,30})\.(?P<lang>[a-z]{2,3})"
+    r"(?:.*[.-])?(?P<exercise>\w+)[.-]v(?P<version>\w+)[.-](?P<seed>[0-9]{1,30})[.-](?P<lang>[a-z]{2,3})"
 )
 _NUMBERED = re.compile(r"(?:RESPONSE|R|PART)[_-]?(?P<number>[1-9][0-9]*)", re.I)
 _NO_ANSWERS = ("numattempts", "duration", "completionstatus")
@@ -67,7 +67,7 @@ def _item(item: ET.Element, student: str, source: str, warning: str) -> Iterator
     own = [one for one in answers if _named(one, "identifier").casefold() not in _NO_ANSWERS]
     if told is None:
         reason = (
-            "an item is called as exported, set.exercise.v1.4.en: which variant this one is cannot be told"
+            "an item is called as exported, set-exercise-v1-4-en: which variant this one is cannot be told"
         )
         yield from (Rejected(place, reason, {"student": student, "answer": _values(one)}) for one in own)
         return

@@ -23,7 +23,7 @@ _KEPT = {
 _OF_FORMULAS = (
     "display", "alttext", "mathvariant", "stretchy", "form", "fence", "separator", "accent", "accentunder", "lspace", "rspace",
     "width", "columnalign", "rowspacing", "columnspacing", "linethickness", "displaystyle", "scriptlevel",
-    "largeop", "movablelimits", "symmetric", "minsize", "maxsize", "height", "depth",
+    "largeop", "movablelimits", "symmetric", "minsize", "maxsize", "height", "depth", "class", "style",
 )  # fmt: skip
 #: Between two braces: a player that makes a template of what it shows would work out what stands within them.
 _JOINED = "\N{WORD JOINER}"
@@ -80,8 +80,7 @@ class _Reader(HTMLParser):
     def _made(self, tag: str, attributes: dict[str, str]) -> Element | None:
         """The element of a tag; None of one that is no content of QTI."""
         if self._in_formula:
-            names = () if tag == "math" else ("class", "style")
-            kept = {k: v for k, v in attributes.items() if k in _OF_FORMULAS or k in names}
+            kept = {name: value for name, value in attributes.items() if name in _OF_FORMULAS}
             return Element(f"{{{MATHML}}}{tag}", kept)
         if tag == BOX:
             return Element(BOX, attributes)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import groupby
 from xml.etree.ElementTree import Element
 
@@ -28,8 +29,12 @@ _RIGHT, _WRONG, _NONE = "right", "wrong", "missing"
 _DIGITS = 6  #: of the right number that a player may show
 #: Letters that a box of a number takes: a comma or a unit is refused as it is typed, and never marked as something else.
 _MASK = "[0-9.eE+-]*"
-#: Letters that a box shows at once, of the widths that players know.
-_WIDTHS = {"usual": 10, "wide": 20, "line": 72}
+#: Letters that a box shows at once, and what players and the style sheet know this width by.
+_WIDTHS = {
+    "usual": (10, "qti-input-width-10"),
+    "wide": (20, "qti-input-width-20"),
+    "line": (72, "line"),
+}
 _LINES = 4  #: of a box of several, where the part says nothing
 
 
@@ -49,7 +54,7 @@ def identifier_of(item: Item) -> str:
 
 
 def identifier(text: str) -> str:
-    """A text as QTI lets things be called; another for every other text."""
+    """A text as QTI lets things be called: letters, digits, ``_`` and ``-``, and for any other sign its number."""
     name = re.sub(r"[^A-Za-z0-9_-]", lambda found: f"_{ord(found[0]):x}_", text)
     return name if re.match("[A-Za-z_]", name) else f"_{name}"
 
@@ -194,11 +199,11 @@ class _Asked:
     def _entry(self) -> Element:
         """The box of a number, or of an answer of one line that is kept as it is typed."""
         question = self.posed.question
-        width = _WIDTHS.get(question.box, _WIDTHS["usual"])
+        letters, width = _WIDTHS.get(question.box, _WIDTHS["usual"])
         attributes = {
             "responseIdentifier": self.named("RESPONSE"),
-            "expectedLength": str(width),
-            "class": f"qti-input-width-{width}",
+            "expectedLength": str(letters),
+            "class": width,
             "placeholderText": self.words["answer"].format(question.number),
             "aria-label": self.words["answer"].format(question.number),
         }
@@ -210,10 +215,10 @@ class _Asked:
         """An interaction that holds its prompt, or stands below it where that is more than a line."""
         prompt = elements(self.pieces.prompt(self.posed))
         made = self._choices() if self.posed.options else self._lines()
-        if is_inline(prompt):
-            prompt.tag = "prompt"
-            prompt.tail = None
-            made.insert(0, prompt)
+        line = prompt[0] if len(prompt) == 1 and prompt[0].tag == html("p") else prompt
+        if is_inline(line):
+            line.tag, line.tail = "prompt", None
+            made.insert(0, line)
         else:
             yield prompt
         yield made
@@ -230,9 +235,11 @@ class _Asked:
             },
         )
         for option in self.posed.options:
-            choice = elements(self.pieces.option(option))
-            choice.tag, choice.attrib = "simpleChoice", {"identifier": choice_name(option, self.posed)}
-            made.append(choice)
+            choice = add(made, "simpleChoice", identifier=choice_name(option, self.posed))
+            label = elements(self.pieces.option(option))
+            if is_inline(label):  # in one piece: there are players that set the pieces of a choice apart
+                label.tag = html("span")
+            choice.append(label)
         return made
 
     def _lines(self) -> Element:
@@ -249,11 +256,8 @@ class _Asked:
         )
 
     def _note(self) -> Element:
-        """What students are told of an answer that nobody marks there: its form, and that it is marked later."""
-        question = self.posed.question
-        form = words(self.lang)["hints"].get(question.kind, question.hint)
-        told = self.words["later_form" if form else "later"].format(form=form[:1].upper() + form[1:])
-        return elements(f"<p><small>{self.pieces.inline(told)}</small></p>")[0]
+        """What students are told of an answer that nobody marks there."""
+        return elements(f"<p><small>{self.pieces.inline(self.words['later'])}</small></p>")[0]
 
     def _feedback(self, name: str, told: str) -> Element:
         block = Element(
@@ -285,19 +289,23 @@ class _Asked:
         ).strip()  # fmt: skip
 
     def _errors(self) -> Iterator[tuple[str, str, float, str]]:
-        for place, (first, _) in enumerate(self.errors, start=1):
-            yield f"said_{place}", first.verdict, first.share, first.says
+        for some in self.errors:
+            yield self._name(some[0]), some[0].verdict, some[0].share, some[0].says
         for option in self.posed.options:
             if option.says:
                 verdict = "mistake" if option.share > 0 else "wrong"
                 yield f"said_{choice_name(option, self.posed)}", verdict, option.share, option.says
 
-    @property
-    def errors(self) -> list[tuple[Interval, list[Interval]]]:
-        """The intervals of each known error, in the order in which they count, an angle's turns together."""
+    @cached_property
+    def errors(self) -> list[list[Interval]]:
+        """The intervals of the known errors in the order in which they count, an angle's turns together."""
         wrong = [one for one in self.posed.intervals if not one.is_right]
-        groups = groupby(wrong, key=lambda one: (one.verdict, one.share, one.says))
-        return [(some[0], some) for some in (list(members) for _, members in groups)]
+        return [list(some) for _, some in groupby(wrong, key=_told)]
+
+    def _name(self, error: Interval) -> str:
+        """What shows an error: the same of all of its intervals."""
+        told = list(dict.fromkeys(_told(some[0]) for some in self.errors))
+        return f"said_{told.index(_told(error)) + 1}"
 
     # -- what it is worth
 
@@ -325,8 +333,8 @@ class _Asked:
         if self.posed.kind == NUMBER:
             right = [one for one in self.posed.intervals if one.is_right]
             yield self._within(right), 1.0, _RIGHT
-            for place, (first, some) in enumerate(self.errors, start=1):
-                yield self._within(some), first.share, f"said_{place}"
+            for some in self.errors:
+                yield self._within(some), some[0].share, self._name(some[0])
             return
         for option in self.posed.options:
             name = _RIGHT if option.share >= 1 else f"said_{choice_name(option, self.posed)}"
@@ -373,6 +381,10 @@ def _processing(asked: Sequence[_Asked]) -> Element:
     for one in asked:
         add(total, "variable", identifier=one.named("SCORE"))
     return made
+
+
+def _told(error: Interval) -> tuple[str, float, str]:
+    return error.verdict, error.share, error.says
 
 
 def choice_name(option: Option, posed: Posed) -> str:

@@ -6,7 +6,7 @@ An answer that a platform is to know is marked by the marker first: what it is w
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -173,10 +173,16 @@ def _wrong_intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interva
         if one is not None and not any(_same(one, other) for other in found):
             found.append(one)
     shared = [one for one in found if any(_meet(one, other, part) for other in found if other is not one)]
-    told = {one: _wrong_interval(variant, part, one.value, one.half, _ALL_DIGITS) for one in shared}
+    told = {one: _exactly(one, variant, part) for one in shared}
     yield from (one.core for one in told.values() if one is not None)
     kept = [one for one in (told.get(one, one) for one in found) if one is not None]
     yield from sorted(kept, key=lambda one: _rank(one, key, part))
+
+
+def _exactly(interval: Interval, variant: Variant, part: Part) -> Interval | None:
+    """An error as its value in many digits is marked; the sentence has few where it is the same."""
+    made = _wrong_interval(variant, part, interval.value, interval.half, _ALL_DIGITS)
+    return interval if made is not None and made.verdict == interval.verdict else made
 
 
 def _meet(one: Interval, other: Interval, part: Part) -> bool:
@@ -229,6 +235,8 @@ def _wrong_interval(
     made = marked_alone(variant, part, text)
     if made.verdict == "correct" or not made.verdict.startswith(("mistake:", "slip:")):
         return None
+    if value and abs(value) <= half and marked_alone(variant, part, "0").verdict != made.verdict:
+        return None  # a nought earns nothing, and an interval has no hole
     return Interval(value - half, value + half, value, made.points / made.out_of, made.says, made.verdict)
 
 
