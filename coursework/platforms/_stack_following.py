@@ -1,0 +1,156 @@
+"""A right method from a student's own earlier answers, where Maxima can be told it: the formula in one line."""
+
+from __future__ import annotations
+
+import ast
+import copy
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from coursework.course.variant import Variant
+from coursework.errors import CourseworkError
+from coursework.model import Part
+from coursework.platforms._maxima import Unprintable, number, printed
+from coursework.quantities.formula_code import formula_of
+
+_LONGEST = 600  #: characters of a formula that a teacher may still read
+_TRIED = (1.07, 0.9)  #: how wrong earlier answers are where a formula is proved
+_SAME = 1e-9
+
+
+@dataclass(frozen=True)
+class Following:
+    """How an answer follows from earlier ones."""
+
+    maxima: str  #: an expression of ``v1``, ``v2``, …, the earlier answers by their number
+    earlier: tuple[int, ...]  #: the numbers of these
+
+
+def following(variant: Variant, part: Part) -> Following | None:
+    """How a part's answer follows from earlier ones; None where that is no line of Maxima."""
+    earlier = _earlier(variant, part)
+    if not earlier:
+        return None
+    formulas = _Formulas(variant, {p.quantity: place for place, p in earlier.items()})
+    try:
+        maxima = formulas.of(part.quantity, first=True)
+    except (Unprintable, CourseworkError):
+        return None
+    used = tuple(sorted(formulas.used))
+    if not used or len(maxima) > _LONGEST:
+        return None
+    found = Following(maxima, used)
+    return found if _is_proved(variant, part, formulas, earlier) else None
+
+
+def _earlier(variant: Variant, part: Part) -> dict[int, Part]:
+    """The earlier parts that this one may follow from, by their number."""
+    if not part.sort.follows or not part.sort.is_scalar or part.judge:
+        return {}
+    before = variant.parts[: variant.parts.index(part)]
+    depending = variant.key.solution.depending_on
+    return {
+        place: p
+        for place, p in enumerate(before, start=1)
+        if p.sort.is_followed
+        and p.sort.is_scalar
+        and not p.choices
+        and not p.judge
+        and p.quantity != part.quantity
+        and part.quantity in depending(p.quantity)
+    }
+
+
+class _Formulas:
+    """The formulas of a variant, with numbers for whatever hangs on no earlier answer."""
+
+    def __init__(self, variant: Variant, earlier: Mapping[str, int]):
+        self._variant, self._earlier = variant, earlier
+        self.used: set[int] = set()
+        self.trees: list[tuple[ast.expr, Mapping[str, Any]]] = []
+        depending = variant.key.solution.depending_on
+        self._moving = {q for answered in earlier for q in depending(answered)}
+
+    def of(self, quantity: str, *, first: bool = False) -> str:
+        if not first and quantity in self._earlier:
+            self.used.add(self._earlier[quantity])
+            return f"v{self._earlier[quantity]}"
+        if quantity not in self._moving:
+            return self._constant(quantity)
+        formula = formula_of(self._variant.key.solution.graph.node(quantity).function)
+        if formula is None:
+            raise Unprintable(quantity)
+        names = set(formula.names)
+
+        def name(found: str) -> str:
+            if found not in names:
+                raise KeyError(found)
+            return self.of(found)
+
+        return f"({printed(copy.deepcopy(formula.tree), name, formula.space)})"
+
+    def _constant(self, quantity: str) -> str:
+        variant = self._variant
+        if quantity in variant.used:
+            value = variant.used[quantity]
+        else:
+            graph = variant.key.solution.graph
+            value = graph.evaluate((quantity,), variant.used, variant.effects)[quantity]
+        try:
+            return number(value.item() if hasattr(value, "item") else value)
+        except (TypeError, ValueError) as fault:
+            raise Unprintable(quantity) from fault
+
+
+def _is_proved(variant: Variant, part: Part, formulas: _Formulas, earlier: Mapping[int, Part]) -> bool:
+    """Whether the formula gives what our marking takes for right from the same earlier answers."""
+    for factor in _TRIED:
+        own = {place: float(variant.key.reference[p.quantity]) * factor for place, p in earlier.items()}
+        expected = follows(variant, part, own)
+        found = _evaluated(formulas.of(part.quantity, first=True), own)
+        if expected is None or found is None or not math.isclose(found, expected, rel_tol=_SAME, abs_tol=_SAME):
+            turn = part.sort.turn
+            if not (turn and expected is not None and found is not None):
+                return False
+            if abs((found - expected + turn / 2) % turn - turn / 2) > _SAME * turn:
+                return False
+    return True
+
+
+def follows(variant: Variant, part: Part, own: Mapping[int, float]) -> float | None:
+    """What our marking takes for right from earlier answers, by their number."""
+    quantities = {variant.parts[place - 1].quantity: value for place, value in own.items()}
+    try:
+        given = {**variant.used, **quantities}
+        value = variant.key.solution.graph.evaluate((part.quantity,), given, variant.effects)[part.quantity]
+        return float(value)
+    except (CourseworkError, TypeError, ValueError):
+        return None
+
+
+def _evaluated(maxima: str, own: Mapping[int, float]) -> float | None:
+    """The value of such an expression, computed here."""
+    import cmath
+
+    space: dict[str, Any] = {
+        "sin": cmath.sin, "cos": cmath.cos, "tan": cmath.tan, "asin": cmath.asin, "acos": cmath.acos,
+        "atan": cmath.atan, "exp": cmath.exp, "log": cmath.log, "sqrt": cmath.sqrt,
+        "atan2": lambda y, x: math.atan2(complex(y).real, complex(x).real),
+        "carg": lambda z: cmath.phase(z), "cabs": abs, "realpart": lambda z: complex(z).real,
+        "imagpart": lambda z: complex(z).imag, "conjugate": lambda z: complex(z).conjugate(),
+        "signum": lambda x: math.copysign(1.0, complex(x).real), "min": lambda a, b: min(complex(a).real, complex(b).real),
+        "max": lambda a, b: max(complex(a).real, complex(b).real), "ceiling": lambda x: math.ceil(complex(x).real),
+        "PI": math.pi, "I": 1j, **{f"v{place}": value for place, value in own.items()},
+    }  # fmt: skip
+    text = maxima.replace("%pi", "PI").replace("%i", "I").replace("^", "**")
+    try:
+        value = complex(eval(compile(text, "<formula>", "eval"), {"__builtins__": {}}, space))  # of our own print
+    except (ArithmeticError, ValueError):
+        return None
+    return value.real if abs(value.imag) <= _SAME * max(1.0, abs(value)) else None
+
+
+def values(variant: Variant, answers: Sequence[float | None]) -> dict[int, float]:
+    return {place: value for place, value in enumerate(answers, start=1) if value is not None}
