@@ -138,8 +138,18 @@ def test_what_a_student_wrote_is_text_in_the_page_that_staff_see(tmp_path):
 def issued():
     students = {
         "Ada Byron": {"E-mail": "Ada.B@uni.example", "Number": "101", "seat": "7"},
-        "Ben Adda": {"E-mail": "ben@uni.example", "Number": "102", "seat": "101"},
-        "Ben Other": {"E-mail": "ben@else.example", "Number": "103", "seat": "8"},
+        "Ben Adda": {
+            "E-mail": "ben@uni.example",
+            "Number": "102",
+            "seat": "101",
+            "parents' mail": "home@else.example",
+        },
+        "Ben Other": {
+            "E-mail": "ben@else.example",
+            "Number": "103",
+            "seat": "8",
+            "parents' mail": "home@else.example",
+        },
     }
     record = coursework.open_course()["grashof"].variant(1, "en").record
     items = [{"student": name, "record": record} for name in students]
@@ -155,6 +165,7 @@ def issued():
         ("BEN  ADDA", "Ben Adda"),
         ("ben@else.example", "Ben Other"),
         ("ben", None),
+        ("home@else.example", None),
         ("7", None),
         ("8", None),
         ("", None),
