@@ -43,6 +43,13 @@ def commands(folder, *all_words):
     return told.stderr
 
 
+def python(folder, code):
+    """What a piece of Python prints where nbgrader is."""
+    told = _told(folder, ["-c", code], folder)
+    assert told.returncode == 0, told.stderr[-3000:]
+    return told.stdout
+
+
 def nbgrader(folder, *words, cwd=None):
     """A command of nbgrader, whatever it says."""
     return _told(folder, ["-m", "nbgrader", *map(str, words)], cwd or folder)

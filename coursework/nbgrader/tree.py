@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -47,11 +47,18 @@ class Collected:
 
     @property
     def papers(self) -> tuple[tuple[Issue, ...], ...]:
-        """The issues of each student, in the order of the exercises; a second sitting is none of nbgrader's."""
+        """The issues of each student, in the order of the exercises."""
+        return self._papers(issue for issue in self.issues if issue.sitting == 1)
+
+    @property
+    def own(self) -> tuple[tuple[Issue, ...], ...]:
+        """The papers that have a notebook of their own: each, where variants differ, and those of who makes up."""
+        return self._papers(issue for issue in self.issues if self.is_own or issue.sitting > 1)
+
+    def _papers(self, issues: Iterable[Issue]) -> tuple[tuple[Issue, ...], ...]:
         found: dict[str, list[Issue]] = {}
-        for issue in self.issues:
-            if issue.sitting == 1:
-                found.setdefault(issue.stem, []).append(issue)
+        for issue in issues:
+            found.setdefault(issue.stem, []).append(issue)
         return tuple(map(tuple, found.values()))
 
     @property
@@ -136,10 +143,9 @@ def _assignment(renderer: Renderer, one: Collected) -> Iterator[File]:
     name = f"{one.name}.ipynb"
     first = one.papers[0]
     yield File(FOLDER / "source" / one.name / name, partial(_class_notebook, renderer, one), anywhere=True)
-    if one.is_own:
-        for paper in one.papers:
-            path = FOLDER / "own" / one.name / paper[0].stem / name
-            yield File(path, partial(_own_notebook, renderer, one, paper), anywhere=True)
+    for paper in one.own:
+        path = FOLDER / "own" / one.name / paper[0].stem / name
+        yield File(path, partial(_own_notebook, renderer, one, paper), anywhere=True)
     content = issued_content(one.issues, one.assignment)
     yield File(FOLDER / "issued" / f"{one.name}.json", lambda: json_text(content).encode("utf-8"))
     yield File(FOLDER / f"{one.name}.md", lambda: _go_on(one, first[0].langs[0]).encode("utf-8"))
@@ -175,8 +181,6 @@ def _notebook(
 
 def _paper(one: Collected, paper: Sequence[Issue], *, student: str = "") -> IssuedPaper:
     """The paper of a student, or that which is nobody's."""
-    from dataclasses import replace
-
     assert one.assignment is not None
     whole = papers(one.assignment, paper, polygons=False)[0]
     if student:

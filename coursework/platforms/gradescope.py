@@ -15,7 +15,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import coursework
 from coursework.course.builtin import builtin_root
 from coursework.course.folder import Folder
 from coursework.errors import BadInput
@@ -133,7 +132,7 @@ def _zipped(folder: Folder, issued: Path, lang: str) -> bytes:
         _put(file, "run_autograder", _RUN.format(stopped=_stopped(lang)), run=True)
         _put(file, SETTINGS, json.dumps(settings, indent=1) + "\n")
         _put(file, "issued.json", issued.read_bytes())
-        package = Path(coursework.__file__).parent
+        package = Path(__file__).parents[1]
         for path in _files(package, skip="_course"):
             _put(file, f"coursework/{path.relative_to(package).as_posix()}", path.read_bytes())
         for name, root in (

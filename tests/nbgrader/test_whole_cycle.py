@@ -17,6 +17,7 @@ from nbgrader_course import (
     grade_cells,
     nbgrader,
     points,
+    python,
     released,
     submit,
 )
@@ -391,3 +392,37 @@ def test_through_the_exchange_from_release_to_the_points(tmp_path):
     done(folder, "autograde", NAME)
     found, _ = points(folder)
     assert [sum(own.values()) for own in found.values()] == [9.0]
+
+
+# ----------------------------------------------------------------- configuration
+
+
+def configured(lines, folder):
+    """The steps of a course whose configuration says these lines before ours."""
+    code = (
+        "import json\nfrom traitlets.config import Config\nfrom coursework.nbgrader import configure\nc = Config()\n"
+        "from nbgrader.preprocessors import *\n"
+        f"{lines}\n"
+        f"for _ in range(2): configure(c, {str(folder)!r}, course='../mine')\n"
+        "steps = {n: [one.__name__ for one in c.Autograde[n]] for n in ('sanitize_preprocessors', 'autograde_preprocessors')}\n"
+        "steps['preprocessors'] = [one.__name__ for one in c.GenerateAssignment.preprocessors]\n"
+        "print(json.dumps([steps, c.MarkAnswers.folder, c.MarkAnswers.course]))\n"
+    )
+    return json.loads(python(folder, code).splitlines()[-1])
+
+
+def test_our_steps_stand_in_the_places_of_nbgrader_s_and_the_teacher_s_stay(tmp_path):
+    steps, folder, course = configured("", tmp_path)
+    assert folder == str(tmp_path.resolve())
+    assert course == str(tmp_path.resolve().parent / "mine")
+    assert steps["sanitize_preprocessors"][:2] == ["RestoreCells", "ClearOutput"]
+    assert steps["autograde_preprocessors"][0] == "MarkAnswers"
+    assert "SaveMarks" in steps["autograde_preprocessors"]
+    assert not {"Execute", "SaveAutoGrades"} & set(steps["autograde_preprocessors"])
+    assert "KeepAnswers" in steps["preprocessors"]
+    assert "ClearSolutions" not in steps["preprocessors"]
+    own = "c.Autograde.autograde_preprocessors = [LimitOutput, Execute, SaveAutoGrades]\nc.GenerateAssignment.preprocessors.append(LimitOutput)"
+    steps, *_ = configured(own, tmp_path)
+    assert steps["autograde_preprocessors"] == ["LimitOutput", "MarkAnswers", "SaveMarks"]
+    assert steps["preprocessors"][-1] == "LimitOutput"
+    assert "KeepAnswers" in steps["preprocessors"]
