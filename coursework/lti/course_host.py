@@ -104,14 +104,14 @@ class CourseHost:
         return Offer(f"exercise:{name}", exercise.title(spoken), self._points(AskedExercise(name)), known)
 
     def _points(self, asked: AskedExercise) -> float:
-        """What an exercise is worth: as its parts say that are asked usually."""
+        """What an exercise is worth."""
         if isinstance(asked.points, float):
             return asked.points
-        spec = self.course[asked.name].spec
+        # Which parts are asked may hang on the given values; one variant stands for them all.
+        exercise = self.course[asked.name]
+        parts = exercise.variant(asked.seed or 0, exercise.languages[0], asked.parts).parts
         own = asked.points if isinstance(asked.points, Mapping) else {}
-        ids = set(asked.parts or ()) & {part.id for part in spec.parts}
-        asks = [part for part in spec.parts if (part.id in ids if ids else not part.by_request)]
-        return float(sum(own.get(part.id, part.points) for part in asks))
+        return float(sum(own.get(part.id, part.points) for part in parts))
 
     # ---------------------------------------------------------------------- pages
 
@@ -193,15 +193,15 @@ class CourseHost:
         more = [(f"{visit.home}/sheet", said["again"]), (visit.home, said["to_class"])] if preview else []
         if not preview and not over:
             more.append((f"{visit.home}?again=1", said["again"]))
-        if visit.launch.return_url:
-            more.append((visit.launch.return_url, said["back"]))
         notes = (
             [said["preview"]]
             if preview
             else [self._tried(visit, last), *self._rules(visit, wanted, len(tries)), self._sent(visit)]
         )
         return self.pages.feedback(
-            told, Surrounding("", "", notes=tuple(notes), more=tuple(more)), alone=self._is_alone(wanted)
+            told,
+            Surrounding("", "", notes=tuple(notes), more=tuple(more), leave=visit.launch.return_url),
+            alone=self._is_alone(wanted),
         )
 
     def _tried(self, visit: Visit, last: Try) -> str:
@@ -291,7 +291,7 @@ class CourseHost:
             for number, line in enumerate(one.lines.values(), 1):
                 if line.verdict == "unreadable":
                     called = f"{number}" if self._is_alone(wanted) else f"{place}.{number}"
-                    found.append(form.format(called, _as_markdown(line.answer), line.says))
+                    found.append(form.format(called, line.says))
         return found
 
     def _try(
@@ -501,13 +501,6 @@ def _number(form: Form) -> int:
 
 def _number_text(number: float, lang: str) -> str:
     return localise(plain(round(number, 3)), lang)
-
-
-def _as_markdown(text: str) -> str:
-    """A text as it was typed, within a sentence of Markdown."""
-    return "".join(
-        f"\\{c}" if c in "\\`*_{}[]<>()#+-.!|$~^" else " " if c.isspace() else c for c in text[:200]
-    )
 
 
 def _file(name: str, kind: str, data: bytes) -> Reply:

@@ -29,6 +29,7 @@ class Form:
     unread: tuple[str, ...] = ()  #: of answers that could not be read
     may_insist: bool = False
     more: tuple[tuple[str, str], ...] = ()  #: addresses to go on to, each with its words
+    leave: str = ""  #: address of the course, in place of all that its frame is in
 
 
 class Pages:

@@ -122,7 +122,6 @@ class _Service:
         self._secret = self.keys.secret
         self._login = Login(settings, self._secret, clock)
         self._rosters: dict[str, tuple[float, list[Member]]] = {}
-        self._secure = settings.url.startswith("https://")
 
     # ------------------------------------------------------------------ answering
 
@@ -225,22 +224,15 @@ class _Service:
         self._pass_on(self._visit(launch, name))
         response = RedirectResponse(f"{self.settings.url}/at/{name}", 303)
         self._set_cookie(response, _COOKIE, secret, f"/at/{name}", self.settings.session_seconds)
-        response.delete_cookie(
-            cookie_of(state),
-            path=self._path("/launch"),
-            secure=self._secure,
-            httponly=True,
-            samesite="none" if self._secure else "lax",
-        )
+        self._set_cookie(response, cookie_of(state), "", "/launch", 0)
         return response
 
     def _set_cookie(self, response: Response, name: str, value: str, path: str, seconds: float) -> None:
-        """A cookie that is sent in the frame of another site too, and there kept for that site alone. Without https, which
-        is for trials on one's own machine, no browser would take such a one."""
-        where = "SameSite=None; Secure; Partitioned" if self._secure else "SameSite=Lax"
+        """A cookie that is sent in the frame of another site too, and there kept for that site alone. Browsers take such a
+        one from this machine in plain http as well."""
         response.headers.append(
             "set-cookie",
-            f"{name}={value}; Path={self._path(path)}; Max-Age={int(seconds)}; HttpOnly; {where}",
+            f"{name}={value}; Path={self._path(path)}; Max-Age={int(seconds)}; HttpOnly; SameSite=None; Secure; Partitioned",
         )
 
     def _path(self, path: str) -> str:
