@@ -32,7 +32,8 @@ _SCRIPT = Path(__file__).with_name("moodle_lti.php")
 _COMMAND = [sys.executable, "-P", "-c", "import sys; from coursework.cli import main; main()"]
 
 pytestmark = pytest.mark.skipif(
-    not (MOODLE and CHROMIUM), reason="COURSEWORK_MOODLE and COURSEWORK_CHROMIUM name no Moodle and no Chromium"
+    not (MOODLE and CHROMIUM),
+    reason="COURSEWORK_MOODLE and COURSEWORK_CHROMIUM name no Moodle and no Chromium",
 )
 
 
@@ -44,7 +45,9 @@ def ask(verb, **what):
 
 
 def lti(folder, *arguments):
-    done = subprocess.run([*_COMMAND, "lti", *arguments], cwd=folder, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [*_COMMAND, "lti", *arguments], cwd=folder, capture_output=True, text=True, check=False
+    )
     return done.returncode, done.stdout + done.stderr
 
 
@@ -62,7 +65,9 @@ def site(tmp_path_factory):
         assert lti(folder, "keys", "new")[0] == 0
         told = ["--client-id", made["client_id"], "--deployment", made["deployment"]]
         assert lti(folder, "platform", "moodle", root, "--url", url, *told)[0] == 0
-        service = subprocess.Popen([*_COMMAND, "lti", "serve", "--port", str(port)], cwd=folder, stderr=subprocess.PIPE, text=True)
+        service = subprocess.Popen(
+            [*_COMMAND, "lti", "serve", "--port", str(port)], cwd=folder, stderr=subprocess.PIPE, text=True
+        )
         _wait_for(f"{url}/jwks")
         yield {"root": root, "url": url, "folder": folder, **made}
     finally:
@@ -98,7 +103,9 @@ class Person:
 
     def __init__(self, chromium, site, who, password=PASSWORD, width=1280, height=1000):
         self.site = site
-        self.page = chromium.new_context(viewport={"width": width, "height": height}, locale="en-GB").new_page()
+        self.page = chromium.new_context(
+            viewport={"width": width, "height": height}, locale="en-GB"
+        ).new_page()
         self.page.set_default_timeout(60_000)
         self.page.goto(f"{site['root']}/login/index.php")
         self.page.fill("#username", who)
@@ -143,14 +150,20 @@ def answer(frame, wrong=()):
         if part.choices:
             frame.check(f"input[name='{part.id}'][value='{variant.letters(part)[value]}']")
         else:
-            frame.fill(f"input[name='{part.id}']", f"{value * (-1 if part.id in wrong else 1):.6g}".replace(".", ","))
+            frame.fill(
+                f"input[name='{part.id}']", f"{value * (-1 if part.id in wrong else 1):.6g}".replace(".", ",")
+            )
     return sum(part.points for part in variant.parts)
 
 
 def arrived(person, ended=lambda grade: True):
     """The grade of a person, once Moodle has one."""
     for _ in range(60):
-        found = [one for one in ask("grades", course=COURSE) if one["type"] == "mod" and one["user"] == person and one["grade"] is not None]
+        found = [
+            one
+            for one in ask("grades", course=COURSE)
+            if one["type"] == "mod" and one["user"] == person and one["grade"] is not None
+        ]
         if found and ended(found[0]):
             return found[0]
         time.sleep(0.5)
@@ -164,7 +177,9 @@ def test_moodle_gives_its_keys_and_a_token(site):
 
 def test_a_link_is_picked_opened_answered_and_graded(site, chromium):
     teacher = Person(chromium, site, f"{COURSE}_teacher")
-    teacher.page.goto(f"{site['root']}/course/modedit.php?add=lti&type=0&course={site['course']}&section=1&typeid={site['type']}")
+    teacher.page.goto(
+        f"{site['root']}/course/modedit.php?add=lti&type=0&course={site['course']}&section=1&typeid={site['type']}"
+    )
     teacher.page.click("text=Select content")
     frame = teacher.tool()
     frame.fill("#q", "coulisse")
@@ -217,7 +232,14 @@ def test_a_link_is_picked_opened_answered_and_graded(site, chromium):
 
 
 def test_a_student_reads_french_where_moodle_does(site, chromium):
-    made = ask("link", course=COURSE, type=site["type"], name=f"Coulisse {time.time_ns() % 10000}", custom=f"exercise={NAME}", points=9)
+    made = ask(
+        "link",
+        course=COURSE,
+        type=site["type"],
+        name=f"Coulisse {time.time_ns() % 10000}",
+        custom=f"exercise={NAME}",
+        points=9,
+    )
     assert made["module"]
     bob = Person(chromium, site, f"{COURSE}_bob", width=390, height=844)
     bob.page.goto(f"{site['root']}/mod/lti/view.php?id={made['module']}&lang=fr")
