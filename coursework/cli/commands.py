@@ -25,6 +25,7 @@ COMMANDS = {
     "gradebook": ("gradebooks", "gradebook"),
     "lesson": ("teach", "lesson"),
     "list": ("look", "list_exercises"),
+    "lti": ("lti", "lti"),
     "new": ("author", "new"),
     "notebook": ("teach", "notebook"),
     "progress": ("study", "progress"),

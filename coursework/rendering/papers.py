@@ -192,10 +192,10 @@ def page(folders: Sequence[Path], paper: AnyPaper, size: str = "a4") -> str:
     names = context(paper, "html.j2", partial(render, env))
     if isinstance(paper, Paper):
         names["keeping"] = keeping(paper.handouts, heading.student, heading.lang, numbered=True)
-    return render(env, f"{TEMPLATES[type(paper)]}.html.j2", names | {"paper": size, "image": _image})
+    return render(env, f"{TEMPLATES[type(paper)]}.html.j2", names | {"paper": size, "image": image})
 
 
-def _image(logo: Logo) -> Markup:
+def image(logo: Logo) -> Markup:
     data = base64.b64encode(logo_svg(logo).encode()).decode()
     return Markup(f'<img class="logo" src="data:image/svg+xml;base64,{data}" alt="{escape(logo.alt)}">')
 

@@ -1,0 +1,463 @@
+"""Commands of the LTI 1.3 service: lti platform, keys, serve, scores, roster, forget."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+import click
+
+from coursework.cli.options import DONE, FOUND, Whole, json_option, opened, tell
+from coursework.cli.printing import print_json, print_table
+from coursework.errors import BadInput, counted, nearest
+
+if TYPE_CHECKING:
+    from coursework.lti.settings import Platform, Settings
+
+_LIBRARIES = ("cryptography", "httpx", "jwt", "starlette", "uvicorn")
+KINDS = ("moodle", "canvas", "other")
+
+folder_option = click.option(
+    "--in",
+    "folder",
+    type=click.Path(path_type=Path, file_okay=False),
+    default="lti",
+    show_default=True,
+    help="Folder of the platforms, the keys and the data.",
+)
+
+
+def _ready() -> None:
+    """Say which library is missing before anything is begun."""
+    from coursework.system.extras import library
+
+    for name in _LIBRARIES:
+        library(name, "LTI needs", "lti")
+
+
+@click.group()
+def lti() -> None:
+    """Open exercises from a learning platform and send points back, by LTI 1.3.
+
+    Begin with 'lti keys new', 'lti platform moodle https://…' and 'lti serve'.
+    """
+
+
+# --------------------------------------------------------------------- platform
+
+
+@lti.command()
+@click.argument("kind", required=False, metavar="[moodle|canvas|other]")
+@click.argument("site", required=False)
+@folder_option
+@click.option("--client-id", help="By which the platform knows this tool.")
+@click.option(
+    "--deployment", "deployments", multiple=True, help="A deployment ID; may be told several times."
+)
+@click.option("--url", help="Where browsers find this service: https://exercises.example.org.")
+@click.option("--name", default="", help="What logs call the platform.")
+@click.option("--issuer", help="Unless the platform's kind says it.")
+@click.option("--auth-url", help="Unless the platform's kind says it.")
+@click.option("--token-url", help="Unless the platform's kind says it.")
+@click.option("--jwks-url", help="Unless the platform's kind says it.")
+@click.option(
+    "--assignment",
+    "assignments",
+    multiple=True,
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="An assignment's file that links may open.",
+)
+@click.option("--check", is_flag=True, help="Ask the platforms for their keys, and for a token.")
+@json_option
+def platform(
+    kind: str | None, site: str | None, folder: Path, client_id: str | None, deployments: Sequence[str], url: str | None, name: str,
+    assignments: Sequence[Path], check: bool, as_json: bool, **addresses: str | None,
+) -> int:  # fmt: skip
+    """Write a platform down, or list those that are known.
+
+    First, without --client-id, it tells what to fill in on the platform's registration page; the platform then shows the
+    client ID and the deployment ID.
+    """
+    _ready()
+    from dataclasses import replace
+
+    from coursework.lti.settings import checked_url, read_settings
+
+    settings = read_settings(folder)
+    settings = replace(settings, url=checked_url(url, "--url")) if url else settings
+    if assignments:
+        known = dict.fromkeys([*settings.assignments, *(path.resolve() for path in assignments)])
+        settings = replace(settings, assignments=tuple(known))
+    if kind is None:
+        if url or assignments:
+            _write(settings)
+        return _list(settings, check, as_json)
+    added = _platform(kind, site, client_id, deployments, name, addresses)
+    if added is None:
+        _write(settings)
+        _tell_registration(settings, kind)
+        return DONE
+    from coursework.lti.settings import with_platform
+
+    settings = with_platform(settings, added)
+    _write(settings)
+    click.echo(
+        f"{settings.folder / 'platforms.toml'} knows {added.name} ({added.issuer}, client {added.client_id})"
+    )
+    return _list(settings, check, as_json) if check else DONE
+
+
+def _platform(
+    kind: str,
+    site: str | None,
+    client_id: str | None,
+    deployments: Sequence[str],
+    name: str,
+    addresses: dict[str, str | None],
+) -> Platform | None:
+    """The platform that is told; none as long as it has not said its client ID."""
+    from coursework.lti.settings import KINDS as known
+    from coursework.lti.settings import Platform, checked_url, origin
+
+    if kind not in KINDS:
+        raise BadInput(f"no kind of platform {kind!r}{nearest(kind, KINDS)}")
+    if site is None:
+        raise BadInput(f"where is it? coursework lti platform {kind} https://{kind}.example.org")
+    base = checked_url(site, "the site")
+    told: dict[str, Any] = known[kind](base) if kind in known else {"issuer": base}
+    told |= {key: text for key, text in addresses.items() if text}
+    if client_id is None and not deployments:
+        return None
+    if not client_id or not deployments:
+        raise BadInput("a platform has a --client-id and a --deployment; its registration page shows both")
+    for key in ("auth_url", "token_url", "jwks_url"):
+        if not told.get(key):
+            raise BadInput(f"--{key.replace('_', '-')} is missing, which {kind} does not say")
+        told[key] = checked_url(str(told[key]), f"--{key.replace('_', '-')}")
+    origins = tuple(origin(checked_url(one, "the site")) for one in told.pop("origins", ()))
+    host = urlsplit(base).hostname or base
+    return Platform(
+        name=name or host, client_id=client_id, deployments=tuple(deployments), origins=origins, **told
+    )
+
+
+def _write(settings: Settings) -> None:
+    from coursework.lti.settings import FILE, as_toml
+    from coursework.system.writing import writing
+
+    with writing(settings.folder):
+        settings.folder.mkdir(parents=True, exist_ok=True)
+        part = settings.folder / f"{FILE}.part"
+        part.write_text(as_toml(settings), "utf-8")
+        part.replace(settings.folder / FILE)
+
+
+def _tell_registration(settings: Settings, kind: str) -> None:
+    """What to fill in on the page where a platform registers a tool."""
+    url = settings.url or "https://WHERE-THIS-SERVICE-IS"
+    click.echo("On the platform, register an LTI 1.3 tool with:")
+    rows = [
+        ("tool URL", f"{url}/launch"),
+        ("initiate login URL", f"{url}/login"),
+        ("redirection URI", f"{url}/launch"),
+        ("public keyset URL", f"{url}/jwks"),
+        ("content selection (deep linking) URL", f"{url}/launch"),
+        ("services", "grades (with columns), names and roles"),
+        ("privacy", "share the name; the e-mail where the roster is to have it"),
+    ]
+    for what, value in rows:
+        click.echo(f"  {what:<38}{value}")
+    click.echo(
+        f"It then shows a client ID and a deployment ID: coursework lti platform {kind} … --client-id ID --deployment ID"
+    )
+    if not settings.url:
+        tell(["say where browsers find this service: --url https://exercises.example.org"])
+
+
+def _list(settings: Settings, check: bool, as_json: bool) -> int:
+    from dataclasses import asdict
+
+    found = {one: _checked(settings, one) if check else "" for one in settings.platforms}
+    if as_json:
+        print_json(
+            [
+                {**asdict(one), **({"answers": not why, "said": why} if check else {})}
+                for one, why in found.items()
+            ]
+        )
+    elif not found:
+        click.echo(
+            f"no platform in {settings.folder}: coursework lti platform moodle https://moodle.example.org"
+        )
+    else:
+        rows = [
+            {
+                "platform": one.name,
+                "issuer": one.issuer,
+                "client": one.client_id,
+                "deployments": ", ".join(one.deployments),
+                **({"answers": why or "yes"} if check else {}),
+            }
+            for one, why in found.items()
+        ]
+        print_table(rows, settings.url)
+    return FOUND if any(found.values()) else DONE
+
+
+def _checked(settings: Settings, one: Platform) -> str:
+    """What is wrong with a platform; nothing where it gives its keys, and a token for ours."""
+    import httpx
+
+    from coursework.errors import CourseworkError
+    from coursework.lti.keys import KeyFolder
+    from coursework.lti.services import SCORE, Services
+
+    with httpx.Client(timeout=8.0, trust_env=False) as client:
+        try:
+            answer = client.get(one.jwks_url)
+            if not answer.is_success or not answer.json().get("keys"):
+                return f"no keys at {one.jwks_url}: it answers {answer.status_code}"
+            Services(client, KeyFolder(settings.folder / "keys")).token(one, [SCORE])
+        except (httpx.HTTPError, ValueError, AttributeError) as fault:
+            return f"{one.jwks_url}: {type(fault).__name__}"
+        except CourseworkError as fault:
+            return f"{fault}; can it read {settings.url}/jwks?"
+    return ""
+
+
+# ------------------------------------------------------------------------- keys
+
+
+@lti.command()
+@click.argument("what", default="list", metavar="[list|new|rotate|retire]")
+@click.argument("kid", required=False)
+@folder_option
+@json_option
+def keys(what: str, kid: str | None, folder: Path, as_json: bool) -> None:
+    """Make the tool's key, another one, list them, or take an old one away.
+
+    'rotate' makes a key that signs from now on; the one before stays public, since platforms keep keys for a while, until
+    'retire KID' takes it away.
+    """
+    _ready()
+    from coursework.lti.keys import KeyFolder
+
+    kept = KeyFolder(folder / "keys")
+    if what not in ("list", "new", "rotate", "retire"):
+        raise BadInput(
+            f"keys knows list, new, rotate and retire; found {what!r}{nearest(what, ('list', 'new', 'rotate', 'retire'))}"
+        )
+    if (kid is None) == (what == "retire"):
+        raise BadInput(
+            "which key? coursework lti keys retire KID" if what == "retire" else f"'keys {what}' takes no key"
+        )
+    if what == "new" and kept.keys:
+        raise BadInput(f"{kept.folder} has a key already; 'coursework lti keys rotate' makes another")
+    if what in ("new", "rotate"):
+        click.echo(f"{kept.new().kid} signs from now on")
+    elif what == "retire":
+        click.echo(f"{kept.retire(kid or '').kid} is taken away: what it signed is refused from now on")
+    else:
+        rows = [
+            {"key": one.kid, "made": one.made, "signs": "yes" if one == kept.keys[-1] else ""}
+            for one in kept.keys
+        ]
+        if as_json:
+            print_json(rows)
+        elif rows:
+            print_table(rows, "")
+        else:
+            click.echo(f"no key in {kept.folder}: coursework lti keys new")
+
+
+# ------------------------------------------------------------------------ serve
+
+
+@lti.command()
+@folder_option
+@click.option("--host", default="127.0.0.1", show_default=True, help="Where to listen.")
+@click.option("--port", type=Whole(1), default=8700, show_default=True)
+@click.option("--url", help="Where browsers find it, where platforms.toml does not say it.")
+@click.option(
+    "--behind-proxy",
+    is_flag=True,
+    help="A proxy in front speaks https: listen in plain http beyond this machine.",
+)
+@click.pass_context
+def serve(
+    context: click.Context, folder: Path, host: str, port: int, url: str | None, behind_proxy: bool
+) -> None:
+    """Start the service. It listens on this machine alone unless told, and to others only behind a proxy that speaks https."""
+    _ready()
+    import uvicorn
+
+    app, address = _application(context, folder, host, port, url, behind_proxy)
+    click.echo(f"coursework lti: {address}, listening on {host} port {port}; stop with Ctrl+C", err=True)
+    uvicorn.run(
+        app,
+        host=host,
+        port=port,
+        access_log=False,
+        log_config=_LOGS,
+        server_header=False,
+        proxy_headers=False,
+    )
+
+
+_LOGS: dict[str, Any] = {
+    "version": 1,
+    "disable_existing_loggers": False,
+    "formatters": {"line": {"format": "%(asctime)s %(levelname)s %(message)s"}},
+    "handlers": {"out": {"class": "logging.StreamHandler", "formatter": "line"}},
+    "loggers": {
+        "coursework.lti": {"handlers": ["out"], "level": "INFO"},
+        "uvicorn": {"handlers": ["out"], "level": "WARNING"},
+        "uvicorn.error": {"level": "WARNING"},
+    },
+}
+
+
+def _application(
+    context: click.Context, folder: Path, host: str, port: int, url: str | None, behind_proxy: bool
+) -> tuple[Any, str]:
+    """The service of a folder, and where browsers find it."""
+    from dataclasses import replace
+
+    from coursework.lti.course_host import CourseHost
+    from coursework.lti.keys import KeyFolder
+    from coursework.lti.pages import Pages
+    from coursework.lti.service import service
+    from coursework.lti.settings import checked_url, is_loopback, read_settings
+    from coursework.lti.storage import Storage
+
+    settings = read_settings(folder)
+    if not is_loopback(host) and not behind_proxy:
+        raise BadInput(
+            f"--host {host} is open to others, in plain http: put a proxy that speaks https in front, and say --behind-proxy"
+        )
+    told = url or settings.url or (f"http://{host}:{port}" if is_loopback(host) else "")
+    if not told:
+        raise BadInput(
+            "where do browsers find it? --url https://exercises.example.org, or url in platforms.toml"
+        )
+    settings = replace(settings, url=checked_url(told, "the service's url"))
+    if not settings.platforms:
+        tell([f"no platform in {folder}: 'coursework lti platform moodle https://…' adds one"])
+    kept = KeyFolder(folder / "keys")
+    if not kept.keys:
+        tell([f"a key was made: {kept.new().kid}"])
+    course, storage = opened(context), Storage(folder)
+    crowd = CourseHost(course, storage, settings.assignments)
+    return service(settings, crowd, Pages(course.folder), storage=storage), settings.url
+
+
+# --------------------------------------------------------------- scores, roster
+
+
+@lti.command()
+@folder_option
+@click.option("--send", is_flag=True, help="Try now to send what waits.")
+@json_option
+def scores(folder: Path, send: bool, as_json: bool) -> int:
+    """Tell which points have not reached their gradebook, and why; exit status 1 where some wait."""
+    _ready()
+    from coursework.lti.storage import Storage
+
+    storage = Storage(folder)
+    if send:
+        _send(folder, storage)
+    every = storage.scores().values()
+    rows = [
+        {
+            "link": one.title or one.link,
+            "person": one.person,
+            "points": f"{one.score.given:g}/{one.score.maximum:g}",
+            "tries": one.failures,
+            "why": one.said,
+        }
+        for one in every
+        if one.due is not None
+    ]
+    if as_json:
+        print_json(rows)
+    elif rows:
+        print_table(rows, "")
+    click.echo(f"{counted(len(every) - len(rows), 'score')} arrived, {len(rows)} waiting", err=True)
+    return FOUND if rows else DONE
+
+
+def _send(folder: Path, storage: Any) -> None:
+    import httpx
+
+    from coursework.lti.keys import KeyFolder
+    from coursework.lti.sending import Sender
+    from coursework.lti.services import Services
+    from coursework.lti.settings import read_settings
+
+    storage.hurry()
+    with httpx.Client(timeout=8.0, trust_env=False) as client:
+        sender = Sender(read_settings(folder), storage, Services(client, KeyFolder(folder / "keys")))
+        while sum(sender.send_due()):
+            pass
+
+
+@lti.command()
+@click.argument("course_title", required=False, metavar="[COURSE]")
+@folder_option
+@click.option(
+    "--out", type=click.Path(path_type=Path, dir_okay=False), help="The CSV to write; printed unless told."
+)
+def roster(course_title: str | None, folder: Path, out: Path | None) -> None:
+    """Write the class list that a platform gives as the CSV that 'build --roster' reads.
+
+    COURSE is its title, or the start of it; without it, the courses are listed that were opened from a platform.
+    """
+    _ready()
+    import httpx
+
+    from coursework.lti.class_list import as_csv
+    from coursework.lti.keys import KeyFolder
+    from coursework.lti.services import Services
+    from coursework.lti.settings import read_settings
+    from coursework.lti.storage import Storage
+
+    known = Storage(folder).courses()
+    if course_title is None:
+        for (issuer, *_), title, _ in known:
+            click.echo(f"{title}  ({issuer})")
+        if not known:
+            click.echo("no course yet: open a link of this tool from one, as its teacher")
+        return
+    found = [one for one in known if one[1].casefold().startswith(course_title.casefold())]
+    if len(found) != 1:
+        titles = [title for _, title, _ in known]
+        raise BadInput(
+            f"{len(found)} courses begin with {course_title!r}{nearest(course_title, titles) if not found else ''}"
+        )
+    ((issuer, client_id, *_), _, address) = found[0]
+    one = read_settings(folder).platform(issuer, client_id)
+    if one is None:
+        raise BadInput(f"{issuer} is no longer in {folder}")
+    with httpx.Client(timeout=8.0, trust_env=False) as client:
+        text = as_csv(Services(client, KeyFolder(folder / "keys")).roster(one, address))
+    if out is None:
+        click.echo(text, nl=False)
+    else:
+        out.write_text(text, "utf-8-sig", newline="")
+        click.echo(f"{out}: {counted(text.count(chr(10)) - 1, 'student')}")
+
+
+@lti.command()
+@click.argument("person")
+@folder_option
+def forget(person: str, folder: Path) -> None:
+    """Take away all that is kept of a person, by the platform's own identifier (lti_user_id of the roster)."""
+    _ready()
+    from coursework.lti.storage import Storage
+
+    gone = Storage(folder).forget(person)
+    if not gone:
+        raise BadInput(f"nothing is kept of {person!r}")
+    click.echo(f"{counted(gone, 'line')} taken away")

@@ -1,0 +1,92 @@
+"""What stands behind the service: what a link opens, what may be picked for one, and what a score is.
+
+The service knows platforms, launches and sessions; a host knows exercises. The package brings one,
+:class:`coursework.lti.course_host.CourseHost`; a site of its own is another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from coursework.lti.launch import Launch
+from coursework.lti.services import Member
+from coursework.lti.storage import Score, Waiting
+
+Form = Mapping[str, Sequence[str]]  #: the values of each field, as they came
+
+
+@dataclass(frozen=True)
+class Visit:
+    """Somebody who came by a launch, and what they ask for."""
+
+    launch: Launch
+    lang: str
+    home: str  #: address of the session's pages, ``/at/NAME``
+    path: str = ""  #: what stands behind it
+    query: Mapping[str, str] = field(default_factory=dict)
+    seal: str = ""  #: what a form of the session holds in its field ``_seal``
+    roster: Callable[[], Sequence[Member]] | None = None  #: none where the platform offers none
+    scores: Callable[[], Mapping[str, Waiting]] = dict  #: on their way and arrived, by person
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What is sent back: a page, another address, or a file."""
+
+    html: str = ""
+    status: int = 200
+    goto: str = ""
+    file: str = ""  #: its name
+    kind: str = "text/html; charset=utf-8"
+    data: bytes = b""
+
+
+@dataclass(frozen=True)
+class Offer:
+    """What a link may open."""
+
+    key: str  #: ``exercise:slotted_mechanism``
+    title: str
+    points: float
+    words: str = ""  #: what it is found by besides its title: its title in other languages
+
+
+@dataclass(frozen=True)
+class Shelf:
+    """Offers that stand together, under a title."""
+
+    title: str
+    offers: tuple[Offer, ...]
+
+
+class Host(Protocol):
+    """What the service asks of what stands behind it."""
+
+    @property
+    def languages(self) -> tuple[str, ...]:
+        """The languages it speaks, the usual one first."""
+        ...
+
+    def shelves(self, lang: str) -> Sequence[Shelf]:
+        """What may be picked."""
+        ...
+
+    def show(self, visit: Visit) -> Reply:
+        """The page that is asked for.
+
+        Raises
+        ------
+        Refused
+            The person may not see it, or there is none.
+        """
+        ...
+
+    def take(self, visit: Visit, form: Form) -> Reply:
+        """What a form brings; it may come twice."""
+        ...
+
+    def score(self, visit: Visit) -> Score | None:
+        """What the platform is told of the person; nothing before there is something to tell."""
+        ...

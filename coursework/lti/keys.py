@@ -1,0 +1,163 @@
+"""The tool's own keys: one signs, those before it stay public until they are retired."""
+
+from __future__ import annotations
+
+import base64
+import calendar
+import hashlib
+import json
+import os
+import re
+import secrets
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cryptography.hazmat.primitives import serialization
+from cryptography.hazmat.primitives.asymmetric import rsa
+from jwt.algorithms import RSAAlgorithm
+
+from coursework.errors import BadInput, nearest
+
+_BITS = 2048
+_SECRET = "session.secret"
+_NAME = re.compile(r"(?P<at>\d{8}T\d{6}Z)-(?P<kid>[\w-]{43})\.pem")
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key: the private half in a file that only its owner reads."""
+
+    kid: str  #: digest of the public half, RFC 7638
+    made: str  #: as in ``20261204T093000Z``
+    path: Path
+
+    @property
+    def private(self) -> rsa.RSAPrivateKey:
+        """The private half.
+
+        Raises
+        ------
+        BadInput
+            The file cannot be read, is no RSA key, or others than its owner may read it.
+        """
+        if os.name == "posix" and self.path.stat().st_mode & 0o077:
+            raise BadInput(f"others may read the private key {self.path}: chmod 600 {self.path}")
+        try:
+            found = serialization.load_pem_private_key(self.path.read_bytes(), None)
+        except (OSError, ValueError, TypeError) as fault:
+            raise BadInput(
+                f"{self.path} is no private key: {type(fault).__name__}; 'coursework lti keys rotate' makes another"
+            ) from fault
+        if not isinstance(found, rsa.RSAPrivateKey):
+            raise BadInput(
+                f"{self.path} is no RSA key, which LTI signs with; 'coursework lti keys rotate' makes one"
+            )
+        return found
+
+    @property
+    def public(self) -> dict[str, Any]:
+        """The public half, as a JSON web key."""
+        return {**_jwk(self.private), "kid": self.kid, "alg": "RS256", "use": "sig"}
+
+
+class KeyFolder:
+    """The keys of a service, in a folder of mode 700, each in a file of mode 600."""
+
+    def __init__(self, folder: Path, clock: Callable[[], float] = time.time):
+        self.folder, self._clock = folder, clock
+
+    @property
+    def keys(self) -> tuple[Key, ...]:
+        """The keys that are public, the one that signs last."""
+        named = (_NAME.fullmatch(path.name) for path in sorted(self.folder.glob("*.pem")))
+        return tuple(Key(m["kid"], m["at"], self.folder / m[0]) for m in named if m)
+
+    @property
+    def signing(self) -> Key:
+        """The newest.
+
+        Raises
+        ------
+        BadInput
+            There is none.
+        """
+        if not self.keys:
+            raise BadInput(f"no key in {self.folder}; 'coursework lti keys new' makes one")
+        return self.keys[-1]
+
+    @property
+    def public(self) -> dict[str, Any]:
+        """What ``/jwks`` answers."""
+        return {"keys": [key.public for key in self.keys]}
+
+    def new(self) -> Key:
+        """Another key, which signs from now on; those before stay public."""
+        private = rsa.generate_private_key(public_exponent=65537, key_size=_BITS)
+        pem = private.private_bytes(
+            serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8, serialization.NoEncryption()
+        )
+        at = time.strftime("%Y%m%dT%H%M%SZ", time.gmtime(max(self._clock(), self._after_the_last())))
+        kid = _thumbprint(_jwk(private))
+        path = self.folder / f"{at}-{kid}.pem"
+        self._write(path, pem)
+        return Key(kid, at, path)
+
+    def _after_the_last(self) -> float:
+        """Keys are told apart by the second they were made in."""
+        if not self.keys:
+            return 0.0
+        return calendar.timegm(time.strptime(self.keys[-1].made, "%Y%m%dT%H%M%SZ")) + 1.0
+
+    def retire(self, kid: str) -> Key:
+        """Take a key away: what it signed is refused from now on.
+
+        Raises
+        ------
+        BadInput
+            There is no such key, or it is the one that signs.
+        """
+        known = [key.kid for key in self.keys]
+        found = [key for key in self.keys if kid and key.kid.startswith(kid)]
+        if len(found) != 1:
+            raise BadInput(f"no one key {kid!r}{nearest(kid, known)}")
+        if found[0] == self.signing:
+            raise BadInput(
+                f"{found[0].kid} is the key that signs; 'coursework lti keys rotate' makes another first"
+            )
+        found[0].path.unlink()
+        return found[0]
+
+    @property
+    def secret(self) -> bytes:
+        """What seals the service's own states and forms: made when it is first asked for."""
+        path = self.folder / _SECRET
+        if not path.exists():
+            self._write(path, secrets.token_hex(32).encode())
+        return path.read_bytes()
+
+    def _write(self, path: Path, data: bytes) -> None:
+        self.folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+        part = path.with_name(f".{path.name}.{secrets.token_hex(4)}")
+        with os.fdopen(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        try:
+            with suppress(FileExistsError):  # another process was first
+                os.link(part, path)
+        finally:
+            part.unlink()
+
+
+def _jwk(private: rsa.RSAPrivateKey) -> dict[str, Any]:
+    found: dict[str, Any] = RSAAlgorithm.to_jwk(private.public_key(), as_dict=True)
+    return {name: found[name] for name in ("e", "kty", "n")}
+
+
+def _thumbprint(jwk: dict[str, Any]) -> str:
+    digest = hashlib.sha256(json.dumps(jwk, separators=(",", ":"), sort_keys=True).encode()).digest()
+    return base64.urlsafe_b64encode(digest).rstrip(b"=").decode()

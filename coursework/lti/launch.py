@@ -1,0 +1,163 @@
+"""A launch: who comes, from which course and link, and what the platform offers in return."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any, Self
+
+from coursework.lti.refusal import Refused
+from coursework.lti.roles import Role, role_of
+
+_LTI = "https://purl.imsglobal.org/spec/lti/claim/"
+_DEEP = "https://purl.imsglobal.org/spec/lti-dl/claim/"
+_GRADES = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint"
+_ROSTER = "https://purl.imsglobal.org/spec/lti-nrps/claim/namesroleservice"
+
+RESOURCE, PICKING = "LtiResourceLinkRequest", "LtiDeepLinkingRequest"
+_LONGEST = 4000  #: characters of any claim that is kept
+
+
+@dataclass(frozen=True)
+class Picking:
+    """How an instructor picks what a link opens, as the platform asks for it."""
+
+    return_url: str
+    data: str | None = None  #: to be sent back as it came
+    several: bool = False
+    with_line: bool = True  #: whether a column of the gradebook may be asked for
+    links: bool = True  #: whether it takes links at all
+
+
+@dataclass(frozen=True)
+class Launch:
+    """What a verified launch says."""
+
+    issuer: str
+    client_id: str
+    deployment: str
+    person: str  #: the platform's own identifier, ``sub``
+    name: str
+    role: Role
+    kind: str
+    link: str = ""  #: identifier of the link, empty while one is picked
+    link_title: str = ""
+    context: str = ""
+    context_title: str = ""
+    custom: Mapping[str, str] = field(default_factory=dict)
+    locale: str = ""
+    return_url: str = ""
+    line: str = ""  #: address of the gradebook's column
+    lines: str = ""  #: address of all columns
+    scopes: tuple[str, ...] = ()
+    memberships: str = ""  #: address of the roster
+    picking: Picking | None = None
+
+    @property
+    def place(self) -> str:
+        """The link among those of all platforms."""
+        return json.dumps([self.issuer, self.client_id, self.deployment, self.link])
+
+    @property
+    def course(self) -> str:
+        """The course among those of all platforms."""
+        return json.dumps([self.issuer, self.client_id, self.deployment, self.context])
+
+    def as_json(self) -> str:
+        return json.dumps(asdict(self), ensure_ascii=False)
+
+    @classmethod
+    def from_json(cls, text: str) -> Self:
+        told = json.loads(text)
+        picking = told["picking"] and Picking(**told["picking"])
+        return cls(
+            **{**told, "role": Role(told["role"]), "scopes": tuple(told["scopes"]), "picking": picking}
+        )
+
+
+def launch_of(claims: Mapping[str, Any]) -> Launch:
+    """What verified claims say.
+
+    Raises
+    ------
+    Refused
+        A claim that is needed is missing or of another form.
+    """
+    kind = _text(claims, f"{_LTI}message_type", needed=True)
+    if kind not in (RESOURCE, PICKING):
+        raise Refused("message", 400, f"message type {kind[:60]!r}")
+    if _text(claims, f"{_LTI}version", needed=True) != "1.3.0":
+        raise Refused("message", 400, "not version 1.3.0")
+    roles = claims.get(f"{_LTI}roles")
+    if not isinstance(roles, list):
+        raise Refused("claim", 400, "roles missing")
+    link = _table(claims, f"{_LTI}resource_link")
+    context, shown = _table(claims, f"{_LTI}context"), _table(claims, f"{_LTI}launch_presentation")
+    grades, roster = _table(claims, _GRADES), _table(claims, _ROSTER)
+    custom = {
+        str(k): str(v)[:_LONGEST]
+        for k, v in _table(claims, f"{_LTI}custom").items()
+        if isinstance(v, (str, int, float))
+    }
+    whole = " ".join(filter(None, (_text(claims, "given_name"), _text(claims, "family_name"))))
+    scopes = grades.get("scope")
+    return Launch(
+        issuer=_text(claims, "iss", needed=True),
+        client_id=_text(claims, "client_id", needed=True),
+        deployment=_text(claims, f"{_LTI}deployment_id", needed=True),
+        person=_text(claims, "sub", needed=True),
+        name=_text(claims, "name") or whole,
+        role=role_of(one for one in roles if isinstance(one, str)),
+        kind=kind,
+        link=_text(link, "id", needed=kind == RESOURCE, called="resource_link"),
+        link_title=_text(link, "title"),
+        context=_text(context, "id"),
+        context_title=_text(context, "title") or _text(context, "label"),
+        custom=custom,
+        locale=_text(shown, "locale"),
+        return_url=_address(shown, "return_url"),
+        line=_address(grades, "lineitem"),
+        lines=_address(grades, "lineitems"),
+        scopes=tuple(str(one) for one in scopes) if isinstance(scopes, list) else (),
+        memberships=_address(roster, "context_memberships_url"),
+        picking=_picking(_table(claims, f"{_DEEP}deep_linking_settings")) if kind == PICKING else None,
+    )
+
+
+def _picking(told: Mapping[str, Any]) -> Picking:
+    url = _address(told, "deep_link_return_url")
+    if not url:
+        raise Refused("claim", 400, "deep_link_return_url missing")
+    data, kinds = told.get("data"), told.get("accept_types", ["ltiResourceLink"])
+    return Picking(
+        url,
+        data if isinstance(data, str) else None,
+        _truth(told.get("accept_multiple", False)),
+        _truth(told.get("accept_lineitem", True)),
+        not isinstance(kinds, list) or "ltiResourceLink" in kinds,
+    )
+
+
+def _truth(value: Any) -> bool:
+    """Platforms write ``true`` and ``"true"``."""
+    return value is True or str(value).lower() == "true"
+
+
+def _table(claims: Mapping[str, Any], name: str) -> Mapping[str, Any]:
+    found = claims.get(name)
+    return found if isinstance(found, Mapping) else {}
+
+
+def _text(claims: Mapping[str, Any], name: str, *, needed: bool = False, called: str = "") -> str:
+    found = claims.get(name)
+    text = found[:_LONGEST] if isinstance(found, str) else str(found) if type(found) is int else ""
+    if needed and not text.strip():
+        raise Refused("claim", 400, f"{called or name.rpartition('/')[2]} missing")
+    return text
+
+
+def _address(claims: Mapping[str, Any], name: str) -> str:
+    """A web address, or nothing: no other scheme is followed or shown."""
+    found = _text(claims, name)
+    return found if found.startswith(("https://", "http://")) else ""

@@ -1,0 +1,142 @@
+"""The way in: where a browser is sent to log in, and whether who comes back is who was sent.
+
+What is to be remembered meanwhile travels in the ``state``, sealed by the service. So nobody can fill its disk by logging
+in, and only what comes back well is written down, once.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import secrets
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import urlencode, urlsplit
+
+import jwt
+
+from coursework.lti.refusal import Refused
+from coursework.lti.settings import Platform, Settings, origin
+
+_HINTS = ("iss", "login_hint", "target_link_uri", "lti_message_hint", "lti_deployment_id", "client_id")
+_LONGEST = 2000  #: characters of a parameter
+_USE = "login"
+
+
+@dataclass(frozen=True)
+class Sent:
+    """Where a browser is sent, and the cookie by which it is known when it comes back."""
+
+    url: str
+    cookie: str
+    value: str
+
+
+@dataclass(frozen=True)
+class Returned:
+    """Who comes back."""
+
+    platform: Platform
+    nonce: str
+    until: float
+    again: dict[str, str]
+
+
+class Login:
+    """Sends browsers to their platforms, and knows them again."""
+
+    def __init__(self, settings: Settings, secret: bytes, clock: Callable[[], float] = time.time):
+        self.settings, self._secret, self._clock = settings, secret, clock
+
+    def sent(self, told: Mapping[str, str]) -> Sent:
+        """Where a login that a platform asks for goes.
+
+        Raises
+        ------
+        Refused
+            The platform is not known, does not say for whom it asks, or asks for a page that is not ours.
+        """
+        for name in _HINTS:
+            if len(told.get(name, "")) > _LONGEST:
+                raise Refused("bad_request", 400, f"{name} too long")
+        platform = self.settings.platform(told.get("iss", ""), told.get("client_id", ""))
+        if platform is None:
+            raise Refused("platform", 403, f"login from {told.get('iss', '')[:100]!r}")
+        if not told.get("login_hint"):
+            raise Refused("bad_request", 400, "login_hint missing")
+        target = told.get("target_link_uri", "")
+        if _unlike(target, self.settings.url):
+            raise Refused("target", 400, f"target_link_uri at {origin(target)[:100]!r}")
+        return self._to(platform, {name: told[name] for name in _HINTS if told.get(name)})
+
+    def _to(self, platform: Platform, hints: dict[str, str]) -> Sent:
+        nonce, value = secrets.token_urlsafe(32), secrets.token_urlsafe(32)
+        held = {
+            "use": _USE, "nonce": nonce, "of": [platform.issuer, platform.client_id], "by": _digest(value),
+            "exp": int(self._clock() + self.settings.login_seconds), "hints": hints,
+        }  # fmt: skip
+        state = jwt.encode(held, self._secret, "HS256")
+        asked = {
+            "scope": "openid",
+            "response_type": "id_token",
+            "response_mode": "form_post",
+            "prompt": "none",
+            "client_id": platform.client_id,
+            "redirect_uri": f"{self.settings.url}/launch",
+            "login_hint": hints["login_hint"],
+            "state": state,
+            "nonce": nonce,
+        }
+        if "lti_message_hint" in hints:
+            asked["lti_message_hint"] = hints["lti_message_hint"]
+        join = "&" if urlsplit(platform.auth_url).query else "?"
+        return Sent(f"{platform.auth_url}{join}{urlencode(asked)}", cookie_of(state), value)
+
+    def returned(self, state: str, cookies: Mapping[str, str]) -> Returned:
+        """Who comes back with a state.
+
+        Raises
+        ------
+        Refused
+            We did not make it, it is too old, its platform is gone, or the browser is another.
+        """
+        try:
+            held: dict[str, Any] = jwt.decode(
+                state,
+                self._secret,
+                algorithms=["HS256"],
+                options={"require": ["exp"], "verify_exp": False, "verify_iat": False},
+            )
+        except jwt.PyJWTError:
+            raise Refused("state", 400, "a state that is not ours") from None
+        if held.get("use") != _USE:
+            raise Refused("state", 400, "not a state")
+        platform = self.settings.platform(*held["of"])
+        if platform is None:
+            raise Refused("platform", 403, f"{held['of'][0]!r} is no longer known")
+        if self._clock() > held["exp"]:
+            raise Refused("stale", 400, "a login of long ago", again=held["hints"])
+        value = cookies.get(cookie_of(state))
+        if value is None:
+            raise Refused("cookie", 400, "no cookie came back", again=held["hints"])
+        if not secrets.compare_digest(_digest(value), held["by"]):
+            raise Refused("browser", 403, "the cookie of another login")
+        return Returned(platform, held["nonce"], float(held["exp"]), held["hints"])
+
+
+def cookie_of(state: str) -> str:
+    """What the cookie of a state is called: each has its own, so that two links may be opened at once."""
+    return f"lti-{_digest(state)[:16]}"
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _unlike(target: str, url: str) -> bool:
+    """Whether a page that is asked for is not below the service's address."""
+    try:
+        return bool(target) and (origin(target) != origin(url) or "\\" in target)
+    except ValueError:
+        return True

@@ -1,0 +1,72 @@
+"""The pages of the service, through the templates of a course."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from coursework.course.folder import Folder
+from coursework.language.words import words
+from coursework.rendering import feedback, papers, views
+from coursework.rendering.environment import render
+from coursework.rendering.html import environment_of
+from coursework.sheets.paper import FeedbackPaper, Paper
+
+Filled = Mapping[str, Sequence[str]]
+
+
+@dataclass(frozen=True)
+class Form:
+    """What surrounds a sheet that is handed in, or its feedback."""
+
+    action: str
+    seal: str
+    number: int = 1
+    filled: Filled = field(default_factory=dict)  #: what stands in the boxes, by their names
+    notes: tuple[str, ...] = ()  #: sentences above the sheet, Markdown
+    unread: tuple[str, ...] = ()  #: of answers that could not be read
+    may_insist: bool = False
+    more: tuple[tuple[str, str], ...] = ()  #: addresses to go on to, each with its words
+    leave: str = ""  #: address of the course, in place of all that its frame is in
+
+
+class Pages:
+    """Renders pages of one course."""
+
+    def __init__(self, folder: Folder):
+        self._folders = folder.template_folders
+
+    def page(self, template: str, lang: str, names: Mapping[str, Any]) -> str:
+        """A page of a template, ``lti_class``."""
+        said = words(lang)
+        usual = {"lang": lang, "words": said, "said": said["lti"], "paper": "a4", "title": ""}
+        return render(environment_of(self._folders, lang), f"{template}.html.j2", {**usual, **names})
+
+    def sheet(self, paper: Paper, form: Form, *, alone: bool) -> str:
+        """A sheet whose answers are handed in here; ``alone`` where it is one exercise and no paper."""
+        if alone:
+            return self.page(
+                "lti_sheet", paper.heading.lang, {**views.context(paper.handouts[0]), **_formed(form)}
+            )
+        return self.page("lti_paper", paper.heading.lang, {**self._paper(paper, form), **_formed(form)})
+
+    def feedback(self, told: FeedbackPaper, form: Form, *, alone: bool) -> str:
+        """What is said of what was handed in."""
+        env = environment_of(self._folders, told.heading.lang)
+        if alone:
+            names = feedback.context(told.sheets[0], "html.j2", partial(render, env))
+            return self.page("lti_feedback", told.heading.lang, {**names, **_formed(form)})
+        return self.page(
+            "lti_paper_feedback", told.heading.lang, {**self._paper(told, form), **_formed(form)}
+        )
+
+    def _paper(self, paper: Paper | FeedbackPaper, form: Form) -> dict[str, Any]:
+        env = environment_of(self._folders, paper.heading.lang)
+        files = [{"filled": form.filled}] * len(papers.sheets_of(paper))
+        return {**papers.context(paper, "html.j2", partial(render, env), files), "image": papers.image}
+
+
+def _formed(form: Form) -> dict[str, Any]:
+    return {"form": form, "filled": form.filled, "keeping": ""}

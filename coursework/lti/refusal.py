@@ -1,0 +1,17 @@
+"""What the service refuses: a word that names the sentence, and what the log says of it."""
+
+from __future__ import annotations
+
+from coursework.errors import CourseworkError
+
+
+class Refused(CourseworkError, PermissionError):
+    """A request is refused.
+
+    ``why`` names the sentence in ``[lti.refused]`` of each language; ``detail`` is for the log alone, and holds neither
+    an answer nor a token. ``again`` are the parameters by which the platform is asked once more, in a new window.
+    """
+
+    def __init__(self, why: str, status: int = 400, detail: str = "", again: dict[str, str] | None = None):
+        super().__init__(f"{why}: {detail}" if detail else why)
+        self.why, self.status, self.detail, self.again = why, status, detail, again

@@ -1,0 +1,67 @@
+"""Who a person is in the course they come from, by the roles that the platform states; an unknown role gives nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from enum import StrEnum
+
+_MEMBER = "http://purl.imsglobal.org/vocab/lis/v2/membership"
+_ABOVE = (
+    "http://purl.imsglobal.org/vocab/lis/v2/institution/person",
+    "http://purl.imsglobal.org/vocab/lis/v2/system/person",
+)
+
+
+class Role(StrEnum):
+    """What a person may do."""
+
+    INSTRUCTOR = "instructor"  #: sees the class, picks what a link opens
+    ASSISTANT = "assistant"  #: sees the class
+    ADMIN = "admin"  #: of the course's platform: sees the class, picks
+    STUDENT = "student"  #: answers
+    OBSERVER = "observer"  #: is told that there is nothing to see
+    NOBODY = "nobody"  #: the same, for want of any role that is known
+
+    @property
+    def sees_class(self) -> bool:
+        return self in (Role.INSTRUCTOR, Role.ASSISTANT, Role.ADMIN)
+
+    @property
+    def picks(self) -> bool:
+        return self in (Role.INSTRUCTOR, Role.ADMIN)
+
+
+#: Roles in the course, by their name after ``membership#``; the first that is there counts. Moodle names no assistant,
+#: and its observers are mentors.
+_IN_COURSE = {
+    "Administrator": Role.ADMIN,
+    "Instructor": Role.INSTRUCTOR,
+    "ContentDeveloper": Role.INSTRUCTOR,
+    "Learner": Role.STUDENT,
+    "Mentor": Role.OBSERVER,
+    "Observer": Role.OBSERVER,
+}
+_ASSISTANTS = ("TeachingAssistant", "TeachingAssistantGroup", "TeachingAssistantSection", "Grader")
+
+
+def role_of(stated: Iterable[str]) -> Role:
+    """The role that a launch states.
+
+    Roles in the course count; only who has none there and administers the institution or the platform is an admin. Who is
+    teacher or student elsewhere is nobody here.
+    """
+    roles = list(stated)
+    if any(role == f"{_MEMBER}/Instructor#{one}" for role in roles for one in _ASSISTANTS):
+        return Role.ASSISTANT
+    # A role of the course may stand by its name alone.
+    mine = {
+        role.removeprefix(f"{_MEMBER}#") for role in roles if role.startswith(f"{_MEMBER}#") or role.isalpha()
+    }
+    if "Mentor" in mine and "Instructor" not in mine:
+        return Role.OBSERVER
+    for name, role in _IN_COURSE.items():
+        if name in mine:
+            return role
+    of_course = any(role.startswith(_MEMBER) for role in roles) or mine
+    above = any(role.startswith(_ABOVE) and role.endswith("#Administrator") for role in roles)
+    return Role.ADMIN if above and not of_course else Role.NOBODY

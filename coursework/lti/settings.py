@@ -1,0 +1,292 @@
+"""Which platforms the service knows, and where it stands: ``platforms.toml``."""
+
+from __future__ import annotations
+
+import ipaddress
+import json
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+from coursework.errors import BadInput, nearest
+from coursework.system.toml_lines import line_of
+
+FILE = "platforms.toml"
+_HOUR = 3600.0
+
+
+@dataclass(frozen=True)
+class Platform:
+    """A platform where the tool is registered."""
+
+    name: str  #: what commands and logs call it
+    issuer: str
+    client_id: str
+    deployments: tuple[str, ...]
+    auth_url: str  #: where a login goes
+    token_url: str  #: where a token for grades and rosters is had
+    jwks_url: str  #: its public keys
+    origins: tuple[
+        str, ...
+    ] = ()  #: whose pages may hold ours in a frame, besides those of ``issuer`` and ``auth_url``
+    audience: str = ""  #: of a request for a token; ``token_url`` unless told
+
+    @property
+    def frames(self) -> tuple[str, ...]:
+        """The origins whose pages may hold ours in a frame."""
+        return tuple(dict.fromkeys([origin(self.auth_url), origin(self.issuer), *self.origins]))
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Where the service stands, whom it knows, and how long things hold."""
+
+    folder: Path  #: of the keys and the data
+    url: str = ""  #: where browsers find it, without a slash at the end
+    platforms: tuple[Platform, ...] = ()
+    assignments: tuple[Path, ...] = ()  #: that may be picked
+    session_seconds: float = 12 * _HOUR
+    login_seconds: float = 600.0
+    extra: Mapping[str, Any] = field(default_factory=dict)
+
+    def platform(self, issuer: str, client_id: str = "") -> Platform | None:
+        """The one of an issuer; where it has several clients, the one that is named."""
+        found = [p for p in self.platforms if p.issuer == issuer and client_id in ("", p.client_id)]
+        return found[0] if len(found) == 1 else None
+
+    @property
+    def frames(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(one for p in self.platforms for one in p.frames))
+
+
+def origin(url: str) -> str:
+    """``https://moodle.example.org`` of any address there."""
+    parts = urlsplit(url)
+    return f"{parts.scheme}://{parts.netloc}"
+
+
+def is_loopback(host: str) -> bool:
+    """Whether a name or number of a machine is this one's own."""
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return host == "localhost" or host.endswith(".localhost")
+
+
+def checked_url(url: str, what: str, *, slash: bool = False) -> str:
+    """An address as the service uses it.
+
+    Raises
+    ------
+    BadInput
+        It is none, or it is plain http to another machine.
+    """
+    try:
+        parts = urlsplit(url)
+        host = parts.hostname or ""
+    except ValueError:
+        parts, host = urlsplit(""), ""
+    if (
+        parts.scheme not in ("https", "http")
+        or not host
+        or parts.username
+        or any(c.isspace() or c in "\"'<>;," for c in url)
+    ):
+        raise BadInput(f"{what} is an address such as https://moodle.example.org; found {url!r}")
+    if parts.scheme == "http" and not is_loopback(host):
+        raise BadInput(
+            f"{what} is plain http: {url}; keys and launches would go unprotected: give its https address"
+        )
+    return url if slash else url.rstrip("/")
+
+
+# ------------------------------------------------------------------------ kinds
+
+
+def moodle(site: str, **told: Any) -> dict[str, Any]:
+    """What the pages of a Moodle are called."""
+    lti = f"{site}/mod/lti"
+    return {
+        "issuer": site,
+        "auth_url": f"{lti}/auth.php",
+        "token_url": f"{lti}/token.php",
+        "jwks_url": f"{lti}/certs.php",
+    }
+
+
+def canvas(site: str, **told: Any) -> dict[str, Any]:
+    """What those of a Canvas that Instructure hosts are called; one issuer for them all."""
+    security = "https://sso.canvaslms.com/api/lti"
+    return {
+        "issuer": "https://canvas.instructure.com",
+        "auth_url": f"{security}/authorize_redirect",
+        "token_url": f"{site}/login/oauth2/token",
+        "jwks_url": f"{security}/security/jwks",
+        "origins": [site],
+    }
+
+
+KINDS = {"moodle": moodle, "canvas": canvas}
+
+# ---------------------------------------------------------------------- reading
+
+_KEYS = (
+    "name",
+    "issuer",
+    "client_id",
+    "deployments",
+    "auth_url",
+    "token_url",
+    "jwks_url",
+    "origins",
+    "audience",
+)
+_SERVICE = ("url", "assignments", "session_hours")
+
+
+def read_settings(folder: Path) -> Settings:
+    """What ``platforms.toml`` of a folder says; no platform where there is no such file.
+
+    Raises
+    ------
+    BadInput
+        It cannot be read, or says what makes no sense: with its line.
+    """
+    path = folder / FILE
+    if not path.exists():
+        return Settings(folder)
+    try:
+        source = path.read_text("utf-8-sig")
+        table = tomllib.loads(source)
+    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as fault:
+        raise BadInput(f"{path} cannot be read: {fault}") from fault
+    return _Reader(path, source).settings(table)
+
+
+class _Reader:
+    def __init__(self, path: Path, source: str):
+        self.path, self.source = path, source
+
+    def refused(self, place: Sequence[str | int], why: str) -> BadInput:
+        line = line_of(self.source, place)
+        return BadInput(f"{self.path}{f', line {line}' if line else ''}: {why}")
+
+    def settings(self, table: Mapping[str, Any]) -> Settings:
+        for key in table:
+            if key not in ("service", "platforms"):
+                raise self.refused([key], f"no key {key!r}{nearest(key, ('service', 'platforms'))}")
+        service, listed = table.get("service", {}), table.get("platforms", [])
+        if not isinstance(service, Mapping) or not isinstance(listed, list):
+            raise self.refused(["service"], "write [service] with url = …, then [[platforms]]")
+        for key in service:
+            if key not in _SERVICE:
+                raise self.refused(["service", key], f"no key {key!r} in [service]{nearest(key, _SERVICE)}")
+        found = tuple(self.platform(number, one) for number, one in enumerate(listed))
+        self._check_twice(found)
+        hours = service.get("session_hours", 12)
+        if isinstance(hours, bool) or not isinstance(hours, (int, float)) or not 0 < hours <= 168:
+            raise self.refused(
+                ["service", "session_hours"], f"session_hours is a number up to 168; found {hours!r}"
+            )
+        return Settings(
+            self.path.parent,
+            self._url(["service", "url"], service["url"]) if "url" in service else "",
+            found,
+            tuple(
+                self.path.parent / one
+                for one in self._texts(["service", "assignments"], service.get("assignments", []))
+            ),
+            session_seconds=hours * _HOUR,
+        )
+
+    def platform(self, number: int, table: Any) -> Platform:
+        place: list[str | int] = ["platforms", number]
+        if not isinstance(table, Mapping):
+            raise self.refused(place, "platforms are tables: [[platforms]], then issuer = …")
+        for key in table:
+            if key not in _KEYS:
+                raise self.refused([*place, key], f"no key {key!r} in [[platforms]]{nearest(key, _KEYS)}")
+        for key in ("issuer", "client_id", "deployments", "auth_url", "token_url", "jwks_url"):
+            if not table.get(key):
+                raise self.refused(place, f"a platform needs {key}; 'coursework lti platform' writes one")
+        urls = {key: self._url([*place, key], table[key]) for key in ("auth_url", "token_url", "jwks_url")}
+        # The issuer is a name that is compared letter by letter; a slash at its end belongs to it.
+        self._url([*place, "issuer"], table["issuer"])
+        return Platform(
+            name=str(table.get("name") or urlsplit(table["issuer"]).hostname),
+            issuer=table["issuer"],
+            client_id=str(table["client_id"]),
+            deployments=self._texts([*place, "deployments"], table["deployments"]),
+            origins=tuple(
+                origin(self._url([*place, "origins"], one))
+                for one in self._texts([*place, "origins"], table.get("origins", []))
+            ),
+            audience=str(table.get("audience", "")),
+            **urls,
+        )
+
+    def _texts(self, place: Sequence[str | int], value: Any) -> tuple[str, ...]:
+        if not isinstance(value, list) or not all(
+            isinstance(one, (str, int)) and str(one).strip() for one in value
+        ):
+            raise self.refused(place, f'{place[-1]} is a list: ["1"]; found {value!r}')
+        return tuple(str(one) for one in value)
+
+    def _url(self, place: Sequence[str | int], value: Any) -> str:
+        try:
+            return checked_url(str(value), str(place[-1]))
+        except BadInput as fault:
+            raise self.refused(place, str(fault)) from None
+
+    def _check_twice(self, found: Sequence[Platform]) -> None:
+        seen: set[tuple[str, str]] = set()
+        for number, one in enumerate(found):
+            if (one.issuer, one.client_id) in seen:
+                raise self.refused(
+                    ["platforms", number],
+                    f"{one.issuer} with client_id {one.client_id} stands twice; keep one",
+                )
+            seen.add((one.issuer, one.client_id))
+
+
+# ---------------------------------------------------------------------- writing
+
+
+def with_platform(settings: Settings, added: Platform) -> Settings:
+    """The same with a platform more, in the place of the one of its issuer and client."""
+    kept = [p for p in settings.platforms if (p.issuer, p.client_id) != (added.issuer, added.client_id)]
+    return replace(settings, platforms=(*kept, added))
+
+
+def as_toml(settings: Settings) -> str:
+    """``platforms.toml``."""
+    lines = [
+        "# Platforms where this tool is registered: https://www.imsglobal.org/spec/lti/v1p3",
+        "[service]",
+    ]
+    lines += [f"url = {_text(settings.url)}  # where browsers find this service"] if settings.url else []
+    below = [
+        one.relative_to(settings.folder) if one.is_relative_to(settings.folder) else one
+        for one in settings.assignments
+    ]
+    lines += [f"assignments = {_list([one.as_posix() for one in below])}"] if below else []
+    if settings.session_seconds != 12 * _HOUR:
+        lines.append(f"session_hours = {settings.session_seconds / _HOUR:g}")
+    for one in settings.platforms:
+        lines += ["", "[[platforms]]", f"name = {_text(one.name)}", f"issuer = {_text(one.issuer)}"]
+        lines += [f"client_id = {_text(one.client_id)}", f"deployments = {_list(one.deployments)}"]
+        lines += [f"{key} = {_text(getattr(one, key))}" for key in ("auth_url", "token_url", "jwks_url")]
+        lines += [f"origins = {_list(one.origins)}"] if one.origins else []
+        lines += [f"audience = {_text(one.audience)}"] if one.audience else []
+    return "\n".join(lines) + "\n"
+
+
+def _text(value: str) -> str:
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _list(values: Sequence[str]) -> str:
+    return f"[{', '.join(map(_text, values))}]"

@@ -1,0 +1,355 @@
+"""What the service keeps, in one SQLite file: launches that came, sessions, papers, tries, and scores on their way."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import secrets
+import sqlite3
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from coursework.errors import BadInput
+from coursework.lti.launch import Launch
+from coursework.lti.refusal import Refused
+
+FILE = "lti.sqlite"
+_WAIT = 10.0  #: seconds for another writer
+
+_TABLES = """
+CREATE TABLE IF NOT EXISTS used (nonce TEXT PRIMARY KEY, until REAL NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS sessions (id TEXT PRIMARY KEY, token TEXT NOT NULL, until REAL NOT NULL, launch TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS papers (
+  place TEXT NOT NULL, person TEXT NOT NULL, name TEXT NOT NULL, asked TEXT NOT NULL, records TEXT NOT NULL,
+  PRIMARY KEY (place, person)) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS tries (
+  place TEXT NOT NULL, person TEXT NOT NULL, number INTEGER NOT NULL, at REAL NOT NULL, answers TEXT NOT NULL,
+  points REAL NOT NULL, out_of REAL NOT NULL, waits INTEGER NOT NULL, comment TEXT NOT NULL,
+  PRIMARY KEY (place, person, number)) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS scores (
+  place TEXT NOT NULL, person TEXT NOT NULL, platform TEXT NOT NULL, line TEXT NOT NULL, lines TEXT NOT NULL, title TEXT NOT NULL,
+  scopes TEXT NOT NULL, given REAL NOT NULL, maximum REAL NOT NULL, waits INTEGER NOT NULL, comment TEXT NOT NULL, stamp REAL NOT NULL,
+  due REAL, failures INTEGER NOT NULL DEFAULT 0, said TEXT NOT NULL DEFAULT '',
+  PRIMARY KEY (place, person)) WITHOUT ROWID;
+CREATE INDEX IF NOT EXISTS scores_due ON scores (due);
+CREATE TABLE IF NOT EXISTS courses (
+  course TEXT PRIMARY KEY, title TEXT NOT NULL, memberships TEXT NOT NULL, seen REAL NOT NULL) WITHOUT ROWID;
+"""
+
+
+@dataclass(frozen=True)
+class Paper:
+    """What was issued to a person in a link."""
+
+    person: str
+    name: str
+    asked: Mapping[str, Any]  #: what the link asked for when it was issued
+    records: Sequence[Mapping[str, Any]]
+
+
+@dataclass(frozen=True)
+class Try:
+    """One time that a person handed in."""
+
+    person: str
+    number: int
+    at: float
+    answers: Sequence[Mapping[str, str]]  #: by part, for each exercise in order
+    points: float
+    out_of: float
+    waits: bool  #: a person has to look at some of it
+    comment: str
+
+
+@dataclass(frozen=True)
+class Score:
+    """What a platform is told of a person in a link."""
+
+    given: float
+    maximum: float
+    comment: str = ""
+    waits: bool = False
+
+
+@dataclass(frozen=True)
+class Waiting:
+    """A score and where it stands on its way; ``due`` is none once it has arrived."""
+
+    place: str
+    person: str
+    line: str
+    lines: str
+    title: str
+    scopes: tuple[str, ...]
+    score: Score
+    stamp: float  #: seconds; no two of one person in one link are alike, and later ones are larger
+    due: float | None
+    failures: int
+    said: str
+
+    @property
+    def link(self) -> str:
+        """The platform's own identifier of the link."""
+        return str(json.loads(self.place)[-1])
+
+
+class Storage:
+    """The file, opened for each job; writers wait for one another."""
+
+    def __init__(self, folder: Path, clock: Callable[[], float] = time.time):
+        self.path, self._clock = folder / FILE, clock
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            if not self.path.exists():
+                os.close(os.open(self.path, os.O_CREAT | os.O_WRONLY, 0o600))
+            with self._open() as file:
+                file.execute("PRAGMA journal_mode = WAL")
+                file.executescript(_TABLES)
+        except (OSError, sqlite3.Error) as fault:
+            raise BadInput(f"{self.path} cannot be used: {fault}") from fault
+
+    @contextmanager
+    def _open(self) -> Iterator[sqlite3.Connection]:
+        """One transaction; what was written is on the disk when it ends."""
+        file = sqlite3.connect(self.path, timeout=_WAIT, isolation_level=None)
+        try:
+            file.row_factory = sqlite3.Row
+            file.execute("PRAGMA synchronous = FULL")
+            yield file
+        finally:
+            file.close()
+
+    @contextmanager
+    def _writing(self) -> Iterator[sqlite3.Connection]:
+        with self._open() as file:
+            file.execute("BEGIN IMMEDIATE")
+            try:
+                yield file
+            except BaseException:
+                file.execute("ROLLBACK")
+                raise
+            file.execute("COMMIT")
+
+    # ---------------------------------------------------------------- sessions
+
+    def use(self, nonce: str, until: float) -> bool:
+        """Note that a launch came; whether it is the first time."""
+        with self._writing() as file:
+            file.execute("DELETE FROM used WHERE until < ?", [self._clock() - 120])
+            done = file.execute("INSERT OR IGNORE INTO used VALUES (?, ?)", [_digest(nonce), until])
+            return done.rowcount == 1
+
+    def begin(self, launch: Launch, seconds: float) -> tuple[str, str]:
+        """A session of a launch: its name, and the token by which its browser is known."""
+        name, token = secrets.token_urlsafe(12), secrets.token_urlsafe(32)
+        now = self._clock()
+        with self._writing() as file:
+            file.execute("DELETE FROM sessions WHERE until < ?", [now])
+            file.execute(
+                "INSERT INTO sessions VALUES (?, ?, ?, ?)",
+                [name, _digest(token), now + seconds, launch.as_json()],
+            )
+            if launch.context and launch.memberships:
+                told = [launch.course, launch.context_title, launch.memberships, now]
+                file.execute("INSERT OR REPLACE INTO courses VALUES (?, ?, ?, ?)", told)
+        return name, token
+
+    def launch(self, name: str, token: str | None) -> Launch:
+        """The launch of a session.
+
+        Raises
+        ------
+        Refused
+            It has ended, or the browser is another.
+        """
+        with self._open() as file:
+            row = file.execute("SELECT * FROM sessions WHERE id = ?", [name]).fetchone()
+        if row is None or row["until"] < self._clock():
+            raise Refused("session", 403, "no such session")
+        if token is None:
+            raise Refused("cookie", 403, "no cookie of a session")
+        if not secrets.compare_digest(row["token"], _digest(token)):
+            raise Refused("browser", 403, "the cookie of another session")
+        return Launch.from_json(row["launch"])
+
+    def end(self, name: str) -> None:
+        with self._writing() as file:
+            file.execute("DELETE FROM sessions WHERE id = ?", [name])
+
+    # --------------------------------------------------------- papers and tries
+
+    def paper(self, place: str, person: str) -> Paper | None:
+        with self._open() as file:
+            row = file.execute(
+                "SELECT * FROM papers WHERE place = ? AND person = ?", [place, person]
+            ).fetchone()
+        return row and _paper(row)
+
+    def papers(self, place: str) -> list[Paper]:
+        with self._open() as file:
+            rows = file.execute("SELECT * FROM papers WHERE place = ? ORDER BY name, person", [place])
+            return [_paper(row) for row in rows]
+
+    def issue(self, place: str, paper: Paper) -> Paper:
+        """Keep what is issued; what was issued before stays, and is given back."""
+        told = [place, paper.person, paper.name, _json(paper.asked), _json(paper.records)]
+        with self._writing() as file:
+            file.execute("INSERT OR IGNORE INTO papers VALUES (?, ?, ?, ?, ?)", told)
+            row = file.execute("SELECT * FROM papers WHERE place = ? AND person = ?", told[:2]).fetchone()
+            return _paper(row)
+
+    def hand_in(self, place: str, made: Try) -> bool:
+        """Keep a try; whether it is new, since a form may be sent twice."""
+        told = [
+            place,
+            made.person,
+            made.number,
+            made.at,
+            _json(made.answers),
+            made.points,
+            made.out_of,
+            made.waits,
+            made.comment,
+        ]
+        with self._writing() as file:
+            done = file.execute("INSERT OR IGNORE INTO tries VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?)", told)
+            return done.rowcount == 1
+
+    def tries(self, place: str, person: str = "") -> list[Try]:
+        """The tries in a link, of one person or of all, the earliest first."""
+        with self._open() as file:
+            rows = file.execute(
+                "SELECT * FROM tries WHERE place = ? AND (? = '' OR person = ?) ORDER BY person, number",
+                [place, person, person],
+            )
+            return [_try(row) for row in rows]
+
+    # ------------------------------------------------------------------ scores
+
+    def put_score(self, launch: Launch, score: Score) -> bool:
+        """Put a score on its way to the platform in the place of one that is older; whether it says something new."""
+        place, person = launch.place, launch.person
+        with self._writing() as file:
+            row = file.execute(
+                "SELECT * FROM scores WHERE place = ? AND person = ?", [place, person]
+            ).fetchone()
+            known = row and _waiting(row)
+            if known and known.score == score and known.line == launch.line:
+                return False
+            stamp = max(self._clock(), known.stamp + 0.001 if known else 0.0)
+            platform = json.dumps([launch.issuer, launch.client_id])
+            told: list[Any] = [
+                place,
+                person,
+                platform,
+                launch.line,
+                launch.lines,
+                launch.link_title,
+                _json(launch.scopes),
+            ]
+            told += [score.given, score.maximum, score.waits, score.comment, stamp, self._clock()]
+            marks = ", ".join("?" * len(told))
+            file.execute(f"INSERT OR REPLACE INTO scores VALUES ({marks}, 0, '')", told)
+        return True
+
+    def due(self, count: int = 50) -> list[tuple[tuple[str, str], Waiting]]:
+        """Scores to send now, those that wait longest first, each with the issuer and the client of its platform."""
+        with self._open() as file:
+            rows = file.execute(
+                "SELECT * FROM scores WHERE due <= ? ORDER BY due LIMIT ?", [self._clock(), count]
+            )
+            found = [(json.loads(row["platform"]), _waiting(row)) for row in rows]
+        return [((issuer, client_id), waiting) for (issuer, client_id), waiting in found]
+
+    def arrived(self, sent: Waiting) -> None:
+        """Note that a score has arrived; one that was put on its way meanwhile is still to go."""
+        self._settle(sent, None, 0, "")
+
+    def put_off(self, sent: Waiting, seconds: float, said: str) -> None:
+        """Note why a score did not arrive, and when to try again."""
+        self._settle(sent, self._clock() + seconds, sent.failures + 1, said)
+
+    def _settle(self, sent: Waiting, due: float | None, failures: int, said: str) -> None:
+        with self._writing() as file:
+            told = [due, failures, said[:300], sent.place, sent.person, sent.stamp]
+            file.execute(
+                "UPDATE scores SET due = ?, failures = ?, said = ? WHERE place = ? AND person = ? AND stamp = ?",
+                told,
+            )
+
+    def newer_stamp(self, sent: Waiting) -> None:
+        """Date a score anew, for a platform that says it has a later one."""
+        with self._writing() as file:
+            told = [max(self._clock(), sent.stamp + 1.0), sent.place, sent.person, sent.stamp]
+            file.execute("UPDATE scores SET stamp = ? WHERE place = ? AND person = ? AND stamp = ?", told)
+
+    def scores(self, place: str = "") -> dict[tuple[str, str], Waiting]:
+        """Scores by link and person."""
+        with self._open() as file:
+            rows = file.execute(
+                "SELECT * FROM scores WHERE ? = '' OR place = ? ORDER BY place, person", [place, place]
+            )
+            return {(row["place"], row["person"]): _waiting(row) for row in rows}
+
+    def hurry(self) -> int:
+        """Make all that waits due now; how many that are."""
+        with self._writing() as file:
+            return file.execute("UPDATE scores SET due = ? WHERE due IS NOT NULL", [self._clock()]).rowcount
+
+    # ----------------------------------------------------------------- courses
+
+    def courses(self) -> list[tuple[tuple[str, str, str, str], str, str]]:
+        """The courses that came, the latest first: what tells each apart, its title, and the address of its roster."""
+        with self._open() as file:
+            rows = file.execute("SELECT * FROM courses ORDER BY seen DESC")
+            return [(tuple(json.loads(row["course"])), row["title"], row["memberships"]) for row in rows]
+
+    def forget(self, person: str) -> int:
+        """Take away all that is kept of a person; how many lines that were."""
+        with self._writing() as file:
+            gone = sum(
+                file.execute(f"DELETE FROM {table} WHERE person = ?", [person]).rowcount
+                for table in ("papers", "tries", "scores")
+            )
+            for row in file.execute("SELECT id, launch FROM sessions").fetchall():
+                if json.loads(row["launch"])["person"] == person:
+                    gone += file.execute("DELETE FROM sessions WHERE id = ?", [row["id"]]).rowcount
+            return gone
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _json(data: Any) -> str:
+    return json.dumps(data, ensure_ascii=False)
+
+
+def _paper(row: sqlite3.Row) -> Paper:
+    return Paper(row["person"], row["name"], json.loads(row["asked"]), json.loads(row["records"]))
+
+
+def _try(row: sqlite3.Row) -> Try:
+    return Try(
+        row["person"],
+        row["number"],
+        row["at"],
+        json.loads(row["answers"]),
+        row["points"],
+        row["out_of"],
+        bool(row["waits"]),
+        row["comment"],
+    )
+
+
+def _waiting(row: sqlite3.Row) -> Waiting:
+    return Waiting(
+        row["place"], row["person"], row["line"], row["lines"], row["title"], tuple(json.loads(row["scopes"])),
+        Score(row["given"], row["maximum"], row["comment"], bool(row["waits"])),
+        row["stamp"], row["due"], row["failures"], row["said"],
+    )  # fmt: skip

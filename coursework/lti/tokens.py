@@ -1,0 +1,66 @@
+"""Whether a platform's token is genuine, for this tool, and of now."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import jwt
+
+from coursework.lti.key_sets import KeySets
+from coursework.lti.refusal import Refused
+from coursework.lti.settings import Platform, Settings
+
+_DEPLOYMENT = "https://purl.imsglobal.org/spec/lti/claim/deployment_id"
+_SLACK = 60  #: seconds that clocks may differ
+_NEEDED = ["iss", "sub", "aud", "exp", "iat", "nonce"]
+_LONGEST = 64 * 1024
+
+#: The sentence for each fault, and its status, the first that fits.
+_FAULTS: tuple[tuple[type[Exception], str, int], ...] = (
+    (jwt.ExpiredSignatureError, "expired", 401),
+    (jwt.ImmatureSignatureError, "not_yet", 401),
+    (jwt.InvalidIssuedAtError, "not_yet", 401),
+    (jwt.InvalidAudienceError, "audience", 403),
+    (jwt.InvalidIssuerError, "issuer", 403),
+    (jwt.MissingRequiredClaimError, "claim", 400),
+    (jwt.PyJWTError, "signature", 401),
+)
+
+
+def verified(token: str, settings: Settings, keys: KeySets, expected: Platform) -> Mapping[str, Any]:
+    """The claims of a token from the ``expected`` platform; ``client_id`` among them.
+
+    Only RS256 is taken: a token without a signature, or sealed with what everybody may read, is none.
+
+    Raises
+    ------
+    Refused
+        It is forged, of another time, for somebody else, or from a deployment that is not known.
+    """
+    if len(token) > _LONGEST:
+        raise Refused("too_large", 413, "token")
+    try:
+        header = jwt.get_unverified_header(token)
+        if header.get("alg") != "RS256":
+            raise Refused("signature", 401, f"signed by {str(header.get('alg'))[:20]!r}")
+        key = keys.key(expected, str(header.get("kid", "")))
+        claims = jwt.decode(
+            token, key, algorithms=["RS256"], audience=expected.client_id, issuer=expected.issuer, leeway=_SLACK,
+            options={"require": _NEEDED},
+        )  # fmt: skip
+    except jwt.PyJWTError as fault:
+        why, status = next((why, status) for kind, why, status in _FAULTS if isinstance(fault, kind))
+        raise Refused(why, status, f"{expected.name}: {type(fault).__name__}") from None
+    _check_party(claims, expected)
+    if str(claims.get(_DEPLOYMENT, "")) not in expected.deployments:
+        raise Refused("deployment", 403, f"{expected.name}: deployment {str(claims.get(_DEPLOYMENT))[:60]!r}")
+    return {**claims, "client_id": expected.client_id}
+
+
+def _check_party(claims: Mapping[str, Any], expected: Platform) -> None:
+    """A token for several tools says which of them asked for it."""
+    party, audience = claims.get("azp"), claims["aud"]
+    several = isinstance(audience, list) and len(audience) > 1
+    if (party is not None or several) and party != expected.client_id:
+        raise Refused("audience", 403, f"{expected.name}: asked for by another party")

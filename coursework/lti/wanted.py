@@ -1,0 +1,85 @@
+"""What a link asks for, as its custom parameters say: which exercise or assignment, how many tries, what counts."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any, Self
+
+from coursework.lti.refusal import Refused
+
+BEST, LAST = "best", "last"
+NEVER, AFTER = "never", "after"
+_MOST_TRIES = 1000
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a link opens, and by which rules."""
+
+    exercise: str = ""
+    assignment: str = ""
+    parts: tuple[str, ...] = ()  #: of the exercise; the usual ones where none is named
+    tries: int | None = None  #: as many as one likes unless told
+    counts: str = BEST
+    answers: str = NEVER  #: whether right answers are shown after the last try
+
+    @property
+    def key(self) -> str:
+        """What tells apart what was issued in a link whose content was changed."""
+        return " ".join(
+            filter(
+                None,
+                (
+                    f"assignment:{self.assignment}" if self.assignment else f"exercise:{self.exercise}",
+                    *self.parts,
+                ),
+            )
+        )
+
+    @property
+    def shows_answers(self) -> bool:
+        return self.answers == AFTER and self.tries is not None
+
+    def custom(self) -> dict[str, str]:
+        """The custom parameters that say so; what is as usual is left out."""
+        told = {
+            "exercise": self.exercise, "assignment": self.assignment, "parts": ",".join(self.parts),
+            "tries": "" if self.tries is None else str(self.tries),
+            "counts": "" if self.counts == BEST else self.counts,
+            "answers": "" if self.answers == NEVER else self.answers,
+        }  # fmt: skip
+        return {name: text for name, text in told.items() if text}
+
+    def as_plain(self) -> dict[str, Any]:
+        return asdict(self)
+
+    @classmethod
+    def of(cls, custom: Mapping[str, str]) -> Self:
+        """What custom parameters say.
+
+        Raises
+        ------
+        Refused
+            They name nothing to open, or a rule that there is not.
+        """
+        told = {str(name).strip().casefold(): text.strip() for name, text in custom.items()}
+        exercise, assignment = told.get("exercise", ""), told.get("assignment", "")
+        if not exercise and not assignment:
+            raise Refused("nothing_chosen", 404, "neither exercise nor assignment in the custom parameters")
+        counts, answers = told.get("counts") or BEST, told.get("answers") or NEVER
+        if counts not in (BEST, LAST) or answers not in (NEVER, AFTER):
+            raise Refused("unknown_choice", 404, f"counts {counts[:20]!r}, answers {answers[:20]!r}")
+        parts = tuple(filter(None, (one.strip() for one in told.get("parts", "").split(","))))
+        return cls(
+            exercise, "" if exercise else assignment, parts, tries_of(told.get("tries", "")), counts, answers
+        )
+
+
+def tries_of(text: str) -> int | None:
+    """A number of tries; none for as many as one likes."""
+    if not text.strip():
+        return None
+    if not text.strip().isdecimal() or not 1 <= int(text) <= _MOST_TRIES:
+        raise Refused("no_question", 400, "tries are no whole number")
+    return int(text)

@@ -1,0 +1,276 @@
+"""A platform of one's own: it signs launches, gives keys and tokens, and takes scores, all within the test."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import secrets
+import time
+from urllib.parse import parse_qs, urlsplit
+
+import httpx
+import jwt
+from cryptography.hazmat.primitives.asymmetric import rsa
+from jwt.algorithms import RSAAlgorithm
+
+import coursework
+from coursework.lti.course_host import CourseHost
+from coursework.lti.pages import Pages
+from coursework.lti.service import service
+from coursework.lti.settings import Platform, Settings
+from coursework.lti.storage import Storage
+
+LTI = "https://purl.imsglobal.org/spec/lti/claim/"
+DEEP = "https://purl.imsglobal.org/spec/lti-dl/claim/"
+AGS = "https://purl.imsglobal.org/spec/lti-ags/"
+NRPS = "https://purl.imsglobal.org/spec/lti-nrps/claim/namesroleservice"
+MEMBER = "http://purl.imsglobal.org/vocab/lis/v2/membership#"
+SITE, TOOL, CLIENT, DEPLOYMENT = "https://learn.example.org", "https://tool.example.org", "client-7", "3"
+ENGLISH = {"Accept-Language": "en"}
+SCOPES = [f"{AGS}scope/score", f"{AGS}scope/lineitem"]
+STUDENT, TEACHER = [f"{MEMBER}Learner"], [f"{MEMBER}Instructor"]
+
+_KEYS = [rsa.generate_private_key(public_exponent=65537, key_size=2048) for _ in range(3)]
+
+PLATFORM = Platform(
+    "learn",
+    SITE,
+    CLIENT,
+    (DEPLOYMENT,),
+    f"{SITE}/auth",
+    f"{SITE}/token",
+    f"{SITE}/jwks",
+    origins=("https://frames.example.org",),
+)
+
+
+def jwk(key, kid):
+    return {**RSAAlgorithm.to_jwk(key.public_key(), as_dict=True), "kid": kid, "alg": "RS256", "use": "sig"}
+
+
+class FakePlatform:
+    """Answers what the tool asks; ``down`` is what it answers instead, while it is set."""
+
+    def __init__(self):
+        self.private, self.kid = _KEYS[0], "one"
+        self.published = {"one": _KEYS[0]}
+        self.down = 0
+        self.asked = []  #: what was asked, method and path
+        self.scores = []  #: as they came
+        self.tokens = {}
+        self.lines = []
+        self.members = []
+        self.tool_keys = None  #: a function that gives the keys that the tool publishes
+
+    @property
+    def client(self):
+        return httpx.Client(transport=httpx.MockTransport(self.answer))
+
+    def asked_for(self, path):
+        return sum(one.endswith(path) for one in self.asked)
+
+    def rotate(self, number=1):
+        self.kid, self.private = f"key-{number}", _KEYS[number]
+        self.published = {self.kid: self.private}
+
+    def answer(self, request):
+        path = request.url.path
+        self.asked.append(f"{request.method} {path}")
+        if self.down:
+            if self.down == -1:
+                raise httpx.ConnectError("no way", request=request)
+            return httpx.Response(self.down)
+        if path == "/jwks":
+            return httpx.Response(200, json={"keys": [jwk(key, kid) for kid, key in self.published.items()]})
+        if path == "/token":
+            return self._token(parse_qs(request.content.decode()))
+        scopes = self.tokens.get(request.headers.get("authorization", "").removeprefix("Bearer "))
+        if scopes is None:
+            return httpx.Response(401)
+        if path.endswith("/scores"):
+            return self._score(json.loads(request.content), request, scopes)
+        if path == "/lines":
+            return self._line(request)
+        if path == "/members":
+            return self._roster(request)
+        return httpx.Response(404)
+
+    def _token(self, told):
+        assertion = told["client_assertion"][0]
+        kid = jwt.get_unverified_header(assertion)["kid"]
+        stated = next((one for one in self.tool_keys()["keys"] if one["kid"] == kid), None)
+        if stated is None:
+            return httpx.Response(401)
+        claims = jwt.decode(assertion, jwt.PyJWK(stated).key, algorithms=["RS256"], audience=f"{SITE}/token")
+        assert claims["iss"] == claims["sub"] == CLIENT
+        token = secrets.token_hex(8)
+        self.tokens[token] = told["scope"][0].split()
+        return httpx.Response(200, json={"access_token": token, "token_type": "Bearer", "expires_in": 3600})
+
+    def _score(self, told, request, scopes):
+        assert request.headers["content-type"] == "application/vnd.ims.lis.v1.score+json"
+        assert f"{AGS}scope/score" in scopes
+        last = [one["timestamp"] for one in self.scores if one["userId"] == told["userId"]]
+        if last and told["timestamp"] <= max(last):
+            return httpx.Response(409)
+        self.scores.append({**told, "line": str(request.url)})
+        return httpx.Response(200)
+
+    def _line(self, request):
+        if request.method == "GET":
+            wanted = request.url.params.get("resource_link_id")
+            return httpx.Response(200, json=[one for one in self.lines if one["resourceLinkId"] == wanted])
+        made = {**json.loads(request.content), "id": f"{SITE}/lines/{len(self.lines) + 1}?of=7"}
+        self.lines.append(made)
+        return httpx.Response(201, json=made)
+
+    def _roster(self, request):
+        page, size = int(request.url.params.get("Page", 0)), 2
+        links = (
+            {"Link": f'<{SITE}/members?Page={page + 1}>; rel="next"'}
+            if (page + 1) * size < len(self.members)
+            else {}
+        )
+        return httpx.Response(
+            200, json={"members": self.members[page * size : (page + 1) * size]}, headers=links
+        )
+
+    # -------------------------------------------------------------------- launches
+
+    def claims(self, nonce, **changed):
+        """Those of a student's launch; a claim that is None is left out."""
+        now = int(time.time())
+        told = {
+            "iss": SITE, "aud": CLIENT, "sub": "ada", "iat": now, "exp": now + 300, "nonce": nonce, "name": "Ada Byron",
+            f"{LTI}message_type": "LtiResourceLinkRequest", f"{LTI}version": "1.3.0", f"{LTI}deployment_id": DEPLOYMENT,
+            f"{LTI}target_link_uri": f"{TOOL}/launch", f"{LTI}roles": STUDENT, f"{LTI}resource_link": {"id": "link-1", "title": "Week 3"},
+            f"{LTI}context": {"id": "course-1", "title": "Mechanics"}, f"{LTI}launch_presentation": {"locale": "en_GB"},
+            f"{LTI}custom": {"exercise": "slotted_mechanism"},
+            f"{AGS}claim/endpoint": {"scope": SCOPES, "lineitem": f"{SITE}/lines/9?of=7", "lineitems": f"{SITE}/lines"},
+            NRPS: {"context_memberships_url": f"{SITE}/members", "service_versions": ["2.0"]},
+        }  # fmt: skip
+        named = {
+            name if ":" in name or name in told else f"{LTI}{name}": value for name, value in changed.items()
+        }
+        return {name: value for name, value in {**told, **named}.items() if value is not None}
+
+    def signed(self, claims, **headers):
+        return jwt.encode(claims, self.private, "RS256", headers={"kid": self.kid, **headers})
+
+
+class Browser:
+    """Asks an ASGI application, and keeps its cookies."""
+
+    def __init__(self, app):
+        self._app = app
+        self.cookies = httpx.Cookies()
+
+    def get(self, path, **asked):
+        return self._ask("GET", path, asked)
+
+    def post(self, path, **asked):
+        return self._ask("POST", path, asked)
+
+    def put(self, path, **asked):
+        return self._ask("PUT", path, asked)
+
+    def _ask(self, method, path, asked):
+        async def ask():
+            transport = httpx.ASGITransport(self._app, raise_app_exceptions=True)
+            async with httpx.AsyncClient(
+                transport=transport, base_url=TOOL, cookies=self.cookies, headers=ENGLISH
+            ) as client:
+                answer = await client.request(method, path, **asked)
+                self.cookies = client.cookies
+                return answer
+
+        return asyncio.run(ask())
+
+
+class Visitor:
+    """A browser that follows links from the platform."""
+
+    def __init__(self, app, platform):
+        self.platform = platform
+        self.browser = Browser(app)
+
+    def login(self, **changed):
+        """What the tool asks the platform for: the parameters of the authentication request."""
+        told = {
+            "iss": SITE,
+            "login_hint": "ada",
+            "target_link_uri": f"{TOOL}/launch",
+            "client_id": CLIENT,
+            **changed,
+        }
+        answer = self.browser.get("/login", params=told)
+        assert answer.status_code == 302, answer.text
+        assert answer.headers["location"].startswith(f"{SITE}/auth?")
+        return {
+            name: values[0] for name, values in parse_qs(urlsplit(answer.headers["location"]).query).items()
+        }
+
+    def launch(self, *, token=None, **changed):
+        """The tool's answer to a launch."""
+        asked = self.login()
+        token = token or self.platform.signed(self.platform.claims(asked["nonce"], **changed))
+        return self.browser.post("/launch", data={"state": asked["state"], "id_token": token})
+
+    def enter(self, **changed):
+        """The first page after a launch, and its path."""
+        answer = self.launch(**changed)
+        assert answer.status_code == 303, answer.text
+        path = urlsplit(answer.headers["location"]).path
+        return self.browser.get(path), path
+
+    def hand_in(self, path, page, answers, **more):
+        fields = {"_seal": seal(page.text), "_number": field(page.text, "_number"), **answers, **more}
+        return self.browser.post(path, data=fields)
+
+
+def field(html, name):
+    return html.split(f'name="{name}" value="')[1].split('"')[0]
+
+
+def seal(html):
+    return field(html, "_seal")
+
+
+class Tool:
+    """The service with the built-in course, on a platform of one's own, with a clock that is turned by hand."""
+
+    def __init__(self, folder, course=None, assignments=()):
+        self.course = course or coursework.open_course()
+        self.platform = FakePlatform()
+        self.ahead = 0.0
+        self.settings = Settings(folder, TOOL, (PLATFORM,))
+        self.storage = Storage(folder, self.clock)
+        self.host = CourseHost(self.course, self.storage, assignments, self.clock)
+        from coursework.lti.keys import KeyFolder
+
+        self.keys = KeyFolder(folder / "keys")
+        if not self.keys.keys:
+            self.keys.new()
+        self.platform.tool_keys = lambda: self.keys.public
+        self.app = self.made()
+
+    def made(self):
+        pages = Pages(self.course.folder)
+        return service(
+            self.settings,
+            self.host,
+            pages,
+            storage=self.storage,
+            client=self.platform.client,
+            clock=self.clock,
+        )
+
+    def clock(self):
+        return time.time() + self.ahead
+
+    @property
+    def sender(self):
+        return self.app.state.sender
+
+    def visitor(self):
+        return Visitor(self.app, self.platform)
