@@ -180,6 +180,9 @@ def test_what_is_no_responses_report_says_what_to_download(tmp_path):
     ):
         _, (rejected,), _ = rows_of(tmp_path / "a.csv", header + "\nAnn,Doe\n")
         assert told in rejected.reason
+    titles = "lastname firstname emailaddress status started completed duration grade1100 response1 response2"
+    _, (rejected,), _ = rows_of(tmp_path / "a.json", json.dumps([[dict.fromkeys(titles.split(), "x")]]))
+    assert "tick 'question text'" in rejected.reason
     (tmp_path / "a.xlsx").write_bytes(b"PK")
     (rejected,) = find([tmp_path / "a.xlsx"])
     assert "download the table as CSV" in rejected.reason
