@@ -71,7 +71,7 @@ def read_answers(
             else:
                 names = student, label.exercise, label.seed, label.part
                 own = origin._replace(version=label.version, apart=True)
-                yield Row(*names, answer, where, warning, label.lang, own)
+                yield Row(*names, label.answer(answer), where, warning, label.lang, own)
     yield Seen(
         source, f"{WHAT}, {counted(sum(attempts.values()), 'attempt')} of {counted(len(attempts), 'student')}"
     )

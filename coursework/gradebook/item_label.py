@@ -7,8 +7,11 @@ from typing import NamedTuple
 
 _LABEL = re.compile(
     r"\[\s*(?P<exercise>\w+)\s*·\s*(?P<seed>[0-9]{1,30})\s*·\s*v(?P<version>\w+)"
-    r"(?:\s*·\s*(?P<lang>[a-z]{2,3}))?(?:\s*·\s*(?P<part>\w+))?\s*\]"
+    r"(?:\s*·\s*(?P<lang>[a-z]{2,3}))?(?:\s*·\s*(?P<part>\w+))?(?:\s*·\s*(?P<unit>[^\]·]+?))?\s*\]"
 )
+
+
+_BARE = re.compile(r"\s*[-+−–]?[0-9][0-9.,\s]*")
 
 
 class ItemLabel(NamedTuple):
@@ -19,6 +22,13 @@ class ItemLabel(NamedTuple):
     version: str
     lang: str = ""
     part: str = ""  #: of a question that asks one part alone
+    unit: str = ""  #: in which numbers are asked, where it is not the sheet's: ``µrad``, ``10⁻³ °``
+
+    def answer(self, text: str) -> str:
+        """What was answered, a bare number with the unit that the question printed beside its box."""
+        if not (self.unit and _BARE.fullmatch(text)):
+            return text
+        return f"{text}{'·' if self.unit.startswith('10') else ' '}{self.unit}"
 
 
 NO_LABEL = "the question's text has no label as [slotted_mechanism · 4 · v1 · en], which says whose answers these are"

@@ -172,7 +172,7 @@ def _response(
         )
 
     if label.part:
-        yield row(label.part, "" if text in _NONE else text)
+        yield row(label.part, "" if text in _NONE else label.answer(text))
     elif text in _NONE:
         yield row("", "")
     elif answers := parts_of(text):

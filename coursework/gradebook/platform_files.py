@@ -64,7 +64,8 @@ def read_records(content: Any, source: str, warning: str) -> Iterator[Row | Reje
         return None
     header = [*items[0]]
     if (table := reader_of(header)) is None:
-        return None
+        fault = fault_of(header)
+        return iter([Rejected(source, fault)]) if fault else None
     rows = (
         (
             f"{source}, item {number}",
