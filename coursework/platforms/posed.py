@@ -6,7 +6,7 @@ An answer that a platform is to know is marked by the marker first: what it is w
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
