@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
     from coursework.course.course import Course
     from coursework.making.assignment import Assignment
-    from coursework.platforms.platform import Platform
+    from coursework.making.roster import Student
     from coursework.platforms.pools import Drawn
 
 _VARIANTS = 20  #: of a pool, where nothing says how many
@@ -80,7 +80,7 @@ class _PlatformName(click.ParamType):
 @click.option(
     "--issued",
     type=click.Path(path_type=Path, dir_okay=False, exists=True),
-    help="Of gradescope: the issued.json of the build whose sheets were handed out; no exercises then.",
+    help="Of gradescope: the issued.json of the build whose sheets were handed out; no exercises then. With exercises and a roster instead, it is that of the build with the same.",
 )
 @click.option("--strict", is_flag=True, help="Stop where anything is lost, and write nothing.")
 @decimal_option
@@ -118,13 +118,18 @@ def export(
 
     chosen = platform_of(platform)
     course = opened(context)
-    if issued is not None:
-        if exercises:
-            raise BadInput(f"--issued {issued} says what was issued: name no exercises beside it")
-        _export_autograder(chosen, course, issued, out)
-        return
     notes: list[str] = []
     students = read_roster(roster, notes.append) if roster else []
+    if issued is not None and (exercises or roster):
+        raise BadInput(f"--issued {issued} says what was issued: name no exercises and no roster beside it")
+    if issued is not None and chosen.deals:
+        raise BadInput(
+            f"--issued is of gradescope, which marks what a build issued; {platform} deals a pool of its own"
+        )
+    if not chosen.deals:
+        tell(notes)
+        _export_autograder(course, context, issued, exercises, students, count or 1, seed, langs, parts, out)
+        return
     drawn = _drawn(course, context, exercises, count or len(students), seed, langs, parts)
     made = exported(chosen, drawn, students, SPREADSHEETS[decimal])
     lines = list(told(made.lost, drawn.langs[0]))
@@ -145,19 +150,71 @@ def export(
     )
 
 
-def _export_autograder(platform: Platform, course: Course[Any], issued: Path, out: Path) -> None:
-    """Write what marks a build's answers on a platform that runs it."""
-    from coursework.platforms.gradescope import Gradescope
-    from coursework.system.writing import write_tree
+def _export_autograder(
+    course: Course[Any],
+    context: click.Context,
+    issued: Path | None,
+    exercises: Sequence[str],
+    students: Sequence[Student],
+    count: int,
+    seed: int,
+    langs: Sequence[str],
+    parts: str,
+    out: Path,
+) -> None:
+    """Write what marks a build's answers on a platform that runs it: of the build that is told, or of the one that would be made."""
+    from coursework.platforms.gradescope import PLATFORM
+    from coursework.system.writing import File, write_tree
 
-    if not isinstance(platform, Gradescope):
-        raise BadInput(
-            f"--issued is of gradescope, which marks what a build issued; {platform.name} draws its own pool"
-        )
-    files = list(platform.autograder(course.folder, issued))
+    if issued is not None:
+        try:
+            data = issued.read_bytes()
+        except OSError as fault:
+            raise BadInput(f"{issued} cannot be read: {fault.strerror}") from fault
+        files = list(PLATFORM.autograder(course.folder, data, str(issued)))
+    else:
+        data = _as_built(course, context, exercises, students, count, seed, langs, parts)
+        files = list(PLATFORM.autograder(course.folder, data, "what was issued"))
+        files.append(File(Path("issued.json"), lambda: data))
     with progress_bar("exporting", len(files)) as advance:
         tell(write_tree(out, files, advance))
-    click.echo(f"{out / 'autograder.zip'}, for the staff alone; how to put it up is in {files[-1].path}")
+    click.echo(f"{out / 'autograder.zip'}, for the staff alone; how to put it up is in {files[1].path}")
+    if issued is None:
+        click.echo("the sheets are those of 'coursework build' with the same exercises, roster and options")
+
+
+def _as_built(
+    course: Course[Any],
+    context: click.Context,
+    exercises: Sequence[str],
+    students: Sequence[Student],
+    count: int,
+    seed: int,
+    langs: Sequence[str],
+    parts: str,
+) -> bytes:
+    """The ``issued.json`` that a build writes."""
+    from coursework.making.assignment import read_assignment
+    from coursework.making.dealing import deal
+    from coursework.making.issued import issued_content
+    from coursework.making.issuing import issue
+    from coursework.making.roster import Student
+    from coursework.system.tables import json_text
+
+    if not is_assignment(exercises):
+        names = exercise_names(course, exercises)
+        chosen = split_list(parts) or None
+        issues = issue(
+            course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=chosen
+        )
+        return json_text(issued_content(issues)).encode("utf-8")
+    path = Path(exercises[0])
+    assignment = read_assignment(path, course)
+    _refuse_options(context, path)
+    people = students or [Student("") for _ in range(count)]
+    dealt = deal(course, assignment, people, _langs(context, assignment, langs))
+    tell(dealt.notes)
+    return json_text(issued_content(dealt.issues, assignment)).encode("utf-8")
 
 
 def _drawn(

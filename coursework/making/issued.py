@@ -90,11 +90,23 @@ class Issued:
             The file is not there, or is not what ``build`` writes.
         """
         try:
-            return Issued(json.loads(path.read_text("utf-8")), str(path))
+            return Issued.of(path.read_bytes(), str(path))
         except OSError as fault:
             raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+
+    @staticmethod
+    def of(data: bytes, source: str) -> Issued:
+        """What the bytes of an ``issued.json`` say.
+
+        Raises
+        ------
+        BadInput
+            They are not what ``build`` writes.
+        """
+        try:
+            return Issued(json.loads(data.decode("utf-8")), source)
         except (json.JSONDecodeError, UnicodeDecodeError) as fault:
-            raise BadInput(f"{path} is not JSON: {str(fault)[:100]}") from fault
+            raise BadInput(f"{source} is not JSON: {str(fault)[:100]}") from fault
 
     def student(self, name: str, ids: Ids | None = None) -> str | None:
         """The student's name as issued, or without a roster as it came first; None for a stranger to the roster.

@@ -1,7 +1,7 @@
 """Gradescope: an autograder that marks against what a build has issued.
 
-Gradescope hands nothing out: sheets are built first, and ``coursework export gradescope --issued DIR/issued.json`` writes the
-zip that marks what comes back. It holds this package as it is, the course, and ``issued.json``; no answer, though whoever has it can
+Gradescope hands nothing out: sheets are built, and ``coursework export gradescope`` writes the zip that marks what comes back, of
+that build's ``issued.json``, or of what the build of the same exercises and roster issues. It holds this package as it is, the course, and ``issued.json``; no answer, though whoever has it can
 compute them.
 """
 
@@ -74,26 +74,27 @@ class Gradescope(Platform):
     """The autograder is of a build, not of a pool: who has which variant is known when it marks."""
 
     name = "gradescope"
+    deals = False
 
     def files(self, pool: Pool) -> Iterator[File]:
         raise BadInput(
-            "Gradescope hands nothing out: build the sheets first, coursework build … --out DIR, then "
-            "coursework export gradescope --issued DIR/issued.json --out FOLDER"
+            "Gradescope deals no variants: its autograder is of what a build issued, coursework export gradescope --issued "
+            "DIR/issued.json --out FOLDER"
         )
 
-    def autograder(self, folder: Folder, path: Path) -> Iterator[File]:
-        """The zip for what was issued, and how it is put up.
+    def autograder(self, folder: Folder, data: bytes, source: str) -> Iterator[File]:
+        """The zip for what was issued, ``data`` of an ``issued.json`` as its ``source`` holds it, and how it is put up.
 
         Raises
         ------
         BadInput
             The file is not what ``build`` writes, or the course has no solutions to mark with.
         """
-        issued = Issued.read(path)
+        issued = Issued.of(data, source)
         if not folder.has_solutions:
             raise BadInput(f"{folder.label} has no solutions: it cannot mark")
         lang = next(str(record.get("lang", "fr")) for record in issued.records.values())
-        yield File(Path("autograder.zip"), partial(_zipped, folder, path, lang))
+        yield File(Path("autograder.zip"), partial(_zipped, folder, data, lang))
         yield File(Path(f"IMPORT.{lang}.txt"), lambda: _steps(issued, lang).encode("utf-8"))
 
 
@@ -118,7 +119,7 @@ def _steps(issued: Issued, lang: str) -> str:
 # ---------------------------------------------------------------------------- zip
 
 
-def _zipped(folder: Folder, issued: Path, lang: str) -> bytes:
+def _zipped(folder: Folder, issued: bytes, lang: str) -> bytes:
     own = folder.root != builtin_root().resolve()
     settings = {"course": "course" if own else "", "lang": lang}
     data = io.BytesIO()
@@ -131,7 +132,7 @@ def _zipped(folder: Folder, issued: Path, lang: str) -> bytes:
         )
         _put(file, "run_autograder", _RUN.format(stopped=_stopped(lang)), run=True)
         _put(file, SETTINGS, json.dumps(settings, indent=1) + "\n")
-        _put(file, "issued.json", issued.read_bytes())
+        _put(file, "issued.json", issued)
         package = Path(__file__).parents[1]
         for path in _files(package, skip="_course"):
             _put(file, f"coursework/{path.relative_to(package).as_posix()}", path.read_bytes())

@@ -20,6 +20,9 @@ class Platform(ABC):
     files are imported."""
 
     name: ClassVar[str] = ""
+    deals: ClassVar[bool] = (
+        True  #: it gives each student a variant of a pool; else it marks what was handed out by name
+    )
 
     @abstractmethod
     def files(self, pool: Pool) -> Iterator[File]:
