@@ -65,9 +65,9 @@ def _without_mark(data: bytes) -> str:
 
 
 def _delimiter(text: str) -> str:
-    """What parts the cells, by the first line outside quotation marks."""
-    line = next(filter(str.strip, text.splitlines()), "")
-    bare = re.sub(r'"[^"]*"', "", line)
+    """What parts the cells, by what stands on the first line outside quotation marks; a quoted title may run over several."""
+    outside = re.sub(r'"(?:[^"]|"")*"', "quoted", text[:100_000])
+    bare = next(filter(str.strip, outside.splitlines()), "")
     return max((",", ";", "\t"), key=bare.count)
 
 
