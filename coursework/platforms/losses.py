@@ -5,7 +5,7 @@ The words for it, ``[platforms.lost.NAME]`` of each language, are the table: a f
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from coursework.errors import BadCourse
@@ -50,9 +50,16 @@ def feature_words(feature: str, lang: str) -> str:
     return str(features[feature])
 
 
+def lost_words(platform: str, lang: str) -> Mapping[str, str]:
+    """What a platform does instead, by feature; one platform may say that it does as another."""
+    table = words(lang)["platforms"]["lost"]
+    found: Mapping[str, str] | str = table[platform]
+    return table[found] if isinstance(found, str) else found
+
+
 def losses(pool: Pool, platform: str, more: Iterable[Loss] = ()) -> list[Loss]:
     """Everything that a platform does not keep of a pool, a line a part and feature; ``more`` is what its files alone tell."""
-    lost = words(pool.lang)["platforms"]["lost"][platform]
+    lost = lost_words(platform, pool.lang)
     found = {
         (exercise, part, feature): Loss(exercise, part, feature, str(lost[feature]))
         for exercise, part, feature in _features(pool)

@@ -6,7 +6,7 @@ import pytest
 
 import coursework
 from coursework.language.words import words
-from coursework.platforms.losses import Loss, feature_words, losses, told
+from coursework.platforms.losses import Loss, feature_words, losses, lost_words, told
 from coursework.platforms.platform import platform_of, platforms
 from coursework.platforms.pools import of_exercises
 from coursework.platforms.posed import COLLECTED
@@ -23,10 +23,10 @@ every_exercise = pytest.mark.parametrize("name", COURSE.names)
 def test_every_platform_has_its_words(platform, lang):
     """A sentence a feature, all of features that there are; steps of how to import."""
     said = words(lang)["platforms"]
-    assert set(said["lost"][platform]) <= set(said["features"])
-    assert all(sentence.strip() for sentence in said["lost"][platform].values())
+    assert set(lost_words(platform, lang)) <= set(said["features"])
+    assert all(sentence.strip() for sentence in lost_words(platform, lang).values())
     assert len(said["steps"][platform]) == 6
-    assert set(words("fr")["platforms"]["lost"][platform]) == set(words("en")["platforms"]["lost"][platform])
+    assert set(lost_words(platform, "fr")) == set(lost_words(platform, "en"))
 
 
 @pytest.fixture(scope="module")
