@@ -122,10 +122,15 @@ class Issued:
         return self._known.get(folded(name)) or (None if ids is None else self._people.called(name))
 
     def account(self, names: Sequence[str]) -> str | None:
-        """The student of the roster whom a platform calls so, by a number, a login or a name; None for a stranger."""
+        """The student of the roster whom a platform calls so, by a number, an e-mail or what stands before its @, a login or
+        a name; None for a stranger."""
         told = (
-            self._people.of_ids([("", n)]) or self._known.get(folded(n)) or self._people.called(n)
+            self._people.of_ids([("", n)])
+            or self._known.get(folded(n))
+            or self._people.called(n)
+            or self._people.of_mailbox(n)
             for n in names
+            if n
         )
         return next(filter(None, told), None) if self.has_roster else None
 
@@ -169,6 +174,7 @@ class _People:
         self._by_id: dict[str, str | None] = {}
         self._by_words: dict[tuple[str, ...], str | None] = {}
         self._together: dict[str, str | None] = {}
+        self._by_mailbox: dict[str, str | None] = {}
         for student in students:
             self.add(student, columns.get(student, {}))
             _enter(self._by_words, words_of(student), student)
@@ -178,9 +184,15 @@ class _People:
     def add(self, student: str, columns: Mapping[str, str]) -> None:
         for one in ids_of(columns):
             _enter(self._by_id, one, student)
+            if "@" in one:
+                _enter(self._by_mailbox, one.partition("@")[0], student)
 
     def of_ids(self, ids: Ids) -> str | None:
         return next(filter(None, (self._by_id.get(same_id(value)) for _, value in ids if value)), None)
+
+    def of_mailbox(self, name: str) -> str | None:
+        """The student whose e-mail begins so, before its @."""
+        return self._by_mailbox.get(same_id(name))
 
     def called(self, name: str) -> str | None:
         """The student of a name whose words are in another order, or run together."""

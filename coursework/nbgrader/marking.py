@@ -9,8 +9,8 @@ from pathlib import Path
 from coursework.course.answer_keys import answer_keys, part_called
 from coursework.course.course import Course, opened
 from coursework.course.variant import Variant
+from coursework.gradebook.by_student import OwnMarks, for_student, marks_of_student
 from coursework.gradebook.graded import Graded
-from coursework.gradebook.handed_in import HandedIn, for_student, handed_in, student_known_by
 from coursework.gradebook.notebooks import read_notebook
 from coursework.gradebook.rows import Rejected
 from coursework.making.issued import Issued
@@ -59,8 +59,8 @@ def marked_notebook(course: str | Path | None, issued: Path, student: str, text:
         The course cannot mark.
     """
     opened_course, known = opened(course, Variant), Issued.read(issued)
-    name = student_known_by(known, student) or student
-    found = handed_in(opened_course, known, name, read_notebook(text, f"{student}.ipynb"))
+    name = known.account([student]) or student
+    found = marks_of_student(opened_course, known, name, read_notebook(text, f"{student}.ipynb", student))
     return _marked(opened_course, found)
 
 
@@ -94,7 +94,7 @@ class _Exercise:
         return [*words_of.said(self.lang, "rejected", self.loose), *words_of.said(self.lang, "note", notes)]
 
 
-def _marked(course: Course[Variant], found: HandedIn) -> MarkedNotebook:
+def _marked(course: Course[Variant], found: OwnMarks) -> MarkedNotebook:
     known = {graded.exercise for graded in found.sheets}
     points, outputs, notes, waiting = {}, {}, {}, set()
     for graded in found.sheets:
@@ -112,5 +112,5 @@ def _marked(course: Course[Variant], found: HandedIn) -> MarkedNotebook:
     return MarkedNotebook(points, outputs, notes, frozenset(waiting), _told(found))
 
 
-def _told(found: HandedIn) -> tuple[str, ...]:
+def _told(found: OwnMarks) -> tuple[str, ...]:
     return (*(f"{one.source}: {one.reason}" for one in found.rejected), *found.notes)

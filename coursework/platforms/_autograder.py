@@ -16,9 +16,9 @@ from typing import Any
 from coursework.course.course import Course, opened
 from coursework.course.variant import Variant
 from coursework.errors import BadInput, CourseworkError
+from coursework.gradebook.by_student import OwnMarks, for_student, marks_of_student
 from coursework.gradebook.feedback_sheets import feedback_sheet
 from coursework.gradebook.graded import Graded
-from coursework.gradebook.handed_in import HandedIn, for_student, handed_in, student_known_by
 from coursework.gradebook.rows import Rejected, Row, Seen
 from coursework.gradebook.scale import mark_of
 from coursework.gradebook.submissions import find, read_file
@@ -65,7 +65,7 @@ def _of_submission(course: Course[Variant], issued: Issued, root: Path, lang: st
     if not students:
         return _nothing(lang, "stranger", who=", ".join(filter(None, named)) or "?")
     rows = list(_rows(root / "submission"))
-    tried = [handed_in(course, issued, student, rows) for student in dict.fromkeys(students)]
+    tried = [marks_of_student(course, issued, student, rows) for student in dict.fromkeys(students)]
     best = max(tried, key=lambda one: (sum(len(g.answered) for g in one.sheets), -len(one.rejected)))
     notes = list(_late(about, users, best, lang))
     if len(users) > 1:
@@ -95,7 +95,7 @@ def _student(issued: Issued, user: Mapping[str, Any]) -> str:
     """Who of the roster a user is, by e-mail first; without a roster, whoever it is."""
     called = [str(user.get(key) or "") for key in ("email", "sid", "name")]
     if issued.has_roster:
-        return student_known_by(issued, *called) or ""
+        return issued.account(called) or ""
     return _who(user)
 
 
@@ -121,7 +121,7 @@ def _below(row: Row | Rejected, submission: Path) -> Row | Rejected:
 
 
 def _late(
-    about: Mapping[str, Any], users: Sequence[Mapping[str, Any]], found: HandedIn, lang: str
+    about: Mapping[str, Any], users: Sequence[Mapping[str, Any]], found: OwnMarks, lang: str
 ) -> Iterator[str]:
     """That it came after it was due, of the latest date that holds for one of the users; what it costs Gradescope says."""
     stated = [about.get("assignment"), *(user.get("assignment") for user in users)]
@@ -144,7 +144,7 @@ def _time(value: Any) -> datetime | None:
 # ------------------------------------------------------------------------ results
 
 
-def _told(course: Course[Variant], issued: Issued, found: HandedIn, notes: Sequence[str]) -> Results:
+def _told(course: Course[Variant], issued: Issued, found: OwnMarks, notes: Sequence[str]) -> Results:
     lang = str(found.sheets[0].record.get("lang", "fr"))
     shows = (issued.assignment or {}).get("answers") == "shown"
     sheets = [(graded, feedback_sheet(course, graded, answers=shows)) for graded in found.sheets]
@@ -204,7 +204,7 @@ def _right(sheets: Iterable[tuple[Graded, FeedbackSheet]], lang: str, *, several
                 yield f"{prefix}{line.question.number} {plain_line(line.right, lang)}"
 
 
-def _rejected(found: HandedIn, lang: str) -> Iterator[str]:
+def _rejected(found: OwnMarks, lang: str) -> Iterator[str]:
     said = str(words(lang)["gradescope"]["rejected"])
     for told in dict.fromkeys(f"{one.source}: {for_student(one.reason)}" for one in found.rejected):
         yield said.format(what=told)

@@ -10,7 +10,6 @@ from nbgrader_course import answers_cells, grade_cells
 import coursework
 from coursework.cli import run
 from coursework.course.answer_keys import answer_keys
-from coursework.gradebook.handed_in import student_known_by
 from coursework.making.issued import Issued
 from coursework.nbgrader.marking import marked_notebook
 
@@ -146,7 +145,7 @@ def issued():
         },
         "Ben Other": {
             "E-mail": "ben@else.example",
-            "Number": "103",
+            "Number": "102",
             "seat": "8",
             "parents' mail": "home@else.example",
         },
@@ -165,6 +164,7 @@ def issued():
         ("BEN  ADDA", "Ben Adda"),
         ("ben@else.example", "Ben Other"),
         ("ben", None),
+        ("102", None),
         ("home@else.example", None),
         ("7", None),
         ("8", None),
@@ -173,4 +173,4 @@ def issued():
     ],
 )
 def test_a_student_is_known_by_what_is_theirs_alone(issued, called, who):
-    assert student_known_by(issued, called) == who
+    assert issued.account([called]) == who
