@@ -98,7 +98,7 @@ class RestoreCells(NbGraderPreprocessor):
     """Gives a notebook of ours back the cells that were locked, whatever became of them; the student's own cells stay.
 
     Metadata that a student wrote would else stop the marking of one notebook or of a class, and a grade cell that is gone
-    would keep the points of an earlier submission.
+    would be marked by nobody.
     """
 
     def preprocess(self, nb: NotebookNode, resources: ResourcesDict) -> Done:
