@@ -166,6 +166,10 @@ def _export_autograder(
     from coursework.platforms.gradescope import PLATFORM
     from coursework.system.writing import File, write_tree
 
+    if issued is None and not exercises:
+        raise BadInput(
+            "an autograder is of what a build issued: --issued DIR/issued.json, or the exercises and the roster of the build"
+        )
     if issued is not None:
         try:
             data = issued.read_bytes()

@@ -381,8 +381,22 @@ def test_the_scripts_are_scripts_and_no_answer_is_in_the_zip(autograder):
 
 
 def test_an_export_without_what_was_issued_says_what_would_do(tmp_path, capsys):
-    assert run(["export", "gradescope", "grashof", "--out", str(tmp_path / "gs")]) == 2
+    assert run(["export", "gradescope", "--out", str(tmp_path / "gs")]) == 2
     assert "--issued" in capsys.readouterr().err
+
+
+def test_an_export_of_exercises_is_of_what_a_build_of_the_same_issues(tmp_path):
+    (tmp_path / "week3.toml").write_text(PAPER.replace("ANSWERS", "shown"), "utf-8")
+    (tmp_path / "class.csv").write_text(ROSTER, "utf-8")
+    for name, asked in (("paper", str(tmp_path / "week3.toml")), ("alone", "grashof")):
+        of = [asked, "--roster", str(tmp_path / "class.csv")]
+        built, exported = tmp_path / name, tmp_path / f"{name}-gs"
+        assert run(["build", *of, "--formats", "html", "--out", str(built)]) == 0
+        assert run(["export", "gradescope", *of, "--out", str(exported)]) == 0
+        issued = (built / "issued.json").read_bytes()
+        assert (exported / "issued.json").read_bytes() == issued
+        with zipfile.ZipFile(exported / "autograder.zip") as file:
+            assert file.read("issued.json") == issued
 
 
 def test_a_course_of_one_s_own_goes_along(small_course, tmp_path):
