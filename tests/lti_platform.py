@@ -5,7 +5,11 @@ from __future__ import annotations
 import asyncio
 import json
 import secrets
+import shutil
+import tempfile
 import time
+from functools import cache
+from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
 import httpx
@@ -15,6 +19,7 @@ from jwt.algorithms import RSAAlgorithm
 
 import coursework
 from coursework.lti.course_host import CourseHost
+from coursework.lti.keys import KeyFolder
 from coursework.lti.pages import Pages
 from coursework.lti.service import service
 from coursework.lti.settings import Platform, Settings
@@ -236,6 +241,14 @@ def seal(html):
     return field(html, "_seal")
 
 
+@cache
+def _made_keys():
+    """A folder with a key of the tool, made once."""
+    folder = Path(tempfile.mkdtemp()) / "keys"
+    KeyFolder(folder).new()
+    return folder
+
+
 class Tool:
     """The service with the built-in course, on a platform of one's own, with a clock that is turned by hand."""
 
@@ -246,11 +259,9 @@ class Tool:
         self.settings = Settings(folder, TOOL, (PLATFORM,))
         self.storage = Storage(folder, self.clock)
         self.host = CourseHost(self.course, self.storage, assignments, self.clock)
-        from coursework.lti.keys import KeyFolder
-
         self.keys = KeyFolder(folder / "keys")
         if not self.keys.keys:
-            self.keys.new()
+            shutil.copytree(_made_keys(), self.keys.folder)  # making one takes longer than most tests
         self.platform.tool_keys = lambda: self.keys.public
         self.app = self.made()
 

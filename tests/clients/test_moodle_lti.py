@@ -102,21 +102,29 @@ class Person:
     """Somebody's browser, logged in."""
 
     def __init__(self, chromium, site, who, password=PASSWORD, width=1280, height=1000):
+        from playwright.sync_api import Error
+
         self.site = site
         self.page = chromium.new_context(
             viewport={"width": width, "height": height}, locale="en-GB"
         ).new_page()
         self.page.set_default_timeout(60_000)
-        self.page.goto(f"{site['root']}/login/index.php")
-        self.page.fill("#username", who)
-        self.page.fill("#password", password)
-        self.page.click("#loginbtn")
-        self.page.wait_for_load_state()
+        for _ in range(4):  # a site that others use at once may take the form and not answer
+            self.page.goto(f"{site['root']}/login/index.php", wait_until="domcontentloaded")
+            if not self.page.query_selector("#username"):
+                break
+            self.page.fill("#username", who)
+            self.page.fill("#password", password)
+            with contextlib.suppress(Error):
+                self.page.click("#loginbtn", timeout=10_000)
+                self.page.wait_for_url(lambda url: "/login/" not in url, wait_until="commit", timeout=10_000)
+                break
 
     def open(self, title, lang="en"):
         """The tool's page within a link of the course."""
         self.page.goto(f"{self.site['root']}/course/view.php?id={self.site['course']}&lang={lang}")
-        self.page.click(f'a.aalink:has-text("{title}")')
+        # A tour of Moodle may stand before the link.
+        self.page.goto(self.page.get_attribute(f'a.aalink:has-text("{title}")', "href"))
         return self.tool()
 
     def tool(self, selector="h1"):
@@ -133,8 +141,9 @@ class Person:
         raise AssertionError([frame.url for frame in self.page.frames])
 
     def picture(self, name, **how):
-        if PICTURES:
-            self.page.screenshot(path=str(Path(PICTURES) / name), **how)
+        path = Path(PICTURES) / name
+        if PICTURES and not path.exists():
+            self.page.screenshot(path=str(path), **how)
 
 
 def variant_on(frame):
@@ -156,18 +165,16 @@ def answer(frame, wrong=()):
     return sum(part.points for part in variant.parts)
 
 
-def arrived(person, ended=lambda grade: True):
-    """The grade of a person, once Moodle has one."""
+def arrived(person, wanted=lambda grade: True):
+    """The grade of a person that is wanted, once Moodle has it."""
     for _ in range(60):
-        found = [
-            one
-            for one in ask("grades", course=COURSE)
-            if one["type"] == "mod" and one["user"] == person and one["grade"] is not None
+        given = [
+            one for one in ask("grades", course=COURSE) if one["type"] == "mod" and one["user"] == person
         ]
-        if found and ended(found[0]):
-            return found[0]
+        if found := next((one for one in given if one["grade"] is not None and wanted(one)), None):
+            return found
         time.sleep(0.5)
-    raise AssertionError(ask("grades", course=COURSE))
+    raise AssertionError(given)
 
 
 def test_moodle_gives_its_keys_and_a_token(site):
@@ -192,7 +199,9 @@ def test_a_link_is_picked_opened_answered_and_graded(site, chromium):
     teacher.picture("moodle-pick.png")
     frame.click("text=Use in the course")
     teacher.page.wait_for_function("document.querySelector('#id_name').value != ''")
-    title = f"Slotted mechanism {time.time_ns() % 10000}"
+    title = "Slotted mechanism" + " again" * any(
+        one["item"] == "Slotted mechanism" for one in ask("grades", course=COURSE)
+    )
     teacher.page.fill("#id_name", title)
     teacher.page.click("#id_submitbutton2")
     teacher.page.wait_for_load_state()
@@ -204,7 +213,7 @@ def test_a_link_is_picked_opened_answered_and_graded(site, chromium):
     frame.click("text=Hand in my answers")
     student.tool(".told")
     student.picture("moodle-feedback.png")
-    first = arrived(site["people"]["ada"], lambda one: one["item"].startswith(title.split()[0]))
+    first = arrived(site["people"]["ada"], lambda one: one["item"] == title)
     assert first["max"] == 20
     assert 0 < first["grade"] < 20
     assert "one slip away" in first["feedback"]
@@ -215,7 +224,7 @@ def test_a_link_is_picked_opened_answered_and_graded(site, chromium):
     answer(frame)
     frame.click("text=Hand in my answers")
     student.tool(".told")
-    best = arrived(site["people"]["ada"], lambda one: one["grade"] == 20)
+    best = arrived(site["people"]["ada"], lambda one: one["item"] == title and one["grade"] == 20)
     assert best["feedback"].startswith(f"{worth:g} of {worth:g} points (try 2)")
 
     frame = teacher.open(title)
@@ -224,8 +233,7 @@ def test_a_link_is_picked_opened_answered_and_graded(site, chromium):
     assert re.search(r"Bob Noyce\s+not opened", told)
     teacher.picture("moodle-class.png")
     teacher.page.goto(f"{site['root']}/grade/report/grader/index.php?id={site['course']}")
-    if skip := teacher.page.query_selector("text=Skip tour"):
-        skip.click()
+    teacher.page.add_style_tag(content="[data-flexitour] { display: none !important }")
     teacher.page.wait_for_timeout(1500)
     assert "20.00" in teacher.page.inner_text(".gradeparent")
     teacher.picture("moodle-gradebook.png", clip={"x": 290, "y": 120, "width": 990, "height": 540})
@@ -270,6 +278,7 @@ def test_a_key_is_rotated_while_moodle_goes_on(site):
 def test_the_registration_page_is_as_the_documentation_shows(site, chromium):
     name, _, password = ADMIN.partition(":")
     admin = Person(chromium, site, name, password, height=1500)
+    admin.page.goto(f"{site['root']}/my/")
     admin.page.goto(f"{site['root']}/mod/lti/typessettings.php?action=add&sesskey={_sesskey(admin.page)}")
     told = "https://exercises.example.org"
     admin.page.fill("#id_lti_typename", "Coursework")
