@@ -64,8 +64,13 @@ def test_languages_are_completed(completed):
 
 
 def test_formats_are_completed_one_after_another(completed):
-    assert completed("coursework build --formats ") == ["pdf", "ipynb", "html", "tex"]
-    assert completed("coursework build --formats pdf,") == ["pdf,ipynb", "pdf,html", "pdf,tex"]
+    assert completed("coursework build --formats ") == ["pdf", "ipynb", "html", "tex", "nbgrader"]
+    assert completed("coursework build --formats pdf,") == [
+        "pdf,ipynb",
+        "pdf,html",
+        "pdf,tex",
+        "pdf,nbgrader",
+    ]
     assert completed("coursework build --formats pdf,h") == ["pdf,html"]
 
 
