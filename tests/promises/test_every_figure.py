@@ -100,7 +100,7 @@ def from_box(z, low, high):
     return math.hypot(across, max(low.imag - z.imag, 0, z.imag - high.imag))
 
 
-@sweeps.seeds(8, 200)
+@sweeps.seeds(8, 100)
 @pytest.mark.parametrize("name", WITH_FIGURE)
 def test_no_label_sits_on_a_line_or_on_another_label_in_statement_or_solution(name, seeds):
     found = {}

@@ -25,7 +25,7 @@ from coursework.reading.points import read_point
 COURSE = coursework.open_course()
 NAMES = [*COURSE.names, "coil"]
 every_exercise = pytest.mark.parametrize("name", NAMES)
-every_seed = seeds(1, 5)
+every_seed = seeds(1, 3)
 
 
 @pytest.fixture(scope="module")
