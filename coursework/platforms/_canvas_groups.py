@@ -9,7 +9,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from coursework.platforms.items import Item, Section
-from coursework.platforms.posed import NUMBER, Interval, Posed
+from coursework.platforms.posed import Interval, Posed
 from coursework.reading.units import convert, find_unit
 from coursework.sheets.sheet import Question
 
@@ -132,7 +132,3 @@ def accepted(interval: Interval, decades: int) -> tuple[Decimal, Decimal, Decima
 def _typed(value: float, decades: int) -> Decimal:
     """A number as the page keeps it."""
     return Decimal(repr(value)).scaleb(decades).quantize(_PLACES).normalize() + 0
-
-
-def is_number(posed: Posed) -> bool:
-    return posed.kind == NUMBER

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import ast
+import cmath
 import copy
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -69,7 +69,6 @@ class _Formulas:
     def __init__(self, variant: Variant, earlier: Mapping[str, int]):
         self._variant, self._earlier = variant, earlier
         self.used: set[int] = set()
-        self.trees: list[tuple[ast.expr, Mapping[str, Any]]] = []
         depending = variant.key.solution.depending_on
         self._moving = {q for answered in earlier for q in depending(answered)}
 
@@ -110,7 +109,11 @@ def _is_proved(variant: Variant, part: Part, formulas: _Formulas, earlier: Mappi
         own = {place: float(variant.key.reference[p.quantity]) * factor for place, p in earlier.items()}
         expected = follows(variant, part, own)
         found = _evaluated(formulas.of(part.quantity, first=True), own)
-        if expected is None or found is None or not math.isclose(found, expected, rel_tol=_SAME, abs_tol=_SAME):
+        if (
+            expected is None
+            or found is None
+            or not math.isclose(found, expected, rel_tol=_SAME, abs_tol=_SAME)
+        ):
             turn = part.sort.turn
             if not (turn and expected is not None and found is not None):
                 return False
@@ -132,8 +135,6 @@ def follows(variant: Variant, part: Part, own: Mapping[int, float]) -> float | N
 
 def _evaluated(maxima: str, own: Mapping[int, float]) -> float | None:
     """The value of such an expression, computed here."""
-    import cmath
-
     space: dict[str, Any] = {
         "sin": cmath.sin, "cos": cmath.cos, "tan": cmath.tan, "asin": cmath.asin, "acos": cmath.acos,
         "atan": cmath.atan, "exp": cmath.exp, "log": cmath.log, "sqrt": cmath.sqrt,
@@ -146,11 +147,9 @@ def _evaluated(maxima: str, own: Mapping[int, float]) -> float | None:
     }  # fmt: skip
     text = maxima.replace("%pi", "PI").replace("%i", "I").replace("^", "**")
     try:
-        value = complex(eval(compile(text, "<formula>", "eval"), {"__builtins__": {}}, space))  # of our own print
+        value = complex(
+            eval(compile(text, "<formula>", "eval"), {"__builtins__": {}}, space)
+        )  # of our own print
     except (ArithmeticError, ValueError):
         return None
     return value.real if abs(value.imag) <= _SAME * max(1.0, abs(value)) else None
-
-
-def values(variant: Variant, answers: Sequence[float | None]) -> dict[int, float]:
-    return {place: value for place, value in enumerate(answers, start=1) if value is not None}

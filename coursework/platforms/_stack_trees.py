@@ -17,9 +17,7 @@ _SLACK = 1e-12  #: of an end: it belongs to the margin whatever the last bit
 _LONGEST = 200  #: characters of what a node asks; Moodle has room for 255
 _ATTEMPT = 100  #: an earlier answer is gone on from within this factor of the right one
 #: Units that students may write with a number, and what STACK is told of them.
-_UNITS = tuple(
-    "mm cm dm m km um s ms h g kg N kN mN daN J kJ W kW mW Pa kPa MPa rad mrad deg rpm".split()
-)
+_UNITS = tuple("mm cm dm m km um s ms h g kg N kN mN daN J kJ W kW mW Pa kPa MPa rad mrad deg rpm".split())
 _BASES = {"length": "m", "mass": "kg", "time": "s"}
 _NUMBERS = ("angle", "cycle")  #: what has a unit and is a number
 
@@ -53,7 +51,9 @@ def in_base_units(unit: str) -> str:
     powers = dict(zip(DIMENSIONS, found.dimension, strict=True))
     if any(power and name not in (*_BASES, *_NUMBERS) for name, power in powers.items()):
         raise Unprintable(unit)
-    bases = "".join(f"*{_BASES[name]}^({power})" for name, power in powers.items() if name in _BASES and power)
+    bases = "".join(
+        f"*{_BASES[name]}^({power})" for name, power in powers.items() if name in _BASES and power
+    )
     return number(found.factor) + bases
 
 
@@ -160,9 +160,7 @@ def _of_interval(place: int, interval: Interval, turn: float) -> Node:
     holds = _within(low, high, turn)
     ends = f"v{place},{number(low)},{number(high)}"
     maxima = f"co_turned({ends},{number(turn)})" if turn else f"co_in({ends})"
-    return Node(
-        maxima, lambda answer, own: holds(answer), interval.share, interval.says, interval.verdict
-    )
+    return Node(maxima, lambda answer, own: holds(answer), interval.share, interval.says, interval.verdict)
 
 
 def _within(low: float, high: float, turn: float) -> Callable[[object], bool]:
@@ -197,17 +195,11 @@ def _of_following(variant: Variant, place: int, part: Part, found: Following) ->
     maxima = f"if numberp(f{place}) then (({wrong}){tried}{apart} and {near}) else false"
 
     def holds(answer: object, own: Mapping[int, float]) -> bool:
-        whole = {
-            one: own.get(one, float(key.reference[p.quantity])) for one, p in earlier.items()
-        }
-        right = {one: _is_right(variant, earlier[one], value) for one, value in whole.items()}
-        for one, value in whole.items():
-            reference = float(key.reference[earlier[one].quantity])
-            if not right[one] and not earlier[one].sort.turn:
-                if not abs(reference) / _ATTEMPT <= abs(value) <= _ATTEMPT * abs(reference):
-                    return False
+        whole = {one: own.get(one, float(key.reference[p.quantity])) for one, p in earlier.items()}
+        wrong = [one for one, value in whole.items() if not _is_right(variant, earlier[one], value)]
+        untried = any(not _is_tried(variant, earlier[one], whole[one]) for one in wrong)
         value = follows(variant, part, whole)
-        if all(right.values()) or value is None or not math.isfinite(value):
+        if not wrong or untried or value is None or not math.isfinite(value):
             return False
         width = max(least, share * abs(value)) + 1e-9 * abs(value)
         if apart and abs(value) <= width:
@@ -226,6 +218,12 @@ def _is_right(variant: Variant, part: Part, value: float) -> bool:
     reference, half = float(variant.key.reference[part.quantity]), variant.key.half_width(part)
     slack = _SLACK * max(abs(reference - half), abs(reference + half))
     return _within(reference - half - slack, reference + half + slack, part.sort.turn)(value)
+
+
+def _is_tried(variant: Variant, part: Part, value: float) -> bool:
+    """Whether a wrong answer is near enough to the right one to be gone on from; a direction always is."""
+    reference = abs(float(variant.key.reference[part.quantity]))
+    return bool(part.sort.turn) or reference / _ATTEMPT <= abs(value) <= _ATTEMPT * reference
 
 
 def _cases(place: int, posed: Posed) -> Iterator[Node]:

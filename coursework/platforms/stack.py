@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, ClassVar
 from xml.etree import ElementTree as ET
 
-from coursework.course.variant import Variant
 from coursework.language.words import words
 from coursework.platforms._maxima import number, text
 from coursework.platforms._packages import below, xml_bytes
@@ -70,7 +69,7 @@ def _category(root: ET.Element, *path: str) -> None:
 class _Question:
     """One variant as a question of STACK."""
 
-    def __init__(self, root: ET.Element, pieces: Pieces, item: Item, variant: Variant):
+    def __init__(self, root: ET.Element, pieces: Pieces, item: Item, variant: Any):
         self._root, self._pieces, self._item, self._variant = root, pieces, item, variant
         self._words = words(item.handout.lang)["platforms"]["stack"]
         self._trees = trees(variant, item.questions)
