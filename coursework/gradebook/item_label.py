@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 _LABEL = re.compile(
     r"\[\s*(?P<exercise>\w+)\s*·\s*(?P<seed>[0-9]{1,30})\s*·\s*v(?P<version>\w+)"
-    r"(?:\s*·\s*(?P<lang>[a-z]{2,3}))?(?:\s*·\s*(?P<part>\w+))?(?:\s*·\s*(?P<unit>[^\]·]+?))?\s*\]"
+    r"(?:\s*·\s*(?P<lang>[a-z]{2,3}))?(?:\s*·\s*(?P<part>\w+))?(?:\s*·\s*(?P<unit>[^\[\]]{1,40}?))?\s*\]"
 )
 
 

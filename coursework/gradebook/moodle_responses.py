@@ -15,6 +15,7 @@ from typing import NamedTuple
 from coursework.errors import counted
 from coursework.gradebook.item_label import NO_LABEL, ItemLabel, label_in
 from coursework.gradebook.rows import Collected, Rejected, Row, Seen
+from coursework.gradebook.stack_responses import stack_answers
 from coursework.making.identity import EMAIL, FIRST_NAME, SURNAME, WHOLE, identifies, is_called
 from coursework.system.tables import as_written
 
@@ -175,6 +176,8 @@ def _response(
         yield row(label.part, "" if text in _NONE else label.answer(text))
     elif text in _NONE:
         yield row("", "")
+    elif boxes := stack_answers(text):
+        yield from (row(f"question_{number}", answer) for number, answer in boxes.items())
     elif answers := parts_of(text):
         yield from (row(f"question_{number}", answer) for number, answer in enumerate(answers, start=1))
     else:

@@ -30,8 +30,10 @@ co_in(v,a,b) := if numberp(v) then is(a<=v and v<=b) else false;
 co_turned(v,a,b,t) := if numberp(v) then is(abs(v-(a+b)/2-t*round((v-(a+b)/2)/t))<=(b-a)/2) else false;
 co_tried(v,r) := is(abs(v)<=%d*abs(r) and %d*abs(v)>=abs(r));
 co_units: [%s];
+co_pair(x) := if atom(x) then false elseif is(op(x)="-") or is(op(x)="/") then co_pair(first(args(x)))
+  else is(op(x)="*") and is(length(sublist(args(x),numberp))>1);
 co_valid(x,u,other,grouped) := if is(x=EMPTYANSWER) or numberp(x) then ""
-  elseif not atom(x) and is(op(x)="*") and length(sublist(args(x),integerp))>1 then grouped
+  elseif co_pair(x) then grouped
   elseif emptyp(listofvars(x)) then ""
   elseif numberp(ev(float(subst(co_units,x)/(u)),simp)) then "" else other;
 """

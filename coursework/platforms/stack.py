@@ -32,6 +32,7 @@ _SHOWN = 6  #: figures of an answer, which students are shown
 _SIGNS = {",": ("fr",)}  #: decimal signs other than the point, with the languages that write them
 _TYPES = {NUMBER: "algebraic", CHOICE: "radio", CHOICES: "checkbox", COLLECTED: "string"}
 _STARS = "4"  #: a space, or nothing, between a number and its unit is a product
+_ALLOWED = "rad"  #: a unit whose name Maxima has for something else
 _SIZES = {NUMBER: "15", COLLECTED: "40"}
 _NO_ANSWER = "?"  #: what stands as the right answer of a box that nobody judges; it is never shown
 
@@ -183,7 +184,7 @@ class _Question:
             "syntaxhint": "",
             "syntaxattribute": "0",
             "forbidwords": "",
-            "allowwords": "",
+            "allowwords": _ALLOWED if posed.kind == NUMBER else "",
             "forbidfloat": "0",
             "requirelowestterms": "0",
             "checkanswertype": "0",

@@ -1,0 +1,46 @@
+"""A response of a question of STACK, as Moodle's reports tell it: ``Seed: 1; ans1: 238.4 mm [score]; …; prt1: # = 1 | …``."""
+
+from __future__ import annotations
+
+import json
+import re
+
+_BEGINS = re.compile(r"Seed: -?[0-9]+(?:; |\Z)")
+_ANSWER = re.compile(
+    r"ans(?P<number>[0-9]{1,3}): "
+    r'(?P<typed>"(?:[^"\\]|\\.)*"|\["(?:[^"\\]|\\.)*"(?:,\s*"(?:[^"\\]|\\.)*")*\]|.*?)'
+    r" \[(?:score|valid|invalid|blank)\](?:; |\Z)",
+    re.DOTALL,
+)
+_EMPTY = ("EMPTYANSWER", "[]")
+
+
+def stack_answers(text: str) -> dict[int, str] | None:
+    """What was typed in each box, by its number; None where this is no such response, or nobody knows which is which.
+
+    Texts come in quotes, in which they may hold anything; what STACK refused comes as it was typed.
+    """
+    begins = _BEGINS.match(text)
+    if begins is None:
+        return None
+    place, found = begins.end(), dict[int, str]()
+    while one := _ANSWER.match(text, place):
+        number = int(one["number"])
+        if found and number <= max(found):
+            return None
+        found[number] = _plain(one["typed"])
+        place = one.end()
+    return found if not text[place:] or text.startswith("prt", place) else None
+
+
+def _plain(typed: str) -> str:
+    """A text without its quotes, several cases one after the other."""
+    if typed in _EMPTY:
+        return ""
+    if not typed.startswith(('"', '["')):
+        return typed
+    try:
+        value = json.loads(typed)
+    except ValueError:
+        return typed.strip('"')
+    return ", ".join(value) if isinstance(value, list) else str(value)
