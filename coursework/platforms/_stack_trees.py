@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from coursework.course.variant import Variant
 from coursework.model import Part
@@ -14,6 +14,7 @@ from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Inter
 from coursework.reading.units import DIMENSIONS, find_unit
 
 _SLACK = 1e-12  #: of an end: it belongs to the margin whatever the last bit
+EMPTY = "empty"  #: the verdict of a box that is left so, which costs no penalty
 _LONGEST = 200  #: characters of what a node asks; Moodle has room for 255
 _ATTEMPT = 100  #: an earlier answer is gone on from within this factor of the right one
 #: Units that students may write with a number, and what STACK is told of them.
@@ -79,6 +80,7 @@ class Tree:
     nodes: tuple[Node, ...]
     following: Following | None = None
     unit: str = "1"  #: as Maxima is told it
+    may_be_empty: bool = False
 
     @property
     def variables(self) -> str:
@@ -119,11 +121,19 @@ class Tree:
 def trees(variant: Variant, questions: Sequence[Posed]) -> tuple[Tree, ...]:
     """The trees of the questions that STACK can judge."""
     asked = zip(questions, variant.parts, strict=True)
-    return tuple(
+    found = [
         _tree(variant, place, posed, part)
         for place, (posed, part) in enumerate(asked, start=1)
         if posed.kind != COLLECTED
-    )
+    ]
+    goes_on = {place for tree in found if tree.following for place in tree.following.earlier}
+    return tuple(_may_be_empty(tree) if tree.place in goes_on else tree for tree in found)
+
+
+def _may_be_empty(tree: Tree) -> Tree:
+    """A tree whose answer others follow from: they are judged without it, too, so its box may stay empty."""
+    nothing = Node(f"is(ans{tree.place}=EMPTYANSWER)", lambda answer, own: answer is None, 0.0, verdict=EMPTY)
+    return replace(tree, nodes=(nothing, *tree.nodes), may_be_empty=True)
 
 
 def _tree(variant: Variant, place: int, posed: Posed, part: Part) -> Tree:
@@ -136,7 +146,7 @@ def _tree(variant: Variant, place: int, posed: Posed, part: Part) -> Tree:
     nodes = [_of_interval(place, right, part.sort.turn)]
     if found is not None:
         nodes.append(_of_following(variant, place, part, found))
-    nodes += [_of_interval(place, interval, part.sort.turn) for interval in wrong]
+    nodes += [_of_interval(place, one, part.sort.turn if _turns(one, posed) else 0.0) for one in wrong]
     return Tree(place, posed, tuple(nodes), found, unit_of(part))
 
 
@@ -150,6 +160,12 @@ def unit_of(part: Part) -> str:
 
 def _intervals(posed: Posed) -> Iterator[Interval]:
     return (interval for interval in posed.intervals if not interval.turns)
+
+
+def _turns(interval: Interval, posed: Posed) -> bool:
+    """Whether whole turns more or fewer are taken for the same."""
+    verdicts = (one.verdict for one in posed.intervals if one.turns and math.isclose(one.half, interval.half))
+    return interval.verdict in verdicts
 
 
 def _ends(interval: Interval) -> tuple[float, float]:

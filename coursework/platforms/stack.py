@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar
@@ -12,7 +12,9 @@ from xml.etree import ElementTree as ET
 from coursework.language.words import words
 from coursework.platforms._maxima import number, text
 from coursework.platforms._packages import below, xml_bytes
+from coursework.platforms._stack_following import following
 from coursework.platforms._stack_trees import (
+    EMPTY,
     Tree,
     case_name,
     functions,
@@ -21,6 +23,7 @@ from coursework.platforms._stack_trees import (
 )
 from coursework.platforms._stack_trials import Trial, trials
 from coursework.platforms.items import Item, Pool
+from coursework.platforms.losses import Loss
 from coursework.platforms.pieces import Image, Pieces, with_files
 from coursework.platforms.platform import Platform
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Posed
@@ -32,6 +35,7 @@ _SHOWN = 6  #: figures of an answer, which students are shown
 _SIGNS = {",": ("fr",)}  #: decimal signs other than the point, with the languages that write them
 _TYPES = {NUMBER: "algebraic", CHOICE: "radio", CHOICES: "checkbox", COLLECTED: "string"}
 _STARS = "4"  #: a space, or nothing, between a number and its unit is a product
+_BRIEFLY = "3"  #: how an answer was read, on a line
 _ALLOWED = "rad"  #: a unit whose name Maxima has for something else
 _SIZES = {NUMBER: "15", COLLECTED: "40"}
 _NO_ANSWER = "?"  #: what stands as the right answer of a box that nobody judges; it is never shown
@@ -45,20 +49,35 @@ class Stack(Platform):
     def files(self, pool: Pool) -> Iterator[File]:
         yield File(Path(f"stack.{pool.lang}.xml"), partial(_quiz, pool))
 
+    def losses(self, pool: Pool) -> Iterable[Loss]:
+        """The answers that may follow from others by no line of Maxima."""
+        instead = words(pool.lang)["platforms"]["stack"]["not_followed"]
+        for item, variant in _with_variants(pool):
+            for posed, part in zip(item.questions, variant.parts, strict=True):
+                may = posed.kind == NUMBER and "follow_through" in posed.features
+                if may and following(variant, part) is None:
+                    yield Loss(variant.exercise.name, part.id, "follow_through", instead)
+
 
 def _quiz(pool: Pool) -> bytes:
     root = ET.Element("quiz")
+    pieces = Pieces(pool.folders, pool.lang)
+    variants = {item.identifier: variant for item, variant in _with_variants(pool)}
+    for section in pool.sections:
+        _category(root, pool.title, f"{section.title} ({section.exercise}, {pool.lang})")
+        for item in section.items:
+            _Question(root, pieces, item, variants[item.identifier]).write()
+    return xml_bytes(root)
+
+
+def _with_variants(pool: Pool) -> Iterator[tuple[Item, Any]]:
+    """Each item, with its variant in the language of the pool."""
     variants = {
         (issue.variant.exercise.name, issue.variant.seed): issue.variant.in_language(pool.lang)
         for issue in pool.issues
     }
-    pieces = Pieces(pool.folders, pool.lang)
-    for section in pool.sections:
-        _category(root, pool.title, f"{section.title} ({section.exercise}, {pool.lang})")
-        for item in section.items:
-            variant = variants[item.handout.exercise, item.handout.seed]
-            _Question(root, pieces, item, variant).write()
-    return xml_bytes(root)
+    for item in pool.items:
+        yield item, variants[item.handout.exercise, item.handout.seed]
 
 
 def _category(root: ET.Element, *path: str) -> None:
@@ -107,8 +126,8 @@ class _Question:
             box = "" if posed.kind in (CHOICE, CHOICES) else _BOX
             html = self._shown(self._pieces.prompt(posed, box=box)).replace(_BOX, f"[[input:ans{place}]]")
             said.append(html if box else f"{html}<div>[[input:ans{place}]]</div>")
-            judged = f"[[feedback:prt{place}]]" if posed.kind != COLLECTED else ""
-            said.append(f"<div>[[validation:ans{place}]]{judged}</div>")
+            said.append(f"<div>[[validation:ans{place}]]</div>")
+            said.append(f"<div>[[feedback:prt{place}]]</div>" if posed.kind != COLLECTED else "")
         where = self._html(question, "questiontext", "".join(said))
         for image in self._images.values():
             data = base64.b64encode(image.data).decode()
@@ -188,8 +207,8 @@ class _Question:
             "forbidfloat": "0",
             "requirelowestterms": "0",
             "checkanswertype": "0",
-            "mustverify": "0",
-            "showvalidation": "1" if posed.kind == NUMBER else "0",
+            "mustverify": "1" if posed.kind == NUMBER else "0",
+            "showvalidation": _BRIEFLY if posed.kind == NUMBER else "0",
             "options": ",".join(self._extra(place, posed)),
         }
         for name, value in told.items():
@@ -198,7 +217,7 @@ class _Question:
     def _extra(self, place: int, posed: Posed) -> Iterator[str]:
         if posed.kind == NUMBER:
             yield f"validator:co_check{place}"
-            if any(tree.following and place in tree.following.earlier for tree in self._trees):
+            if any(tree.may_be_empty and tree.place == place for tree in self._trees):
                 yield "allowempty"
         if posed.kind == COLLECTED:
             yield "hideanswer"
@@ -250,15 +269,18 @@ class _Question:
             one = below(place, "node")
             for name, value in told.items():
                 below(one, name, value)
-            self._branch(one, "true", node.share, "-1", note(tree, at), says)
-            self._branch(one, "false", 0.0, "-1" if last else str(at + 1), note(tree, at, holds=False), "")
+            penalty = "0" if node.verdict == EMPTY else ""
+            self._branch(one, "true", node.share, "-1", note(tree, at), says, penalty)
+            self._branch(
+                one, "false", 0.0, "-1" if last else str(at + 1), note(tree, at, holds=False), "", ""
+            )
 
     def _branch(
-        self, node: ET.Element, way: str, share: float, following: str, noted: str, says: str
+        self, node: ET.Element, way: str, share: float, following: str, noted: str, says: str, penalty: str
     ) -> None:
         below(node, f"{way}scoremode", "=")
         below(node, f"{way}score", f"{share:.7g}")
-        below(node, f"{way}penalty", "")
+        below(node, f"{way}penalty", penalty)
         below(node, f"{way}nextnode", following)
         below(node, f"{way}answernote", noted)
         self._html(node, f"{way}feedback", says)

@@ -79,7 +79,7 @@ function judged($question, array $answers): array {
             $made['inputs'][$name] = [$state->status, trim(strip_tags((string) $state->errors))];
         }
         foreach ($question->prts as $name => $tree) {
-            $state = $question->get_prt_result($name, $response, false);
+            $state = $question->get_prt_result($name, $response, true);
             $made['trees'][$name] = [$state->get_score(), $state->get_answernotes(), strip_tags((string) $state->get_feedback())];
         }
         $made['summary'] = $question->summarise_response($response);

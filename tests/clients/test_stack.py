@@ -145,6 +145,7 @@ def test_what_students_type_is_judged_as_we_judge_it(course, tmp_path, name, lan
     sign = {"en": ".", "fr": ","}[lang]
     ways = list(sets_of(item, variant, sign))
     (told,) = proved(tmp_path, pool, {item.label: [answers for _, answers, _ in ways]})
+    told_lost = {loss.part for loss in platform_of("stack").losses(pool)}
     differ = []
     for (way, answers, ours), made in zip(ways, told["judged"], strict=True):
         marks = mark(variant, ours)
@@ -157,6 +158,11 @@ def test_what_students_type_is_judged_as_we_judge_it(course, tmp_path, name, lan
                 assert status == "invalid", (way, answers[box], made["inputs"][box])
                 assert score in (None, 0)
                 continue
+            if way in REFUSED and score is None:
+                continue  # it may follow from what is refused, and waits for that
+            follows = marks[part.id].verdict == "follow_through"
+            if follows and (part.id in told_lost or "follow_through" not in marks[part.id].matches):
+                continue  # listed in lost.csv; or one error that ours counts once and STACK wherever it shows
             got = float(score or 0) * part.points
             if got != pytest.approx(marks[part.id].points, abs=1e-6):
                 differ.append(

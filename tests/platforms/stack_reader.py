@@ -120,6 +120,8 @@ def _run(maxima, space):
         return _run(found[2] if _run(found[1], space) else found[3], space)
     if found := re.fullmatch(r'is\((ans\d+)="(.*)"\)', text):
         return space[found[1]] == found[2]
+    if found := re.fullmatch(r"is\((ans\d+)=EMPTYANSWER\)", text):
+        return space[found[1]] is None
     text = re.sub(r"\bis\(", "_is(", text).replace("%pi", "PI").replace("%i", "I").replace("^", "**")
     text = re.sub(r"\bfalse\b", "False", text)
     return eval(text, {"__builtins__": {"max": max, "min": min, "abs": abs}}, space)
