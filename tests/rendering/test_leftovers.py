@@ -39,9 +39,7 @@ def assert_none_left_over(pages: list[int]) -> None:
 
 @every_language
 @every_paper
-@pytest.mark.parametrize(
-    "seed", [2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 3, 4))]
-)
+@pytest.mark.parametrize("seed", [2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 3, 4))])
 def test_no_handout_has_a_page_of_a_few_questions_that_are_left_over(size, lang, seed):
     parted = 0
     for name in COURSE.names:
