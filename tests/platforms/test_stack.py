@@ -141,6 +141,7 @@ def test_what_stack_cannot_follow_is_listed_as_lost(drawn, read):
 
 def test_nothing_follows_from_what_was_no_attempt(drawn, read):
     question, variant, judged = next(asked(drawn, read, "en"))
+    assert "co_tried(v,r) := is(abs(v)<=100*abs(r) and 100*abs(v)>=abs(r));" in question["variables"]
     at = next(place for place, part in judged.items() if part.id == "a_centripetal")
     r, w = float(variant.key.reference["rA"]), float(variant.key.reference["omega4"])
     boxes = {p.id: f"ans{i}" for i, p in enumerate(variant.parts, start=1)}
