@@ -8,7 +8,7 @@ from decimal import Decimal
 from xml.etree import ElementTree as ET
 
 from coursework.platforms._canvas_groups import Asked, Group, accepted
-from coursework.platforms._packages import below
+from coursework.platforms._xml import below
 from coursework.platforms.items import SEPARATOR, Pool
 from coursework.platforms.pieces import Image, Pieces, with_files
 from coursework.platforms.posed import CHOICE, CHOICES, COLLECTED, NUMBER, Option, Posed

@@ -11,12 +11,13 @@ from xml.etree import ElementTree as ET
 from coursework.language.words import words
 from coursework.platforms._canvas_groups import Group, groups, left_out
 from coursework.platforms._canvas_questions import FOLDER, Questions, identified
-from coursework.platforms._packages import below, package, xml_bytes
+from coursework.platforms._xml import below, xml_bytes
 from coursework.platforms.items import Pool
 from coursework.platforms.losses import Loss
 from coursework.platforms.pieces import Image
 from coursework.platforms.platform import Platform
 from coursework.system.writing import File
+from coursework.system.zips import zipped
 
 _QTI = "http://www.imsglobal.org/xsd/ims_qtiasiv1p2"
 _META = "http://canvas.instructure.com/xsd/cccv1p0"
@@ -57,7 +58,7 @@ def _package(pool: Pool) -> bytes:
         f"{quiz}/assessment_meta.xml": _settings(pool, quiz),
         **{f"{FOLDER}/{image.name}": image.data for image in images},
     }
-    return package({"imsmanifest.xml": _manifest(quiz, images), **files})
+    return zipped({"imsmanifest.xml": _manifest(quiz, images), **files})
 
 
 def _test(pool: Pool, quiz: str) -> tuple[bytes, list[Image]]:

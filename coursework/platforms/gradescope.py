@@ -7,9 +7,7 @@ compute them.
 
 from __future__ import annotations
 
-import io
 import json
-import zipfile
 from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
@@ -24,12 +22,12 @@ from coursework.platforms._autograder import SETTINGS
 from coursework.platforms.items import Pool
 from coursework.platforms.platform import Platform
 from coursework.system.writing import File
+from coursework.system.zips import zipped
 
 #: What marking needs; what prints sheets is left out. Each is among the package's own requirements.
 REQUIREMENTS = ("jinja2>=3.1", "markdown-it-py>=3.0", "mdit-py-plugins>=0.4", "numpy>=1.26", "scipy>=1.11")
 _COURSE = ("exercises", "solutions", "templates")
 _NO_FILE = ("__pycache__", ".git")
-_TIME = (2020, 1, 1, 0, 0, 0)  #: of every file of the zip: the same export gives the same bytes
 
 _SETUP = """#!/usr/bin/env bash
 # Run once by Gradescope, when it makes the image: a Python that is new enough, and what marking needs.
@@ -94,7 +92,7 @@ class Gradescope(Platform):
         if not folder.has_solutions:
             raise BadInput(f"{folder.label} has no solutions: it cannot mark")
         lang = next(str(record.get("lang", "fr")) for record in issued.records.values())
-        yield File(Path("autograder.zip"), partial(_zipped, folder, data, lang))
+        yield File(Path("autograder.zip"), partial(_zip, folder, data, lang))
         yield File(Path(f"IMPORT.{lang}.txt"), lambda: _steps(issued, lang).encode("utf-8"))
 
 
@@ -119,31 +117,27 @@ def _steps(issued: Issued, lang: str) -> str:
 # ---------------------------------------------------------------------------- zip
 
 
-def _zipped(folder: Folder, issued: bytes, lang: str) -> bytes:
+def _zip(folder: Folder, issued: bytes, lang: str) -> bytes:
     own = folder.root != builtin_root().resolve()
+    requirements = " ".join(f"'{one}'" for one in REQUIREMENTS)
     settings = {"course": "course" if own else "", "lang": lang}
-    data = io.BytesIO()
-    with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as file:
-        _put(
-            file,
-            "setup.sh",
-            _SETUP.format(requirements=" ".join(f"'{one}'" for one in REQUIREMENTS)),
-            run=True,
-        )
-        _put(file, "run_autograder", _RUN.format(stopped=_stopped(lang)), run=True)
-        _put(file, SETTINGS, json.dumps(settings, indent=1) + "\n")
-        _put(file, "issued.json", issued)
-        package = Path(__file__).parents[1]
-        for path in _files(package, skip="_course"):
-            _put(file, f"coursework/{path.relative_to(package).as_posix()}", path.read_bytes())
-        for name, root in (
-            ("coursework/_course", builtin_root()),
-            *((("course", folder.root),) if own else ()),
-        ):
-            for kind in _COURSE:
-                for path in _files(root / kind):
-                    _put(file, f"{name}/{path.relative_to(root).as_posix()}", path.read_bytes())
-    return data.getvalue()
+    files = {
+        "setup.sh": _SETUP.format(requirements=requirements).encode(),
+        "run_autograder": _RUN.format(stopped=_stopped(lang)).encode(),
+        SETTINGS: (json.dumps(settings, indent=1) + "\n").encode(),
+        "issued.json": issued,
+    }
+    package = Path(__file__).parents[1]
+    files |= _below("coursework", package, _files(package, skip="_course"))
+    for name, root in (("coursework/_course", builtin_root()), *((("course", folder.root),) if own else ())):
+        for kind in _COURSE:
+            files |= _below(name, root, _files(root / kind))
+    return zipped(files, programs=("setup.sh", "run_autograder"))
+
+
+def _below(name: str, root: Path, paths: Iterable[Path]) -> dict[str, bytes]:
+    """Files of a folder, by what they are called in the archive."""
+    return {f"{name}/{path.relative_to(root).as_posix()}": path.read_bytes() for path in paths}
 
 
 def _stopped(lang: str) -> str:
@@ -159,10 +153,3 @@ def _files(folder: Path, skip: str = "") -> Iterable[Path]:
         for path in folder.rglob("*")
         if path.is_file() and not {*_NO_FILE, skip} & set(path.relative_to(folder).parts)
     )
-
-
-def _put(file: zipfile.ZipFile, name: str, content: str | bytes, *, run: bool = False) -> None:
-    info = zipfile.ZipInfo(name, _TIME)
-    info.external_attr = (0o100755 if run else 0o100644) << 16
-    info.compress_type = zipfile.ZIP_DEFLATED
-    file.writestr(info, content)

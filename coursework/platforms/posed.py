@@ -143,8 +143,12 @@ def _from_errors(variant: Variant, key: Key, part: Part) -> Iterator[str]:
     above = (p.quantity for p in before if p.sort.is_followed)
     if part.sort.follows and any(part.quantity in key.solution.depending_on(q) for q in above):
         yield "follow_through"
-    if any(True for _ in key.wrong_ways(part.quantity)):
+    mistakes = {name for name, _ in key.wrong_ways(part.quantity)}
+    if mistakes:
         yield "mistakes"
+    earlier = (p.quantity for p in before if not p.sort.is_open)
+    if any(mistakes & {name for name, _ in key.wrong_ways(q)} for q in earlier):
+        yield "counted_once"
     if part.sort.is_scalar and not part.judge:
         yield "usual_errors"
 

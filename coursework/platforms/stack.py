@@ -11,7 +11,6 @@ from xml.etree import ElementTree as ET
 
 from coursework.language.words import words
 from coursework.platforms._maxima import number, text
-from coursework.platforms._packages import below, xml_bytes
 from coursework.platforms._stack_following import following
 from coursework.platforms._stack_trees import (
     EMPTY,
@@ -22,6 +21,7 @@ from coursework.platforms._stack_trees import (
     trees,
 )
 from coursework.platforms._stack_trials import Trial, trials
+from coursework.platforms._xml import below, xml_bytes
 from coursework.platforms.items import Item, Pool
 from coursework.platforms.losses import Loss
 from coursework.platforms.pieces import Image, Pieces, with_files

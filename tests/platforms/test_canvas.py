@@ -240,7 +240,7 @@ def test_hostile_words_change_nothing_but_the_words(bolts):
 def test_control_characters_do_not_break_the_package():
     from xml.etree.ElementTree import Element, fromstring
 
-    from coursework.platforms._packages import below, xml_bytes
+    from coursework.platforms._xml import below, xml_bytes
 
     root = Element("a")
     below(root, "b", "x\0\x07\ud800y<&>]]>", name="\x1b\"'<")

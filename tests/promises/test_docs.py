@@ -59,6 +59,8 @@ def read_command(arguments: list[str]) -> tuple[str, dict]:
     """A command line as click reads it, without running it: the command, its options and arguments."""
     with cli.make_context("coursework", list(arguments)) as context:
         name, command, rest = cli.resolve_command(context, [*context._protected_args, *context.args])
+        while isinstance(command, click.Group):  # a command of several: lti keys new
+            _, command, rest = command.resolve_command(context, rest)
         with click.Context(command, parent=context, info_name=name) as inner:
             options, unread, _ = command.make_parser(inner).parse_args(list(rest))
         assert not unread, f"{name} takes no {unread}"
