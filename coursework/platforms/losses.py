@@ -24,6 +24,7 @@ _OF_JUDGED = (
     "mistakes",
     "usual_errors",
     "partial",
+    "counted_once",
 )
 #: What every pool has: a variant for each student, all of its questions together; our marks of another try.
 _OF_POOLS = ("one_variant", "corrected")
