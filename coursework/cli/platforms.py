@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -37,6 +37,17 @@ if TYPE_CHECKING:
     from coursework.platforms.pools import Drawn
 
 _VARIANTS = 20  #: of a pool, where nothing says how many
+
+
+class _Wanted(NamedTuple):
+    """What is to be exported, as the command tells it."""
+
+    context: click.Context
+    exercises: Sequence[str]  #: names, or the file of an assignment
+    variants: int  #: how many; 0 where it is not told
+    seed: int
+    langs: Sequence[str]
+    parts: Sequence[str] | None  #: ids; None for the usual ones
 
 
 class _PlatformName(click.ParamType):
@@ -126,11 +137,12 @@ def export(
         raise BadInput(
             f"--issued is of gradescope, which marks what a build issued; {platform} deals a pool of its own"
         )
+    wanted = _Wanted(context, exercises, count or 0, seed, langs, split_list(parts) or None)
     if not chosen.deals:
         tell(notes)
-        _export_autograder(course, context, issued, exercises, students, count or 1, seed, langs, parts, out)
+        _export_autograder(course, wanted, issued, students, out)
         return
-    drawn = _drawn(course, context, exercises, count or len(students), seed, langs, parts)
+    drawn = _drawn(course, wanted, students)
     made = exported(chosen, drawn, students, SPREADSHEETS[decimal])
     lines = list(told(made.lost, drawn.langs[0]))
     if strict and lines:
@@ -151,22 +163,13 @@ def export(
 
 
 def _export_autograder(
-    course: Course[Any],
-    context: click.Context,
-    issued: Path | None,
-    exercises: Sequence[str],
-    students: Sequence[Student],
-    count: int,
-    seed: int,
-    langs: Sequence[str],
-    parts: str,
-    out: Path,
+    course: Course[Any], wanted: _Wanted, issued: Path | None, students: Sequence[Student], out: Path
 ) -> None:
     """Write what marks a build's answers on a platform that runs it: of the build that is told, or of the one that would be made."""
     from coursework.platforms.gradescope import PLATFORM
     from coursework.system.writing import File, write_tree
 
-    if issued is None and not exercises:
+    if issued is None and not wanted.exercises:
         raise BadInput(
             "an autograder is of what a build issued: --issued DIR/issued.json, or the exercises and the roster of the build"
         )
@@ -177,7 +180,7 @@ def _export_autograder(
             raise BadInput(f"{issued} cannot be read: {fault.strerror}") from fault
         files = list(PLATFORM.autograder(course.folder, data, str(issued)))
     else:
-        data = _as_built(course, context, exercises, students, count, seed, langs, parts)
+        data = _as_built(course, wanted, students)
         files = list(PLATFORM.autograder(course.folder, data, "what was issued"))
         files.append(File(Path("issued.json"), lambda: data))
     with progress_bar("exporting", len(files)) as advance:
@@ -187,66 +190,56 @@ def _export_autograder(
         click.echo("the sheets are those of 'coursework build' with the same exercises, roster and options")
 
 
-def _as_built(
-    course: Course[Any],
-    context: click.Context,
-    exercises: Sequence[str],
-    students: Sequence[Student],
-    count: int,
-    seed: int,
-    langs: Sequence[str],
-    parts: str,
-) -> bytes:
+def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student]) -> bytes:
     """The ``issued.json`` that a build writes."""
-    from coursework.making.assignment import read_assignment
     from coursework.making.dealing import deal
     from coursework.making.issued import issued_content
     from coursework.making.issuing import issue
     from coursework.making.roster import Student
     from coursework.system.tables import json_text
 
-    if not is_assignment(exercises):
-        names = exercise_names(course, exercises)
-        chosen = split_list(parts) or None
+    count = wanted.variants or 1
+    if not is_assignment(wanted.exercises):
+        names = exercise_names(course, wanted.exercises)
         issues = issue(
-            course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=chosen
+            course,
+            names,
+            first_seed=wanted.seed,
+            count=count,
+            langs=wanted.langs,
+            roster=students,
+            parts=wanted.parts,
         )
         return json_text(issued_content(issues)).encode("utf-8")
-    path = Path(exercises[0])
-    assignment = read_assignment(path, course)
-    _refuse_options(context, path)
-    people = students or [Student("") for _ in range(count)]
-    dealt = deal(course, assignment, people, _langs(context, assignment, langs))
+    assignment, langs = _assignment(course, wanted)
+    dealt = deal(course, assignment, students or [Student("") for _ in range(count)], langs)
     tell(dealt.notes)
     return json_text(issued_content(dealt.issues, assignment)).encode("utf-8")
 
 
-def _drawn(
-    course: Course[Any],
-    context: click.Context,
-    exercises: Sequence[str],
-    count: int,
-    seed: int,
-    langs: Sequence[str],
-    parts: str,
-) -> Drawn:
+def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student]) -> Drawn:
     from coursework.platforms.pools import of_assignment, of_exercises
 
     if not course.folder.has_solutions:
         raise BadInput(f"{course.folder.label} has no solutions: a platform is told the answers")
-    if not is_assignment(exercises):
-        names = exercise_names(course, exercises)
-        return of_exercises(course, names, count or _VARIANTS, seed, langs, split_list(parts) or None)
+    count = wanted.variants or len(students)
+    if not is_assignment(wanted.exercises):
+        names = exercise_names(course, wanted.exercises)
+        return of_exercises(course, names, count or _VARIANTS, wanted.seed, wanted.langs, wanted.parts)
+    assignment, langs = _assignment(course, wanted)
+    if assignment.versions and count > assignment.versions:
+        count = assignment.versions
+    return of_assignment(course, assignment, count or assignment.versions or _VARIANTS, langs)
+
+
+def _assignment(course: Course[Any], wanted: _Wanted) -> tuple[Assignment, Sequence[str]]:
+    """The assignment of the file that is named, and the languages of its questions."""
     from coursework.making.assignment import read_assignment
 
-    path = Path(exercises[0])
+    path = Path(wanted.exercises[0])
     assignment = read_assignment(path, course)
-    _refuse_options(context, path)
-    if count and assignment.versions and count > assignment.versions:
-        count = 0
-    return of_assignment(
-        course, assignment, count or assignment.versions or _VARIANTS, _langs(context, assignment, langs)
-    )
+    _refuse_options(wanted.context, path)
+    return assignment, _langs(wanted.context, assignment, wanted.langs)
 
 
 def _refuse_options(context: click.Context, path: Path) -> None:
