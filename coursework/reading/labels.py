@@ -63,10 +63,15 @@ _COMMANDS = re.compile(r"\\[A-Za-z]+")
 _IN_WORDS = re.compile(r"[^\W\d_]{3,}")
 
 
+#: Dots that stand behind their letter where a page was made plain text, ``r˙`` for ``ṙ``.
+_DOTS_BEHIND = str.maketrans({"\u02d9": "\u0307", "\u00a8": "\u0308"})
+
+
 @lru_cache(maxsize=4096)
 def _squeezed(formula: str) -> str:
     """A formula without its spaces and bars, Greek letters and dots spelled."""
-    return folded(primes_as_dots(spelled_out(formula.strip("$ "))).replace("*", " ")).replace(" ", "")
+    formula = unicodedata.normalize("NFC", formula.strip("$ ").translate(_DOTS_BEHIND))
+    return folded(primes_as_dots(spelled_out(formula)).replace("*", " ")).replace(" ", "")
 
 
 @lru_cache(maxsize=4096)

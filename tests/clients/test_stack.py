@@ -15,6 +15,7 @@ from pathlib import Path
 
 import pytest
 
+import coursework
 from coursework.language.numbers import significant
 from coursework.marking.marking import mark
 from coursework.platforms.platform import platform_of
@@ -29,13 +30,7 @@ pytestmark = pytest.mark.skipif(
 
 #: Imported always; the others in the long run, which takes a quarter of an hour.
 FEW = ("slotted_mechanism", "vocabulary", "grashof", "four_bar_positions", "two_circles")
-NAMES = tuple(
-    sorted(
-        path.stem
-        for path in (HERE.parents[1] / "exercises").glob("*/*.py")
-        if path.with_suffix(".en.md.j2").exists()
-    )
-)
+NAMES = coursework.open_course().names
 NAMES = tuple(name for name in NAMES if not name.startswith("_"))
 RIGHT = {"score", "valid"}
 
