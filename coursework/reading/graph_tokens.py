@@ -63,8 +63,9 @@ _NAME = r"[A-Za-z]{0,2}[0-9]+"
 _QUOTED = re.compile(r"(?<!\w)['\"]([^'\"\n]*)['\"](?!\w)")
 #: ``1) 1-2 pivot``, ``L1: 1-2 pivot``: the number of a joint in a list
 _NUMBERING = re.compile(
-    r"(?im)(^|[;,])\s*(?:[0-9]+\s*\)|(?:joint|liaison|[lj])?\s*[0-9]+\s*:)(?=[^,;\n]*[0-9]\s*[-/]\s*[a-z]{0,2}[0-9])"
-)
+    r"(?im)(^|[;,])[^\S\n]*+(?:[0-9]++[^\S\n]*+\)|(?:joint|liaison|[lj])?+[^\S\n]*+[0-9]++[^\S\n]*+:)"
+    r"(?=[^,;\n]*[0-9]\s*+[-/]\s*+[a-z]{0,2}[0-9])"
+)  # nothing is given back: blank lines would be tried in all their ways
 _TUPLE = re.compile(
     rf"[(\[{{]\s*({_NAME})\s*[,;]\s*({_NAME})\s*(?:[,;]\s*({_NAME})\s*)?(?:[,;]\s*([^\W\d_][^,;()\[\]{{}}]*))?[)\]}}]"
 )

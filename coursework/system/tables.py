@@ -13,6 +13,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple, TextIO
 
+from coursework.errors import BadInput
+
 MAX_LINES = 20  #: of one quoted cell
 _WARNINGS = {
     "utf-8-sig": "",
@@ -24,6 +26,14 @@ _WARNINGS = {
 def delimiter_of(header: str) -> str:
     """What parts the cells of a CSV, by its first line: semicolon, comma or tab."""
     return max((";", ",", "\t"), key=header.count)
+
+
+def said_twice(header: Iterable[str], columns: Iterable[str]) -> str:
+    """What is wrong where a header names one of the columns more than once, since their cells may differ; nothing where it
+    does not."""
+    titles = [as_written(title.strip()).casefold() for title in header]
+    twice = next((column for column in columns if titles.count(column) > 1), "")
+    return f"the header names the column {twice} twice; take one of them away" if twice else ""
 
 
 def encoding_of(data: bytes) -> str:
@@ -62,13 +72,19 @@ def record(lines: list[str], start: int, delimiter: str, width: int) -> tuple[li
     whole = _cells(lines[start], delimiter)
     if whole is not None:
         return whole, 1
+    marks = lines[start].count('"')
     for taken in range(2, min(MAX_LINES, len(lines) - start) + 1):
         added = lines[start + taken - 1]
-        if len(added.split(delimiter)) >= width:
+        if added.count(delimiter) + 1 >= width:
             break
+        marks += added.count('"')
+        if marks % 2 or '"' not in added:
+            continue  # a cell is open still
         cells = _cells("\n".join(lines[start : start + taken]), delimiter)
         if cells is not None and len(cells) == width:
             return cells, taken
+        if cells is not None:
+            break  # a whole record, and what follows it is none of it
     return [cell.removeprefix('"') for cell in lines[start].split(delimiter)], 1
 
 
@@ -82,10 +98,24 @@ def _cells(text: str, delimiter: str) -> list[str] | None:
         return None
 
 
+def _check_whole(path: Path, data: bytes) -> None:
+    """Refuse a table that holds NUL: no spreadsheet and no editor puts one there."""
+    if b"\0" in data and "\0" in (text := data.decode(encoding_of(data), "replace")):
+        line = len(re.findall(r"\r\n|\n|\r", text.partition("\0")[0])) + 1
+        raise BadInput(f"{path}, line {line}: holds a NUL byte, which no table does; take it out")
+
+
 @contextmanager
 def open_csv(path: Path) -> Iterator[TextIO]:
-    """A CSV to be read line by line, in any encoding that :func:`decode` knows; a cell may be of any length."""
+    """A CSV to be read line by line, in any encoding that :func:`decode` knows; a cell may be of any length.
+
+    Raises
+    ------
+    BadInput
+        It holds NUL.
+    """
     data = _marked_once(path.read_bytes())
+    _check_whole(path, data)
     before = csv.field_size_limit(min(sys.maxsize, 2**31 - 1))
     try:
         yield io.TextIOWrapper(io.BytesIO(data), encoding_of(data), "replace", newline="")
@@ -93,17 +123,35 @@ def open_csv(path: Path) -> Iterator[TextIO]:
         csv.field_size_limit(before)
 
 
+#: What parts cells, in this table or in one that is opened with another separator than it was written with.
+_PARTS = r"\t\n\v\f\r;,\x85\u2028\u2029"
+#: What a spreadsheet may pass over before a formula.
+_UNSEEN = (
+    r" \"\xa0\u1680\u2000-\u200f\u202a-\u202f\u205f-\u2069\u3000\ufeff\x00-\x08\x0e-\x1f\x7f-\x84\x86-\x9f"
+)
+_EQUALS, _SIGNS = "=@＝＠﹦﹫", r"+\-＋－﹢﹣"  #: what formulas begin with, in letters of full width too
+#: What follows the sign of a number: digits and a unit, or a list of such, and nothing to be computed.
+_NUMBERS_ALONE = (
+    r"[ \xa0\u202f]?[0-9.](?:[^=@＝＠﹦﹫＋－﹢﹣+\-(|!&\"'$\[{<>#*~]|(?<=[eE^])[+-]"
+    r"|(?:(?<=[;,(\[])|(?<=[;,] ))(?:[(\[]|[+-](?=[0-9.])))*"
+)
+_FORMULA = re.compile(
+    rf"(?:\A|(?<=[{_PARTS}]))([{_UNSEEN}]*'*)(?=[{_EQUALS}]|[{_SIGNS}](?!(?:{_NUMBERS_ALONE}|[\s+-]*)\Z))"
+)
+_MAY_RUN = re.compile(rf"[{_EQUALS}{_SIGNS}]")
+
+
 def inert(cell: Any) -> Any:
-    """The cell, or its text kept from being run: a formula that calls, pipes or reaches elsewhere."""
-    if not isinstance(cell, str) or cell[:1].isalnum():
+    """The cell, or its text with an apostrophe before what a spreadsheet would compute: where it begins, and behind
+    whatever may part cells. :func:`as_written` takes them away again."""
+    if not isinstance(cell, str) or cell.isalnum() or not _MAY_RUN.search(cell):
         return cell  # nearly all of them
-    runs = cell.lstrip()[:1] in ("=", "+", "-", "@") and set(cell) & set("(|!")
-    return f"'{cell}" if runs else cell
+    return _FORMULA.sub(r"\1'", cell)
 
 
 def as_written(cell: str) -> str:
     """The text of a cell that may have been made :func:`inert`."""
-    return cell[1:] if cell[:1] == "'" and inert(cell[1:]) == cell else cell
+    return _FORMULA.sub(lambda before: before[1].removesuffix("'"), cell) if "'" in cell else cell
 
 
 class Spreadsheet(NamedTuple):
@@ -148,7 +196,7 @@ def csv_text(
     writer = csv.writer(
         out, delimiter=spreadsheet.delimiter
     )  # lines end as the format's own description says
-    writer.writerow(columns)
+    writer.writerow(map(inert, columns))  # a title may be a roster's own
     for row in rows:
         writer.writerow(spreadsheet.cells(row, columns))
     return out.getvalue()
@@ -158,7 +206,7 @@ def csv_file(
     rows: Iterable[Mapping[str, Any]], columns: Sequence[str], spreadsheet: Spreadsheet = _PLAIN
 ) -> bytes:
     """:func:`csv_text` as a file with the mark at its head without which Excel damages accents."""
-    return csv_text(rows, columns, spreadsheet).encode("utf-8-sig")
+    return csv_text(rows, columns, spreadsheet).encode("utf-8-sig", "backslashreplace")
 
 
 def json_text(content: Any) -> str:

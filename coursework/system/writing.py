@@ -3,32 +3,33 @@
 from __future__ import annotations
 
 import csv
-import pickle
 import shutil
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager, suppress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from coursework.errors import BadInput
+from coursework.errors import BadInput, CourseworkError
 from coursework.system.blocks import processors
 from coursework.system.build_folder import place
-from coursework.system.processes import processes, workers
-from coursework.system.tables import SPREADSHEETS, Spreadsheet
+from coursework.system.processes import Task, in_turn, workers
+from coursework.system.tables import SPREADSHEETS, Spreadsheet, inert
 
 
 @dataclass(frozen=True)
 class File:
     """One file of the result: its path below the output folder, and how to make its bytes, if any.
 
-    ``anywhere`` says that another process may make it: ``make`` and all that it holds can be pickled.
+    ``anywhere`` says that another process may make it: ``make`` and all that it holds can be pickled. ``failed`` is told why
+    it cannot be made, where that is to cost no other.
     """
 
     path: Path
     make: Callable[[], bytes | None]
     anywhere: bool = False
+    failed: Callable[[CourseworkError], None] | None = None
 
 
 WORTH_PROCESSES = 150  #: files; fewer are made before a process has started
@@ -88,38 +89,83 @@ def write(out: Path, wanted: Sequence[File], progress: Callable[[Path], None] = 
     for folder in {out / f.path.parent for f in wanted}:
         folder.mkdir(parents=True, exist_ok=True)
     elsewhere = [file for file in wanted if file.anywhere]
-    count = workers(len(elsewhere))
-    if len(elsewhere) < WORTH_PROCESSES or count < 2:
-        elsewhere = []
-    here = [file for file in wanted if not (elsewhere and file.anywhere)]
-    with ExitStack() as pools:
-        threads = pools.enter_context(ThreadPoolExecutor(processors()))
-        tasks = [(threads.submit(_write_all, out, [file]), [file]) for file in here]
+    count = workers(len(elsewhere), WORTH_PROCESSES)
+    here = [file for file in wanted if count < 2 or not file.anywhere]
+    with ThreadPoolExecutor(processors()) as threads:
+        tasks = [threads.submit(_write_one, out, file) for file in here]
         # What threads share they wait for: the interpreter, and what the typesetter remembers.
-        if elsewhere:
-            submit = pools.enter_context(processes(count))
-            chunks = (elsewhere[start : start + _CHUNK] for start in range(0, len(elsewhere), _CHUNK))
-            tasks += [(submit(_write_sent, out, pickle.dumps(chunk)), chunk) for chunk in chunks]
         try:
-            for task, chunk in tasks:
+            if count > 1:
+                for chunk, made in _from_elsewhere(elsewhere, count):
+                    for file, found in zip(chunk, made, strict=True):
+                        _put(out, file, found)
+                        progress(file.path)
+                    _raise_early(tasks)
+            for file, task in zip(here, tasks, strict=True):
                 task.result()
-                for file in chunk:
-                    progress(file.path)
+                progress(file.path)
         finally:
-            for task, _ in tasks:
+            for task in tasks:
                 task.cancel()
 
 
-def _write_sent(out: Path, files: bytes) -> None:
-    """In another process. The files come as bytes, so that a course that cannot be opened there is told as such."""
-    _write_all(out, pickle.loads(files))
+_Sent = tuple[Callable[[], bytes | None], bool]  #: how to make a file, and whether it may fail
 
 
-def _write_all(out: Path, files: Sequence[File]) -> None:
-    for file in files:
-        data = file.make()
-        if data is not None:
-            write_whole(out / file.path, data)
+def _sent(file: File) -> _Sent:
+    return file.make, file.failed is not None
+
+
+def _from_elsewhere(files: Sequence[File], count: int) -> Iterator[tuple[Sequence[File], list[Any]]]:
+    """Some files after others, and what other processes made of them."""
+    chunks = [files[start : start + _CHUNK] for start in range(0, len(files), _CHUNK)]
+    tasks = (Task(str(chunk[0].path), _all_made, ([_sent(file) for file in chunk],)) for chunk in chunks)
+    yield from zip(chunks, in_turn(tasks, count), strict=True)
+
+
+def _all_made(files: Sequence[_Sent]) -> list[bytes | CourseworkError | None]:
+    return [_made(file) for file in files]
+
+
+def _made(file: _Sent) -> bytes | CourseworkError | None:
+    """The bytes of a file, or why it cannot be made, where that is to be told."""
+    make, may_fail = file
+    try:
+        return make()
+    except CourseworkError as fault:
+        if may_fail:
+            return fault
+        raise
+
+
+def _write_one(out: Path, file: File) -> None:
+    _put(out, file, _made(_sent(file)))
+
+
+def _put(out: Path, file: File, made: bytes | CourseworkError | None) -> None:
+    if isinstance(made, CourseworkError):
+        assert file.failed is not None
+        file.failed(made)
+    elif made is not None:
+        write_whole(out / file.path, made)
+
+
+def _raise_early(tasks: Iterable[Future[Any]]) -> None:
+    """What a task has failed by is raised before all others are done."""
+    for task in tasks:
+        if task.done():
+            task.result()
+
+
+@contextmanager
+def gone_unless_kept(part: Path) -> Iterator[None]:
+    """A file that is written beside the one whose place it is to take goes where that is not done, whatever the reason."""
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+        raise
 
 
 def write_whole(path: Path, data: bytes) -> None:
@@ -133,8 +179,9 @@ def write_whole(path: Path, data: bytes) -> None:
     part = path.with_name(path.name + ".part")
     with writing(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        part.write_bytes(data)
-        part.replace(path)
+        with gone_unless_kept(part):
+            part.write_bytes(data)
+            part.replace(path)
 
 
 #: Called with how many are done, and of how many.
@@ -146,17 +193,26 @@ class Table:
 
     def __init__(self, path: Path, columns: Sequence[str], spreadsheet: Spreadsheet) -> None:
         self.path, self.part = path, path.with_name(path.name + ".part")
-        self.file = self.part.open("w", encoding="utf-8", newline="")
+        self.file = self.part.open("w", encoding="utf-8", errors="backslashreplace", newline="")
         self.file.write("\ufeff")
         self._writer = csv.writer(self.file, delimiter=spreadsheet.delimiter)
         self._cells = spreadsheet.cells
         self._columns = tuple(columns)
-        self._writer.writerow(self._columns)
+        self._writer.writerow(map(inert, self._columns))
         self.rows = 0
 
     def write(self, row: dict[str, Any]) -> None:
-        self._writer.writerow(self._cells(row, self._columns))
+        try:
+            self._writer.writerow(self._cells(row, self._columns))
+        except OSError:
+            with writing(self.path):
+                raise
         self.rows += 1
+
+    def close(self) -> None:
+        """End it; what is not on the disk yet is written."""
+        with writing(self.path):
+            self.file.close()
 
 
 class Tables:
@@ -189,12 +245,17 @@ class Tables:
         self._tables.append(Table(path, columns, self._spreadsheet))
         return self._tables[-1]
 
-    def keep(self) -> None:
-        """Let the tables take their places: all are whole, and can, before the first does."""
+    def ready(self) -> None:
+        """See that all are whole, and can take their places."""
         for table in self._tables:
-            table.file.close()
+            table.close()
             _check_replaceable(table.path)
-        for table in self._tables:
+
+    def keep(self) -> None:
+        """Let the tables take their places: all are whole, and can, before the first does. The one that was opened first
+        does so last, so that a marking that is stopped here compares with the marks of before when it is done again."""
+        self.ready()
+        for table in reversed(self._tables):
             with _told(table.path):
                 table.part.replace(table.path)
 

@@ -1,0 +1,261 @@
+"""What the dearest requests cost that one person can send: answers made to be slow to read, and bodies made to fill memory; and
+what becomes of assignments that nobody writes.
+
+python benchmarks/attacks.py                # all
+python benchmarks/attacks.py answers        # milliseconds of a processor, by kind of question, at lengths that double
+python benchmarks/attacks.py assignments    # files of assignments: how many are told in a line, how many are taken
+python benchmarks/attacks.py bodies         # a site of its own on the loopback interface: status, milliseconds, memory
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+import re
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import zipfile
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+from timing import machine, print_table
+
+from coursework import open_course
+from coursework.errors import BadInput
+from coursework.making.assignment import OPTIONS, assignment_of, table_of
+
+LENGTHS = (500, 1000, 2000, 4000, 40_000)
+#: Written over and over: spaces and separators that patterns try in many ways, brackets, operators, units, letters.
+PIECES = (
+    " ", "\n", "\t", "\\\\", "1", "1 ", "1,", "1\n", "1:", "1;2", "(", "()", "[", "{", "(1)", "(A,B)", "^", "'", '"', "-", "+", "*", "/", "=",
+    "=-", "a=", "e", "1e9", "m", "m^", "m*", "mm ", "sqrt(", "cos ", "\\frac{", "\\dot{", "$", "_", "&amp;", "|", "A, ", "x ", "1-2 P;", "joint ",
+)  # fmt: skip
+WAYS = ("{0}", "1{0}x", "({0}", "1 {0}!")
+COMMAND = "import sys; from coursework.cli import run; sys.exit(run(sys.argv[1:]))"
+MEGABYTE = 1024 * 1024
+
+
+def answers() -> None:
+    """The dearest answer of each kind, by length; one that were tried in all ways would grow eight times a row."""
+    rows = []
+    kinds = _kinds()
+    for kind, (variant, part) in kinds.items():
+        variant.grade({part.id: "12"})
+        cost = [max(_spent(variant, part, text) for text in _made(length)) for length in LENGTHS]
+        rows.append((kind, *(f"{1000 * one:.0f}" for one in cost)))
+    print(f"{len(kinds) * len(LENGTHS) * len(PIECES) * len(WAYS)} answers\n")
+    print_table(("kind, ms of a processor at so many characters", *map(str, LENGTHS)), rows)
+
+
+def _kinds() -> dict[str, tuple]:
+    course, found = open_course(), {}
+    for name in course.names:
+        variant = course[name].variant(1, "en")
+        for part in variant.parts:
+            found.setdefault(part.kind, (variant, part))
+    return found
+
+
+def _made(length: int) -> Iterator[str]:
+    for piece in PIECES:
+        for way in WAYS:
+            yield way.format(piece * length)[:length]
+
+
+def _spent(variant, part, text: str) -> float:
+    begun = time.process_time()
+    variant.grade({part.id: text})
+    return time.process_time() - begun
+
+
+# ------------------------------------------------------------------- assignments
+
+_OWN = (
+    "title",
+    "course",
+    "date",
+    "duration",
+    "instructions",
+    "logo",
+    "logo_alt",
+    "cover",
+    "mark",
+    "versions",
+    "identity",
+    "sort",
+    "sittings",
+)
+_KEYS = (*_OWN, "answers", "solutions_after", "marking", "exercises", *OPTIONS, "nothing")
+_IN_AN_EXERCISE = ("name", "parts", "points", "seed", "nothing")
+_VALUES = (
+    "true", "0", "-1", "1.5", "nan", "inf", "1e400", "9" * 19, "9" * 5000, "0x" + "f" * 5000, '""', '"x"', '"' + "x" * 100_000 + '"', '"\\u0000"',
+    '"../../x"', '"<script>"', '"{0.__class__}"', "2026-11-23", "9999-12-31T23:59:60", "[]", "[[[]]]", "[" * 3000, '["a", 1]', "{}", '{en = 1}',
+    '{zz = "x"}', "{a.b.c = 1}", "{of = 0, step = 0}", "{of = 20, step = -1}", '[""]', '["' + '","'.join("ab" * 500) + '"]',
+)  # fmt: skip
+_WHOLE = (
+    "[",
+    "]",
+    "=",
+    "a",
+    "\0",
+    "\ufeff\ufeff",
+    "a = 1\na = 2",
+    "[a]\n[a]",
+    "[[a]]\n[a]",
+    '"""',
+    "a = [" * 5000,
+    ".".join("a" * 20_000) + " = 1",
+)
+
+
+def assignments() -> None:
+    """Every value in every place of an assignment's file; what is neither taken nor told in a line at once is listed."""
+    course, found = open_course(), dict.fromkeys(("told in a line", "taken", "neither"), 0)
+    for source in _assignments():
+        found[_became(source, course)] += 1
+    print_table(("files of assignments", *found), [(str(sum(found.values())), *map(str, found.values()))])
+
+
+def _assignments() -> Iterator[str]:
+    yield from _WHOLE
+    one = '[[exercises]]\nname = "grashof"\n'
+    for value in _VALUES:
+        yield from (f"{key} = {value}\n{one}" for key in _KEYS)
+        yield from (f"[[exercises]]\n{key} = {value}\n" for key in _IN_AN_EXERCISE)
+        yield f"{one}[marking]\nfollowed = {value}\n"
+
+
+def _became(source: str, course) -> str:
+    begun = time.process_time()
+    try:
+        assignment_of("week3", table_of(source, "week3.toml"), course, source)
+        became = "taken"
+    except BadInput as fault:
+        became = "told in a line" if len(str(fault)) < 1200 and "\n" not in str(fault) else "neither"
+    except Exception as fault:
+        became = f"neither: {type(fault).__name__}"
+    if became.startswith("neither") or time.process_time() - begun > 1:
+        print(f"{became}: {source[:80]!r}")
+        return "neither"
+    return became
+
+
+# ------------------------------------------------------------------------ bodies
+
+
+class _Body(NamedTuple):
+    what: str
+    kind: str
+    data: bytes
+    is_in_pieces: bool = False
+
+
+def _part(head: str, data: bytes) -> bytes:
+    return f"--x\r\nContent-Disposition: form-data; {head}\r\n\r\n".encode() + data + b"\r\n--x--\r\n"
+
+
+def _bodies() -> Iterator[_Body]:
+    form, files = "application/x-www-form-urlencoded", "multipart/form-data; boundary=x"
+    yield _Body("40 000 fields", form, b"&".join(b"%x=" % k for k in range(40_000)))
+    yield _Body("250 000 times %", form, b"%" * 250_000)
+    yield _Body("a field's name of 200 000 letters", files, _part(f'name="{"f" * 200_000}"', b""))
+    yield _Body("no such end", files, b"--x\r\n" + b"X: y\r\n" * 30_000)
+    yield _Body(
+        "100 MB said to be 200 bytes", files, _part('name="a"; filename="a"', b"a" * 100 * MEGABYTE), True
+    )
+    for name, size in (("a bomb of 1 GB", 20), ("zeros, 150 MB", 3)):
+        packed = io.BytesIO()
+        with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+            for k in range(size):
+                archive.writestr(f"{k}.csv", bytes(50 * MEGABYTE))
+        yield _Body(name, files, _part('name="answers"; filename="a.zip"', packed.getvalue()))
+
+
+def bodies() -> None:
+    """A demonstration's site, its instructor signed in, and what becomes of each body."""
+    import httpx
+
+    with tempfile.TemporaryDirectory() as folder:
+        said = Path(folder, "said.txt")
+        with said.open("w") as out:
+            site = subprocess.Popen(
+                [sys.executable, "-c", COMMAND, "serve", "--demo", "--port", "0"], stdout=out, cwd=folder
+            )
+        try:
+            while not (found := re.search(r"http://[\d.]+:(\d+)", said.read_text())):
+                time.sleep(0.2)
+            with httpx.Client(base_url=found[0], timeout=300, trust_env=False) as client:
+                page = client.get("/who").text
+                staff = re.search(r'value="(\d+)">[^<]*<span[^>]*>(?:instructor|enseignant)', page, re.I)[1]
+                client.post("/who", data={"_seal": _seal(client), "person": staff})
+                rows = [_sent(client, int(found[1]), site.pid, body) for body in _bodies()]
+        finally:
+            site.terminate()
+            site.wait()
+    print_table(("a body of", "status", "ms", "ms of a processor", "memory before, MB", "at most, MB"), rows)
+
+
+def _seal(client) -> str:
+    return re.search(r'X-Seal": "([0-9a-f]{64})"', client.get("/no-such-page").text)[1]
+
+
+def _sent(client, port: int, pid: int, body: _Body) -> tuple[str, ...]:
+    length = 200 if body.is_in_pieces else len(body.data)
+    head = [
+        "POST /desk/1/answers HTTP/1.1", f"Host: 127.0.0.1:{port}", "Connection: close", f"Content-Type: {body.kind}",
+        f"Content-Length: {length}", f"X-Seal: {_seal(client)}",
+        "Cookie: " + "; ".join(f"{name}={value}" for name, value in client.cookies.items()),
+    ]  # fmt: skip
+    data = b"%x\r\n%s\r\n0\r\n\r\n" % (len(body.data), body.data) if body.is_in_pieces else body.data
+    head += ["Transfer-Encoding: chunked"] if body.is_in_pieces else []
+    before, spent, begun = _memory(pid, "VmRSS"), _processor(pid), time.perf_counter()
+    reply = _asked(port, "\r\n".join([*head, "", ""]).encode() + data)
+    took, status = time.perf_counter() - begun, reply.split()[1].decode() if reply else "closed"
+    spent = _processor(pid) - spent
+    return (
+        body.what,
+        status,
+        f"{1000 * took:.0f}",
+        f"{spent:.0f}",
+        f"{before:.0f}",
+        f"{_memory(pid, 'VmHWM'):.0f}",
+    )
+
+
+def _asked(port: int, data: bytes) -> bytes:
+    with socket.create_connection(("127.0.0.1", port), timeout=300) as line:
+        with suppress(OSError):  # it answered before all was sent
+            line.sendall(data)
+        try:
+            return line.recv(4096)
+        except OSError:
+            return b""
+
+
+def _memory(pid: int, what: str) -> float:
+    """MB of a process: now (``VmRSS``), or at most since it began (``VmHWM``)."""
+    return int(re.search(rf"{what}:\s+(\d+)", Path(f"/proc/{pid}/status").read_text())[1]) / 1024
+
+
+def _processor(pid: int) -> float:
+    """Milliseconds of a processor that a process took."""
+    fields = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()
+    return 10.0 * (int(fields[11]) + int(fields[12]))
+
+
+def main() -> None:
+    asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    asked.add_argument("what", nargs="*", default=["answers", "assignments", "bodies"])
+    told = asked.parse_args().what
+    print(f"{machine()}\n")
+    for what in told:
+        {"answers": answers, "assignments": assignments, "bodies": bodies}[what]()
+
+
+if __name__ == "__main__":
+    main()

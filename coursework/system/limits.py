@@ -1,0 +1,42 @@
+"""What is beyond all measure: how much is read of what comes from outside, and how much is asked of one command.
+
+A class of a hundred thousand stays far below. Who has more parts it.
+"""
+
+from __future__ import annotations
+
+from coursework.errors import BadInput
+
+# ----------------------------------------------------------------------------- read
+MOST_BYTES = 1_000_000_000  #: of one file of answers, as CSV, JSON or XML
+MOST_NOTEBOOK_BYTES = 50_000_000  #: of one notebook, its pictures with it
+MOST_TABLE_BYTES = 200_000_000  #: of a roster, of answers accepted, of what was typed of a scan
+MOST_ROWS = 2_000_000  #: of one file of answers
+MOST_COLUMNS = 5_000  #: of one table
+MOST_CELL = 100_000  #: characters of one answer in a Parquet file
+MOST_PAGES = 20_000  #: of one file of a scan
+MOST_UNPACKED = 500_000_000  #: bytes of a Parquet file, unpacked
+
+# ----------------------------------------------------------------------------- asked
+MOST_VARIANTS = 1_000_000  #: of one command
+MOST_STEPS = 1_000_000  #: of a cycle
+MOST_SEED = 10**18 - 1
+MOST_PORT = 65_535
+MOST_WORKERS = 256
+
+
+def beyond(what: str, found: int, most: int, unit: str) -> str:
+    """What is said of too much: ``a file of 7,000,000 rows is not read; the limit is 2,000,000: part it into several``."""
+    return f"{what} of {found:,} {unit} is not read; the limit is {most:,}: part it into several"
+
+
+def check_size(what: str, size: int, most: int) -> None:
+    """Refuse a file beyond its size.
+
+    Raises
+    ------
+    BadInput
+        It says the size and the limit.
+    """
+    if size > most:
+        raise BadInput(f"{what}: {beyond('a file', size, most, 'bytes')}")

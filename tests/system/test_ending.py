@@ -1,0 +1,102 @@
+"""Processes end with the one that began them, however that ended; told to end, they leave nothing half written."""
+
+from __future__ import annotations
+
+import signal
+
+import ending
+import pytest
+
+pytestmark = pytest.mark.skipif(not ending.HAS_SESSIONS, reason="processes of a session are counted on Linux")
+
+WRITES = """
+import sys, time
+from functools import partial
+from pathlib import Path
+from coursework.system.writing import File, write_tree
+from coursework.system import writing
+from coursework.cli.options import complain
+from coursework.system.ending import Ended, end_cleanly
+from coursework.system.folder_lock import only_writer
+
+def slow(mark):
+    mark.touch()
+    time.sleep(0.2)
+    return b"x" * 100
+
+if __name__ == "__main__":
+    writing.workers = lambda *told: 2
+    end_cleanly()
+    out = Path("out")
+    mark = Path("mark").resolve()
+    files = [File(Path(f"{n}.txt"), partial(slow, mark), anywhere=True) for n in range(2000)]
+    try:
+        with only_writer(out):
+            write_tree(out, files)
+    except Ended as end:
+        complain(str(end))
+        raise
+"""
+BESIDE = """
+import time
+from pathlib import Path
+from coursework.system.processes import beside
+
+def fill(mark):
+    mark.touch()
+    time.sleep(600)
+
+if __name__ == "__main__":
+    with beside(fill, Path("mark").resolve()):
+        time.sleep(600)
+"""
+
+
+@pytest.mark.parametrize("script", [WRITES, BESIDE], ids=["shared work", "work beside"])
+def test_a_process_that_is_killed_leaves_no_other(tmp_path, script):
+    process = ending.begun(tmp_path, script=script)
+    assert ending.until((tmp_path / "mark").exists), process.stderr.read()
+    assert len(ending.at_work(process.pid)) > 1
+    process.kill()
+    assert ending.until(lambda: not ending.at_work(process.pid))
+    process.communicate()
+    assert not [*(tmp_path / "tmp").iterdir()]
+
+
+def test_a_process_that_is_told_to_end_puts_away_what_it_has_begun(tmp_path):
+    process = ending.begun(tmp_path, script=WRITES)
+    assert ending.until((tmp_path / "mark").exists)
+    process.terminate()
+    _, said = process.communicate(timeout=ending.LONGEST)
+    assert process.returncode == 128 + signal.SIGTERM
+    assert said.strip() == "coursework: ended by SIGTERM"
+    assert ending.until(lambda: not ending.at_work(process.pid))
+    assert not (tmp_path / "out").exists()
+    assert not [*(tmp_path / "tmp").iterdir()]
+
+
+STUBBORN = """
+import signal, time
+from pathlib import Path
+from coursework.system.processes import beside
+
+def fill(mark):
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    mark.touch()
+    time.sleep(600)
+
+if __name__ == "__main__":
+    mark = Path("mark").resolve()
+    with beside(fill, mark):
+        while not mark.exists():
+            time.sleep(0.05)
+    Path("done").touch()
+"""
+
+
+def test_work_beside_that_does_not_end_when_told_is_ended(tmp_path):
+    process = ending.begun(tmp_path, script=STUBBORN)
+    assert ending.until((tmp_path / "done").exists)
+    assert process.wait(ending.LONGEST) == 0
+    assert not ending.at_work(process.pid)
+    process.communicate()
