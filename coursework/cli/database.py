@@ -1,0 +1,326 @@
+"""Commands of a database of marks, and what build, grade and report do with one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from coursework.cli.options import (
+    DONE,
+    FOUND,
+    FilePath,
+    assignment_option,
+    json_option,
+    opened,
+    tell,
+    writes,
+)
+from coursework.cli.printing import print_json, print_table, progress_bar
+from coursework.errors import BadInput, closest, counted
+
+if TYPE_CHECKING:
+    from coursework.database.grading import GradedNow
+    from coursework.database.marking import Change
+    from coursework.database.store import Store
+    from coursework.gradebook.book import Gradebook
+    from coursework.gradebook.feedback_form import Form
+
+_TOLD = 10  #: lines that are told, of however many
+
+
+def store_at(context: click.Context, url: str, *, new: bool = False) -> Store:
+    """A database, let go of when the command ends; a file that is not there is made where it may be ``new``.
+
+    Raises
+    ------
+    BadInput
+        There is no such database.
+    """
+    from coursework.system.extras import library
+
+    for module in ("sqlalchemy", "alembic"):
+        library(module, "a database needs", "site")
+    from coursework.database.store import Store, file_of
+
+    file = file_of(url)
+    if not new and file is not None and not file.exists():
+        raise BadInput(f"no database {file}{_beside(file)}; 'coursework build … --db {url}' makes one")
+    return context.with_resource(closing(Store(url)))
+
+
+def _beside(file: Path) -> str:
+    names = [p.name for p in file.parent.iterdir()] if file.parent.is_dir() else []
+    near = closest(file.name, names)
+    return f" (did you mean {file.with_name(near)}?)" if near else ""
+
+
+# ------------------------------------------------------------------------ build
+
+
+def keeping(
+    context: click.Context, url: str | None, name: str, course: str
+) -> Callable[[Mapping[str, Any]], None]:
+    """What keeps an ``issued.json`` in a database, under a name unless it is of an assignment; nothing where there is none."""
+    if url is None:
+        return lambda content: None
+    store = store_at(context, url, new=True)
+
+    def keep(content: Mapping[str, Any]) -> None:
+        from coursework.database.assignments import name_of, put_issued
+
+        with store.begin() as connection:
+            put_issued(connection, content, name or name_of(content), course)
+
+    return keep
+
+
+# ------------------------------------------------------------------------ grade
+
+
+def grade_stored(
+    context: click.Context,
+    url: str,
+    submissions: Sequence[Path],
+    issued: Path | None,
+    name: str,
+    out: Path | None,
+    *,
+    feedback: bool | None,
+    accepted: Path | None,
+    decimal: str,
+    form: Form,
+    replaces: bool,
+    told: Callable[[Gradebook, Path], int],
+) -> int:
+    """Keep what is new, mark what changed, and write the files where a folder is named; ``told`` says what is in them."""
+    course = opened(context)
+    store = store_at(context, url, new=issued is not None)
+    from coursework.database.assignments import assignment_called, name_of, put_issued
+    from coursework.database.grading import grade_new, write_standing
+    from coursework.making.issued import Issued
+    from coursework.system.tables import SPREADSHEETS
+
+    if issued is not None:
+        Issued.read(issued)
+        content = _json_of(issued)
+        with store.begin() as connection:
+            whole = name or name_of(content) or issued.resolve().parent.name
+            number = put_issued(connection, content, whole, course.folder.root.name)
+    else:
+        with store.reading() as connection:
+            number = assignment_called(connection, name)
+    now = grade_new(
+        course, store, number, submissions, accepted=accepted, out=out, form=form, replaces=replaces
+    )
+    _tell_new(now)
+    if out is None:
+        return _tell_changes(now, store, number)
+    with progress_bar("writing", None) as advance:
+        book = write_standing(
+            course,
+            store,
+            now.work,
+            out,
+            accepted=accepted,
+            feedback=feedback,
+            spreadsheet=SPREADSHEETS[decimal],
+            progress=advance,
+            form=form,
+        )
+    return told(book, out)
+
+
+def _json_of(path: Path) -> Any:
+    from coursework.system.json_files import read_json
+
+    return read_json(path)
+
+
+def _tell_new(now: GradedNow) -> None:
+    """What came, and what of it was marked."""
+    known = [one for one in now.deliveries if not one.is_new]
+    if now.deliveries:
+        click.echo(f"{counted(now.new, 'new file')}{f', {len(known)} that came before' if known else ''}")
+    if now.decided:
+        click.echo(f"{counted(now.decided, 'decision')} taken in")
+    click.echo(
+        f"{counted(now.marked.sheets, 'sheet')}: {now.marked.marked} marked now, {now.marked.new} of them for the first time"
+    )
+
+
+def _tell_changes(now: GradedNow, store: Store, number: int) -> int:
+    """What changed, and what waits."""
+    from coursework.database.standing import waiting
+
+    for change in now.marked.changes[:_TOLD]:
+        click.echo(_change(change))
+    if len(now.marked.changes) > _TOLD:
+        click.echo(f"and {len(now.marked.changes) - _TOLD} more; coursework database history tells them all")
+    sheets = now.work.sheets
+    tell(sheets.warnings)
+    rejected = sheets.rejected
+    for one in rejected[:_TOLD]:
+        click.echo(f"coursework: {one.source}: {one.reason}", err=True)
+    if len(rejected) > _TOLD:
+        click.echo(
+            f"coursework: and {len(rejected) - _TOLD} more rejected rows: grade with --out DIR", err=True
+        )
+    with store.reading() as connection:
+        waits = len(waiting(connection, number))
+    if waits:
+        click.echo(f"{counted(waits, 'answer')} for a person to look at")
+    return FOUND if waits or rejected else DONE
+
+
+def _change(change: Change) -> str:
+    place = f"{change.student}, {change.exercise}, {change.part}"
+    before = f"{change.verdict_before} {change.points_before}".strip() or "nothing"
+    now = f"{change.verdict_now} {change.points_now}".strip() or "nothing"
+    return f"{place}: {before} before, {now} now"
+
+
+# ----------------------------------------------------------------------- report
+
+
+def written_marks(context: click.Context, url: str, name: str, folder: Path, decimal: str) -> None:
+    """Write the marks of an assignment as they stand into a folder, for a report to read."""
+    course = opened(context)
+    store = store_at(context, url)
+    from coursework.database.assignments import assignment_called
+    from coursework.database.grading import write_standing
+    from coursework.database.marking import Work
+    from coursework.system.tables import SPREADSHEETS
+
+    with store.reading() as connection:
+        number = assignment_called(connection, name)
+    work = Work(course, store, number)
+    if not work.stood:
+        raise BadInput("nothing of it is marked yet: coursework grade SUBMISSIONS… --db URL")
+    if work.changed:
+        tell(
+            [
+                f"{counted(len(work.changed), 'sheet')} came or changed since: coursework grade --db … marks them"
+            ]
+        )
+    write_standing(course, store, work, folder, feedback=False, spreadsheet=SPREADSHEETS[decimal])
+
+
+# --------------------------------------------------------------------- database
+
+
+@click.group()
+def database() -> None:
+    """A database of what is issued, answered, marked and decided: look into it, write it out, put it back."""
+
+
+_url_argument = click.argument("url", metavar="URL")
+
+
+@database.command()
+@_url_argument
+@json_option
+@click.pass_context
+def show(context: click.Context, url: str, as_json: bool) -> None:
+    """Say what a database holds: its assignments, and how far each is marked."""
+    from coursework.database.summary import summaries
+
+    store = store_at(context, url)
+    with store.reading() as connection:
+        rows = [one._asdict() for one in summaries(connection)]
+    if as_json:
+        print_json(rows)
+    elif rows:
+        print_table(rows)
+    else:
+        click.echo("the database holds no assignment")
+
+
+@database.command()
+@_url_argument
+@click.argument("student", required=False)
+@click.option("--exercise", default="", help="Of this exercise alone.")
+@click.option("--part", default="", help="Of this part alone.")
+@assignment_option
+@json_option
+@click.pass_context
+def history(
+    context: click.Context,
+    url: str,
+    student: str | None,
+    exercise: str,
+    part: str,
+    assignment: str,
+    as_json: bool,
+) -> None:
+    """Tell every mark of a student's answers, or of everybody's: when it was given, by whom, and why."""
+    from coursework.database.assignments import assignment_called
+    from coursework.database.decisions import history as history_of
+
+    store = store_at(context, url)
+    with store.reading() as connection:
+        number = assignment_called(connection, assignment)
+        found = history_of(connection, number, student, exercise, part)
+        if student is not None and not found:
+            _check_student(connection, number, student)
+    if as_json:
+        print_json(
+            [
+                {"student": s, "exercise": e, "part": p, **one._asdict(), "at": one.at.isoformat()}
+                for s, e, p, one in found
+            ]
+        )
+        return
+    if not found:
+        click.echo("nothing was marked")
+    for who, where, of, one in found:
+        click.echo(
+            f"{one.at:%Y-%m-%d %H:%M:%S} UTC  {who}, {where} {one.seed}, {of}: {_happened(one)}".rstrip()
+        )
+
+
+def _check_student(connection: Any, number: int, student: str) -> None:
+    from coursework.database.assignments import issued_of
+    from coursework.errors import nearest
+
+    known = issued_of(connection, number).students
+    if known and student not in known:
+        raise BadInput(f"no student {student!r} was issued anything{nearest(student, known)}")
+
+
+def _happened(one: Any) -> str:
+    points = "" if one.points is None else f" {one.points:g}"
+    if not one.by:
+        return f"{one.answer!r} marked {one.verdict},{points}"
+    reason = f": {one.reason}" if one.reason else ""
+    return f"{one.kind}{points} by {one.by}{reason}"
+
+
+@database.command()
+@_url_argument
+@click.argument("folder", metavar="DIR", type=FilePath(path_type=Path, file_okay=False))
+@click.pass_context
+def dump(context: click.Context, url: str, folder: Path) -> None:
+    """Write a database into the folder DIR, a table a CSV; restore puts it back, into any database."""
+    store = store_at(context, url)
+    from coursework.database.dump import dump as dump_to
+
+    writes(context, folder)
+    rows = dump_to(store, folder)
+    click.echo(f"{counted(sum(rows.values()), 'row')} of {counted(len(rows), 'table')} in {folder}")
+
+
+@database.command()
+@click.argument("folder", metavar="DIR", type=FilePath(path_type=Path, file_okay=False))
+@_url_argument
+@click.pass_context
+def restore(context: click.Context, folder: Path, url: str) -> None:
+    """Put what dump wrote into an empty database, of whatever kind."""
+    store = store_at(context, url, new=True)
+    from coursework.database.dump import restore as restore_from
+
+    rows = restore_from(folder, store)
+    click.echo(f"{counted(sum(rows.values()), 'row')} of {counted(len(rows), 'table')} from {folder}")

@@ -1,0 +1,276 @@
+"""What was issued: ``issued.json``, row by row."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import ColumnElement, Connection, Select, bindparam, insert, select, update
+
+from coursework.database.people import put_people
+from coursework.database.tables import assignment, dealt, variant
+from coursework.errors import BadInput, nearest
+from coursework.making.issued import ISSUED_FORMAT, Issued
+from coursework.making.roster import Student
+
+_Place = tuple[
+    str, int, str, str, int
+]  #: student, sitting, exercise, seed; which of several alike that are nobody's
+
+
+# ---------------------------------------------------------------------- finding
+
+
+def names(connection: Connection) -> dict[str, int]:
+    """The assignments by name, in the order in which they came."""
+    rows = connection.execute(select(assignment.c.name, assignment.c.id).order_by(assignment.c.id))
+    return {row.name: row.id for row in rows}
+
+
+def assignment_called(connection: Connection, name: str = "") -> int:
+    """The assignment of a name; the only one there is, where none is told.
+
+    Raises
+    ------
+    BadInput
+        There is none of this name, or which one is meant is not told.
+    """
+    known = names(connection)
+    if name in known:
+        return known[name]
+    if name:
+        raise BadInput(f"no assignment {name!r} in the database{nearest(name, known)}")
+    if len(known) != 1:
+        found = (
+            f"there are {', '.join(known)}: --assignment NAME"
+            if known
+            else "there is none: --issued issued.json"
+        )
+        raise BadInput(f"which assignment? {found}")
+    return next(iter(known.values()))
+
+
+def name_of(content: Mapping[str, Any], otherwise: str = "") -> str:
+    """What an assignment is called by; ``otherwise`` for a build of exercises."""
+    stated = content.get("assignment")
+    return str(stated.get("name") or otherwise) if isinstance(stated, Mapping) else otherwise
+
+
+# ---------------------------------------------------------------------- writing
+
+
+def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "", course: str = "") -> int:
+    """Keep what ``issued.json`` says; gives the assignment's id.
+
+    What was issued stays issued: the same content again adds nothing, a longer one adds what is new, and who is no more
+    in it is kept, after the others.
+
+    Raises
+    ------
+    BadInput
+        It is no content of ``issued.json``, has no name, or gives somebody another variant than they were issued.
+    """
+    name = name or name_of(content)
+    issued = Issued(content, "what was issued")
+    if not name:
+        raise BadInput("what was issued has no name, since it is of no assignment: --name NAME")
+    told = {
+        "stated": content.get("assignment"),
+        "has_roster": issued.has_roster,
+        "is_pool": issued.is_pool,
+        "columns": {s: dict(own) for s, own in issued.columns.items()},
+    }
+    number, before = _assignment(connection, name, course, told)
+    items = [_item(item, place) for place, item in enumerate(content["issued"])]
+    variants = _put_variants(connection, number, name, items)
+    people = _people(connection, issued) if issued.has_roster and not issued.is_pool else {}
+    _put_dealt(connection, name, before, items, variants, people)
+    return number
+
+
+def _assignment(
+    connection: Connection, name: str, course: str, told: Mapping[str, Any]
+) -> tuple[int, dict[_Place, Any]]:
+    """The assignment's id, and what was dealt of it."""
+    known = connection.execute(
+        select(assignment).where(assignment.c.name == name).with_for_update(key_share=True)
+    ).first()
+    if known is None:
+        row = {"name": name, "course": course, "created": datetime.now(UTC), **told}
+        made = connection.execute(insert(assignment).values(row).returning(assignment.c.id))
+        return int(made.scalar_one()), {}
+    told = {**told, "columns": {**known.columns, **told["columns"]}}
+    if any(getattr(known, key) != value for key, value in told.items()):
+        connection.execute(update(assignment).where(assignment.c.id == known.id).values(told))
+    if known.has_roster != told["has_roster"] and not told["is_pool"]:
+        raise BadInput(
+            f"{name} was issued {'without' if told['has_roster'] else 'by'} a roster: choose another --name"
+        )
+    rows = [row._asdict() for row in connection.execute(_dealt(known.id))]
+    return known.id, dict(zip(_places(rows), rows, strict=True))
+
+
+def _places(items: Sequence[Mapping[str, Any]]) -> list[_Place]:
+    """Whose each is, all different."""
+    met: Counter[tuple[Any, ...]] = Counter()
+    places = []
+    for item in items:
+        place = item["student"], item["sitting"], item["exercise"], item["seed"]
+        places.append((*place, met[place]))
+        met[place] += 1
+    return places
+
+
+def _item(item: Mapping[str, Any], place: int) -> dict[str, Any]:
+    record = item["record"]
+    return {
+        "place": place,
+        "student": str(item.get("student", "")),
+        "sitting": int(item.get("sitting", 1)),
+        "letter": str(item.get("version") or ""),
+        "exercise": str(record["exercise"]),
+        "seed": str(int(record["seed"])),
+        "lang": str(record.get("lang", "")),
+        "record": record,
+    }
+
+
+def _put_variants(
+    connection: Connection, number: int, name: str, items: Sequence[Mapping[str, Any]]
+) -> dict[tuple[str, str], int]:
+    """The variants' ids by exercise and seed; those that are new are added."""
+    found = select(variant).where(variant.c.assignment_id == number)
+    known = {(row.exercise, row.seed): row for row in connection.execute(found)}
+    new: dict[tuple[str, str], Mapping[str, Any]] = {}
+    for item in items:
+        key = item["exercise"], item["seed"]
+        if key not in known:
+            new.setdefault(key, item)
+        elif _in_no_language(known[key].record) != _in_no_language(item["record"]):
+            raise BadInput(
+                f"{name}: {key[0]} {key[1]} was issued with other data before, and what is issued stays issued: choose another --name"
+            )
+    if new:
+        rows = [
+            {"assignment_id": number, **{k: item[k] for k in ("exercise", "seed", "letter", "record")}}
+            for item in new.values()
+        ]
+        connection.execute(insert(variant), rows)
+    rows_now = connection.execute(found.with_only_columns(variant.c.id, variant.c.exercise, variant.c.seed))
+    return {(row.exercise, row.seed): row.id for row in rows_now}
+
+
+def _in_no_language(record: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in record.items() if key != "lang"}
+
+
+def _people(connection: Connection, issued: Issued) -> dict[str, int]:
+    """The persons of a roster by their names as issued."""
+    students = {name: Student(name, columns=issued.columns.get(name, {})) for name in issued.students}
+    ids = put_people(connection, list(students.values()))
+    return {name: ids[student.who] for name, student in students.items()}
+
+
+def _put_dealt(
+    connection: Connection,
+    name: str,
+    before: Mapping[_Place, Any],
+    items: Sequence[Mapping[str, Any]],
+    variants: Mapping[tuple[str, str], int],
+    people: Mapping[str, int],
+) -> None:
+    """What is new is added; what is known keeps its row, and takes its new place."""
+    given = {place[:3]: place[3] for place in before if place[0]}
+    placed: dict[_Place, int] = {}
+    new = []
+    for place, item in zip(_places(items), items, strict=True):
+        had = given.get(place[:3], item["seed"])
+        if had != item["seed"]:
+            raise BadInput(
+                f"{name}: {place[0]} was issued {place[2]} {had}, and what is issued stays issued; {item['seed']} is another: "
+                "choose another --name"
+            )
+        if place in before:
+            placed[place] = item["place"]
+            continue
+        own = {key: item[key] for key in ("place", "student", "sitting", "lang")}
+        new.append({**own, "variant_id": variants[place[2:4]], "person_id": people.get(item["student"])})
+    kept = len(items)
+    moved = []
+    for place, row in before.items():
+        if place not in placed:
+            placed[place], kept = kept, kept + 1
+        if row["place"] != placed[place]:
+            moved.append({"row": row["id"], "now": placed[place]})
+    if moved:
+        connection.execute(
+            update(dealt).where(dealt.c.id == bindparam("row")).values(place=bindparam("now")), moved
+        )
+    if new:
+        connection.execute(insert(dealt), new)
+
+
+# ---------------------------------------------------------------------- reading
+
+
+def _dealt(number: int) -> Select[Any]:
+    columns = (*dealt.c, variant.c.exercise, variant.c.seed, variant.c.letter)
+    joined = dealt.join(variant)
+    return (
+        select(*columns).select_from(joined).where(variant.c.assignment_id == number).order_by(dealt.c.place)
+    )
+
+
+def issued_content(
+    connection: Connection, number: int, person_id: int | None = None, *, student: str | None = None
+) -> dict[str, Any]:
+    """What ``issued.json`` says of an assignment; of one person alone, or of one student by name, where they are told and
+    were issued something.
+
+    Raises
+    ------
+    BadInput
+        There is no such assignment.
+    """
+    about = connection.execute(select(assignment).where(assignment.c.id == number)).first()
+    if about is None:
+        raise BadInput(f"no assignment number {number} in the database")
+    items: list[dict[str, Any]] = []
+    if person_id is not None:
+        items = _items(connection, number, dealt.c.person_id == person_id)
+    elif student is not None:
+        items = _items(connection, number, dealt.c.student == student)
+    return {
+        "format": ISSUED_FORMAT,
+        "roster": about.has_roster,
+        **({"pool": True} if about.is_pool else {}),
+        **({} if about.stated is None else {"assignment": about.stated}),
+        **({"students": about.columns} if about.columns else {}),
+        "issued": items or _items(connection, number),
+    }
+
+
+def _items(connection: Connection, number: int, *whose: ColumnElement[bool]) -> list[dict[str, Any]]:
+    given = _dealt(number).where(*whose)
+    found = select(variant).where(variant.c.assignment_id == number)
+    if whose:
+        found = found.where(variant.c.id.in_(given.with_only_columns(dealt.c.variant_id).order_by(None)))
+    records = {row.id: row.record for row in connection.execute(found)}
+    return [_issued_item(row, records[row.variant_id]) for row in connection.execute(given)]
+
+
+def _issued_item(row: Any, record: Mapping[str, Any]) -> dict[str, Any]:
+    record = record if row.lang == str(record.get("lang", "")) else {**record, "lang": row.lang}
+    sitting = {} if row.sitting == 1 else {"sitting": row.sitting}
+    letter = {"version": row.letter} if row.letter else {}
+    return {"student": row.student, **sitting, **letter, "record": record}
+
+
+def issued_of(
+    connection: Connection, number: int, person_id: int | None = None, *, student: str | None = None
+) -> Issued:
+    """What was issued, to mark against; to one person alone, where they are told."""
+    content = issued_content(connection, number, person_id, student=student)
+    return Issued(content, f"assignment {number} of the database")

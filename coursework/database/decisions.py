@@ -1,0 +1,231 @@
+"""What a person decides of an answer: accepted, given points, its mark kept, or withdrawn; kept for ever, the last of an answer stands."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, Select, insert, select
+
+from coursework.database.tables import decision, mark, marking, variant
+from coursework.errors import BadInput, UnknownName, nearest
+from coursework.gradebook.accepted import accepted_mark, check_points
+from coursework.gradebook.graded import Graded
+from coursework.gradebook.to_mark import given_mark, same_answer
+from coursework.making.students import folded
+from coursework.marking.feedback import Told
+from coursework.marking.mark import Mark
+
+ACCEPTED, GIVEN, KEPT, WITHDRAWN = KINDS = ("accepted", "given", "kept", "withdrawn")
+
+
+class Place(NamedTuple):
+    """An answer that is decided on."""
+
+    student: str
+    exercise: str
+    seed: str  #: empty for whatever variant they have
+    part: str
+    answer: str | None = None  #: what was seen: another one is not decided on; None for whatever it is
+
+
+class Decision(NamedTuple):
+    """What somebody decided."""
+
+    seed: str
+    kind: str
+    points: float | None  #: None for all of them
+    reason: str
+    answer: str | None
+    by: str
+    made: datetime
+
+
+# ---------------------------------------------------------------------- writing
+
+
+def decide(
+    connection: Connection,
+    assignment_id: int,
+    places: Iterable[Place],
+    kind: str,
+    points: float | None,
+    reason: str,
+    by: str,
+) -> None:
+    """Keep a decision on some answers. What is ``given`` counts for the very answer of its place.
+
+    Raises
+    ------
+    UnknownName
+        There is no such kind, exercise or part.
+    BadInput
+        Points that are more than the part has, or none where some are given.
+    """
+    if kind not in KINDS:
+        raise UnknownName(f"no kind of decision {kind!r}{nearest(kind, KINDS)}")
+    if kind == GIVEN and points is None:
+        raise BadInput("points are given, or the answer is accepted: say how many")
+    places = list(places)
+    if kind != WITHDRAWN:
+        _check(connection, assignment_id, places, points)
+    made = datetime.now(UTC)
+    told = {
+        "assignment_id": assignment_id,
+        "kind": kind,
+        "points": points,
+        "reason": reason,
+        "by": by,
+        "made": made,
+    }
+    if places:
+        connection.execute(
+            insert(decision), [{**place._asdict(), "seed": str(place.seed), **told} for place in places]
+        )
+
+
+def _check(connection: Connection, assignment_id: int, places: Sequence[Place], points: float | None) -> None:
+    """Refuse what there is not, and more points than there are."""
+    exercises = {place.exercise for place in places}
+    found = select(variant.c.exercise, variant.c.record["parts"].label("parts")).where(
+        variant.c.assignment_id == assignment_id, variant.c.exercise.in_(exercises)
+    )
+    worth: dict[str, dict[str, float]] = {}
+    for row in connection.execute(found):
+        worth.setdefault(row.exercise, {}).update({str(p["id"]): float(p["points"]) for p in row.parts})
+    for place in places:
+        parts = worth.get(place.exercise)
+        if parts is None:
+            raise UnknownName(f"no exercise {place.exercise!r} was issued")
+        if place.part not in parts:
+            raise UnknownName(f"{place.exercise} has no part {place.part!r}{nearest(place.part, parts)}")
+        if points is not None:
+            check_points(points, place.part, parts[place.part], f"{place.student}, {place.exercise}")
+
+
+# --------------------------------------------------------------------- standing
+
+
+class Decisions:
+    """The decisions on the answers of an assignment, or of one student."""
+
+    def __init__(self, rows: Iterable[tuple[str, str, str, Decision]] = ()):
+        self._of: dict[tuple[str, str, str], list[Decision]] = {}
+        for student, exercise, part, one in rows:
+            self._of.setdefault((folded(student), exercise, part), []).append(one)
+
+    @staticmethod
+    def read(connection: Connection, assignment_id: int, student: str | None = None) -> Decisions:
+        """Those of an assignment, in their order."""
+        found = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
+        own = None if student is None else folded(student)
+        return Decisions(
+            (row.student, row.exercise, row.part, _decision(row))
+            for row in connection.execute(found)
+            if own is None or folded(row.student) == own
+        )
+
+    def on(self, student: str, exercise: str, part: str) -> Sequence[Decision]:
+        """All on an answer of somebody, whatever the variant."""
+        return self._of.get((folded(student), exercise, part), ())
+
+    def standing(self, graded: Graded, line: Mark) -> Decision | None:
+        """The one that counts for an answer."""
+        return next(self.counting(graded[:3], line), None)
+
+    def given(self, graded: Graded, line: Mark) -> Decision | None:
+        """The points given for an answer, whether it was accepted as well or not."""
+        return next((one for one in self.counting(graded[:3], line) if one.kind == GIVEN), None)
+
+    def counting(self, sheet: tuple[str, str, int], line: Mark) -> Iterator[Decision]:
+        """Those that are on this very answer of a sheet, the last first, as far as the last that was withdrawn."""
+        student, exercise, seed = sheet
+        for one in reversed(self.on(student, exercise, line.part)):
+            if one.seed not in ("", str(seed)):
+                continue
+            if one.kind == WITHDRAWN:
+                return
+            if one.answer is None or same_answer(one.answer, line.answer):
+                yield one
+
+    def apply(self, graded: Graded, lang: str = "") -> Graded:
+        """The sheet with the marks that a person decided on."""
+        if not self._of:
+            return graded
+        lines, unanswered = dict(graded.lines), list(graded.unanswered)
+        for part, line in graded.lines.items():
+            if (one := self.standing(graded, line)) is not None:
+                lines[part] = _decided(line, one, lang or str(graded.record.get("lang", "fr")))
+                if part not in (*graded.answered, *unanswered):
+                    unanswered.append(part)
+        return graded._replace(lines=lines, unanswered=tuple(unanswered))
+
+
+def _decided(line: Mark, one: Decision, lang: str) -> Mark:
+    if one.kind == GIVEN:
+        return given_mark(line, one.points or 0.0, one.reason, lang, one.by)
+    if one.kind == KEPT:
+        return line._replace(told=(*line.told, Told(one.reason, one.reason))) if one.reason else line
+    return accepted_mark(line, one.points, one.reason, lang, one.by)
+
+
+def _decision(row: Any) -> Decision:
+    return Decision(*(getattr(row, name) for name in Decision._fields))
+
+
+# ---------------------------------------------------------------------- history
+
+
+class Happened(NamedTuple):
+    """What became of an answer, once."""
+
+    at: datetime
+    by: str  #: empty for the marking
+    kind: str  #: marked, accepted, given, withdrawn
+    seed: str
+    sitting: int  #: 0 where it is not told
+    answer: str | None
+    verdict: str
+    points: float | None
+    reason: str
+
+
+MARKED = "marked"
+
+
+def history(
+    connection: Connection, assignment_id: int, student: str | None = None, exercise: str = "", part: str = ""
+) -> list[tuple[str, str, str, Happened]]:
+    """Student, exercise and part with all that became of the answer, in the order of time; of all of them unless told."""
+
+    def asked(found: Select[Any], own: Any) -> Select[Any]:
+        for name, told in (("exercise", exercise), ("part", part)):
+            found = found.where(own[name] == told) if told else found
+        return found
+
+    marks = select(marking, mark).join(mark).where(marking.c.assignment_id == assignment_id)
+    marks = asked(marks, {"exercise": marking.c.exercise, "part": mark.c.part}).order_by(
+        marking.c.id, mark.c.place
+    )
+    decided = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
+    found = [
+        (row.student, row.exercise, row.part, _marked(row))
+        for row in connection.execute(marks)
+        if row.verdict
+    ]
+    found += [
+        (row.student, row.exercise, row.part, _happened(row))
+        for row in connection.execute(asked(decided, decision.c))
+    ]
+    own = None if student is None else folded(student)
+    return sorted((one for one in found if own in (None, folded(one[0]))), key=lambda one: one[3].at)
+
+
+def _marked(row: Any) -> Happened:
+    told = row.seed, row.sitting, row.answer, row.verdict, row.points
+    return Happened(row.made, "", MARKED, *told, row.feedback)
+
+
+def _happened(row: Any) -> Happened:
+    return Happened(row.made, row.by, row.kind, row.seed, 0, row.answer, "", row.points, row.reason)

@@ -1,0 +1,306 @@
+"""What comes in: files, or what somebody hands in on the site; kept as it came, the same twice once."""
+
+from __future__ import annotations
+
+from base64 import b32encode
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from datetime import datetime
+from hashlib import sha256
+from heapq import merge
+from operator import itemgetter
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, Select, distinct, func, insert, select, tuple_, update
+
+from coursework.database.assignments import issued_of
+from coursework.database.store import insert_unless_there
+from coursework.database.tables import answer, dealt, delivery, marking, rejected, seen, variant
+from coursework.gradebook.placing import Refused, student_of
+from coursework.gradebook.rows import Collected, Rejected, Row, Seen
+from coursework.making.issued import Issued
+
+_CHUNK = 5000  #: rows that are written at once
+_Placed = tuple[tuple[Any, ...], Row | Rejected | Seen]  #: delivery and place in it
+
+
+class Delivery(NamedTuple):
+    """What came in together."""
+
+    id: int
+    is_new: bool  #: False where the same had come before
+    source: str
+    number: int  #: which try of the person; 0 for files
+    receipt: str
+    late: int  #: seconds
+    came: datetime
+
+
+# ---------------------------------------------------------------------- writing
+
+
+def deliver(
+    connection: Connection,
+    assignment_id: int,
+    rows: Iterable[Row | Rejected | Seen],
+    *,
+    source: str,
+    came: datetime,
+    person_id: int | None = None,
+    number: int = 0,
+    late: int = 0,
+    replaces: bool = False,
+    in_place: bool = False,
+) -> Delivery:
+    """Keep rows as they came; where the same came before, that one is given and nothing is added.
+
+    ``number`` is which try of the person it is (:func:`next_number`), ``late`` how many seconds after it closed for them.
+    A file that ``replaces`` takes the place of what came from the same source before: that is kept, and counts no more.
+    What a file holds of somebody who handed in on the site is a sitting after theirs, unless rows say ``in_place`` which.
+    """
+    came_rows = list(rows)
+    digest = _digest(came_rows, person_id)
+    if person_id is None and not in_place:
+        came_rows = _after_tries(connection, assignment_id, came_rows)
+    receipt = _receipt(assignment_id, digest)
+    told = {"source": source, "number": number, "receipt": receipt, "late": late, "came": came}
+    row = {"assignment_id": assignment_id, "person_id": person_id, "digest": digest, **told}
+    made = insert_unless_there(connection, delivery, row, ("assignment_id", "digest"))
+    if made is None:
+        known = delivery_alike(connection, assignment_id, digest)
+        if replaces:
+            _replace(connection, assignment_id, known.id, source, came)
+        return known
+    _put_rows(connection, made, came_rows)
+    if replaces:
+        _replace(connection, assignment_id, made, source, came)
+    return Delivery(made, True, source, number, receipt, late, came)
+
+
+def _after_tries(
+    connection: Connection, assignment_id: int, rows: list[Row | Rejected | Seen]
+) -> list[Row | Rejected | Seen]:
+    """The rows of a file, those of who handed in on the site as of a sitting after theirs: two are never added up as one."""
+    on_site = delivery.c.assignment_id == assignment_id, delivery.c.number > 0
+    found = select(answer.c.student, func.max(delivery.c.number)).join(delivery).where(*on_site)
+    tries = {row[0]: row[1] for row in connection.execute(found.group_by(answer.c.student))}
+    if not tries:
+        return rows
+    issued = issued_of(connection, assignment_id)
+
+    def moved(row: Row | Rejected | Seen) -> Row | Rejected | Seen:
+        if not isinstance(row, Row) or not (before := tries.get(_whose(issued, row) or "", 0)):
+            return row
+        origin = row.origin or Collected()
+        return row._replace(origin=origin._replace(sitting=before + max(1, origin.sitting)))
+
+    return [moved(row) for row in rows]
+
+
+def _whose(issued: Issued, row: Row) -> str | None:
+    with suppress(Refused):
+        return student_of(issued, row) if row.student else None
+    return None
+
+
+def _replace(connection: Connection, assignment_id: int, number: int, source: str, at: datetime) -> None:
+    """Let one file count in place of all others from its source."""
+    files = delivery.c.assignment_id == assignment_id, delivery.c.person_id.is_(None)
+    others = *files, delivery.c.source == source, delivery.c.id != number, delivery.c.replaced.is_(None)
+    connection.execute(update(delivery).where(*others).values(replaced=at))
+    connection.execute(update(delivery).where(delivery.c.id == number).values(replaced=None))
+
+
+def next_number(connection: Connection, assignment_id: int, person_id: int, student: str) -> int:
+    """The number of a person's next try: one more than the greatest sitting of theirs so far, on the site or elsewhere."""
+    of_theirs = delivery.c.assignment_id == assignment_id, delivery.c.person_id == person_id
+    tries = connection.execute(select(func.max(delivery.c.number)).where(*of_theirs)).scalar() or 0
+    elsewhere = (
+        select(answer.c.origin)
+        .join(delivery)
+        .where(
+            delivery.c.assignment_id == assignment_id,
+            delivery.c.person_id.is_(None),
+            answer.c.student == student,
+        )
+    )
+    found = [max(1, (origin or {}).get("sitting", 1)) for origin in connection.execute(elsewhere).scalars()]
+    named = marking.c.assignment_id == assignment_id, marking.c.student == student
+    known = connection.execute(select(func.max(marking.c.sitting)).where(*named)).scalar() or 0
+    return 1 + max(
+        (tries, known, *found)
+    )  # what came under another spelling of the name is known once it is marked
+
+
+def delivery_alike(connection: Connection, assignment_id: int, digest: str) -> Delivery:
+    """The delivery that holds the same."""
+    found = connection.execute(
+        select(delivery).where(delivery.c.assignment_id == assignment_id, delivery.c.digest == digest)
+    ).one()
+    return _delivery(found, is_new=False)
+
+
+def _delivery(row: Any, *, is_new: bool) -> Delivery:
+    return Delivery(row.id, is_new, row.source, row.number, row.receipt, row.late, row.came)
+
+
+def _put_rows(connection: Connection, number: int, rows: Sequence[Row | Rejected | Seen]) -> None:
+    found: dict[Any, list[dict[str, Any]]] = {answer: [], rejected: [], seen: []}
+    origins: dict[Collected, dict[str, Any]] = {}
+    for place, row in enumerate(rows):
+        key = {"delivery_id": number, "place": place}
+        if isinstance(row, Row):
+            own = {**row._asdict(), "answer": _as_json(row.answer)}
+            if row.origin is not None:
+                own["origin"] = origins.setdefault(row.origin, _origin_as_json(row.origin))
+            found[answer].append({**key, **own})
+        elif isinstance(row, Rejected):
+            found[rejected].append({**key, "source": row.source, "reason": row.reason, "row": row.row})
+        else:
+            found[seen].append({**key, **row._asdict()})
+    for table, lines in found.items():
+        for start in range(0, len(lines), _CHUNK):
+            connection.execute(insert(table), lines[start : start + _CHUNK])
+
+
+# ---------------------------------------------------------------------- reading
+
+
+def deliveries(connection: Connection, assignment_id: int, person_id: int | None = None) -> list[Delivery]:
+    """What came in for an assignment, in order; of one person alone, where they are told."""
+    found = select(delivery).where(delivery.c.assignment_id == assignment_id).order_by(delivery.c.id)
+    if person_id is not None:
+        found = found.where(delivery.c.person_id == person_id)
+    return [_delivery(row, is_new=False) for row in connection.execute(found)]
+
+
+def tries_used(connection: Connection, assignment_id: int, person_id: int) -> int:
+    """How often somebody handed in the paper that is theirs to do: a make-up, where there is one, is another paper."""
+    theirs = variant.c.assignment_id == assignment_id, dealt.c.person_id == person_id
+    papers = select(dealt.c.sitting, variant.c.exercise, variant.c.seed).join(variant).where(*theirs)
+    issued = [tuple(row) for row in connection.execute(papers)]
+    last = max((sitting for sitting, *_ in issued), default=1)
+    tries = select(func.count(distinct(delivery.c.id))).where(
+        delivery.c.assignment_id == assignment_id, delivery.c.person_id == person_id, delivery.c.number > 0
+    )
+    if last > 1:
+        sheets = [(exercise, seed) for sitting, exercise, seed in issued if sitting == last]
+        tries = tries.join(answer).where(tuple_(answer.c.exercise, answer.c.seed).in_(sheets))
+    return int(connection.execute(tries).scalar_one())
+
+
+def rows_of(
+    connection: Connection, assignment_id: int, delivery_id: int | None = None
+) -> Iterator[Row | Rejected | Seen]:
+    """What came in and counts, in the order in which it came; of one delivery alone, all of it, where it is told.
+
+    A row that says the very same as one of an earlier delivery is that one come again, and is given once.
+    """
+
+    def of(table: Any) -> Select[Any]:
+        columns = [c for c in table.c if c.name not in ("id", "delivery_id", "place")]
+        found = select(table.c.delivery_id, table.c.place, *columns)
+        if delivery_id is not None:
+            return found.where(table.c.delivery_id == delivery_id).order_by(table.c.place)
+        found = found.join(delivery).where(
+            delivery.c.assignment_id == assignment_id, delivery.c.replaced.is_(None)
+        )
+        return found.order_by(table.c.delivery_id, table.c.place)
+
+    met: dict[str, Collected] = {}
+    refused: list[_Placed] = [
+        (tuple(row[:2]), Rejected(*row[2:])) for row in connection.execute(of(rejected))
+    ]
+    told: list[_Placed] = [(tuple(row[:2]), Seen(*row[2:])) for row in connection.execute(of(seen))]
+    answers: Iterator[_Placed] = (
+        (tuple(row[:2]), _as_row(row, met)) for row in connection.execute(of(answer))
+    )
+    first: dict[Any, int] = {}
+    for (number, _), row in merge(answers, refused, told, key=itemgetter(0)):
+        content = _content(row)
+        if content is None or first.setdefault(content, number) == number:
+            yield row
+
+
+def _content(row: Row | Rejected | Seen) -> tuple[Any, ...] | None:
+    """What a row says of an answer, wherever it stood; None where it says nothing of one."""
+    if isinstance(row, Row):
+        return (*row[:4], type(row.answer), row.answer, row.lang, row.origin)
+    if isinstance(row, Rejected) and row.row:
+        return row.reason, *row.row.items()
+    return None
+
+
+def _as_row(row: Sequence[Any], met: dict[str, Collected]) -> Row:
+    student, exercise, seed, part, told, source, warning, lang, origin = row[2:]
+    return Row(
+        student, exercise, seed, part, _as_came(told), source, warning, lang, _origin_as_came(origin, met)
+    )
+
+
+# ----------------------------------------------------------------------- values
+
+
+_NUMBERS: Mapping[str, Callable[[str], Any]] = {"int": int, "float": float, "complex": complex}
+
+
+def _as_json(value: Any) -> Any:
+    """An answer as every database holds it: a number in its digits, ``{"float": "3.0"}``, since some make another of it."""
+    if value is None or isinstance(value, (str, bool)):
+        return value
+    kind = next((name for name, made in _NUMBERS.items() if type(value) is made), None)
+    return str(value) if kind is None else {kind: str(value)}
+
+
+def _as_came(value: Any) -> Any:
+    if not isinstance(value, Mapping):
+        return value
+    ((kind, told),) = value.items()
+    return _NUMBERS[kind](told)
+
+
+def _origin_as_json(origin: Collected) -> dict[str, Any]:
+    """What differs from what is usual."""
+    usual = Collected._field_defaults
+    return {name: value for name, value in origin._asdict().items() if value != usual[name]}
+
+
+def _origin_as_came(told: Mapping[str, Any] | None, met: dict[str, Collected]) -> Collected | None:
+    if told is None:
+        return None
+    key = repr(told)
+    if key not in met:
+        ids = tuple((str(title), str(value)) for title, value in told.get("ids", ()))
+        met[key] = Collected(**{**told, "ids": ids, "by": tuple(told.get("by", ()))})
+    return met[key]
+
+
+# ---------------------------------------------------------------------- digests
+
+
+def _digest(rows: Sequence[Row | Rejected | Seen], person_id: int | None) -> str:
+    """Of what rows say, wherever they stood; of what says nobody's name, where as well."""
+    found = sha256(b"" if person_id is None else str(person_id).encode())
+    for row in rows:
+        found.update(repr(_said(row)).encode("utf-8", "backslashreplace"))
+    return found.hexdigest()
+
+
+def _said(row: Row | Rejected | Seen) -> tuple[Any, ...]:
+    if isinstance(row, Row):
+        told = (*row[:5], row.lang, row.origin)
+        return told if row.student else (*told, _name(row.source))
+    if isinstance(row, Rejected):
+        return row.reason, row.row, _name(row.source)
+    return row.what, row.is_tree
+
+
+def _name(source: str) -> str:
+    """A file's name and the place in it, whatever the folder."""
+    return source.replace("\\", "/").rpartition("/")[2]
+
+
+def _receipt(assignment_id: int, digest: str) -> str:
+    """A few letters, which nobody misreads for others: the first of a digest of assignment and content."""
+    short = b32encode(sha256(f"{assignment_id}/{digest}".encode()).digest()).decode()[:12]
+    return "-".join((short[:4], short[4:8], short[8:12]))

@@ -1,0 +1,306 @@
+"""What the instructors' desk asks of the database: what is new since, who decided meanwhile, what can be undone, what became of
+rows that were rejected."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Collection, Mapping
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+from zlib import crc32
+
+from sqlalchemy import Connection, Select, delete, func, insert, select
+
+from coursework.database.decisions import WITHDRAWN, Place
+from coursework.database.tables import (
+    answer,
+    assignment,
+    dealt,
+    decision,
+    delivery,
+    extension,
+    marking,
+    placing,
+    progress,
+    variant,
+)
+
+_BESIDE = 50  #: numbers before the last that may be seen after it
+
+
+class Stamp(NamedTuple):
+    """What tells whether anything of an assignment is new: counts and the last of what is only ever added."""
+
+    markings: tuple[int, int]
+    decisions: tuple[int, int]
+    deliveries: tuple[int, int]
+    placings: tuple[int, int]
+    dealt: tuple[int, int]
+    rules: tuple[int, int]  #: of publication, extensions and what is stated
+
+    def __str__(self) -> str:
+        return ".".join(f"{count}-{last}" for count, last in self)
+
+    @staticmethod
+    def read(text: str) -> Stamp | None:
+        """The stamp that a text tells; None of what is none."""
+        found = re.fullmatch(r"\.".join(["([0-9]{1,15})-([0-9]{1,15})"] * 6), text, re.ASCII)
+        if found is None:
+            return None
+        numbers = [int(digits) for digits in found.groups()]
+        return Stamp(*((numbers[k], numbers[k + 1]) for k in range(0, 12, 2)))
+
+
+def stamp(connection: Connection, assignment_id: int) -> Stamp:
+    """The stamp of an assignment, by a few small questions."""
+    found = []
+    for table in (marking, decision, delivery, placing):
+        asked = select(func.count(), func.max(table.c.id)).where(table.c.assignment_id == assignment_id)
+        count, last = connection.execute(asked).one()
+        found.append((int(count), int(last or 0)))
+    given = select(func.count(), func.max(dealt.c.id)).select_from(dealt.join(variant))
+    count, last = connection.execute(given.where(variant.c.assignment_id == assignment_id)).one()
+    found.append((int(count), int(last or 0)))
+    rules = select(assignment.c.published, assignment.c.stated).where(assignment.c.id == assignment_id)
+    told = [list(row) for row in connection.execute(rules)]
+    more = select(func.max(extension.c.id)).where(extension.c.assignment_id == assignment_id)
+    found.append(
+        (crc32(json.dumps(told, sort_keys=True).encode()), int(connection.execute(more).scalar() or 0))
+    )
+    return Stamp(*found)
+
+
+class About(NamedTuple):
+    """An assignment, as the desk lists it."""
+
+    id: int
+    name: str
+    stated: Mapping[str, Any] | None
+    published: Mapping[str, Any] | None
+    columns: Mapping[str, Any]  #: of the roster, by student
+    created: datetime
+    deliveries: int
+    last: datetime | None  #: when something came in
+
+
+def listed(connection: Connection, assignment_id: int | None = None) -> list[About]:
+    """The assignments, the latest first; one alone where it is told."""
+    found = (
+        select(assignment, func.count(delivery.c.id), func.max(delivery.c.id))
+        .select_from(assignment.outerjoin(delivery))
+        .group_by(assignment.c.id)
+        .order_by(assignment.c.id.desc())
+    )
+    if assignment_id is not None:
+        found = found.where(assignment.c.id == assignment_id)
+    rows = connection.execute(found).all()
+    last = select(delivery.c.id, delivery.c.came).where(
+        delivery.c.id.in_([row[-1] for row in rows if row[-1]])
+    )
+    came = {row.id: row.came for row in connection.execute(last)}
+    return [
+        About(
+            row.id, row.name, row.stated, row.published, row.columns, row.created, row[-2], came.get(row[-1])
+        )
+        for row in rows
+    ]
+
+
+# --------------------------------------------------------------------- decisions
+
+
+class Made(NamedTuple):
+    """A decision with its number."""
+
+    id: int
+    student: str
+    exercise: str
+    seed: str
+    part: str
+    kind: str
+    points: float | None
+    reason: str
+    answer: str | None
+    by: str
+    made: datetime
+
+
+def _made(found: Select[Any], connection: Connection) -> list[Made]:
+    return [Made(*(getattr(row, name) for name in Made._fields)) for row in connection.execute(found)]
+
+
+def decided_since(connection: Connection, assignment_id: int, after: int) -> list[Made]:
+    """The decisions that are later than a number, in their order."""
+    found = select(decision).where(decision.c.assignment_id == assignment_id, decision.c.id > after)
+    return _made(found.order_by(decision.c.id), connection)
+
+
+def decisions_of(connection: Connection, assignment_id: int) -> list[Made]:
+    """Every decision of an assignment, in order."""
+    return decided_since(connection, assignment_id, 0)
+
+
+def undoable(connection: Connection, assignment_id: int, by: str) -> list[Made]:
+    """What somebody decided last and at once, and what neither they nor another decided on since: that can be undone."""
+    found = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id.desc())
+    met: set[tuple[str, ...]] = set()
+    batch: list[Made] = []
+    for row in connection.execute(found):
+        one = Made(*(getattr(row, name) for name in Made._fields))
+        place = one.student, one.exercise, one.seed, one.part
+        if batch and (one.made != batch[0].made or one.by != by):
+            break
+        if place not in met and one.by == by and one.kind != WITHDRAWN:
+            batch.append(one)
+        met.add(place)
+    return batch[::-1]
+
+
+def place_of(one: Made) -> Place:
+    """The answer that a decision is on."""
+    return Place(one.student, one.exercise, one.seed, one.part, one.answer)
+
+
+# ---------------------------------------------------------------------- rejected
+
+
+class Placed(NamedTuple):
+    """What became of a rejected row."""
+
+    row: str  #: digest
+    delivery_id: int | None  #: of the answer that was made of it; none where it was put aside
+    reason: str
+    by: str
+    made: datetime
+
+
+def placings(connection: Connection, assignment_id: int) -> dict[str, Placed]:
+    """What became of rejected rows, by digest; the last stands."""
+    found = select(placing).where(placing.c.assignment_id == assignment_id).order_by(placing.c.id)
+    rows = connection.execute(found)
+    return {row.row: Placed(row.row, row.delivery_id, row.reason, row.by, row.made) for row in rows}
+
+
+def put_placing(connection: Connection, assignment_id: int, one: Placed) -> None:
+    """Keep what became of a rejected row."""
+    connection.execute(insert(placing).values(assignment_id=assignment_id, **one._asdict()))
+
+
+def drop_placing(connection: Connection, assignment_id: int, row: str) -> None:
+    """Let a row that was put aside wait again."""
+    put = (placing.c.assignment_id == assignment_id, placing.c.row == row, placing.c.delivery_id.is_(None))
+    connection.execute(delete(placing).where(*put))
+
+
+# -------------------------------------------------------------------------- came
+
+
+class Came(NamedTuple):
+    """When somebody handed in."""
+
+    tries: int
+    last: datetime
+    late: int  #: seconds, of the last one
+
+
+def came_of(connection: Connection, assignment_id: int) -> dict[str, Came]:
+    """Who handed in on the site, by the name as issued."""
+    called = {person: name for name, person in people_of(connection, assignment_id).items()}
+    found = (
+        select(delivery.c.person_id, delivery.c.came, delivery.c.late)
+        .where(delivery.c.assignment_id == assignment_id, delivery.c.person_id.is_not(None))
+        .order_by(delivery.c.id)
+    )
+    met: dict[str, Came] = {}
+    for person, came, late in connection.execute(found):
+        if (name := called.get(person)) is not None:
+            met[name] = Came(met[name].tries + 1 if name in met else 1, came, late)
+    return met
+
+
+def unmarked(connection: Connection, assignment_id: int, before: datetime) -> list[int]:
+    """The numbers of the hand-ins on the site that came before a moment and that nobody marked."""
+    theirs = select(answer.c.student).where(answer.c.delivery_id == delivery.c.id)
+    marked = select(marking.c.id).where(
+        marking.c.assignment_id == assignment_id,
+        marking.c.attempt == delivery.c.number,
+        marking.c.student.in_(theirs),
+    )
+    found = select(delivery.c.id).where(
+        delivery.c.assignment_id == assignment_id,
+        delivery.c.number > 0,
+        delivery.c.came < before,
+        ~marked.exists(),
+    )
+    return list(connection.execute(found.order_by(delivery.c.id)).scalars())
+
+
+def students_since(connection: Connection, assignment_id: int, before: Stamp) -> set[str]:
+    """Whose sheets were marked or decided on since a stamp. What was written beside the last that it knows counts too: where
+    many write at once, numbers are not given in the order in which rows are seen."""
+    found: set[str] = set()
+    for table, (_, last) in ((marking, before.markings), (decision, before.decisions)):
+        asked = select(table.c.student).where(
+            table.c.assignment_id == assignment_id, table.c.id > last - _BESIDE
+        )
+        found.update(connection.execute(asked.distinct()).scalars())
+    return found
+
+
+def people_of(connection: Connection, assignment_id: int) -> dict[str, int]:
+    """The persons of those whom an assignment was issued to, by the name as issued."""
+    found = (
+        select(dealt.c.student, dealt.c.person_id)
+        .join(variant)
+        .where(variant.c.assignment_id == assignment_id, dealt.c.person_id.is_not(None))
+        .distinct()
+    )
+    return {row.student: row.person_id for row in connection.execute(found)}
+
+
+class Try(NamedTuple):
+    """Something that came in for a student."""
+
+    source: str
+    number: int  #: which try on the site; 0 for a file
+    receipt: str
+    late: int  #: seconds
+    came: datetime
+
+
+def tries_of(connection: Connection, assignment_id: int, student: str) -> list[Try]:
+    """What came in of a student, in order: hand-ins on the site, and files that name them as issued."""
+    named = select(answer.c.delivery_id).where(answer.c.student == student)
+    found = (
+        select(delivery)
+        .where(delivery.c.assignment_id == assignment_id, delivery.c.id.in_(named))
+        .order_by(delivery.c.id)
+    )
+    return [Try(row.source, row.number, row.receipt, row.late, row.came) for row in connection.execute(found)]
+
+
+def practised(
+    connection: Connection, person: int, exercises: Collection[str]
+) -> dict[str, tuple[int, datetime | None]]:
+    """How many variants of some exercises a person practised alone, and when last; nothing of what they answered."""
+    named = progress.c.entry["exercise"].as_string()
+    found = select(
+        named.label("exercise"),
+        progress.c.entry["seed"].as_string().label("seed"),
+        progress.c.entry["at"].as_string().label("at"),
+    ).where(progress.c.person_id == person, named.in_(list(exercises)))
+    seeds: dict[str, set[str]] = {}
+    last: dict[str, str] = {}
+    for row in connection.execute(found):
+        seeds.setdefault(row.exercise, set()).add(str(row.seed))
+        last[row.exercise] = max(last.get(row.exercise, ""), row.at or "")
+    return {name: (len(own), _moment(last[name])) for name, own in seeds.items()}
+
+
+def _moment(text: str) -> datetime | None:
+    try:
+        at = datetime.fromisoformat(text)
+    except ValueError:
+        return None
+    return at.replace(tzinfo=UTC) if at.tzinfo is None else at

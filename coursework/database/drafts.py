@@ -1,0 +1,88 @@
+"""What somebody has typed and not handed in: kept box by box, so that two pages open at once lose nothing of one another."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import datetime
+from typing import NamedTuple
+
+from sqlalchemy import Connection, delete, func, insert, select, update
+from sqlalchemy.exc import IntegrityError
+
+from coursework.database.tables import draft
+
+
+class Box(NamedTuple):
+    """What stands in a box."""
+
+    text: str
+    version: int  #: counts its changes; 0 where nothing was ever written
+
+
+class Sent(NamedTuple):
+    """What a page sends: a text, and the version that it was written over."""
+
+    text: str
+    over: int
+
+
+def drafts(connection: Connection, person: int, sheet: str) -> dict[str, Box]:
+    """What is kept of a sheet."""
+    rows = connection.execute(
+        select(draft.c.box, draft.c.text, draft.c.version).where(
+            draft.c.person_id == person, draft.c.sheet == sheet
+        )
+    )
+    return {row.box: Box(row.text, row.version) for row in rows}
+
+
+def save(
+    connection: Connection, person: int, sheet: str, sent: Mapping[str, Sent], at: datetime
+) -> dict[str, Box]:
+    """Keep what was typed; gives the boxes that another page wrote to since, with what stands there: these are not overwritten.
+
+    The same text once more is no change, so that what is sent twice is kept once.
+    """
+    kept, others = drafts(connection, person, sheet), {}
+    for box, one in sent.items():
+        now = kept.get(box, Box("", 0))
+        if now.text == one.text:
+            continue
+        if one.over < now.version or not _is_written(connection, (person, sheet, box), one.text, now, at):
+            others[box] = drafts(connection, person, sheet)[box]
+    return others
+
+
+def _is_written(
+    connection: Connection, place: tuple[int, str, str], text: str, now: Box, at: datetime
+) -> bool:
+    """Whether a text took the place of what stood there: not where another page was faster."""
+    person, sheet, box = place
+    written = {"text": text, "version": now.version + 1, "changed": at}
+    if now.version:
+        same = (draft.c.person_id == person, draft.c.sheet == sheet, draft.c.box == box)
+        over = update(draft).where(*same, draft.c.version == now.version).values(written)
+        return connection.execute(over).rowcount == 1
+    try:
+        with connection.begin_nested():
+            connection.execute(insert(draft).values(person_id=person, sheet=sheet, box=box, **written))
+    except IntegrityError:
+        return False
+    return True
+
+
+def sheets(connection: Connection, person: int, beginning: str) -> dict[str, datetime]:
+    """The sheets of somebody whose names begin so, with the time of the last change of each, the last changed first."""
+    last = func.max(draft.c.changed)
+    rows = connection.execute(
+        select(draft.c.sheet, last)
+        .where(draft.c.person_id == person, draft.c.sheet.startswith(beginning, autoescape=True))
+        .group_by(draft.c.sheet)
+        .order_by(last.desc())
+    )
+    return {row[0]: row[1] for row in rows}
+
+
+def drop(connection: Connection, person: int, sheet: str) -> None:
+    """Forget a sheet."""
+    connection.execute(delete(draft).where(draft.c.person_id == person, draft.c.sheet == sheet))

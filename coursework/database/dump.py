@@ -1,0 +1,252 @@
+"""A database as files and back: a table a CSV, nothing lost, whatever database it goes to."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from datetime import datetime
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from sqlalchemy import JSON, Boolean, Column, Connection, Double, Integer, Table, func, insert, select, text
+from sqlalchemy.exc import DBAPIError
+
+from coursework.database.assignments import issued_of
+from coursework.database.deliveries import rows_of
+from coursework.database.store import Store, json_of
+from coursework.database.tables import METADATA, Moment, assignment
+from coursework.errors import BadInput
+from coursework.system.folder_lock import is_bare
+from coursework.system.json_files import read_json
+from coursework.system.tables import as_written, inert
+from coursework.system.writing import gone_unless_kept, write_whole
+
+_NOTHING = "\\N"  #: what stands where there is no value; a text that begins with \ has another before it
+CellText: TypeAlias = Callable[[str], str]
+_CHUNK = 5000  #: rows that are written at once
+FORMAT = "coursework database dump 2"
+_BEFORE = "coursework database dump 1"  #: which left cells as they are, whatever a spreadsheet makes of them
+_ABOUT = "dump.json"
+
+
+# --------------------------------------------------------------------------- out
+
+
+def dump(store: Store, folder: Path) -> dict[str, int]:
+    """Write every table as it is at one moment, ``TABLE.csv``; gives how many rows each has.
+
+    A text that a spreadsheet would run has an apostrophe before it, which :func:`restore` takes away.
+
+    Raises
+    ------
+    BadInput
+        The folder holds other files, or cannot be written.
+    """
+    if not is_bare(folder) and not (folder / _ABOUT).exists():
+        raise BadInput(f"{folder} holds other files: name an empty folder, or one that does not exist")
+    (folder / _ABOUT).unlink(missing_ok=True)  # what is half written is no dump
+    rows = {}
+    with store.reading() as connection:
+        for table in METADATA.sorted_tables:
+            rows[table.name] = _write(connection, table, folder / f"{table.name}.csv")
+    about = {"format": FORMAT, "rows": rows}
+    write_whole(folder / _ABOUT, (json.dumps(about, indent=1) + "\n").encode())
+    return rows
+
+
+def _write(connection: Connection, table: Table, path: Path) -> int:
+    folder, part = path.parent, path.with_name(path.name + ".part")
+    folder.mkdir(parents=True, exist_ok=True)
+    found = connection.execution_options(yield_per=_CHUNK).execute(select(table).order_by(*table.primary_key))
+    count = 0
+    try:
+        with gone_unless_kept(part), part.open("w", encoding="utf-8", newline="") as file:
+            writer = csv.writer(file)
+            writer.writerow(column.name for column in table.c)
+            shown = [json_of if isinstance(column.type, JSON) else _as_text for column in table.c]
+            for row in found:
+                writer.writerow(
+                    _NOTHING if value is None else inert(show(value))
+                    for show, value in zip(shown, row, strict=True)
+                )
+                count += 1
+            file.close()
+            part.replace(path)
+    except OSError as fault:
+        raise BadInput(f"{path} cannot be written: {fault.strerror}") from fault
+    return count
+
+
+def _as_text(value: Any) -> str:
+    if isinstance(value, str):
+        return f"\\{value}" if value.startswith("\\") else value
+    return value.isoformat() if isinstance(value, datetime) else repr(value)
+
+
+# -------------------------------------------------------------------------- back
+
+
+def restore(folder: Path, store: Store) -> dict[str, int]:
+    """Put a dump into an empty database; gives how many rows each table has.
+
+    Raises
+    ------
+    BadInput
+        The folder holds no dump, or another than this version reads; the database is not empty. Then nothing is kept.
+    """
+    counted, cell_text = _about(folder)
+    rows = {}
+    with _told(folder), store.begin() as connection:
+        for table in METADATA.sorted_tables:
+            if connection.execute(select(*table.primary_key).limit(1)).first() is not None:
+                raise BadInput(f"the database is not empty: there are rows in {table.name}; name a new one")
+        for table in METADATA.sorted_tables:
+            path = folder / f"{table.name}.csv"
+            rows[table.name] = _read(connection, table, path, cell_text)
+            if rows[table.name] != counted.get(table.name, 0):
+                raise BadInput(
+                    f"{path} has {rows[table.name]} rows, and the dump had {counted.get(table.name, 0)}"
+                )
+            _count_on(connection, table)
+        _check_readable(connection)
+    return rows
+
+
+@contextmanager
+def _told(folder: Path) -> Iterator[None]:
+    """What a database says against rows, told with where they come from."""
+    try:
+        yield
+    except (DBAPIError, OverflowError, UnicodeEncodeError) as fault:
+        said = " ".join(str(getattr(fault, "orig", fault)).split())[:120]
+        raise BadInput(f"{folder} is damaged, and nothing of it is kept: {said}") from fault
+
+
+def _check_readable(connection: Connection) -> None:
+    """Whether what was put in can be read as what it is: cells of JSON hold anything.
+
+    Raises
+    ------
+    BadInput
+        It cannot.
+    """
+    for number, name in connection.execute(select(assignment.c.id, assignment.c.name)).all():
+        try:
+            issued_of(connection, number)
+            for _ in rows_of(connection, number):
+                pass
+        except (KeyError, TypeError, ValueError, AttributeError) as fault:
+            what = fault if isinstance(fault, BadInput) else f"{type(fault).__name__} {str(fault)[:60]}"
+            raise BadInput(
+                f"what the dump has of {name} cannot be read: {what}; nothing of it is kept"
+            ) from fault
+
+
+def _about(folder: Path) -> tuple[Mapping[str, int], CellText]:
+    """How many rows each table has, and what takes the text out of a cell."""
+    if not (folder / _ABOUT).is_file():
+        raise BadInput(
+            f"{folder} holds no dump: there is no {_ABOUT} in it; 'coursework database dump' makes one"
+        )
+    about = read_json(folder / _ABOUT)
+    if not isinstance(about, dict) or about.get("format") not in (FORMAT, _BEFORE):
+        raise BadInput(f"{folder} is of another version: {_ABOUT} says {str(about)[:60]}")
+    rows = about.get("rows")
+    if not isinstance(rows, dict) or not all(isinstance(count, int) for count in rows.values()):
+        raise BadInput(f"{folder / _ABOUT} says not how many rows each table has")
+    if strangers := rows.keys() - {table.name for table in METADATA.sorted_tables}:
+        raise BadInput(f"{folder} is of a later version: there is no table {', '.join(sorted(strangers))}")
+    return rows, as_written if about["format"] == FORMAT else str
+
+
+def _read(connection: Connection, table: Table, path: Path, cell_text: CellText) -> int:
+    if not path.exists():
+        return 0
+    count = 0
+    try:
+        for rows in _chunks(table, path, cell_text):
+            with _told(path):
+                connection.execute(insert(table), rows)
+            count += len(rows)
+    except UnicodeDecodeError as fault:
+        raise BadInput(f"{path} is not UTF-8, about byte {fault.start}") from fault
+    except csv.Error as fault:
+        raise BadInput(f"{path} is not CSV: {fault}") from fault
+    return count
+
+
+def _chunks(table: Table, path: Path, cell_text: CellText) -> Iterator[list[dict[str, Any]]]:
+    csv.field_size_limit(2**31 - 1)
+    with path.open(encoding="utf-8", newline="") as file:
+        reader = csv.reader(file)
+        names = next(reader, [])
+        if sorted(names) != sorted(table.c.keys()):
+            raise BadInput(
+                f"{path} has the columns {', '.join(names)}; {table.name} has {', '.join(table.c.keys())}"
+            )
+        makers = [_maker(table.c[name]) for name in names]
+        rows: list[dict[str, Any]] = []
+        for cells in reader:
+            rows.append(_row(path, reader.line_num, names, makers, [*map(cell_text, cells)]))
+            if len(rows) == _CHUNK:
+                yield rows
+                rows = []
+    if rows:
+        yield rows
+
+
+def _row(
+    path: Path, line: int, names: Sequence[str], makers: Sequence[Callable[[str], Any]], cells: Sequence[str]
+) -> dict[str, Any]:
+    if len(cells) != len(names):
+        raise BadInput(f"{path}, line {line}: {len(cells)} cells where the header has {len(names)}")
+    row = {}
+    for name, made, cell in zip(names, makers, cells, strict=True):
+        try:
+            row[name] = None if cell == _NOTHING else made(cell)
+        except (ValueError, RecursionError) as fault:
+            raise BadInput(
+                f"{path}, line {line}: {name} is not what it is in a dump: {cell[:40]!r}"
+            ) from fault
+    return row
+
+
+def _maker(column: Column[Any]) -> Callable[[str], Any]:
+    """A value of its cell."""
+    for kind, made in _MAKERS:
+        if isinstance(column.type, kind):
+            return made
+    return lambda cell: cell.removeprefix("\\") if cell.startswith("\\") else cell
+
+
+def _whole(cell: str) -> int:
+    if not -(2**63) <= (number := int(cell)) < 2**63:
+        raise ValueError(cell)
+    return number
+
+
+def _decimal(cell: str) -> float:
+    if not math.isfinite(number := float(cell)):
+        raise ValueError(cell)
+    return number
+
+
+_MAKERS: tuple[tuple[type[Any], Callable[[str], Any]], ...] = (
+    (JSON, json.loads),
+    (Moment, datetime.fromisoformat),
+    (Boolean, lambda cell: ("False", "True").index(cell) == 1),
+    (Integer, _whole),
+    (Double, _decimal),
+)
+
+
+def _count_on(connection: Connection, table: Table) -> None:
+    """Let a server go on numbering after the rows that were put in."""
+    if connection.dialect.name == "postgresql" and "id" in table.c:
+        last = connection.execute(select(func.max(table.c.id))).scalar()
+        if last is not None:
+            sequence = text("SELECT setval(pg_get_serial_sequence(:name, 'id'), :last)")
+            connection.execute(sequence, {"name": table.name, "last": last})

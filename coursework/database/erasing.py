@@ -1,0 +1,113 @@
+"""Taking away all that is kept of one person. Nothing of theirs stays, not even a mark without its name: who has the paper
+that was handed out, with its name and its seed, would know whose it is.
+
+What others wrote stays as it is; where they, a file or the staff *named* the person, the name is struck out.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Mapping
+from functools import lru_cache
+from typing import Any
+
+from sqlalchemy import Connection, Table, delete, select, update
+
+from coursework.database.belongings import Whose, conditions, whose
+from coursework.database.tables import (
+    answer,
+    assignment,
+    audit,
+    decision,
+    delivery,
+    extension,
+    marking,
+    placing,
+    rejected,
+    scanned,
+    seen,
+    typed,
+    worksheet,
+)
+
+STRUCK = "…"  #: stands where a name stood
+_SHORTEST = (
+    3  #: characters of what is struck out of the texts of others: a shorter word says of nobody who it is
+)
+_HEADS = (
+    "stated",
+    "asked",
+)  #: what an assignment says, where a name of letters alone is more likely another word
+
+#: Texts that say whose something is, or tell of somebody; answers of others are not among them.
+TELLING: tuple[tuple[Table, tuple[str, ...]], ...] = (
+    (assignment, ("stated", "columns", "asked")),
+    (delivery, ("source",)),
+    (answer, ("source", "warning", "origin")),
+    (rejected, ("source", "reason", "row")),
+    (seen, ("source", "what")),
+    (marking, ("fault", "submitted")),
+    (decision, ("reason", "by")),
+    (placing, ("reason", "by")),
+    (scanned, ("file",)),
+    (typed, ("by",)),
+    (worksheet, ("lines",)),
+    (extension, ("reason", "by")),
+    (audit, ("by", "about")),
+)
+
+
+def erase(connection: Connection, number: int) -> dict[str, int]:
+    """Take away all that is kept of a person; how many rows of each table that were.
+
+    The audit's line on it is for who calls to write.
+    """
+    who = whose(connection, number)
+    if who is None:
+        return {}
+    gone = {}
+    for name, (table, theirs) in conditions(connection, who).items():
+        gone[name] = connection.execute(delete(table).where(theirs)).rowcount
+    _strike(connection, who)
+    return gone
+
+
+def _strike(connection: Connection, who: Whose) -> None:
+    """Strike names out of what others wrote."""
+    words = {word for word in who.words if len(word) >= _SHORTEST}
+    in_heads = {word for word in words if not word.isalpha()}
+    for table, names in TELLING:
+        for row in connection.execute(select(table.c.id, *(table.c[name] for name in names))).all():
+            before = {name: getattr(row, name) for name in names}
+            after = {
+                name: _struck(value, in_heads if name in _HEADS else words, keys=name == "columns")
+                for name, value in before.items()
+            }
+            changed = {name: value for name, value in after.items() if value != before[name]}
+            if changed:
+                connection.execute(update(table).where(table.c.id == row.id).values(changed))
+
+
+def _struck(value: Any, words: Collection[str], *, keys: bool = False) -> Any:
+    """A text or JSON without the names; in a table ``keys`` by student, without their line as well."""
+    if isinstance(value, str):
+        return _without(value, words)
+    if isinstance(value, list):
+        return [_struck(one, words) for one in value]
+    if isinstance(value, Mapping):
+        kept = {key: one for key, one in value.items() if not keys or _without(key, words) != STRUCK}
+        return {key: _struck(one, words) for key, one in kept.items()}
+    return value
+
+
+def _without(text: str, words: Collection[str]) -> str:
+    for word in sorted(words, key=len, reverse=True):
+        if word.casefold() in text.casefold():
+            text = _pattern(word).sub(STRUCK, text)
+    return text
+
+
+@lru_cache(maxsize=64)
+def _pattern(word: str) -> re.Pattern[str]:
+    """A name as a whole word; one that is but letters by its capitals as well, since it may be a word of the language."""
+    return re.compile(rf"(?<!\w){re.escape(word)}(?!\w)", 0 if word.isalpha() else re.IGNORECASE)

@@ -1,0 +1,142 @@
+"""The job of Monday, kept: new files are deliveries, changed sheets are marked, and what is told is of all that ever came."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from sqlalchemy import Connection
+
+from coursework.course.course import Course
+from coursework.database.assignments import issued_of
+from coursework.database.decisions import Decisions
+from coursework.database.deliveries import Delivery, deliver, rows_of
+from coursework.database.marking import MarkedNow, Work, marked_now
+from coursework.database.publication import charges
+from coursework.database.standing import stood
+from coursework.database.store import Store
+from coursework.database.worksheets import DecidedAccepted, DecidedToMark, take_in, written
+from coursework.errors import BadInput
+from coursework.gradebook.accepted import Accepted
+from coursework.gradebook.book import Gradebook
+from coursework.gradebook.class_marking import rejecting
+from coursework.gradebook.feedback_form import USUAL, Form, shows_solutions
+from coursework.gradebook.grading import nothing_in, usual_feedback, write_marks
+from coursework.gradebook.placing import placed
+from coursework.gradebook.rows import Rejected, path_text
+from coursework.gradebook.submissions import find, read_file
+from coursework.gradebook.to_mark import ToMark
+from coursework.system.tables import SPREADSHEETS, Spreadsheet
+from coursework.system.writing import Progress
+
+
+@dataclass
+class GradedNow:
+    """What came, what was decided and what was marked."""
+
+    deliveries: list[Delivery]
+    decided: int  #: decisions that are new in files
+    marked: MarkedNow
+    work: Work
+
+    @property
+    def new(self) -> int:
+        return sum(one.is_new for one in self.deliveries)
+
+
+def grade_new(
+    course: Course,
+    store: Store,
+    assignment_id: int,
+    submissions: Sequence[Path],
+    *,
+    accepted: Path | None = None,
+    out: Path | None = None,
+    form: Form = USUAL,
+    replaces: bool = False,
+) -> GradedNow:
+    """Keep new files and new decisions, and mark the sheets that changed.
+
+    ``accepted`` and the files in ``out`` are those of :func:`coursework.gradebook.grading.grade_files`. A file that
+    ``replaces`` takes the place of what came from it before.
+
+    Raises
+    ------
+    BadInput
+        A file that is not there, nothing that can be marked, more points than there are, solutions before their day; then
+        nothing is kept.
+    """
+    accepted = accepted_in(accepted, out)
+    by_hand = None if accepted is None else Accepted(accepted)
+    by_person = None if out is None else ToMark(out / TO_MARK_FILE)
+    with store.begin() as connection:
+        issued = issued_of(connection, assignment_id)
+        shows_solutions(issued, form)
+        came = _deliver(connection, assignment_id, submissions, replaces=replaces)
+        if not stood(connection, assignment_id):
+            sheets = placed(course, issued, rows_of(connection, assignment_id))
+            if not sheets.sheets:
+                raise BadInput(nothing_in(submissions, sheets.rejected))
+        decided = take_in(connection, assignment_id, by_person, by_hand)
+    work = marked_now(course, store, assignment_id)
+    return GradedNow(came, decided, work.told(), work)
+
+
+TO_MARK_FILE = "to_mark.csv"
+
+
+def accepted_in(accepted: Path | None, out: Path | None) -> Path | None:
+    """The file of accepted answers: as it is told, else that of ``out`` where there is one."""
+    if accepted is not None or out is None:
+        return accepted
+    return out / "accepted.csv" if (out / "accepted.csv").exists() else None
+
+
+def _deliver(
+    connection: Connection, assignment_id: int, submissions: Sequence[Path], *, replaces: bool
+) -> list[Delivery]:
+    """Each file, as far as it is new."""
+    came = datetime.now(UTC)
+    found = []
+    for one in find(submissions):
+        rows = [one] if isinstance(one, Rejected) else list(read_file(one))
+        source = one.source if isinstance(one, Rejected) else path_text(one)
+        found.append(deliver(connection, assignment_id, rows, source=source, came=came, replaces=replaces))
+    return found
+
+
+def write_standing(
+    course: Course,
+    store: Store,
+    work: Work,
+    out: Path,
+    *,
+    accepted: Path | None = None,
+    feedback: bool | None = None,
+    spreadsheet: Spreadsheet = SPREADSHEETS["point"],
+    progress: Progress = lambda done, of: None,
+    form: Form = USUAL,
+) -> Gradebook:
+    """Write the very files that :func:`coursework.gradebook.grading.grade_files` would write of all that ever came."""
+    with store.reading() as connection:
+        decisions = Decisions.read(connection, work.assignment_id)
+        charged = charges(connection, work.assignment_id)
+    book = write_marks(
+        course,
+        work.issued,
+        work.sheets,
+        rejecting(work.sheets, work.results()),
+        out,
+        by_person=DecidedToMark(out / TO_MARK_FILE, decisions),
+        by_hand=DecidedAccepted(accepted_in(accepted, out), decisions),
+        feedback=usual_feedback(work.sheets) if feedback is None else feedback,
+        charged=charged,
+        spreadsheet=spreadsheet,
+        progress=progress,
+        form=form,
+    )
+    with store.begin() as connection:
+        written(connection, work.assignment_id, out / TO_MARK_FILE)
+    return book

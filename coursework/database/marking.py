@@ -1,0 +1,297 @@
+"""Marking what is new: the sheets whose answers, record, rules, course or engine are not what they were marked by."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, insert, select
+
+from coursework.course.course import Course
+from coursework.database.assignments import issued_of
+from coursework.database.decisions import Decisions
+from coursework.database.deliveries import rows_of
+from coursework.database.standing import Stood, lines_of, machine_marks, stood
+from coursework.database.states import exercise_state, sheet_state
+from coursework.database.store import Store
+from coursework.database.tables import assignment, delivery, mark, marking
+from coursework.errors import BadInput
+from coursework.gradebook.book import marks_rows
+from coursework.gradebook.class_marking import judged, record_of, rules_of
+from coursework.gradebook.graded import Graded
+from coursework.gradebook.placing import SheetPlace, Sheets, placed
+from coursework.making.issued import Issued
+
+_CHUNK = 5000  #: rows that are written at once
+
+Judged = tuple[SheetPlace, Graded | str]
+
+
+class Change(NamedTuple):
+    """A mark that is not what it was."""
+
+    student: str
+    exercise: str
+    seed: int
+    sitting: int
+    part: str
+    answer: str
+    verdict_before: str  #: empty where there was none
+    verdict_now: str
+    points_before: str  #: as tables print them
+    points_now: str
+
+    def row(self) -> dict[str, Any]:
+        """A line of ``changes.csv``."""
+        return self._asdict()
+
+
+class MarkedNow(NamedTuple):
+    """What a marking did."""
+
+    sheets: int  #: how many are answered
+    marked: int  #: how many of them were marked now
+    new: int  #: how many of these for the first time
+    changes: tuple[Change, ...]  #: marks that are not what they were, of sheets that were marked before
+
+
+class Work:
+    """The sheets of an assignment, or of one delivery of it, beside what was marked of them before."""
+
+    def __init__(self, course: Course, store: Store, assignment_id: int, delivery_id: int | None = None):
+        self.course, self.store, self.assignment_id = course, store, assignment_id
+        self.now: dict[SheetPlace, Graded | str] = {}
+        with store.reading() as connection:
+            self._read(connection, delivery_id)
+
+    def _read(self, connection: Connection, delivery_id: int | None) -> None:
+        course, assignment_id = self.course, self.assignment_id
+        whose = None if delivery_id is None else _person_of(connection, delivery_id)
+        self.issued: Issued = issued_of(connection, assignment_id, whose)
+        for exercise in self.issued.exercises:
+            exercise_state(course, exercise)  # before it is loaded
+        only = delivery_id if whose is not None else None
+        rows = list(rows_of(connection, assignment_id, only))
+        self.sheets: Sheets = placed(course, self.issued, rows)
+        self.places: Collection[SheetPlace] = self.sheets.sheets
+        if delivery_id is not None and whose is None:
+            own = placed(
+                course, issued_of(connection, assignment_id), rows_of(connection, assignment_id, delivery_id)
+            )
+            self.places = [place for place in self.sheets.sheets if place in own.sheets]
+        students = {place[0] for place in self.places}
+        student = self._student = students.pop() if len(students) == 1 and delivery_id is not None else None
+        self.stood: dict[SheetPlace, Stood] = stood(connection, assignment_id, student)
+        self.decisions = Decisions.read(connection, assignment_id, student)
+        self.is_whole = delivery_id is None
+        rules = rules_of(course, self.issued)
+        self.states = {place: self._state(place, rules) for place in self.places}
+
+    def _state(self, place: SheetPlace, rules: Any) -> str:
+        sheets = self.sheets
+        record = record_of(self.issued, sheets, place)
+        answers = {part: row.answer for part, row in sheets.sheets[place].items()}
+        return sheet_state(
+            self.course, rules, record, answers, place in sheets.apart, sheets.submitted.get(place, "")
+        )
+
+    @property
+    def changed(self) -> list[SheetPlace]:
+        """The sheets that are not in the state by which they were marked."""
+        return [p for p in self.places if p not in self.stood or self.stood[p].state != self.states[p]]
+
+    @property
+    def gone(self) -> list[Stood]:
+        """The sheets that nothing answers to any more."""
+        if not self.is_whole:
+            return []
+        return [one for place, one in self.stood.items() if one.state and place not in self.sheets.sheets]
+
+    def mark(self) -> None:
+        """Mark what changed."""
+        places = self.changed
+        self.now = dict(judged(self.course, self.issued, _only(self.sheets, places))) if places else {}
+
+    def results(self) -> Iterator[Judged]:
+        """Every sheet with its marks as they are now."""
+        places = self.sheets.sheets
+        before = self._before(self.stood[p] for p in places if p not in self.now and p in self.stood)
+        for place in self.sheets.sheets:
+            if place in self.now or place in before:
+                yield place, self.now[place] if place in self.now else before[place]
+
+    def changes(self) -> Iterator[Change]:
+        """Marks that are not what they were, of sheets that were marked before; decided marks on both sides."""
+        marked = [self.stood[place] for place in self.now if place in self.stood]
+        for place, was in self._before([*marked, *self.gone]).items():
+            yield from _changes(self._rows(was), self._rows(self.now.get(place, "")))
+
+    def _before(self, sheets: Iterable[Stood]) -> dict[SheetPlace, Graded | str]:
+        """Sheets as they were marked before."""
+        sheets = list(sheets)
+        with self.store.reading() as connection:
+            lines = lines_of(connection, sheets)
+        return dict(machine_marks(self.issued, sheets, lines))
+
+    def _rows(self, result: Graded | str) -> dict[str, Mapping[str, Any]]:
+        """The lines of a sheet in a table of marks, by part."""
+        if isinstance(result, str):
+            return {}
+        return {row["part"]: row for row in marks_rows(self.decisions.apply(result))}
+
+    def told(self) -> MarkedNow:
+        new = sum(place not in self.stood for place in self.now)
+        return MarkedNow(len(self.places), len(self.now), new, tuple(self.changes()))
+
+    def write(self, connection: Connection) -> None:
+        """Keep what was marked, but of sheets that somebody else marked meanwhile."""
+        now = stood(connection, self.assignment_id, self._student)
+        met = {place: one.id for place, one in now.items()}
+        free = [p for p in self.now if met.get(p) == (self.stood[p].id if p in self.stood else None)]
+        gone = [one for one in self.gone if met.get(one.place) == one.id]
+        made = datetime.now(UTC)
+        rows = [_marking(self, place, made) for place in free]
+        rows += [
+            {
+                **_place(self.assignment_id, one.place),
+                "sitting": one.sitting,
+                "state": "",
+                "made": made,
+                **_NOTHING,
+            }
+            for one in gone
+        ]
+        for start in range(0, len(rows), _CHUNK):
+            adding = insert(marking).returning(marking.c.id, sort_by_parameter_order=True)
+            ids = connection.execute(adding, rows[start : start + _CHUNK]).scalars().all()
+            places = free[start : start + _CHUNK]
+            lines = [
+                line
+                for number, place in zip(ids, places, strict=False)
+                for line in _marks(number, self.now[place])
+            ]
+            for first in range(0, len(lines), _CHUNK):
+                connection.execute(insert(mark), lines[first : first + _CHUNK])
+
+
+# ---------------------------------------------------------------------- marking
+
+
+def mark_new(course: Course, store: Store, assignment_id: int) -> MarkedNow:
+    """Mark every sheet whose state changed: its record, its answers, the rules, the files of its exercise, the engine.
+
+    Raises
+    ------
+    CourseworkError
+        The course cannot mark what was issued.
+    """
+    return marked_now(course, store, assignment_id).told()
+
+
+def mark_delivery(course: Course, store: Store, delivery_id: int) -> MarkedNow:
+    """Mark the sheets of one delivery, where they changed.
+
+    Raises
+    ------
+    BadInput
+        There is no such delivery.
+    CourseworkError
+        The course cannot mark what was issued.
+    """
+    with store.reading() as connection:
+        found = select(delivery.c.assignment_id).where(delivery.c.id == delivery_id)
+        assignment_id = connection.execute(found).scalar()
+    if assignment_id is None:
+        raise BadInput(f"no delivery number {delivery_id} in the database")
+    return marked_now(course, store, assignment_id, delivery_id).told()
+
+
+def would_change(course: Course, store: Store, assignment_id: int) -> MarkedNow:
+    """What :func:`mark_new` would do; nothing is written."""
+    work = Work(course, store, assignment_id)
+    work.mark()
+    return work.told()
+
+
+def marked_now(course: Course, store: Store, assignment_id: int, delivery_id: int | None = None) -> Work:
+    """All sheets of an assignment, or of a delivery, what changed of them marked and kept."""
+    work = Work(course, store, assignment_id, delivery_id)
+    work.mark()
+    if work.now or work.gone:
+        with store.begin() as connection:
+            row = select(assignment.c.id).where(assignment.c.id == assignment_id)
+            connection.execute(row.with_for_update(key_share=True))
+            work.write(connection)
+    return work
+
+
+def _person_of(connection: Connection, delivery_id: int) -> int | None:
+    return connection.execute(select(delivery.c.person_id).where(delivery.c.id == delivery_id)).scalar()
+
+
+def _only(sheets: Sheets, places: Iterable[SheetPlace]) -> Sheets:
+    """Some of the sheets, by themselves."""
+    own = {place: sheets.sheets[place] for place in places}
+    return Sheets(own, langs=sheets.langs, submitted=sheets.submitted, apart=sheets.apart)
+
+
+# ---------------------------------------------------------------------- changes
+
+
+def _changes(
+    before: Mapping[str, Mapping[str, Any]], now: Mapping[str, Mapping[str, Any]]
+) -> Iterator[Change]:
+    for part in dict.fromkeys((*before, *now)):
+        row = now.get(part) or before[part]
+        was, is_now = (_verdict(own.get(part)) for own in (before, now))
+        if was != is_now:
+            place = row["student"], row["exercise"], row["seed"], row["sitting"], part, row["answer"]
+            yield Change(*place, was[0], is_now[0], was[1], is_now[1])
+
+
+def _verdict(row: Mapping[str, Any] | None) -> tuple[str, str]:
+    return ("", "") if row is None else (row["verdict"], row["points"])
+
+
+# ------------------------------------------------------------------------- rows
+
+_NOTHING = {"lang": "", "apart": False, "submitted": "", "fault": ""}
+
+
+def _place(assignment_id: int, place: SheetPlace) -> dict[str, Any]:
+    student, exercise, seed, attempt = place
+    named = {"student": student, "exercise": exercise, "seed": str(seed), "attempt": attempt}
+    return {"assignment_id": assignment_id, **named}
+
+
+def _marking(work: Work, place: SheetPlace, made: datetime) -> dict[str, Any]:
+    result = work.now[place]
+    own = {
+        "sitting": place[3] or work.issued.sitting_of(*place[:3]),
+        "lang": str(record_of(work.issued, work.sheets, place).get("lang", "")),
+        "apart": place in work.sheets.apart,
+        "submitted": work.sheets.submitted.get(place, ""),
+        "fault": result if isinstance(result, str) else "",
+    }
+    return {**_place(work.assignment_id, place), "state": work.states[place], "made": made, **own}
+
+
+def _marks(number: int, result: Graded | str) -> Iterator[dict[str, Any]]:
+    if isinstance(result, str):
+        return
+    came: dict[str, int] = {part: place for place, part in enumerate(result.answered)}
+    for place, line in enumerate(result.lines.values()):
+        own: Sequence[Any] = line.sent(printed=True)
+        yield {
+            "marking_id": number,
+            "place": place,
+            "came": came.get(line.part),
+            **dict(zip(_SENT, own, strict=True)),
+            "matches": list(line.matches),
+        }
+
+
+_SENT = (
+    "part", "answer", "read_as", "verdict", "points", "out_of", "lang", "matches", "in_other_order", "says", "feedback",
+)  # fmt: skip

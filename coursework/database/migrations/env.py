@@ -1,0 +1,29 @@
+"""Runs migrations on the connection that it is handed."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from alembic import context
+from sqlalchemy import JSON
+
+from coursework.database.tables import METADATA, Moment, Words
+
+
+def _printed(kind: str, item: Any, autogenerate: Any) -> str | Literal[False]:
+    """A type of the tables by its name there, in a migration that is made from them."""
+    name = "Json" if isinstance(item, JSON) else type(item).__name__
+    if kind != "type" or not isinstance(item, (JSON, Moment, Words)):
+        return False
+    autogenerate.imports.add(f"from coursework.database.tables import {name}")
+    return "Json" if name == "Json" else f"{name}()"
+
+
+context.configure(
+    connection=context.config.attributes["connection"],
+    target_metadata=METADATA,
+    render_as_batch=True,
+    render_item=_printed,
+)
+with context.begin_transaction():
+    context.run_migrations()

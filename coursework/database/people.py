@@ -1,0 +1,80 @@
+"""People: who answers, who teaches, and how they sign in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import Connection, Select, insert, select, update
+
+from coursework.database.tables import account, person
+from coursework.making.roster import Student
+from coursework.markup.markdown import sort_key
+
+
+def _found() -> Select[Any]:
+    """People with the role of the account that they have; none where they have no account that is open."""
+    mine = (account.c.person_id == person.c.id) & account.c.closed.is_(None)
+    return select(person, account.c.role, account.c.login).select_from(person.outerjoin(account, mine))
+
+
+def people(connection: Connection) -> list[Any]:
+    """Everybody, by name, whatever its accents: Bäcker stands before Blanc."""
+    found = connection.execute(_found().order_by(person.c.id))
+    return sorted(found, key=lambda one: (sort_key(one.name), one.name))
+
+
+def person_by_id(connection: Connection, number: int) -> Any | None:
+    """``id``, ``who``, ``name``, ``lang``, ``columns``, ``sessions_from``, ``role``, ``login`` of a person; None for nobody."""
+    return connection.execute(_found().where(person.c.id == number)).first()
+
+
+def person_by_who(connection: Connection, who: str) -> Any | None:
+    """The person whom a roster tells apart so."""
+    return connection.execute(_found().where(person.c.who == who)).first()
+
+
+def hold(connection: Connection, number: int) -> None:
+    """Let nobody else write for this person before the transaction ends."""
+    connection.execute(select(person.c.id).where(person.c.id == number).with_for_update(key_share=True))
+
+
+def put_person(connection: Connection, who: str, name: str, lang: str, columns: Mapping[str, str]) -> int:
+    """The person of a roster, added where there is none; a name, a language and columns that are told take the place of
+    those before."""
+    known = person_by_who(connection, who)
+    told = {
+        key: value for key, value in (("name", name), ("lang", lang), ("columns", dict(columns))) if value
+    }
+    if known is None:
+        row = {"who": who, "name": name, "lang": lang, "columns": dict(columns), "created": datetime.now(UTC)}
+        return int(connection.execute(insert(person).values(row).returning(person.c.id)).scalar_one())
+    if any(getattr(known, key) != value for key, value in told.items()):
+        connection.execute(update(person).where(person.c.id == known.id).values(told))
+    return int(known.id)
+
+
+def put_people(connection: Connection, students: Sequence[Student]) -> dict[str, int]:
+    """The people of a roster by what it tells them apart by; those who are new are added, columns that are new are taken in."""
+    known = {row.who: row for row in connection.execute(select(person.c.who, person.c.id, person.c.columns))}
+    now = datetime.now(UTC)
+    new = {one.who: one for one in students if one.who not in known}
+    rows = [
+        {"who": who, "name": one.name, "lang": one.lang, "columns": dict(one.columns), "created": now}
+        for who, one in new.items()
+    ]
+    if rows:
+        connection.execute(insert(person), rows)
+    for one in students:
+        had = known.get(one.who)
+        if had is not None and (columns := {**had.columns, **one.columns}) != had.columns:
+            connection.execute(update(person).where(person.c.id == had.id).values(columns=columns))
+    return {row.who: row.id for row in connection.execute(select(person.c.who, person.c.id))}
+
+
+def put_account(connection: Connection, number: int, login: str, role: str) -> None:
+    """A way to sign in for a person, added where there is none."""
+    if connection.execute(select(account.c.id).where(account.c.login == login)).first() is None:
+        row = {"person_id": number, "login": login, "role": role, "created": datetime.now(UTC)}
+        connection.execute(insert(account).values(row))

@@ -1,0 +1,63 @@
+"""Variants that are worth practising, found ahead: their seeds, and what is issued, which nobody practises."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, delete, insert, select
+
+from coursework.database.tables import setting, variant
+
+
+class Pooled(NamedTuple):
+    """The seeds of an exercise that were found so far."""
+
+    seeds: tuple[int, ...] = ()
+    are_all: bool = False  #: no more were found
+
+
+def pooled(connection: Connection, exercise: str, version: int) -> Pooled:
+    """What was found of a version of an exercise; nothing of one that nobody looked at."""
+    text = connection.execute(
+        select(setting.c.value).where(setting.c.name == _name(exercise, version))
+    ).scalar()
+    return _of_text(text) if text else Pooled()
+
+
+def pools(connection: Connection, versions: Mapping[str, int]) -> dict[str, Pooled]:
+    """What was found of exercises in their versions; those that nobody looked at are left out."""
+    names = {_name(exercise, version): exercise for exercise, version in versions.items()}
+    rows = connection.execute(select(setting.c.name, setting.c.value).where(setting.c.name.in_(names)))
+    return {names[row.name]: _of_text(row.value) for row in rows}
+
+
+def _of_text(text: str) -> Pooled:
+    found = json.loads(text)
+    return Pooled(tuple(found["seeds"]), bool(found["all"]))
+
+
+def put_pooled(connection: Connection, exercise: str, version: int, found: Pooled) -> None:
+    """Keep what was found, in the place of what was before."""
+    name = _name(exercise, version)
+    text = json.dumps({"seeds": list(found.seeds), "all": found.are_all})
+    connection.execute(delete(setting).where(setting.c.name == name))
+    connection.execute(insert(setting).values(name=name, value=text))
+
+
+def issued_seeds(connection: Connection, exercise: str) -> frozenset[str]:
+    """The seeds of an exercise that are in some assignment, as texts."""
+    return frozenset(
+        connection.execute(select(variant.c.seed).where(variant.c.exercise == exercise)).scalars()
+    )
+
+
+def issued_given(connection: Connection, exercise: str) -> Sequence[Mapping[str, Any]]:
+    """The given values of an exercise that are in some assignment, as its records have them."""
+    rows = connection.execute(select(variant.c.record).where(variant.c.exercise == exercise)).scalars()
+    return [record["given"] for record in rows]
+
+
+def _name(exercise: str, version: int) -> str:
+    return f"pool {exercise}"[:90] + f" v{version}"

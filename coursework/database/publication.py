@@ -1,0 +1,312 @@
+"""What the publication of an assignment says: from when to when, how often, what comes late, and what is told when.
+
+Dates are compared with the server's clock alone. A date that passed is written down (:func:`reach`), so that a clock set back
+neither opens again what was closed nor takes back what was told.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from datetime import datetime, timedelta
+from enum import Enum
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, insert, select, update
+
+from coursework.database.tables import assignment, dealt, delivery, extension, variant
+
+#: When marks and sentences are told; and when right answers and worked solutions.
+AT_ONCE, CLOSED, DATE, NEVER = "at_once", "closed", "date", "never"
+FEEDBACK = (AT_ONCE, CLOSED, DATE, NEVER)
+ANSWERS = (NEVER, CLOSED, DATE)
+#: What becomes of what comes late.
+REFUSE, ACCEPT, CHARGE = "refuse", "accept", "charge"
+LATE = (REFUSE, ACCEPT, CHARGE)
+MOST_TRIES = 1000
+_DAY = 24 * 3600
+_MOMENTS = ("opens", "closes", "feedback_on", "answers_on", "late_until", "reached")
+
+
+class Phase(Enum):
+    """Where an assignment stands for somebody."""
+
+    TO_COME = "to_come"
+    OPEN = "open"
+    LATE = "late"  #: it has closed, and what comes is still taken
+    CLOSED = "closed"
+
+    @property
+    def takes(self) -> bool:
+        return self in (Phase.OPEN, Phase.LATE)
+
+
+class Fault(NamedTuple):
+    """What makes no sense in a publication: the field, and the name of a sentence."""
+
+    field: str
+    sentence: str
+
+
+class Extension(NamedTuple):
+    """Other dates or tries for one person."""
+
+    closes: datetime | None
+    tries: int | None
+    reason: str
+    by: str
+    made: datetime
+
+
+@dataclass(frozen=True)
+class Publication:
+    """Dates, tries and rules of an assignment on the site. Times are UTC."""
+
+    opens: datetime | None = None  #: at once, where there is none
+    closes: datetime | None = None  #: never; the moment itself still counts as in time
+    tries: int | None = 1  #: as many as anybody likes, where there is none
+    late: str = REFUSE
+    late_until: datetime | None = None  #: for ever, where what is late is taken at all
+    late_percent: float = 0.0  #: of all the points that were earned, for each day begun
+    feedback: str = CLOSED
+    feedback_on: datetime | None = None
+    answers: str = NEVER
+    answers_on: datetime | None = None
+    takes_saved: bool = (
+        False  #: what stood in the boxes when it closed is handed in for who handed in nothing
+    )
+    reached: datetime | None = None  #: the last of its dates that has passed
+
+    # ------------------------------------------------------------------ as JSON
+
+    @staticmethod
+    def of(told: Mapping[str, Any]) -> Publication:
+        """What a row of the database holds; a key that is not known was written by a later version, and says nothing here."""
+        known = {field.name for field in fields(Publication)}
+        own = {key: value for key, value in told.items() if key in known}
+        moments = {key: datetime.fromisoformat(own[key]) for key in _MOMENTS if own.get(key)}
+        return Publication(**{**own, **moments})
+
+    def as_json(self) -> dict[str, Any]:
+        usual = Publication()
+        own = {field.name: getattr(self, field.name) for field in fields(self)}
+        shown = {
+            key: value.isoformat() if isinstance(value, datetime) else value for key, value in own.items()
+        }
+        return {key: value for key, value in shown.items() if own[key] != getattr(usual, key)}
+
+    # --------------------------------------------------------------- what it says
+
+    def faults(self) -> Iterator[Fault]:
+        """What makes no sense in it."""
+        if self.tries is not None and not 1 <= self.tries <= MOST_TRIES:
+            yield Fault("tries", "tries")
+        if self.opens and self.closes and self.closes <= self.opens:
+            yield Fault("closes", "closes_before")
+        if self.late != REFUSE and self.closes is None:
+            yield Fault("late", "late_never_closes")
+        if self.late != REFUSE and self.late_until and self.closes and self.late_until <= self.closes:
+            yield Fault("late_until", "late_until_before")
+        if self.late != REFUSE and self.closes and not self.late_until and self._waits_for_the_end:
+            yield Fault("late_until", "late_never_ends")
+        if self.late == CHARGE and not 0 < self.late_percent <= 100:
+            yield Fault("late_percent", "late_percent")
+        for what in ("feedback", "answers"):
+            when, on = getattr(self, what), getattr(self, f"{what}_on")
+            if when == DATE and on is None:
+                yield Fault(f"{what}_on", "no_date")
+            if when == CLOSED and self.closes is None:
+                yield Fault(what, "never_closes")
+        if self.takes_saved and self.closes is None:
+            yield Fault("takes_saved", "never_closes")
+
+    @property
+    def _waits_for_the_end(self) -> bool:
+        """Whether something is done once nothing is taken any more."""
+        return CLOSED in (self.feedback, self.answers) or self.takes_saved
+
+    def extended(self, more: Extension | None) -> Publication:
+        """What it says to somebody who has an extension: that wins, longer or shorter."""
+        if more is None:
+            return self
+        closes = more.closes or self.closes
+        until = self.late_until
+        if until is not None and closes is not None:
+            until = max(until, closes)
+        return replace(self, closes=closes, tries=more.tries or self.tries, late_until=until)
+
+    def now(self, clock: datetime) -> datetime:
+        """The time that counts: the clock's, and never before a date that has passed already."""
+        return clock if self.reached is None else max(clock, self.reached)
+
+    def phase(self, now: datetime) -> Phase:
+        if self.opens is not None and now < self.opens:
+            return Phase.TO_COME
+        if self.closes is None or now <= self.closes:
+            return Phase.OPEN
+        return Phase.LATE if self._takes_late(now) else Phase.CLOSED
+
+    def _takes_late(self, now: datetime) -> bool:
+        return self.late != REFUSE and (self.late_until is None or now <= self.late_until)
+
+    @property
+    def ends(self) -> datetime | None:
+        """The last moment at which anything is taken; none where that never comes."""
+        return self.closes if self.late == REFUSE or self.closes is None else self.late_until
+
+    def late_seconds(self, came: datetime) -> int:
+        """By how much something came after it closed, a second begun is one; 0 in time."""
+        if self.closes is None or came <= self.closes:
+            return 0
+        return math.ceil((came - self.closes) / timedelta(seconds=1))
+
+    def charged(self, late: int) -> float:
+        """The share of the points that is taken off, 0 to 1, of what came so many seconds late."""
+        if self.late != CHARGE or late <= 0:
+            return 0.0
+        return min(1.0, self.late_percent / 100 * math.ceil(late / _DAY))
+
+    def tells(self, what: str, now: datetime, ends: datetime | None) -> bool:
+        """Whether ``feedback`` or ``answers`` are told, where ``ends`` is when everybody concerned has closed."""
+        when, on = getattr(self, what), getattr(self, f"{what}_on")
+        if when == CLOSED:
+            return ends is not None and now > ends
+        return when == AT_ONCE or (when == DATE and on is not None and now >= on)
+
+    def dates(self, extensions: Sequence[Extension] = ()) -> list[datetime]:
+        """All its dates, in order."""
+        own = [getattr(self, name) for name in _MOMENTS if name != "reached"]
+        return sorted(one for one in (*own, *(more.closes for more in extensions)) if one is not None)
+
+
+def last_end(publication: Publication, extensions: Sequence[Extension]) -> datetime | None:
+    """When nobody can hand in any more; none where that never comes."""
+    ends = [publication.ends, *(publication.extended(more).ends for more in extensions)]
+    return None if None in ends else max(one for one in ends if one is not None)
+
+
+# --------------------------------------------------------------------- database
+
+
+def published(connection: Connection, number: int) -> Publication | None:
+    """What the publication of an assignment says; None where it is not published, or not there."""
+    told = connection.execute(select(assignment.c.published).where(assignment.c.id == number)).scalar()
+    return None if told is None else Publication.of(told)
+
+
+def publish(connection: Connection, number: int, publication: Publication | None) -> None:
+    """Publish an assignment, or, with None, take that back; what was handed in stays."""
+    told = None if publication is None else publication.as_json()
+    connection.execute(update(assignment).where(assignment.c.id == number).values(published=told))
+
+
+def charges(connection: Connection, number: int) -> dict[tuple[str, int], float]:
+    """The shares that are taken off of what came late, by student and try; what an extension, or a later date of closing, has
+    brought back into time is not late any more."""
+    publication = published(connection, number)
+    if publication is None or publication.late != CHARGE:
+        return {}
+    theirs = extensions(connection, number)
+    late = select(delivery).where(delivery.c.assignment_id == number, delivery.c.late > 0)
+    names = select(dealt.c.person_id, dealt.c.student).join(variant).where(variant.c.assignment_id == number)
+    called = {row.person_id: row.student for row in connection.execute(names)}
+    found = {}
+    for row in connection.execute(late):
+        own = publication.extended(theirs.get(row.person_id))
+        if row.person_id in called and (share := own.charged(min(row.late, own.late_seconds(row.came)))):
+            found[called[row.person_id], row.number] = share
+    return found
+
+
+def extend(connection: Connection, number: int, person: int, more: Extension) -> None:
+    """Give somebody other dates or tries; the last that was given stands."""
+    row = {"assignment_id": number, "person_id": person, **more._asdict()}
+    connection.execute(insert(extension).values(row))
+
+
+def extensions(connection: Connection, number: int) -> dict[int, Extension]:
+    """The extension that stands, by person."""
+    found = select(extension).where(extension.c.assignment_id == number).order_by(extension.c.id)
+    return {
+        row.person_id: Extension(row.closes, row.tries, row.reason, row.by, row.made)
+        for row in connection.execute(found)
+    }
+
+
+def reach(connection: Connection, number: int, clock: datetime) -> bool:
+    """Write down the last date that has passed, where one has; tells whether it was another than before."""
+    about = connection.execute(
+        select(assignment.c.published).where(assignment.c.id == number).with_for_update(key_share=True)
+    ).scalar()
+    if about is None:
+        return False
+    own = Publication.of(about)
+    passed = [one for one in own.dates(list(extensions(connection, number).values())) if one < clock]
+    if not passed or (own.reached is not None and passed[-1] < own.reached):
+        return False
+    just_after = passed[-1] + timedelta(microseconds=1)
+    if own.reached is not None and just_after <= own.reached:
+        return False
+    publish(connection, number, replace(own, reached=just_after))
+    return True
+
+
+class Place(NamedTuple):
+    """An assignment that somebody was issued a paper of, as it is published."""
+
+    id: int
+    name: str
+    stated: Mapping[str, Any]
+    student: str  #: the person's name as issued
+    publication: Publication | None
+    extension: Extension | None
+
+    @property
+    def own(self) -> Publication:
+        """What the publication says to this person."""
+        assert self.publication is not None
+        return self.publication.extended(self.extension)
+
+
+def places(connection: Connection, person: int, number: int | None = None) -> list[Place]:
+    """The assignments that somebody was issued, the latest first; of these the one of a number, where it is told."""
+    theirs = select(variant.c.assignment_id, dealt.c.student).join(variant).where(dealt.c.person_id == person)
+    mine = theirs.distinct().subquery()
+    columns = (
+        assignment.c.id,
+        assignment.c.name,
+        assignment.c.stated,
+        assignment.c.published,
+        mine.c.student,
+    )
+    found = select(*columns).join(mine, mine.c.assignment_id == assignment.c.id)
+    if number is not None:
+        found = found.where(assignment.c.id == number)
+    return [
+        Place(
+            row.id, row.name, row.stated or {}, row.student,
+            None if row.published is None else Publication.of(row.published),
+            extension_of(connection, row.id, person),
+        )
+        for row in connection.execute(found.order_by(assignment.c.id.desc()))
+    ]  # fmt: skip
+
+
+def extension_of(connection: Connection, number: int, person: int) -> Extension | None:
+    """What somebody was given last."""
+    own = extension.c.assignment_id == number, extension.c.person_id == person
+    row = connection.execute(select(extension).where(*own).order_by(extension.c.id.desc()).limit(1)).first()
+    return None if row is None else Extension(row.closes, row.tries, row.reason, row.by, row.made)
+
+
+def say_sittings(connection: Connection, number: int, counts: str) -> None:
+    """Say which of several hand-ins counts, ``best`` or ``last``, where marks are put together."""
+    row = connection.execute(select(assignment).where(assignment.c.id == number)).one()
+    told = {
+        key: {**value, "sittings": counts}
+        for key, value in (("stated", row.stated), ("asked", row.asked))
+        if value is not None
+    }
+    if told:
+        connection.execute(update(assignment).where(assignment.c.id == number).values(told))

@@ -1,0 +1,94 @@
+"""Scans of answer pages, and what people typed of them."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable, Mapping
+from datetime import datetime
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, func, insert, select, update
+
+from coursework.database.store import insert_unless_there
+from coursework.database.tables import scanned, typed
+
+
+class Page(NamedTuple):
+    """A page of a scan, or a file of which no page can be read."""
+
+    page: str  #: digest of the file, and number
+    file: str
+    number: int  #: 0 for a file
+    student: str
+    kept: Mapping[str, Any]  #: what was read
+    came: datetime
+
+
+class TypedRow(NamedTuple):
+    """What a person typed of one place; an answer of None withdraws what stood there."""
+
+    student: str
+    exercise: str
+    seed: str
+    part: str
+    coordinate: str
+    answer: str | None
+    seen: str
+    by: str
+    made: datetime
+
+
+def put_scanned(connection: Connection, assignment_id: int, page: Page, picture: bytes) -> bool:
+    """Keep a page; whether it is new. One that is there stays as it is."""
+    row = {
+        **page._asdict(), "kept": dict(page.kept), "assignment_id": assignment_id,
+        "picture": base64.b64encode(picture).decode(),
+    }  # fmt: skip
+    return insert_unless_there(connection, scanned, row, ("assignment_id", "page")) is not None
+
+
+def pages_scanned(connection: Connection, assignment_id: int) -> list[Page]:
+    """The pages, in the order of their files."""
+    columns = [scanned.c[name] for name in Page._fields]
+    found = select(*columns).where(scanned.c.assignment_id == assignment_id)
+    in_order = found.order_by(scanned.c.file, scanned.c.page)
+    return [Page(*row) for row in connection.execute(in_order)]
+
+
+def picture_scanned(connection: Connection, assignment_id: int, page: str) -> bytes | None:
+    """The picture of a page; None where there is none."""
+    of_page = scanned.c.assignment_id == assignment_id, scanned.c.page == page
+    found = connection.execute(select(scanned.c.picture).where(*of_page)).scalar()
+    return base64.b64decode(found) if found else None
+
+
+def name_scanned(connection: Connection, assignment_id: int, page: str, student: str) -> None:
+    """Say whose a page is."""
+    of_page = scanned.c.assignment_id == assignment_id, scanned.c.page == page
+    connection.execute(update(scanned).where(*of_page).values(student=student))
+
+
+def put_typed(connection: Connection, assignment_id: int, rows: Iterable[TypedRow]) -> None:
+    """Keep what was typed."""
+    found = [{**row._asdict(), "assignment_id": assignment_id} for row in rows]
+    if found:
+        connection.execute(insert(typed), found)
+
+
+def typed_rows(connection: Connection, assignment_id: int) -> list[TypedRow]:
+    """What stands: the last of each place, in the order in which it was typed; without what was withdrawn."""
+    columns = [typed.c[name] for name in TypedRow._fields]
+    in_order = select(*columns).where(typed.c.assignment_id == assignment_id).order_by(typed.c.id)
+    last: dict[tuple[str, ...], TypedRow] = {}
+    for row in map(TypedRow._make, connection.execute(in_order)):
+        place = tuple(row[:5])
+        last.pop(place, None)
+        last[place] = row
+    return [row for row in last.values() if row.answer is not None]
+
+
+def scans_stamp(connection: Connection, assignment_id: int) -> tuple[int, int]:
+    """The last page and the last typing of an assignment: others when something is new."""
+    last = [select(func.max(t.c.id)).where(t.c.assignment_id == assignment_id) for t in (scanned, typed)]
+    pages, texts = (connection.execute(one).scalar() or 0 for one in last)
+    return pages, texts

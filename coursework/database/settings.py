@@ -1,0 +1,60 @@
+"""Small things that a site keeps for itself."""
+
+from __future__ import annotations
+
+import json
+import secrets
+from typing import Any
+
+from sqlalchemy import Connection, delete, insert, select
+
+from coursework.database.tables import setting
+from coursework.errors import BadInput
+
+_KEY = "secret"
+_COURSE = "course"
+
+
+def secret(connection: Connection) -> bytes:
+    """The key that signs what the site gives out: drawn once.
+
+    Raises
+    ------
+    BadInput
+        What is kept is no key.
+    """
+    found = connection.execute(select(setting.c.value).where(setting.c.name == _KEY)).scalar()
+    if found is None:
+        found = secrets.token_hex(32)
+        connection.execute(insert(setting).values(name=_KEY, value=found))
+    try:
+        return bytes.fromhex(found)
+    except ValueError:
+        raise BadInput(
+            "the key that signs cookies is damaged in the database: restore a backup, or delete the row 'secret' of the table "
+            "'setting', which signs everybody out"
+        ) from None
+
+
+def value_of(connection: Connection, name: str) -> Any:
+    """What is kept under a name; None where nothing is."""
+    found = connection.execute(select(setting.c.value).where(setting.c.name == name)).scalar()
+    return None if found is None else json.loads(found)
+
+
+def put_value(connection: Connection, name: str, value: Any) -> None:
+    """Keep something under a name, in place of what stood there."""
+    connection.execute(delete(setting).where(setting.c.name == name))
+    connection.execute(insert(setting).values(name=name, value=json.dumps(value, ensure_ascii=False)))
+
+
+def course_taken(connection: Connection) -> int:
+    """How often a course was taken anew, after its files were corrected: every process of a site goes on with the last."""
+    return int(value_of(connection, _COURSE) or 0)
+
+
+def take_course(connection: Connection) -> int:
+    """Say that the course's files are to be read anew; gives how often that was said."""
+    now = course_taken(connection) + 1
+    put_value(connection, _COURSE, now)
+    return now

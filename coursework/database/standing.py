@@ -1,0 +1,195 @@
+"""Marks as they stand: the last marking of each sheet, with what people decided."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, Select, func, select
+
+from coursework.course.course import Course
+from coursework.database.assignments import issued_of
+from coursework.database.decisions import Decision, Decisions
+from coursework.database.deliveries import rows_of
+from coursework.database.publication import charges
+from coursework.database.tables import mark, marking
+from coursework.gradebook.book import Gradebook
+from coursework.gradebook.class_marking import rejecting
+from coursework.gradebook.graded import Graded
+from coursework.gradebook.placing import SheetPlace, placed
+from coursework.gradebook.platform_files import told_seen
+from coursework.gradebook.to_mark import TO_MARK
+from coursework.making.issued import Issued
+from coursework.marking.mark import Mark
+
+_SHEET = (marking.c.student, marking.c.exercise, marking.c.seed, marking.c.attempt)
+_LINE = (
+    mark.c.part, mark.c.answer, mark.c.read_as, mark.c.verdict, mark.c.points, mark.c.out_of, mark.c.lang,
+    mark.c.matches, mark.c.in_other_order, mark.c.says, mark.c.feedback,
+)  # fmt: skip
+_MATCHES = _LINE.index(mark.c.matches)
+_CHUNK = 5000  #: sheets that are read at once
+
+
+class Stood(NamedTuple):
+    """A sheet as it was last marked."""
+
+    id: int
+    place: SheetPlace
+    sitting: int
+    state: str
+    lang: str
+    apart: bool
+    submitted: str
+    fault: str  #: why it could not be marked
+
+
+def stood(connection: Connection, assignment_id: int, student: str | None = None) -> dict[SheetPlace, Stood]:
+    """The last marking of each sheet, in the order in which they first came; those too that nothing answers to any more."""
+    last = _last(assignment_id, student).subquery()
+    found = select(marking).join(last, marking.c.id == last.c.last).order_by(last.c.first)
+    return {one.place: one for one in map(_stood, connection.execute(found))}
+
+
+def _last(assignment_id: int, student: str | None) -> Select[Any]:
+    first, last = func.min(marking.c.id).label("first"), func.max(marking.c.id).label("last")
+    found = select(first, last).where(marking.c.assignment_id == assignment_id).group_by(*_SHEET)
+    return found if student is None else found.where(marking.c.student == student)
+
+
+def _stood(row: Any) -> Stood:
+    place = row.student, row.exercise, int(row.seed), row.attempt
+    return Stood(row.id, place, row.sitting, row.state, row.lang, row.apart, row.submitted, row.fault)
+
+
+class _Lines(NamedTuple):
+    """The marks of a sheet, and the parts that came, in their order."""
+
+    marks: Mapping[str, Mark]
+    came: tuple[str, ...]
+
+
+def lines_of(connection: Connection, sheets: Iterable[Stood]) -> dict[int, _Lines]:
+    """The marks of sheets, by the marking's id."""
+    ids = [one.id for one in sheets]
+    marks: dict[int, dict[str, Mark]] = {}
+    came: dict[int, list[tuple[int, str]]] = {}
+    for start in range(0, len(ids), _CHUNK):
+        some = mark.c.marking_id.in_(ids[start : start + _CHUNK])
+        found = select(mark.c.marking_id, mark.c.came, *_LINE).where(some)
+        for number, place, *sent in connection.execute(found.order_by(mark.c.marking_id, mark.c.place)):
+            line = _line(sent)
+            marks.setdefault(number, {})[line.part] = line
+            if place is not None:
+                came.setdefault(number, []).append((place, line.part))
+    return {
+        number: _Lines(own, tuple(part for _, part in sorted(came.get(number, ()))))
+        for number, own in marks.items()
+    }
+
+
+def _line(sent: Sequence[Any]) -> Mark:
+    """A mark of its columns."""
+    return Mark.received((*sent[:_MATCHES], tuple(sent[_MATCHES]), *sent[_MATCHES + 1 :]))
+
+
+def machine_marks(
+    issued: Issued, sheets: Iterable[Stood], lines: Mapping[int, _Lines]
+) -> Iterator[tuple[SheetPlace, Graded | str]]:
+    """Sheets as the marking gave them, or why they could not be marked; those that nothing answers to are passed over."""
+    for one in sheets:
+        if one.fault:
+            yield one.place, one.fault
+        elif one.state:
+            yield one.place, _graded(issued, one, lines[one.id])
+
+
+def _graded(issued: Issued, one: Stood, lines: _Lines) -> Graded:
+    record = issued.record_of(*one.place[:3])
+    if one.apart:
+        record = {**record, "parts": [p for p in record["parts"] if p["id"] in lines.marks]}
+    if one.lang != str(record.get("lang", "")):
+        record = {**record, "lang": one.lang}
+    graded = Graded(*one.place[:3], lines.marks, lines.came, record, sitting=one.sitting)
+    return graded._replace(submitted=one.submitted, apart=one.apart)
+
+
+def graded(connection: Connection, assignment_id: int, student: str | None = None) -> list[Graded]:
+    """The sheets of a class, or of a student, as they stand: last marked, and decided on."""
+    sheets = stood(connection, assignment_id, student)
+    if not sheets:
+        return []
+    lines = lines_of(connection, sheets.values())
+    decisions = Decisions.read(connection, assignment_id, student)
+    issued = issued_of(connection, assignment_id, student=student)
+    results = machine_marks(issued, sheets.values(), lines)
+    return [decisions.apply(one) for _, one in results if not isinstance(one, str)]
+
+
+def gradebook(connection: Connection, course: Course, assignment_id: int) -> Gradebook:
+    """What the marking of a class came to, as it stands.
+
+    Raises
+    ------
+    CourseworkError
+        The course cannot mark what was issued.
+    """
+    issued = issued_of(connection, assignment_id)
+    sheets = placed(course, issued, rows_of(connection, assignment_id))
+    standing = stood(connection, assignment_id)
+    known = [standing[place] for place in sheets.sheets if place in standing]
+    results = machine_marks(issued, known, lines_of(connection, known))
+    decisions = Decisions.read(connection, assignment_id)
+    book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
+    for one in map(decisions.apply, rejecting(sheets, results)):
+        book.add(one)
+        book.waiting += sum(line.verdict == TO_MARK for line in one.lines.values())
+    book.seen, book.charged = told_seen(sheets.seen), charges(connection, assignment_id)
+    return book
+
+
+class Waits(NamedTuple):
+    """An answer that a person looks at."""
+
+    student: str
+    exercise: str
+    seed: int
+    sitting: int
+    part: str
+    answer: str
+    verdict: str  #: of the marking
+    points: float
+    out_of: float
+    says: str  #: Markdown
+    lang: str
+    decision: Decision | None  #: that counts; None while it waits
+
+
+#: Verdicts of answers that wait for a person.
+WAIT = (TO_MARK, "unreadable")
+
+
+def waiting(
+    connection: Connection, assignment_id: int, verdicts: Sequence[str] = WAIT, *, decided: bool = False
+) -> list[Waits]:
+    """The answers that wait for a person, question by question; those too that are ``decided``, where they are asked for."""
+    last = _last(assignment_id, None).subquery()
+    found = (
+        select(marking, *_LINE)
+        .join(mark)
+        .join(last, marking.c.id == last.c.last)
+        .order_by(last.c.first, mark.c.place)
+    )
+    decisions = Decisions.read(connection, assignment_id)
+    waits = []
+    for row in connection.execute(found.where(mark.c.verdict.in_(verdicts))):
+        sheet, line = _stood(row), _line(row[len(marking.c) :])
+        waits.append(_waits(sheet, line, next(decisions.counting(sheet.place[:3], line), None)))
+    return sorted(
+        (one for one in waits if decided or one.decision is None), key=lambda one: (one.exercise, one.part)
+    )
+
+
+def _waits(sheet: Stood, line: Mark, decision: Decision | None) -> Waits:
+    place = *sheet.place[:3], sheet.sitting, line.part, line.answer
+    return Waits(*place, line.verdict, line.points, line.out_of, line.says, line.lang, decision)

@@ -1,0 +1,63 @@
+"""The state that a sheet was marked by: what is the same gives the same marks, what differs is marked anew."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+from weakref import WeakKeyDictionary
+
+from coursework.course.course import Course
+from coursework.course.marking_rules import Rules
+from coursework.course.sources import sources
+
+_PACKAGE = Path(__file__).parent.parent
+#: Rooms and files of the package that a mark comes from.
+ENGINE = (
+    "errors.py degrees.py language system kinematics solids markup figures structure mechanics reading polygons quantities "
+    "kinds model.py solution.py course marking gradebook/class_marking.py"
+).split()
+
+_known: WeakKeyDictionary[Course, dict[str, str]] = WeakKeyDictionary()
+
+
+def exercise_state(course: Course, exercise: str) -> str:
+    """Digest of all files that bear on an exercise's marks, as they were when the open course was first asked.
+
+    Asked before the exercise is loaded, it is never of a later state than what marks.
+    """
+    own = _known.setdefault(course, {})
+    if exercise not in own:
+        root = course.folder.root
+        own[exercise] = _of_files(root, sources(course.folder, exercise)) if exercise in course else ""
+    return own[exercise]
+
+
+@cache
+def engine_state() -> str:
+    """Digest of the package's own files that a mark comes from."""
+    found = [_PACKAGE / name for name in ENGINE]
+    files = (p for place in found for p in ([place] if place.is_file() else place.rglob("*")))
+    return _of_files(_PACKAGE, (p for p in files if p.suffix in (".py", ".toml")))
+
+
+def _of_files(root: Path, files: Iterable[Path]) -> str:
+    found = sha256()
+    for path in sorted(files):
+        content = path.read_bytes()
+        found.update(f"{path.relative_to(root).as_posix()}\0{len(content)}\0".encode())
+        found.update(content)
+    return found.hexdigest()
+
+
+def sheet_state(
+    course: Course, rules: Rules | None, record: Mapping[str, Any], answers: Mapping[str, Any], *more: Any
+) -> str:
+    """Digest of all that the marks of a sheet hang on."""
+    exercise = str(record["exercise"])
+    how = engine_state(), exercise_state(course, exercise), repr(rules or course.folder.rules)
+    told = json.dumps([record, list(answers.items()), *more], default=repr)
+    return sha256("\0".join((*how, told)).encode()).hexdigest()

@@ -1,0 +1,225 @@
+"""A database opened: its tables brought to what this version knows, its faults told in a line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from alembic import command
+from alembic.config import Config
+from alembic.runtime.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from alembic.util.exc import CommandError
+from sqlalchemy import Connection, Engine, Table, create_engine, event, make_url
+from sqlalchemy.dialects import postgresql, sqlite
+from sqlalchemy.exc import ArgumentError, DatabaseError, DBAPIError, NoSuchModuleError, OperationalError
+from sqlalchemy.exc import TimeoutError as NoConnection
+
+from coursework.errors import BadInput
+
+_MIGRATIONS = Path(__file__).parent / "migrations"
+_READS = "coursework_reads"  #: said of a connection that writes nothing
+CONNECTIONS = (
+    20  #: of one process at most: four of them leave a PostgreSQL of the usual settings, 100, some for others
+)
+_RESTORE = "; keep a copy of the file and restore a backup, or see what 'sqlite3 FILE .recover' finds"
+_PATIENCE = 30  #: seconds for which a write waits for another
+
+
+class Store:
+    """A database of the tables of :mod:`coursework.database.tables`.
+
+    ``url`` is SQLAlchemy's: ``sqlite:///marks.db``, ``postgresql+psycopg://user@host/name``; a path alone is a file of SQLite.
+
+    Raises
+    ------
+    BadInput
+        There is no such database, it cannot be reached, or a later version wrote it.
+    """
+
+    def __init__(self, url: str):
+        self.url = _url(url)
+        try:
+            self.engine: Engine = create_engine(self.url, **_options(self.url))
+        except (ArgumentError, NoSuchModuleError) as fault:
+            raise BadInput(
+                f"no database {_shown(url)!r}: {fault}; a file is sqlite:///marks.db, a server postgresql+psycopg://user@host/name"
+            ) from fault
+        except ModuleNotFoundError as missing:
+            raise BadInput(f"{_shown(url)} needs the package {missing.name}: pip install it") from missing
+        self._reads: dict[str, Any] = {_READS: True}
+        if self.engine.dialect.name == "postgresql":
+            self._reads["isolation_level"] = "REPEATABLE READ"  # as every transaction of SQLite is
+        if self.engine.dialect.name == "sqlite":
+            event.listen(self.engine, "connect", _sqlite_settings)
+            event.listen(self.engine, "begin", _begin_writing)
+        try:
+            self._migrate()
+        except BadInput:
+            self.close()
+            raise
+
+    @contextmanager
+    def reading(self) -> Iterator[Connection]:
+        """The database as it is at one moment, which waits for nobody: what is written meanwhile is not seen.
+
+        Raises
+        ------
+        BadInput
+            The database is gone or damaged, or too many ask for it.
+        """
+        try:
+            with self.engine.connect().execution_options(**self._reads) as connection:
+                yield connection
+        except (DatabaseError, NoConnection) as fault:
+            if _is_ours(fault):
+                raise
+            raise BadInput(f"{_shown(self.url)}: {_cause(fault)}") from fault
+
+    @contextmanager
+    def begin(self) -> Iterator[Connection]:
+        """A transaction: all of it is kept, or nothing.
+
+        Raises
+        ------
+        BadInput
+            The database is gone, damaged, full or busy.
+        """
+        try:
+            with self.engine.begin() as connection:
+                yield connection
+        except (DatabaseError, NoConnection) as fault:
+            if _is_ours(fault):
+                raise
+            raise BadInput(f"{_shown(self.url)}: {_cause(fault)}; nothing of this was kept") from fault
+
+    @property
+    def shown(self) -> str:
+        """Its file, or its address without a password."""
+        url = make_url(self.url)
+        return (
+            str(Path(url.database or "").resolve())
+            if url.drivername.startswith("sqlite")
+            else _shown(self.url)
+        )
+
+    def close(self) -> None:
+        """Let go of all connections."""
+        self.engine.dispose()
+
+    def _migrate(self) -> None:
+        """Bring the tables to the latest version that this package knows."""
+        scripts = ScriptDirectory(str(_MIGRATIONS))
+        try:
+            with self.engine.begin() as connection:
+                _one_at_a_time(connection)
+                stands = MigrationContext.configure(connection).get_current_revision()
+                if stands == scripts.get_current_head():
+                    return
+                config = Config()
+                config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
+                config.attributes["connection"] = connection
+                command.upgrade(config, "head")
+        except CommandError as fault:
+            raise BadInput(
+                f"{_shown(self.url)} was written by a later version of coursework ({fault}): update the package"
+            ) from fault
+        except DBAPIError as fault:
+            raise BadInput(f"{_shown(self.url)} cannot be opened: {_cause(fault)}") from fault
+        except UnicodeDecodeError as fault:  # SQLite quotes what is damaged
+            raise BadInput(
+                f"{_shown(self.url)} cannot be opened: its tables are damaged{_RESTORE}"
+            ) from fault
+
+
+def insert_unless_there(
+    connection: Connection, table: Table, row: Mapping[str, Any], unique: Sequence[str]
+) -> int | None:
+    """Add a row, and give its id; None where there is one with the same ``unique`` columns, whoever added it meanwhile."""
+    make = postgresql.insert if connection.dialect.name == "postgresql" else sqlite.insert
+    added = make(table).values(dict(row)).on_conflict_do_nothing(index_elements=list(unique))
+    number = connection.execute(added.returning(table.c.id)).scalar()
+    return None if number is None else int(number)
+
+
+def json_of(value: Any) -> str:
+    """JSON as a person reads it, in letters that every database holds."""
+    text = json.dumps(value, ensure_ascii=False)
+    return text if _is_whole(text) else json.dumps(value)
+
+
+def _is_whole(text: str) -> bool:
+    """Whether there is no half of a character in a text."""
+    try:
+        return text.isascii() or bool(text.encode("utf-8"))
+    except UnicodeEncodeError:
+        return False
+
+
+def _url(told: str) -> str:
+    return told if "://" in told else f"sqlite:///{told}"
+
+
+def file_of(url: str) -> Path | None:
+    """The file of a database of SQLite; None where it is in none."""
+    try:
+        told = make_url(_url(url))
+    except ArgumentError:
+        return None
+    in_file = told.get_backend_name() == "sqlite" and told.database not in (None, "", ":memory:")
+    return Path(str(told.database)) if in_file else None
+
+
+def _shown(url: str) -> str:
+    """The address without a password."""
+    try:
+        return make_url(url).render_as_string(hide_password=True)
+    except ArgumentError:
+        return url
+
+
+def _options(url: str) -> dict[str, Any]:
+    if url.startswith("sqlite"):
+        in_memory = file_of(url) is None  # one connection a thread, as the library has it
+        size = {} if in_memory else {"pool_size": CONNECTIONS // 2, "max_overflow": CONNECTIONS // 2}
+        return {"json_serializer": json_of, "connect_args": {"timeout": _PATIENCE}, **size}
+    size = {"pool_size": CONNECTIONS // 2, "max_overflow": CONNECTIONS // 2}
+    return {"json_serializer": json_of, "pool_pre_ping": True, **size}
+
+
+def _sqlite_settings(connection: Any, record: Any) -> None:
+    """Readers beside one writer, nothing acknowledged is lost, and rows that belong together go together."""
+    connection.isolation_level = None  # transactions are begun by :func:`_begin_writing`
+    cursor = connection.cursor()
+    for setting in (
+        "journal_mode = WAL",
+        "synchronous = FULL",
+        "foreign_keys = ON",
+        f"busy_timeout = {1000 * _PATIENCE}",
+    ):
+        cursor.execute(f"PRAGMA {setting}")
+    cursor.close()
+
+
+def _begin_writing(connection: Connection) -> None:
+    """A transaction of SQLite takes its place among writers at once: none is refused half-way."""
+    reads = connection.get_execution_options().get(_READS)
+    connection.exec_driver_sql("BEGIN" if reads else "BEGIN IMMEDIATE")
+
+
+def _one_at_a_time(connection: Connection) -> None:
+    if connection.dialect.name == "postgresql":
+        connection.exec_driver_sql("SELECT pg_advisory_xact_lock(7203455)")
+
+
+def _is_ours(fault: DatabaseError | NoConnection) -> bool:
+    """Whether what was asked is at fault, and not the database: a row that is there already, a mistake of this package."""
+    return isinstance(fault, DatabaseError) and type(fault) not in (DatabaseError, OperationalError)
+
+
+def _cause(fault: DBAPIError | NoConnection) -> str:
+    told = " ".join(str(fault.orig if isinstance(fault, DBAPIError) else fault).split())
+    return told + _RESTORE if type(fault) is DatabaseError else told

@@ -1,0 +1,54 @@
+"""What a database holds, an assignment a line."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, Select, distinct, func, select
+
+from coursework.database.assignments import names
+from coursework.database.standing import waiting
+from coursework.database.tables import answer, dealt, decision, delivery, marking, variant
+
+
+class Summary(NamedTuple):
+    """How far an assignment has come."""
+
+    assignment: str
+    students: int  #: with a variant of their own
+    variants: int
+    deliveries: int
+    answers: int
+    sheets: int  #: marked
+    markings: int  #: of sheets, with those that others took the place of
+    decisions: int
+    waiting: int  #: answers for a person
+
+
+def summaries(connection: Connection) -> list[Summary]:
+    """The assignments in the order in which they came."""
+    return [_summary(connection, name, number) for name, number in names(connection).items()]
+
+
+def _summary(connection: Connection, name: str, number: int) -> Summary:
+    def count(found: Select[Any]) -> int:
+        return int(connection.execute(found).scalar() or 0)
+
+    issued = variant.c.assignment_id == number
+    whose = select(func.count(distinct(dealt.c.student))).select_from(dealt.join(variant))
+    answered = (
+        select(func.count()).select_from(answer.join(delivery)).where(delivery.c.assignment_id == number)
+    )
+    sheet = (marking.c.student, marking.c.exercise, marking.c.seed, marking.c.attempt)
+    sheets = select(*sheet).where(marking.c.assignment_id == number).distinct().subquery()
+    return Summary(
+        name,
+        count(whose.where(issued, dealt.c.student != "")),
+        count(select(func.count()).select_from(variant).where(issued)),
+        count(select(func.count()).select_from(delivery).where(delivery.c.assignment_id == number)),
+        count(answered),
+        count(select(func.count()).select_from(sheets)),
+        count(select(func.count()).select_from(marking).where(marking.c.assignment_id == number)),
+        count(select(func.count()).select_from(decision).where(decision.c.assignment_id == number)),
+        len(waiting(connection, number)),
+    )

@@ -1,0 +1,412 @@
+"""The tables. A row that tells what happened is added and never changed; what stands now is the last of its kind.
+
+Times are UTC. Texts are as they came. JSON holds what other files define: records (:mod:`coursework.course.records`), what
+``issued.json`` states, entries of progress (:mod:`coursework.selfstudy.progress`); it is kept as it was written, keys in
+their order.
+"""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import (
+    JSON,
+    Boolean,
+    Column,
+    DateTime,
+    Double,
+    ForeignKey,
+    Index,
+    Integer,
+    MetaData,
+    String,
+    Table,
+    Text,
+    TypeDecorator,
+    UniqueConstraint,
+)
+
+METADATA = MetaData(
+    naming_convention={
+        "ix": "ix_%(table_name)s_%(column_0_N_name)s",
+        "uq": "uq_%(table_name)s_%(column_0_N_name)s",
+        "fk": "fk_%(table_name)s_%(column_0_N_name)s_%(referred_table_name)s",
+        "pk": "pk_%(table_name)s",
+    }
+)
+
+
+class Moment(TypeDecorator[datetime]):
+    """A time, UTC: what comes back knows its zone on every database."""
+
+    impl = DateTime(timezone=True)
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Any) -> datetime | None:
+        if value is None:
+            return None
+        if value.tzinfo is None:
+            raise ValueError(f"a time without its zone: {value}")
+        return value.astimezone(UTC)
+
+    def process_result_value(self, value: Any, dialect: Any) -> datetime | None:
+        if value is None:
+            return None
+        return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
+
+
+class Words(TypeDecorator[str]):
+    """A text of any length. What no server holds is written as something that it does: a NUL as ``␀``, half a character
+    by its code."""
+
+    impl = Text
+    cache_ok = True
+
+    def process_bind_param(self, value: str | None, dialect: Any) -> str | None:
+        if value is None or (value.isascii() and "\0" not in value):
+            return value
+        return value.replace("\0", "␀").encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+Json = JSON(none_as_null=True)
+
+
+def _key() -> Column[int]:
+    return Column("id", Integer, primary_key=True)
+
+
+def _of(table: str, *, null: bool = False, index: bool = False) -> Column[int]:
+    return Column(f"{table}_id", ForeignKey(f"{table}.id", ondelete="CASCADE"), nullable=null, index=index)
+
+
+# ------------------------------------------------------------------------- people
+
+#: Somebody who answers, teaches or both. ``who`` is what a roster tells apart by: a number, an e-mail, else the folded name.
+person = Table(
+    "person",
+    METADATA,
+    _key(),
+    Column("who", Words, nullable=False, unique=True),
+    Column("name", Words, nullable=False),
+    Column("lang", Words, nullable=False, default=""),
+    Column("columns", Json, nullable=False, default=dict),  #: of the rosters that name them
+    Column("created", Moment, nullable=False),
+    Column("sessions_from", Moment),  #: sessions that began before are over
+)
+
+#: How somebody signs in with a password; what a password becomes is argon2's business.
+account = Table(
+    "account",
+    METADATA,
+    _key(),
+    _of("person", index=True),
+    Column("login", Words, nullable=False, unique=True),
+    Column("secret", Words, nullable=False, default=""),  #: none before the invitation is taken up
+    Column("invitation", String(64), index=True),  #: digest of what the invitation's address ends with
+    Column("invited_until", Moment),
+    Column("joined", Moment),  #: when an invitation was taken up
+    Column("role", String(16), nullable=False),  #: student, instructor
+    Column("created", Moment, nullable=False),
+    Column("closed", Moment),
+)
+
+#: How a platform knows somebody.
+identity = Table(
+    "identity",
+    METADATA,
+    _key(),
+    _of("person", index=True),
+    Column("issuer", Words, nullable=False),
+    Column("subject", Words, nullable=False),
+    UniqueConstraint("issuer", "subject"),
+)
+
+# -------------------------------------------------------------------- assignments
+
+#: What was issued under one name: an assignment, or a build of exercises. ``stated`` is what ``issued.json`` says of it.
+assignment = Table(
+    "assignment",
+    METADATA,
+    _key(),
+    Column("name", Words, nullable=False, unique=True),
+    Column("course", Words, nullable=False, default=""),  #: the course's name
+    Column("stated", Json),  #: none for exercises without an assignment
+    Column("has_roster", Boolean, nullable=False, default=False),
+    Column("is_pool", Boolean, nullable=False, default=False),  #: a platform deals its variants out
+    Column("columns", Json, nullable=False, default=dict),  #: of the roster, by student
+    Column("asked", Json),  #: what its file says, for who comes late; none of a build of exercises
+    Column("published", Json),  #: dates, tries, feedback, late rules; none while it is not published
+    Column("created", Moment, nullable=False),
+)
+
+#: A variant that was issued; its record is what answers are marked against.
+variant = Table(
+    "variant",
+    METADATA,
+    _key(),
+    _of("assignment", index=True),
+    Column("exercise", Words, nullable=False),
+    Column("seed", Words, nullable=False),  #: whole, however large
+    Column("letter", String(2), nullable=False, default=""),  #: A to Z, of versions that are dealt out
+    Column("record", Json, nullable=False),
+    UniqueConstraint("assignment_id", "exercise", "seed"),
+)
+
+#: Whose a variant is, in which sitting, in which language. Its place is that in ``issued.json``.
+dealt = Table(
+    "dealt",
+    METADATA,
+    _key(),
+    _of("variant", index=True),
+    _of("person", null=True, index=True),  #: nobody's where there is no roster
+    Column("place", Integer, nullable=False),
+    Column("student", Words, nullable=False, default=""),  #: the name as it was issued
+    Column("sitting", Integer, nullable=False, default=1),
+    Column("lang", Words, nullable=False, default=""),
+)
+
+# ------------------------------------------------------------------------ answers
+
+#: What came in together: files, or what a person hands in on the site.
+delivery = Table(
+    "delivery",
+    METADATA,
+    _key(),
+    _of("assignment", index=True),
+    _of("person", null=True, index=True),  #: who handed in on the site; none for files
+    Column("source", Words, nullable=False),
+    Column("digest", String(64), nullable=False),  #: of what it holds: the same twice is one
+    Column("number", Integer, nullable=False, default=0),  #: which try of the person; 0 for files
+    Column("receipt", String(40), nullable=False, default=""),  #: what the person is given to show
+    Column("late", Integer, nullable=False, default=0),  #: seconds after it closed for them
+    Column("came", Moment, nullable=False),
+    Column("replaced", Moment),  #: when a later file took its place; none while it counts
+    UniqueConstraint("assignment_id", "digest"),
+    UniqueConstraint("assignment_id", "person_id", "number"),
+)
+
+#: An answer as it came. Answers, what was rejected and what was seen of a delivery have their places in one order.
+answer = Table(
+    "answer",
+    METADATA,
+    _key(),
+    _of("delivery", index=True),
+    Column("place", Integer, nullable=False),
+    Column("student", Words, nullable=False),
+    Column("exercise", Words, nullable=False),
+    Column("seed", Words, nullable=False),
+    Column("part", Words, nullable=False),
+    Column("answer", Json),  #: a text, a number, or nothing
+    Column("source", Words, nullable=False),
+    Column("warning", Words, nullable=False, default=""),
+    Column("lang", Words, nullable=False, default=""),
+    Column("origin", Json),  #: what a platform tells of it (:class:`coursework.gradebook.rows.Collected`)
+)
+
+#: What came and could not be placed or read, with its reason.
+rejected = Table(
+    "rejected",
+    METADATA,
+    _key(),
+    _of("delivery", index=True),
+    Column("place", Integer, nullable=False),
+    Column("source", Words, nullable=False),
+    Column("reason", Words, nullable=False),
+    Column("row", Json, nullable=False, default=dict),
+)
+
+#: What a platform wrote of what came (:class:`coursework.gradebook.rows.Seen`).
+seen = Table(
+    "seen",
+    METADATA,
+    _key(),
+    _of("delivery", index=True),
+    Column("place", Integer, nullable=False),
+    Column("source", Words, nullable=False),
+    Column("what", Words, nullable=False),
+    Column("is_tree", Boolean, nullable=False, default=False),
+)
+
+# -------------------------------------------------------------------------- marks
+
+#: A sheet marked: of which answers, by which state of course and engine. The last of a sheet stands; one of no state says
+#: that nothing answers to it any more.
+marking = Table(
+    "marking",
+    METADATA,
+    _key(),
+    _of("assignment", index=True),
+    Column("student", Words, nullable=False),
+    Column("exercise", Words, nullable=False),
+    Column("seed", Words, nullable=False),  #: whole, however large
+    Column("attempt", Integer, nullable=False, default=0),  #: where what came tells it, else 0
+    Column("sitting", Integer, nullable=False, default=1),
+    Column("state", String(64), nullable=False),  #: digest of record, answers, rules, course and engine
+    Column("lang", Words, nullable=False, default=""),  #: of the sheet that came back
+    Column("apart", Boolean, nullable=False, default=False),  #: a platform asked these parts alone
+    Column("submitted", Words, nullable=False, default=""),  #: when, where a platform tells it
+    Column("fault", Words, nullable=False, default=""),  #: why it cannot be marked
+    Column("made", Moment, nullable=False),
+    Index("ix_marking_sheet", "assignment_id", "student", "exercise", "seed"),
+)
+
+#: What became of one answer.
+mark = Table(
+    "mark",
+    METADATA,
+    _key(),
+    _of("marking", index=True),
+    Column("place", Integer, nullable=False),  #: on the sheet
+    Column("part", Words, nullable=False),
+    Column("came", Integer),  #: its place among what came; none where nothing did
+    Column("answer", Words, nullable=False),
+    Column("read_as", Words, nullable=False),
+    Column("verdict", Words, nullable=False),
+    Column("points", Double, nullable=False),
+    Column("out_of", Double, nullable=False),
+    Column("lang", Words, nullable=False),
+    Column("matches", Json, nullable=False),  #: every verdict that explains the answer
+    Column("in_other_order", Boolean, nullable=False),
+    Column("says", Words, nullable=False),  #: Markdown
+    Column("feedback", Words, nullable=False),
+)
+
+#: What a person decided of an answer, and who: it counts until another one of the same answer. ``answer`` is what they saw.
+decision = Table(
+    "decision",
+    METADATA,
+    _key(),
+    _of("assignment", index=True),
+    Column("student", Words, nullable=False),
+    Column("exercise", Words, nullable=False),
+    Column("seed", Words, nullable=False),  #: empty for whatever variant they have
+    Column("part", Words, nullable=False),
+    Column("kind", String(16), nullable=False),  #: accepted, given, kept, withdrawn
+    Column("points", Double),  #: none for all of them
+    Column("reason", Words, nullable=False, default=""),
+    Column("answer", Words),
+    Column("by", Words, nullable=False),  #: who, or the file that says it
+    Column("made", Moment, nullable=False),
+)
+
+#: What became of a rejected row: placed by hand, as a delivery of its own, or put aside. ``row`` is its digest.
+placing = Table(
+    "placing",
+    METADATA,
+    _key(),
+    _of("assignment", index=True),
+    Column("row", String(64), nullable=False),
+    _of("delivery", null=True),
+    Column("reason", Words, nullable=False, default=""),
+    Column("by", Words, nullable=False),
+    Column("made", Moment, nullable=False),
+)
+
+#: A file in which people write decisions, as it stood when it was last read or written: what is new in it is what differs.
+worksheet = Table(
+    "worksheet",
+    METADATA,
+    _key(),
+    _of("assignment"),
+    Column("file", String(64), nullable=False),  #: digest of where it stands
+    Column("lines", Json, nullable=False),
+    UniqueConstraint("assignment_id", "file"),
+)
+
+#: A page of a scan: what was read of it (:class:`coursework.scanning.kept.PageKept`), and its picture, a JPEG in base64. Of a
+#: file of which no page can be read there is one without a number.
+scanned = Table(
+    "scanned",
+    METADATA,
+    _key(),
+    _of("assignment", index=True),
+    Column("page", String(40), nullable=False),  #: digest of the file, and number
+    Column("file", Words, nullable=False),
+    Column("number", Integer, nullable=False),
+    Column("student", Words, nullable=False, default=""),  #: whose it is, where that is known
+    Column("kept", Json, nullable=False),
+    Column("picture", Words, nullable=False, default=""),
+    Column("came", Moment, nullable=False),
+    UniqueConstraint("assignment_id", "page"),
+)
+
+#: What a person typed where a scan could not be read: the last of a place stands. ``seen`` are the pages that they looked at.
+typed = Table(
+    "typed",
+    METADATA,
+    _key(),
+    _of("assignment", index=True),
+    Column("student", Words, nullable=False),
+    Column("exercise", Words, nullable=False),
+    Column("seed", Words, nullable=False),
+    Column("part", Words, nullable=False),
+    Column("coordinate", Words, nullable=False, default=""),
+    Column("answer", Words),  #: none where it was withdrawn
+    Column("seen", Words, nullable=False, default=""),
+    Column("by", Words, nullable=False),
+    Column("made", Moment, nullable=False),
+)
+
+# --------------------------------------------------------------------------- site
+
+#: What somebody did alone: entries of progress.
+progress = Table(
+    "progress",
+    METADATA,
+    _key(),
+    _of("person", index=True),
+    Column("entry", Json, nullable=False),
+    Column("digest", String(64), nullable=False),
+    UniqueConstraint("person_id", "digest"),
+)
+
+#: What somebody has typed and not handed in, a row a box.
+draft = Table(
+    "draft",
+    METADATA,
+    _key(),
+    _of("person"),
+    Column("sheet", Words, nullable=False),  #: ``practice/EXERCISE/SEED`` or ``assignment/ID``
+    Column("box", Words, nullable=False),  #: a part; of a paper ``EXERCISE/PART``
+    Column("text", Words, nullable=False),
+    Column("version", Integer, nullable=False),  #: counts the changes
+    Column("changed", Moment, nullable=False),
+    UniqueConstraint("person_id", "sheet", "box"),
+)
+
+#: Other dates or tries for one person; the last stands.
+extension = Table(
+    "extension",
+    METADATA,
+    _key(),
+    _of("assignment", index=True),
+    _of("person", index=True),
+    Column("closes", Moment),
+    Column("tries", Integer),
+    Column("reason", Words, nullable=False, default=""),
+    Column("by", Words, nullable=False),
+    Column("made", Moment, nullable=False),
+)
+
+#: Small things of the site itself: the key that signs its cookies.
+setting = Table(
+    "setting",
+    METADATA,
+    Column("name", String(100), primary_key=True),
+    Column("value", Words, nullable=False),
+)
+
+#: Who did what that another may ask about.
+audit = Table(
+    "audit",
+    METADATA,
+    _key(),
+    Column("at", Moment, nullable=False, index=True),
+    Column("by", Words, nullable=False),  #: who did it
+    Column("what", Words, nullable=False),
+    Column("about", Json, nullable=False, default=dict),  #: never an answer
+)
+
+for _table in METADATA.tables.values():  # the number of a row that was erased is never given to another
+    _table.dialect_options["sqlite"]["autoincrement"] = "id" in _table.c

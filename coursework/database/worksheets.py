@@ -1,0 +1,168 @@
+"""Decisions that people write in files: ``accepted.csv``, and the points in ``to_mark.csv``.
+
+What differs in a file from what was last read or written there is a new decision, by the file's name. So a file that is
+old says nothing new, and one that somebody goes on with says what they changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from hashlib import sha256
+from pathlib import Path
+from typing import NamedTuple
+
+from sqlalchemy import Connection, delete, insert, select
+
+from coursework.database.decisions import ACCEPTED, GIVEN, WITHDRAWN, Decisions, Place, decide
+from coursework.database.tables import worksheet
+from coursework.errors import UnknownName
+from coursework.gradebook.accepted import Accepted
+from coursework.gradebook.graded import Graded
+from coursework.gradebook.to_mark import Given, ToMark
+from coursework.making.students import folded
+from coursework.marking.mark import Mark
+
+
+class _Line(NamedTuple):
+    """A decision as a file states it."""
+
+    student: str
+    exercise: str
+    seed: str
+    part: str
+    kind: str
+    points: float | None
+    reason: str
+    answer: str | None
+    by: str
+
+    @property
+    def on(self) -> tuple[str, str, str]:
+        return folded(self.student), self.exercise, self.part
+
+
+def take_in(
+    connection: Connection, assignment_id: int, by_person: ToMark | None, by_hand: Accepted | None
+) -> int:
+    """Keep what is new in the files that there are, as decisions; gives how many answers it is of.
+
+    Raises
+    ------
+    BadInput
+        An answer is given more points than its part has.
+    """
+    files = [(by_person.path, _given(by_person))] if by_person is not None and by_person.path.exists() else []
+    files += [] if by_hand is None or by_hand.path is None else [(by_hand.path, _accepted(by_hand))]
+    was = _by_answer(line for path, _ in files for line in _remembered(connection, assignment_id, path))
+    now = _by_answer(line for _, lines in files for line in lines)
+    known = Decisions.read(connection, assignment_id)
+    names = {path.name for path, _ in files}
+    changed = [on for on in dict.fromkeys((*was, *now)) if was.get(on) != now.get(on)]
+    for on in changed:
+        standing = known.on(*on)
+        if on in was and standing and standing[-1].by in names and standing[-1].kind != WITHDRAWN:
+            _keep(
+                connection,
+                assignment_id,
+                was[on][-1]._replace(kind=WITHDRAWN, seed="", points=None, reason=""),
+            )
+        for line in now.get(on, ()):
+            _keep(connection, assignment_id, line)
+    for path, lines in files:
+        _remember(connection, assignment_id, path, lines)
+    return len(changed)
+
+
+def written(connection: Connection, assignment_id: int, path: Path) -> None:
+    """Remember ``to_mark.csv`` as it stands, just written."""
+    if path.exists():
+        _remember(connection, assignment_id, path, _given(ToMark(path)))
+
+
+def _keep(connection: Connection, assignment_id: int, line: _Line) -> None:
+    """Keep a decision; a line that names nothing that was issued is told by who reads the file, and is none."""
+    place = Place(line.student, line.exercise, line.seed, line.part, line.answer)
+    with suppress(UnknownName):
+        decide(connection, assignment_id, [place], line.kind, line.points, line.reason, line.by)
+
+
+def _by_answer(lines: Iterable[_Line]) -> dict[tuple[str, str, str], list[_Line]]:
+    found: dict[tuple[str, str, str], list[_Line]] = {}
+    for line in lines:
+        found.setdefault(line.on, []).append(line)
+    return found
+
+
+def _given(by_person: ToMark) -> list[_Line]:
+    lines = by_person.given.values()
+    return [
+        _Line(*_named(one.named), GIVEN, one.points, one.reason, one.answer, by_person.path.name)
+        for one in lines
+    ]
+
+
+def _named(told: Sequence[str]) -> tuple[str, str, str, str]:
+    student, exercise, seed, part = told
+    return student, exercise, seed, part
+
+
+def _accepted(by_hand: Accepted) -> list[_Line]:
+    assert by_hand.path is not None
+    name = by_hand.path.name
+    return [_Line(*one.named, ACCEPTED, one.points, one.reason, None, name) for one in by_hand.lines]
+
+
+# --------------------------------------------------------------------- remembered
+
+
+def _file(path: Path) -> str:
+    return sha256(str(path.resolve()).encode("utf-8", "backslashreplace")).hexdigest()
+
+
+def _remembered(connection: Connection, assignment_id: int, path: Path) -> list[_Line]:
+    found = select(worksheet.c.lines).where(
+        worksheet.c.assignment_id == assignment_id, worksheet.c.file == _file(path)
+    )
+    return [_Line(*line) for line in connection.execute(found).scalar() or ()]
+
+
+def _remember(connection: Connection, assignment_id: int, path: Path, lines: Sequence[_Line]) -> None:
+    own = {"assignment_id": assignment_id, "file": _file(path)}
+    if lines == _remembered(connection, assignment_id, path):
+        return
+    connection.execute(delete(worksheet).filter_by(**own))
+    connection.execute(insert(worksheet).values(lines=[list(line) for line in lines], **own))
+
+
+# ---------------------------------------------------------------------- applied
+
+
+class DecidedToMark(ToMark):
+    """``to_mark.csv`` with the points that were decided, wherever that was."""
+
+    def __init__(self, path: Path, decisions: Decisions):
+        super().__init__(path)
+        self.decisions = decisions
+
+    def found(self, graded: Graded, part: str, line: Mark) -> Given | None:
+        """The points decided for an answer; what the file itself says is looked at, to be told."""
+        super().found(graded, part, line)
+        one = self.decisions.given(graded, line)
+        if one is None:
+            return None
+        named = graded.student, graded.exercise, str(graded.seed), part
+        return Given(one.by, named, line.answer, one.points or 0.0, one.reason)
+
+
+class DecidedAccepted(Accepted):
+    """``accepted.csv`` with all that was decided, wherever that was."""
+
+    def __init__(self, path: Path | None, decisions: Decisions):
+        super().__init__(path)
+        self.decisions = decisions
+
+    def apply(self, graded: Graded, lang: str) -> Graded:
+        """The sheet as it was decided on; what the file itself says is looked at, to be told."""
+        super().apply(graded, lang)
+        return self.decisions.apply(graded, lang)

@@ -1,0 +1,27 @@
+"""Databases of both kinds, new and empty."""
+
+import pytest
+from postgres_server import running
+
+from coursework.database.store import Store
+
+
+@pytest.fixture(scope="session")
+def postgres():
+    with running() as server:
+        yield server
+
+
+@pytest.fixture(params=["sqlite", "postgresql"])
+def url(request, tmp_path):
+    """The address of an empty database."""
+    if request.param == "sqlite":
+        return f"sqlite:///{tmp_path}/marks.db"
+    return request.getfixturevalue("postgres").database()
+
+
+@pytest.fixture
+def store(url):
+    opened = Store(url)
+    yield opened
+    opened.close()

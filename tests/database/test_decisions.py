@@ -1,0 +1,133 @@
+"""Decisions are added and never changed; the last of an answer stands, and says who."""
+
+from __future__ import annotations
+
+import pytest
+from sqlalchemy import func, select
+from stored_class import ANA, BEN, content, put, rows
+
+import coursework
+from coursework.database.decisions import Place, decide, history
+from coursework.database.marking import mark_new
+from coursework.database.standing import gradebook, graded
+from coursework.database.tables import decision
+from coursework.errors import BadInput, UnknownName
+
+PLACE = Place(BEN, "crank_pin", "1", "x")
+
+
+@pytest.fixture
+def course(small_course):
+    return coursework.open_course(small_course)
+
+
+@pytest.fixture
+def number(store, course):
+    found = put(store, content(course), rows(course, ANA, 0), rows(course, BEN, 1, x="somewhere"))
+    mark_new(course, store, found)
+    return found
+
+
+def say(store, number, *told, by="Prof. Roe"):
+    with store.begin() as connection:
+        decide(connection, number, *told, by=by)
+
+
+def line(store, number, student=BEN, part="x"):
+    with store.reading() as connection:
+        return graded(connection, number, student)[0].lines[part]
+
+
+def test_an_accepted_answer_has_its_points_and_says_why(store, number):
+    assert line(store, number).verdict == "unreadable"
+    say(store, number, [PLACE], "accepted", None, "read on the sheet")
+    one = line(store, number)
+    assert (one.verdict, one.points) == ("accepted", one.out_of)
+    assert one.feedback.endswith("read on the sheet")
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(1, "accepted"), (0.5, "partial"), (0, "wrong")])
+def test_what_is_given_says_so(store, number, share, verdict):
+    most = line(store, number).out_of
+    say(store, number, [PLACE._replace(answer=" somewhere ")], "given", share * most, "by eye")
+    one = line(store, number)
+    assert (one.verdict, one.points) == (verdict, share * most)
+
+
+def test_what_is_given_counts_for_the_very_answer_alone(store, number):
+    say(store, number, [PLACE._replace(answer="elsewhere")], "given", 0.5, "")
+    assert line(store, number).verdict == "unreadable"
+
+
+@pytest.mark.parametrize(
+    ("kinds", "verdict"),
+    [
+        (["accepted", "withdrawn"], "unreadable"),
+        (["accepted", "given"], "partial"),
+        (["given", "accepted"], "accepted"),
+        (["withdrawn", "accepted"], "accepted"),
+        (["accepted", "withdrawn", "given"], "partial"),
+    ],
+)
+def test_the_last_stands(store, number, kinds, verdict):
+    for kind in kinds:
+        say(store, number, [PLACE], kind, 0.5 if kind == "given" else None, "")
+    assert line(store, number).verdict == verdict
+
+
+def test_a_decision_without_a_seed_is_of_whatever_variant(store, number):
+    say(store, number, [PLACE._replace(seed="", student="ben")], "accepted", None, "")
+    assert line(store, number).verdict == "accepted"
+    say(store, number, [PLACE._replace(seed="77")], "withdrawn", None, "")
+    assert line(store, number).verdict == "accepted"
+
+
+def test_an_answer_that_nobody_gave_is_accepted_too(store, course):
+    number = put(store, content(course), rows(course, BEN, 1)[1:])
+    mark_new(course, store, number)
+    say(store, number, [PLACE], "accepted", None, "handed in on paper")
+    with store.reading() as connection:
+        (one,) = graded(connection, number, BEN)
+        book = gradebook(connection, course, number)
+    assert one.unanswered == ("x",)
+    assert book.students[BEN, 1].verdicts["accepted"] == 1
+
+
+def test_a_decision_outlives_a_marking(store, number, course):
+    say(store, number, [PLACE], "accepted", None, "")
+    put(store, content(course, mark={"of": 10, "step": 1}, marking={"slip": 0.2}))
+    assert mark_new(course, store, number).marked == 2
+    assert line(store, number).verdict == "accepted"
+
+
+@pytest.mark.parametrize(
+    ("places", "kind", "points", "fault", "says"),
+    [
+        ([PLACE], "acepted", None, UnknownName, "did you mean 'accepted'"),
+        ([PLACE], "given", None, BadInput, "say how many"),
+        ([PLACE], "given", 99, BadInput, "give that or fewer"),
+        ([PLACE._replace(part="xx")], "accepted", None, UnknownName, "no part 'xx'"),
+        ([PLACE._replace(exercise="crank")], "accepted", None, UnknownName, "no exercise 'crank'"),
+        ([PLACE, PLACE._replace(part="nn")], "accepted", None, UnknownName, "no part 'nn'"),
+    ],
+)
+def test_what_cannot_be_decided_is_refused_and_nothing_is_kept(
+    store, number, places, kind, points, fault, says
+):
+    with pytest.raises(fault, match=says):
+        say(store, number, places, kind, points, "")
+    with store.reading() as connection:
+        assert connection.execute(select(func.count()).select_from(decision)).scalar() == 0
+
+
+def test_the_history_of_an_answer_has_every_mark_and_who(store, number):
+    say(store, number, [PLACE], "accepted", None, "fine")
+    say(store, number, [PLACE], "withdrawn", None, "not fine", by="Dr. Poe")
+    with store.reading() as connection:
+        found = [one for *_, one in history(connection, number, BEN, "crank_pin", "x")]
+    assert [(one.kind, one.by, one.reason) for one in found[1:]] == [
+        ("accepted", "Prof. Roe", "fine"),
+        ("withdrawn", "Dr. Poe", "not fine"),
+    ]
+    assert (found[0].kind, found[0].verdict, found[0].answer) == ("marked", "unreadable", "somewhere")
+    assert found == sorted(found, key=lambda one: one.at)

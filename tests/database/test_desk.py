@@ -1,0 +1,115 @@
+"""What the desk asks of a database of either kind."""
+
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from coursework import open_course
+from coursework.database.assignments import put_issued
+from coursework.database.decisions import Place, decide
+from coursework.database.deliveries import deliver
+from coursework.database.desk import (
+    Placed,
+    Stamp,
+    came_of,
+    decided_since,
+    drop_placing,
+    listed,
+    people_of,
+    placings,
+    practised,
+    put_placing,
+    stamp,
+    students_since,
+    tries_of,
+    undoable,
+)
+from coursework.database.marking import mark_new
+from coursework.database.progress import PersonProgress
+from coursework.gradebook.rows import Collected, Row
+
+AT = datetime(2026, 11, 23, 9, tzinfo=UTC)
+EXERCISE = "slotted_mechanism"
+
+
+@pytest.fixture
+def number(store):
+    """An assignment of two students, of whom Ada handed in twice, the second time late."""
+    course = open_course()
+    record = course[EXERCISE].variant(42, "en").record
+    content = {
+        "format": 1,
+        "roster": True,
+        "assignment": {"name": "week3", "exercises": [EXERCISE]},
+        "issued": [{"student": name, "record": record} for name in ("Ada", "Bo")],
+    }
+    with store.begin() as connection:
+        found = put_issued(connection, content)
+        person = people_of(connection, found)["Ada"]
+        for n in (1, 2):
+            rows = [Row("Ada", EXERCISE, "42", "rA", f"? {n}", "the site", origin=Collected(sitting=n))]
+            late = 60 if n == 2 else 0
+            at = AT + timedelta(hours=n)
+            deliver(connection, found, rows, source="site", came=at, person_id=person, number=n, late=late)
+    mark_new(course, store, found)
+    return found
+
+
+def decided(store, number, kind, by, points=None):
+    with store.begin() as connection:
+        decide(connection, number, [Place("Ada", EXERCISE, "42", "rA", "? 2")], kind, points, "", by)
+
+
+def test_a_stamp_changes_with_what_is_added_and_says_whose_it_is(store, number):
+    with store.reading() as connection:
+        before = stamp(connection, number)
+        assert Stamp.read(str(before)) == before
+        assert before.deliveries[0] == 2
+    decided(store, number, "accepted", "Emmy")
+    with store.reading() as connection:
+        assert stamp(connection, number) != before
+        assert "Ada" in students_since(connection, number, before)
+        assert [one.by for one in decided_since(connection, number, before.decisions[1])] == ["Emmy"]
+
+
+def test_who_came_when_and_how_late(store, number):
+    with store.reading() as connection:
+        own = came_of(connection, number)["Ada"]
+        assert (own.tries, own.late, own.last) == (2, 60, AT + timedelta(hours=2))
+        assert [one.number for one in tries_of(connection, number, "Ada")] == [1, 2]
+        (about,) = listed(connection, number)
+        assert (about.name, about.deliveries, about.last) == ("week3", 2, AT + timedelta(hours=2))
+        assert set(came_of(connection, number)) == {"Ada"}
+
+
+def test_what_can_be_undone_is_ones_own_and_the_last(store, number):
+    decided(store, number, "accepted", "Emmy")
+    decided(store, number, "given", "Grace", 0.5)
+    with store.reading() as connection:
+        assert [one.kind for one in undoable(connection, number, "Grace")] == ["given"]
+        assert undoable(connection, number, "Emmy") == []
+
+
+def test_a_row_that_is_put_aside_may_wait_again(store, number):
+    with store.begin() as connection:
+        put_placing(connection, number, Placed("digest", None, "empty", "Emmy", AT))
+    with store.begin() as connection:
+        assert placings(connection, number)["digest"].by == "Emmy"
+        drop_placing(connection, number, "digest")
+        assert placings(connection, number) == {}
+
+
+def test_of_practice_the_desk_sees_how_often_and_when(store, number):
+    with store.reading() as connection:
+        person = people_of(connection, number)["Ada"]
+    entry = {
+        "exercise": EXERCISE,
+        "part": "rA",
+        "what": "answer",
+        "answer": "12",
+        "at": "2026-11-23T08:00:00+00:00",
+    }
+    PersonProgress(store, person).add([{**entry, "seed": 5}, {**entry, "seed": 6}])
+    with store.reading() as connection:
+        told = practised(connection, person, [EXERCISE, "grashof"])
+    assert told == {EXERCISE: (2, datetime(2026, 11, 23, 8, tzinfo=UTC))}

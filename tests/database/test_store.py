@@ -1,0 +1,114 @@
+"""A database opened: its tables, and what is wrong with one told in a line."""
+
+from __future__ import annotations
+
+import pytest
+from alembic.autogenerate import compare_metadata
+from alembic.runtime.migration import MigrationContext
+from alembic.script import ScriptDirectory
+from sqlalchemy import Column, Integer, Table, insert, inspect, select, update
+
+from coursework.database.store import _MIGRATIONS, Store
+from coursework.database.tables import METADATA, setting
+from coursework.errors import BadInput
+
+
+def differences(store):
+    with store.reading() as connection:
+        return compare_metadata(MigrationContext.configure(connection), METADATA)
+
+
+def test_the_migrations_make_exactly_the_tables(store):
+    assert differences(store) == []
+    assert {*inspect(store.engine).get_table_names()} == {*METADATA.tables, "alembic_version"}
+
+
+def test_the_migrations_are_one_chain():
+    assert len(ScriptDirectory(str(_MIGRATIONS)).get_heads()) == 1
+
+
+def test_a_table_that_no_migration_makes_is_found(store):
+    planted = Table("planted", METADATA, Column("id", Integer, primary_key=True))
+    try:
+        assert [kind for kind, *_ in differences(store)] == ["add_table"]
+    finally:
+        METADATA.remove(planted)
+
+
+def test_a_database_opened_twice_keeps_what_is_in_it(store, url):
+    with store.begin() as connection:
+        connection.execute(insert(setting).values(name="colour", value="blue"))
+    again = Store(url)
+    with again.reading() as connection:
+        assert connection.execute(select(setting.c.value)).scalar() == "blue"
+    again.close()
+
+
+def test_a_transaction_is_kept_whole_or_not_at_all(store):
+    class Fault(Exception):
+        pass
+
+    def fail():
+        with store.begin() as connection:
+            connection.execute(insert(setting).values(name="colour", value="blue"))
+            raise Fault
+
+    with pytest.raises(Fault):
+        fail()
+    with store.reading() as connection:
+        assert connection.execute(select(setting)).all() == []
+
+
+def test_what_a_server_cannot_hold_in_a_text_is_written_otherwise(store):
+    with store.begin() as connection:
+        connection.execute(insert(setting).values(name="odd", value="a\0b \ud800 é"))
+    with store.reading() as connection:
+        assert connection.execute(select(setting.c.value)).scalar() == "a␀b \\ud800 é"
+
+
+def test_a_database_of_a_later_version_is_refused(store, url):
+    with store.begin() as connection:
+        version = Table("alembic_version", METADATA.__class__(), autoload_with=connection)
+        connection.execute(update(version).values(version_num="9999"))
+    with pytest.raises(BadInput, match="later version"):
+        Store(url)
+
+
+@pytest.mark.parametrize(
+    ("told", "says"),
+    [
+        ("mysql+nothing://x/y", "no database"),
+        ("postgresql+psycopg://nobody:secret@127.0.0.1:1/none", "cannot be opened"),
+        ("sqlite:////no/such/folder/marks.db", "cannot be opened"),
+        ("://", "no database"),
+    ],
+)
+def test_a_database_that_is_not_there_is_told_in_a_line(told, says):
+    with pytest.raises(BadInput, match=says) as fault:
+        Store(told)
+    assert "secret" not in str(fault.value)
+    assert "\n" not in str(fault.value)
+
+
+def test_who_reads_sees_one_moment_whatever_is_written_meanwhile(store):
+    with store.reading() as reader:
+        before = reader.execute(select(setting)).all()
+        with store.begin() as writer:
+            writer.execute(insert(setting).values(name="colour", value="blue"))
+        assert reader.execute(select(setting)).all() == before == []
+    with store.reading() as reader:
+        assert len(reader.execute(select(setting)).all()) == 1
+    with store.begin() as writer:  # the same connection, which writes again
+        writer.execute(update(setting).values(value="red"))
+
+
+def test_more_who_ask_than_are_served_at_once_is_told_in_a_line(store):
+    pool = store.engine.pool
+    pool._timeout = 0.05
+    taken = [store.engine.connect() for _ in range(pool.size() + pool._max_overflow)]
+    with pytest.raises(BadInput, match="limit"), store.reading():
+        pass
+    with pytest.raises(BadInput, match="nothing of this was kept"), store.begin():
+        pass
+    for one in taken:
+        one.close()
