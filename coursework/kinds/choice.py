@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.kind import Asking, Kind, Spelling, Stated, Tick
+from coursework.kinds.ticks import by_letters, lettered_ticks
 from coursework.quantities.graph import plain_scalar
 
 if TYPE_CHECKING:
@@ -20,6 +21,7 @@ class Choice(Kind):
     has_symbol = is_called_by_symbol = False
     prediction = "guess"
     family = "choice"
+    field = "ticks"
     wrong = "wrong_case"
     faults = {  # noqa: RUF012
         "unknown_symbol": "not_a_number",
@@ -31,6 +33,12 @@ class Choice(Kind):
         from coursework.reading.choices import read_choice
 
         return read_choice(answer, asking.labels(part), asking.letters(part))
+
+    def ticks(self, part: Stated, asking: Asking) -> tuple[Tick, ...]:
+        return lettered_ticks(part, asking)
+
+    def from_paper(self, found: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
+        return by_letters(found, part, asking)
 
     def kept(self, read_as: str) -> Any:
         return read_as

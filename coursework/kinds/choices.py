@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.kind import Asking, Kind, Spelling, Stated, Tick
+from coursework.kinds.ticks import by_letters, lettered_ticks
 from coursework.reading.reading import Reading
 from coursework.reading.several import read_choices
+
+_NONE = "none"  #: what is ticked, and read, where no case is right
 
 
 def cases_of(value: Any) -> frozenset[str]:
@@ -25,6 +28,8 @@ class Choices(Kind):
     has_symbol = is_called_by_symbol = False
     box = "several"
     family = "choices"
+    field = "ticks"
+    has_several_ticks = True
     wrong = "wrong_case"
     faults = {"unknown_symbol": "not_a_number", "not_a_choice": "not_choices"}  # noqa: RUF012
 
@@ -35,6 +40,12 @@ class Choices(Kind):
             for case, called in asking.labels(part).items()
         }
         return read_choices(answer, own)
+
+    def ticks(self, part: Stated, asking: Asking) -> tuple[Tick, ...]:
+        return (*lettered_ticks(part, asking), Tick(_NONE, ""))
+
+    def from_paper(self, found: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
+        return by_letters(found, part, asking)
 
     def kept(self, read_as: str) -> Any:
         return cases_of(read_as)

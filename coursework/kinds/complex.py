@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated
@@ -50,6 +50,13 @@ class Complex(Kind):
 
     def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
         return value + 1.3 * half_width, 1.13 * value
+
+    def coordinates(self, part: Stated, asking: Asking) -> tuple[str, ...]:
+        return r"\mathrm{Re}", r"\mathrm{Im}"
+
+    def joined(self, found: Sequence[str], part: Stated, asking: Asking) -> str:
+        sign = "-" if found[1].startswith("-") else "+"
+        return f"({found[0]} {sign} {found[1].removeprefix('-')}i)"
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         value = complex(value)

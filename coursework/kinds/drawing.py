@@ -18,6 +18,7 @@ class Drawing(Open):
 
     name = "drawing"
     box = "blank"
+    field = "drawing"
     room = (120, 80)
 
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:

@@ -21,6 +21,7 @@ class Equation(Kind):
     disproves = False  # a mistake about a quantity may well leave its equation right
     has_symbol = is_called_by_symbol = False
     box = "line"
+    field = "written"
     family = "equation"
     wrong = "wrong_equation"
     quoted = ("unknown_unit", "unknown_symbol")

@@ -32,6 +32,7 @@ class JointGraph(Kind):
     is_exact = is_text = has_rule = share_stands = True
     has_symbol = is_called_by_symbol = False
     box = "lines"
+    field = "written"
     room = 3
     family = "graph"
     wrong = "wrong_graph"

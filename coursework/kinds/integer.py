@@ -21,6 +21,7 @@ class Integer(Kind):
     is_exact = is_scalar = is_followed = True
     wrong = "wrong_count"
     prediction = "guess"
+    has_decimals = False
     family = "integer"
     unitless = "wrong_unit_integer"
 

@@ -7,7 +7,7 @@ A course may bring kinds of its own: a class derived from :class:`Kind` that an 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol
@@ -55,6 +55,13 @@ class Asking(Protocol):
         """A reference value: a vector has as many coordinates as its reference."""
 
 
+class Tick(NamedTuple):
+    """A box to tick on paper that is read back."""
+
+    case: str
+    printed: str  #: beside the box, Markdown: a letter, a symbol; nothing where the engine has a word for it
+
+
 class Spelling(NamedTuple):
     """A right answer in one of the ways that people write it; ways of one name stand on one sheet."""
 
@@ -92,6 +99,14 @@ class Kind(ABC):
     room: ClassVar[Any] = (
         None  #: on the sheet, of a part that states none; a part of another kind has no such room
     )
+    field: ClassVar[str] = (
+        "number"  #: on paper that is read back: number (a row of boxes a coordinate), ticks, written, drawing
+    )
+    has_decimals: ClassVar[bool] = (
+        True  #: whether such a row has boxes behind the point, and for a power of ten
+    )
+    has_several_ticks: ClassVar[bool] = False  #: whether more than one box may be ticked
+    lines: ClassVar[int] = 1  #: to write on there, of a part that has no room of its own
     has_rule: ClassVar[bool] = False  #: the sheet says how its points are counted
     share_stands: ClassVar[bool] = False  #: a named mistake leaves at least the :meth:`share` that is right
 
@@ -217,6 +232,26 @@ class Kind(ABC):
     def latex(self, value: str, symbols: Mapping[str, str]) -> str:
         """A reference that is a text, as a formula; nothing where it is none."""
         return ""
+
+    # ------------------------------------------------- paper that is read back
+
+    def coordinates(self, part: Stated, asking: Asking) -> tuple[str, ...]:
+        """What stands before each row of boxes, LaTeX; nothing before the one row of a plain number."""
+        return ("",)
+
+    def ticks(self, part: Stated, asking: Asking) -> tuple[Tick, ...]:
+        """The boxes to tick, in the order printed."""
+        return ()
+
+    def from_paper(self, found: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
+        """The answer that a page says, as :meth:`read` takes it: of the number of each row, or of the ticked cases;
+        ``unit``: the box beside the printed unit is ticked."""
+        behind = f" {part.unit}" if unit and part.unit != "1" else ""
+        return f"{self.joined(found, part, asking)}{behind}"
+
+    def joined(self, found: Sequence[str], part: Stated, asking: Asking) -> str:
+        """The numbers of the rows as one text."""
+        return found[0] if len(found) == 1 else "(" + " ; ".join(found) + ")"
 
     # ----------------------------------------------------------------- students
 

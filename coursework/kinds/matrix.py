@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,15 @@ class Matrix(Entries):
     def read(self, answer: Any, part: Stated, asking: Asking) -> Reading:
         rows, columns = np.shape(asking.reference(part.quantity))
         return read_matrix(answer, part.unit, (rows, columns))
+
+    def coordinates(self, part: Stated, asking: Asking) -> tuple[str, ...]:
+        rows, columns = np.shape(asking.reference(part.quantity))
+        return tuple(rf"({row};\ {column})" for row in range(1, rows + 1) for column in range(1, columns + 1))
+
+    def joined(self, found: Sequence[str], part: Stated, asking: Asking) -> str:
+        columns = np.shape(asking.reference(part.quantity))[1]
+        rows = (found[start : start + columns] for start in range(0, len(found), columns))
+        return "[" + "; ".join(" ".join(row) for row in rows) + "]"
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         rows = (" ".join(significant(v, digits) for v in row) for row in np.asarray(value).tolist())

@@ -14,6 +14,7 @@ class Open(Kind):
     """An answer that is kept as it came. No reference is needed, and none is looked at."""
 
     is_exact = is_text = is_open = True
+    field = "written"
     has_symbol = is_called_by_symbol = False
     disproves = False
     family = "text"

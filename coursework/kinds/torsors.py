@@ -7,12 +7,12 @@ the plane xy, is an array of three: ``(vx, vy, wz)`` of a twist, ``(X, Y, N)`` o
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, ClassVar
 
 import numpy as np
 
-from coursework.kinds.kind import Asking, Kind, Spelling, Stated
+from coursework.kinds.kind import Asking, Kind, Spelling, Stated, Tick
 from coursework.kinds.nearness import in_half_widths, offset
 from coursework.language.numbers import significant
 from coursework.reading.reading import Reading
@@ -148,6 +148,23 @@ class Torsor(Kind):
             cells[place] = number(one)
         return _table(cells)
 
+    # ------------------------------------------------- paper that is read back
+
+    def coordinates(self, part: Stated, asking: Asking) -> tuple[str, ...]:
+        return tuple(_symbol(name) for name in self._names(len(asking.reference(part.quantity))))
+
+    def _names(self, count: int) -> tuple[str, ...]:
+        """The components of an array of 6, or of a plane one of 3."""
+        return tuple(self.form.names[place] for place in (self.form.plane if count == 3 else range(6)))
+
+    def from_paper(self, found: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
+        """Components by name; the ticked unit is that of both columns, and stands behind each of them."""
+        names = self._names(len(found))
+        units = self.units(part.unit) if unit else ("", "")
+        behind = [units[self.form.names.index(name) // 3] for name in names]
+        told = zip(names, found, behind, strict=True)
+        return "; ".join(f"{name} = {value} {own}".strip() for name, value, own in told)
+
     # ----------------------------------------------------------------- students
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
@@ -167,7 +184,7 @@ class Torsor(Kind):
             inner = r" \\ ".join(f"{a!r} & {b!r}" for a, b in zip(first, second, strict=True))
             yield Spelling("latex", rf"\begin{{Bmatrix}} {inner} \end{{Bmatrix}}")
         else:
-            names = [self.form.names[place] for place in self.form.plane]
+            names = self._names(3)
             yield Spelling("named", "; ".join(f"{n} = {v!r}" for n, v in zip(names, plain, strict=True)))
 
 
@@ -181,6 +198,8 @@ class Pattern(Kind):
     has_symbol = is_called_by_symbol = False
     box = "line"
     family = "pattern"
+    field = "ticks"
+    has_several_ticks = True
     wrong = "wrong_case"
     faults: ClassVar[Mapping[str, str]] = {"wrong_torsor": "not_pattern", "unknown_symbol": "not_pattern"}
     form: ClassVar[Form]
@@ -190,6 +209,12 @@ class Pattern(Kind):
 
     def kept(self, read_as: str) -> Any:
         return self.components(read_as)
+
+    def ticks(self, part: Stated, asking: Asking) -> tuple[Tick, ...]:
+        return (*(Tick(name, f"${_symbol(name)}$") for name in self.form.names), Tick("0", ""))
+
+    def from_paper(self, found: Sequence[str], part: Stated, asking: Asking, *, unit: bool = False) -> str:
+        return ", ".join(found)
 
     def components(self, value: Any) -> frozenset[str]:
         """The names that a reference holds, ``"wz vx"``, or a set of them."""

@@ -12,6 +12,11 @@ if TYPE_CHECKING:
     from coursework.reading.reading import Reading
 
 
+def axes(count: int) -> tuple[str, ...]:
+    """What coordinates are called: x, y and z, or by number where there are more."""
+    return ("x", "y", "z")[:count] if count <= 3 else tuple(map(str, range(1, count + 1)))
+
+
 class Coordinates(Kind):
     """Coordinates, as many as those of the reference."""
 
@@ -22,6 +27,9 @@ class Coordinates(Kind):
         from coursework.reading.points import read_point
 
         return read_point(answer, part.unit, len(asking.reference(part.quantity)))
+
+    def coordinates(self, part: Stated, asking: Asking) -> tuple[str, ...]:
+        return axes(len(asking.reference(part.quantity)))
 
     def written(self, value: Any, digits: int, label: Callable[[str], str]) -> str:
         return "(" + " ; ".join(significant(v, digits) for v in value.tolist()) + ")"

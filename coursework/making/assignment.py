@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import datetime
 import re
+import reprlib
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,10 +24,14 @@ from coursework.sheets.paper import Logo
 Texts = Mapping[str, str]  #: by language
 EACH = "each"  #: a variant a student
 MOST_VERSIONS = 26
+_LARGEST = 1_000_000  #: characters of an assignment's file
+_MOST_DOTS = 200  #: before an equals sign: a key of thousands of names takes minutes to be read
 SITTINGS = ("best", "last")
 ANSWERS = ("shown", "never")
 #: Options of ``build`` that may stand in the file; the option wins.
-OPTIONS = ("roster", "formats", "lang", "paper", "practice", "booklet", "polygons", "out", "decimal")
+OPTIONS = ("roster", "formats", "lang", "paper", "practice", "booklet", "scan", "polygons", "out", "decimal")
+#: Keys that name files beside the assignment's own, and what goes with these.
+FILES = ("logo", "logo_alt", "roster", "out")
 
 
 class Exercises(Protocol):
@@ -139,11 +144,61 @@ def read_assignment(path: Path, course: Exercises) -> Assignment:
         raise BadInput(f"the assignment {path} cannot be read: {fault.strerror or fault}") from fault
     except UnicodeDecodeError as fault:
         raise BadInput(f"{path} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
+    return _Reader(path, source, course).assignment(table_of(source, str(path)))
+
+
+def table_of(source: str, called: str) -> dict[str, Any]:
+    """What the text of an assignment's file says.
+
+    Raises
+    ------
+    BadInput
+        It is no TOML, or one that nobody writes: too large, too deep, with a number of more than 64 bits.
+    """
+    if len(source) > _LARGEST:
+        raise BadInput(f"{called} has {len(source)} characters; an assignment has at most {_LARGEST}")
+    for number, line in enumerate(source.splitlines(), start=1):
+        if line.partition("=")[0].count(".") > _MOST_DOTS:
+            raise BadInput(
+                f"{called}, line {number}: more than {_MOST_DOTS} dots before what is said; a key has one or two"
+            )
     try:
         table = tomllib.loads(source)
-    except tomllib.TOMLDecodeError as fault:
-        raise BadInput(f"{path}: {fault}") from fault
-    return _Reader(path, source, course).assignment(table)
+    except RecursionError:
+        raise BadInput(f"{called}: brackets within brackets, too many to be read") from None
+    except ValueError as fault:
+        raise BadInput(f"{called}: {fault}") from fault
+    if _holds_huge(table):
+        raise BadInput(f"{called}: a whole number of more than 64 bits, which TOML has not")
+    return table
+
+
+def _holds_huge(value: Any) -> bool:
+    if isinstance(value, (dict, list)):
+        return any(map(_holds_huge, value.values() if isinstance(value, dict) else value))
+    return isinstance(value, int) and value.bit_length() > 64
+
+
+_MOST_QUOTED = 100  #: characters of what is refused
+
+
+def _short(value: Any) -> str:
+    """A value as it is quoted."""
+    told = repr(value)
+    return told if len(told) <= _MOST_QUOTED else f"{told[:_MOST_QUOTED]}…"
+
+
+def assignment_of(name: str, table: Mapping[str, Any], course: Exercises, source: str = "") -> Assignment:
+    """The assignment of a table that comes from elsewhere than a file on this machine: what it says of files is left out,
+    and no file is looked for. ``source`` is its text, where it has one, for the lines of what is refused.
+
+    Raises
+    ------
+    BadInput
+        It says what makes no sense.
+    """
+    told = {key: value for key, value in table.items() if key not in FILES}
+    return _Reader(Path(f"{name}.toml"), source, course).assignment(told)
 
 
 class _Reader:
@@ -198,7 +253,7 @@ class _Reader:
             elif key in known:
                 found[key] = known[key](value)
             else:
-                raise self.refused(key, f"no key {key!r}{nearest(key, [*known, *OPTIONS])}")
+                raise self.refused(key, f"no key {_short(key)}{nearest(key, [*known, *OPTIONS])}")
         if "exercises" not in found:
             names = ", ".join(self.course.names[:4])
             raise BadInput(f"{self.path} names no exercise; write [[exercises]] and name = …: {names}, …")
@@ -219,7 +274,8 @@ class _Reader:
                 return {"": value}
             if not isinstance(value, Mapping) or not all(isinstance(v, str) for v in value.values()):
                 raise self.refused(
-                    key, f'{key} is a text, or one a language: {{ fr = "…", en = "…" }}; found {value!r}'
+                    key,
+                    f'{key} is a text, or one a language: {{ fr = "…", en = "…" }}; found {reprlib.repr(value)}',
                 )
             for lang in value:
                 if lang not in languages():
@@ -231,7 +287,7 @@ class _Reader:
     def _truth(self, key: str) -> Callable[[Any], bool]:
         def read(value: Any) -> bool:
             if not isinstance(value, bool):
-                raise self.refused(key, f"{key} is true or false; found {value!r}")
+                raise self.refused(key, f"{key} is true or false; found {reprlib.repr(value)}")
             return value
 
         return read
@@ -240,7 +296,8 @@ class _Reader:
         def read(value: Any) -> str:
             if value not in known:
                 raise self.refused(
-                    key, f"{key} is {' or '.join(known)}; found {value!r}{nearest(str(value), known)}"
+                    key,
+                    f"{key} is {' or '.join(known)}; found {reprlib.repr(value)}{nearest(str(value), known)}",
                 )
             return str(value)
 
@@ -255,21 +312,23 @@ class _Reader:
             try:
                 return datetime.date.fromisoformat(str(value))
             except ValueError:
-                raise self.refused(key, f"{key} is a day such as 2026-12-04; found {value!r}") from None
+                raise self.refused(
+                    key, f"{key} is a day such as 2026-12-04; found {reprlib.repr(value)}"
+                ) from None
 
         return read
 
     def _logo(self, value: Any) -> Path:
         path = self.path.parent / str(value)
         if path.suffix.lower() not in (".svg", ".png"):
-            raise self.refused("logo", f"logo is an SVG or a PNG file; found {value!r}")
+            raise self.refused("logo", f"logo is an SVG or a PNG file; found {reprlib.repr(value)}")
         if not path.is_file():
             raise self.refused("logo", f"logo: there is no file {path}")
         return path
 
     def _mark(self, value: Any) -> Scale:
         if not isinstance(value, Mapping):
-            raise self.refused("mark", f"mark is {{ of = 20, step = 0.5 }}; found {value!r}")
+            raise self.refused("mark", f"mark is {{ of = 20, step = 0.5 }}; found {reprlib.repr(value)}")
         for key, number in value.items():
             if key not in ("of", "step"):
                 raise self.refused("mark", f"mark has no {key!r}{nearest(key, ('of', 'step'))}")
@@ -282,20 +341,24 @@ class _Reader:
             return None
         if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= MOST_VERSIONS:
             raise self.refused(
-                "versions", f'versions is "{EACH}", or a number from 1 to {MOST_VERSIONS}; found {value!r}'
+                "versions",
+                f'versions is "{EACH}", or a number from 1 to {MOST_VERSIONS}; found {reprlib.repr(value)}',
             )
         return value
 
     def _identity(self, value: Any) -> tuple[str, ...]:
         if not isinstance(value, list) or not all(isinstance(one, str) and one.strip() for one in value):
             raise self.refused(
-                "identity", f'identity lists columns of the roster: ["number", "group"]; found {value!r}'
+                "identity",
+                f'identity lists columns of the roster: ["number", "group"]; found {reprlib.repr(value)}',
             )
         return tuple(value)
 
     def _sort(self, value: Any) -> str:
         if not isinstance(value, str) or not value.strip():
-            raise self.refused("sort", f'sort is a column of the roster: "group"; found {value!r}')
+            raise self.refused(
+                "sort", f'sort is a column of the roster: "group"; found {reprlib.repr(value)}'
+            )
         return value
 
     def _marking(self, value: Any) -> Mapping[str, Any]:
@@ -323,18 +386,17 @@ class _Reader:
         known = ("name", "parts", "points", "seed")
         for key in table:
             if key not in known:
-                raise self.refused(key, f"no key {key!r} in [[exercises]]{nearest(key, known)}", number)
+                raise self.refused(key, f"no key {_short(key)} in [[exercises]]{nearest(key, known)}", number)
         name = table.get("name")
         if name not in self.course.names:
             near = nearest(str(name), self.course.names)
-            raise self.refused(
-                "name" if "name" in table else "exercises", f"no exercise {name!r}{near}", number
-            )
+            lacks = f"no exercise {_short(name)}" if "name" in table else "[[exercises]] without name = …"
+            raise self.refused("name" if "name" in table else "exercises", f"{lacks}{near}", number)
         parts = self._parts(number, str(name), table.get("parts"))
         points = self._points(number, str(name), table.get("points"))
         seed = table.get("seed")
         if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int) or seed < 0):
-            raise self.refused("seed", f"a seed is a whole number from 0 on; found {seed!r}", number)
+            raise self.refused("seed", f"a seed is a whole number from 0 on; found {_short(seed)}", number)
         return AskedExercise(str(name), parts, points, seed)
 
     def _parts(self, number: int, name: str, value: Any) -> tuple[str, ...] | None:
@@ -342,11 +404,13 @@ class _Reader:
             return None
         asked = [value] if isinstance(value, str) else value
         if not isinstance(asked, list) or not asked or not all(isinstance(one, str) for one in asked):
-            raise self.refused("parts", f'parts is a list of ids: ["rA", "theta4"]; found {value!r}', number)
+            raise self.refused(
+                "parts", f'parts is a list of ids: ["rA", "theta4"]; found {reprlib.repr(value)}', number
+            )
         ids = [*(part.id for part in self.course[name].spec.parts), USUAL, ALL]
         for one in asked:
             if one not in ids:
-                raise self.refused("parts", f"{name} has no part {one!r}{nearest(one, ids)}", number)
+                raise self.refused("parts", f"{name} has no part {_short(one)}{nearest(one, ids)}", number)
         return tuple(asked)
 
     def _points(self, number: int, name: str, value: Any) -> float | Mapping[str, float] | None:
@@ -357,10 +421,10 @@ class _Reader:
         ids = [part.id for part in self.course[name].spec.parts]
         for part in value:
             if part not in ids:
-                raise self.refused("points", f"{name} has no part {part!r}{nearest(part, ids)}", number)
+                raise self.refused("points", f"{name} has no part {_short(part)}{nearest(part, ids)}", number)
         return {str(part): self._number(number, points) for part, points in value.items()}
 
     def _number(self, number: int, value: Any) -> float:
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0 < value < float("inf"):
-            raise self.refused("points", f"points are a number above 0; found {value!r}", number)
+            raise self.refused("points", f"points are a number above 0; found {reprlib.repr(value)}", number)
         return float(value)

@@ -14,9 +14,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from coursework.course.course import Course
+from coursework.making.answer_papers import printed_handout
 from coursework.making.issuing import Issue
 from coursework.rendering.renderer import Renderer
-from coursework.sheets.sheet import AnswerSheet, Handout
+from coursework.sheets.sheet import AnswerSheet
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file
 from coursework.system.writing import File
 
@@ -90,6 +91,7 @@ def files(
     *,
     polygons: bool = True,
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
+    scan: bool = False,
 ) -> Iterator[File]:
     """The booklets of a build, one an exercise and language, and the table of the students' pages."""
     groups: dict[tuple[str, str], list[Issue]] = {}
@@ -97,17 +99,16 @@ def files(
         for lang in issue.langs:
             groups.setdefault((issue.variant.exercise.name, lang), []).append(issue)
     booklets = (
-        _of_sheets(renderer, name, part, lang, polygons)
+        _of_sheets(renderer, name, part, lang, polygons, renderer.paper if scan else "")
         for (exercise, lang), group in groups.items()
         for name, part in parted(f"{exercise}.{lang}", group)
     )
     return bound(course, booklets, PAGE_COLUMNS, spreadsheet)
 
 
-def _of_sheets(renderer: Renderer, name: str, issues: Sequence[Issue], lang: str, polygons: bool) -> Booklet:
-    def handout(issue: Issue) -> Handout:
-        return issue.variant.in_language(lang).handout(issue.student)
-
+def _of_sheets(
+    renderer: Renderer, name: str, issues: Sequence[Issue], lang: str, polygons: bool, scan: str
+) -> Booklet:
     def solution(issue: Issue) -> AnswerSheet:
         return issue.variant.in_language(lang).answer_sheet(issue.student, polygons=polygons)
 
@@ -117,7 +118,7 @@ def _of_sheets(renderer: Renderer, name: str, issues: Sequence[Issue], lang: str
     ]
     return Booklet(
         name,
-        lambda: renderer.booklet([handout(issue) for issue in issues]),
+        lambda: renderer.booklet([printed_handout(issue, lang, scan) for issue in issues]),
         lambda: renderer.booklet([solution(issue) for issue in issues])[0],
         told,
     )

@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 from coursework.course.course import Course
 from coursework.making import booklets
+from coursework.making.answer_papers import printed_handout
 from coursework.making.assignment import Assignment
 from coursework.making.issued import COLUMNS, form_rows, issued_content, key_content, key_rows
 from coursework.making.issuing import Issue
@@ -37,20 +38,25 @@ def files(
     booklet: bool = False,
     polygons: bool = True,
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
+    scan: bool = False,
 ) -> Iterator[File]:
     """Every file of a build, in order.
 
     ``practice`` makes the notebooks self-study notebooks, which check answers with the installed package. ``paper`` is
     ``a4`` or ``letter``. ``booklet`` adds the sheets of all students in one PDF for each exercise and
     language. Without ``polygons`` the worked solutions leave out the drawn velocity and acceleration polygons.
-    The tables are written for the ``spreadsheet``. A students' copy of the course gives the handouts alone.
+    The tables are written for the ``spreadsheet``. With ``scan`` the PDFs have answer pages that a scanner reads. A students' copy of the course gives the handouts alone.
     """
     renderer = renderer_of(course.folder).on(paper)
     for issue in issues:
         for lang in issue.langs:
-            yield from _sheets(course, renderer, issue, lang, formats, practice, polygons)
+            yield from _sheets(
+                course, renderer, issue, lang, formats, practice, polygons, paper if scan else ""
+            )
     if booklet:
-        yield from booklets.files(course, renderer, issues, polygons=polygons, spreadsheet=spreadsheet)
+        yield from booklets.files(
+            course, renderer, issues, polygons=polygons, spreadsheet=spreadsheet, scan=scan
+        )
     yield from tables(course, issues, None, spreadsheet)
 
 
@@ -81,6 +87,7 @@ def _sheets(
     formats: Sequence[str],
     practice: bool,
     polygons: bool,
+    scan: str,
 ) -> Iterator[File]:
     variant = issue.variant.in_language(lang)
     name = variant.exercise.name
@@ -90,7 +97,7 @@ def _sheets(
     solution = partial(variant.answer_sheet, issue.student, polygons=polygons)
 
     if "pdf" in formats:
-        yield rendered(for_student, ".pdf", renderer.pdf, handout)
+        yield rendered(for_student, ".pdf", renderer.pdf, partial(printed_handout, issue, lang, scan))
     if "html" in formats:
         yield rendered(for_student, ".html", renderer.html, handout)
     if "ipynb" in formats and practice:

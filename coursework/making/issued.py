@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from copy import copy
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,6 +14,7 @@ import numpy as np
 from coursework.errors import BadInput
 from coursework.making.identity import Ids, ids_of, run_together, same_id, words_of
 from coursework.making.students import folded
+from coursework.system.json_files import json_of, read_json
 
 if TYPE_CHECKING:
     from coursework.making.assignment import Assignment
@@ -32,6 +34,8 @@ class Issued:
         records = content.get("issued") if isinstance(content, Mapping) else None
         if not isinstance(records, list) or not records:
             raise BadInput(f"{source} is no list of issued records; 'coursework build' writes issued.json")
+        if isinstance(content, Mapping) and _is_later(content.get("format")):
+            raise BadInput(f"{source} was written by a later version of coursework: update the package")
         self.has_roster = bool(content.get("roster"))
         self.is_pool = bool(content.get("pool"))
         self.assignment = _stated(content.get("assignment"), source)
@@ -45,21 +49,24 @@ class Issued:
         self._sittings: dict[tuple[str, str], dict[int, int]] = {}  #: seeds by sitting
         self._langs: dict[tuple[str, str, int], str] = {}  #: where another owner reads another language
         alike: dict[tuple[str, str], Any] = {}
-        for item in records:
+        for number, item in enumerate(records, start=1):
             try:
-                record, student = item["record"], str(item.get("student", ""))
-                key = (str(record["exercise"]), int(record["seed"]))
-                sum(part["points"] for part in record["parts"])
-                sitting = int(item.get("sitting", 1))
+                record, student, sitting = _record_of(item), item.get("student", ""), item.get("sitting", 1)
+                key = (record["exercise"], record["seed"])
                 # Records of an exercise ask the same; once is enough for all of them.
-                usual = alike.setdefault((key[0], str(record["version"])), record["parts"])
+                usual = alike.get((key[0], record["version"]))
+                if usual is None or usual != record["parts"]:
+                    _check_parts(record["parts"])
+                    usual = alike.setdefault((key[0], record["version"]), record["parts"])
                 if usual == record["parts"]:
                     record["parts"] = usual
-            except (KeyError, TypeError, ValueError, AttributeError) as fault:
-                raise BadInput(f"{source}: an item is no issued record ({fault})") from fault
+            except _Unfit as fault:
+                raise BadInput(
+                    f"{source}, item {number} of {len(records)}: no issued record: {fault}; 'coursework build' writes them"
+                ) from fault
             first = self.records.setdefault(key, record)
             if item.get("version"):
-                self.versions[key] = str(item["version"])
+                self.versions[key] = item["version"]
             if student:
                 if first is not record and first.get("lang") != record.get("lang"):
                     self._langs[student, *key] = str(record.get("lang"))
@@ -89,10 +96,23 @@ class Issued:
         BadInput
             The file is not there, or is not what ``build`` writes.
         """
+        return Issued(read_json(path), str(path))
+
+    @staticmethod
+    def stood(path: Path) -> Mapping[str, Any]:
+        """What an earlier ``issued.json`` says, where others are to be issued.
+
+        Raises
+        ------
+        BadInput
+            The file is not what ``build`` writes.
+        """
+        content: Mapping[str, Any] = read_json(path)
         try:
-            return Issued.of(path.read_bytes(), str(path))
-        except OSError as fault:
-            raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+            Issued(content, str(path))
+        except BadInput as fault:
+            raise BadInput(f"{fault}; choose another --out, or --overwrite to replace it") from fault
+        return content
 
     @staticmethod
     def of(data: bytes, source: str) -> Issued:
@@ -103,10 +123,7 @@ class Issued:
         BadInput
             They are not what ``build`` writes.
         """
-        try:
-            return Issued(json.loads(data.decode("utf-8")), source)
-        except (json.JSONDecodeError, UnicodeDecodeError) as fault:
-            raise BadInput(f"{source} is not JSON: {str(fault)[:100]}") from fault
+        return Issued(json_of(data, source), source)
 
     def student(self, name: str, ids: Ids | None = None) -> str | None:
         """The student's name as issued, or without a roster as it came first; None for a stranger to the roster.
@@ -160,6 +177,28 @@ class Issued:
         own = self._sittings.get((student, exercise), {})
         return max((sitting for sitting, one in own.items() if one == seed), default=1)
 
+    def of_student(self, student: str) -> Issued:
+        """What bears on the sheets of one student alone: what they were issued, and a record of each other exercise."""
+        keys = [(e, seed) for e in self.exercises for seed in self.seeds_of(student, e)]
+        mine = dict.fromkeys(e for e, _ in keys)
+        kept = (*keys, *(key for e, key in self._first.items() if e not in mine))
+        own = copy(self)
+        own.records = {key: self.records[key] for key in kept}
+        own.owners = dict.fromkeys(keys, (student,))
+        own.versions = {key: self.versions[key] for key in keys if key in self.versions}
+        own.seeds = {(student, e): self.seeds[student, e] for e in mine}
+        own._sittings = {(student, e): self._sittings[student, e] for e in mine}
+        own._langs = {place: lang for key in keys if (lang := self._langs.get(place := (student, *key)))}
+        own.columns = {student: self.columns[student]} if student in self.columns else {}
+        own.students, own._named = (student,), frozenset({student})
+        own._known, own._people = {folded(student): student}, _People((student,), own.columns)
+        return own
+
+    @cached_property
+    def _first(self) -> dict[str, tuple[str, int]]:
+        """A variant of each exercise."""
+        return {exercise: (exercise, seed) for exercise, seed in reversed(self.records)}
+
     def record_of(self, student: str, exercise: str, seed: int) -> Mapping[str, Any]:
         """The record of a variant, in the student's language."""
         record = self.records[exercise, seed]
@@ -201,6 +240,65 @@ class _People:
 
 def _enter(found: dict[Any, str | None], key: Any, student: str) -> None:
     found[key] = student if found.get(key, student) == student else None
+
+
+class _Unfit(ValueError):
+    """What is no issued record."""
+
+
+#: What stands in an item and in its record, and what it is; of an item nothing need be there.
+_ITEM = {"student": str, "sitting": int, "version": str}
+_RECORD = {"exercise": str, "seed": int, "version": int, "parts": list, "given": dict, "lang": str}
+_CALLED = {str: "a text", int: "a whole number, 0 or more", list: "a list", dict: "an object"}
+
+
+def _record_of(item: Any) -> dict[str, Any]:
+    """The record of an item, both of the shape that a build gives them.
+
+    Raises
+    ------
+    _Unfit
+        One is not.
+    """
+    record = item.get("record") if isinstance(item, dict) else None
+    if not isinstance(record, dict):
+        raise _Unfit("it has no record")
+    for name, kind in _ITEM.items():
+        if name in item:
+            _check_kind(name, item[name], kind)
+    for name, kind in _RECORD.items():
+        if name in record or name != "lang":
+            _check_kind(name, record.get(name), kind)
+    return record
+
+
+def _check_kind(name: str, value: Any, kind: type) -> None:
+    if type(value) is not kind or (isinstance(value, int) and value < 0):
+        found = "nothing" if value is None else repr(value)[:40]
+        raise _Unfit(f"{name} is {_CALLED[kind]}; found {found}")
+
+
+def _check_parts(parts: Sequence[Any]) -> None:
+    """Parts have ids, points, and, of choices, their order."""
+    met = set()
+    for part in parts:
+        if not isinstance(part, dict):
+            raise _Unfit(f"a part is an object; found {str(part)[:40]!r}")
+        _check_kind("id of a part", part.get("id"), str)
+        if part["id"] in met:
+            raise _Unfit(f"it has the part {part['id'][:40]!r} twice")
+        met.add(part["id"])
+        if not _is_size(part.get("points")):
+            raise _Unfit(
+                f"points of {part['id'][:40]!r} are a number above 0; found {str(part.get('points'))[:40]!r}"
+            )
+        choices = part.get("choices", [])
+        if not isinstance(choices, list) or not all(isinstance(c, str) for c in choices):
+            raise _Unfit(f"choices of {part['id'][:40]!r} are texts; found {str(choices)[:40]!r}")
+
+
+def _is_later(written: Any) -> bool:
+    return isinstance(written, int) and written > ISSUED_FORMAT
 
 
 def _stated(content: Any, source: str) -> Mapping[str, Any] | None:
@@ -255,8 +353,14 @@ def plain_value(value: Any) -> Any:
     return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
-def record_with_answers(variant: Issuable) -> dict[str, Any]:
+def _as_it_is(value: Any, margin: float | None = None) -> Any:
+    return value
+
+
+def record_with_answers(variant: Issuable, told: Callable[..., Any] = _as_it_is) -> dict[str, Any]:
     """The record and, by part, the reference answer with its unit and accepted half-width.
+
+    ``told`` gives a number as it is to be told, of a reference and its half-width; full precision unless told.
 
     Raises
     ------
@@ -267,14 +371,39 @@ def record_with_answers(variant: Issuable) -> dict[str, Any]:
     answers = {}
     for part in variant.parts:
         value = None if part.sort.is_open else key.reference[part.quantity]
-        tolerance = key.half_width(part) if part.has_margin else None
-        answers[part.id] = {"value": plain_value(value), "unit": part.unit, "tolerance": tolerance}
+        width = key.half_width(part) if part.has_margin else None
+        answers[part.id] = {
+            "value": plain_value(told(value, width)),
+            "unit": part.unit,
+            "tolerance": plain_value(told(width)),
+        }
     return {**variant.record, "answers": answers}
 
 
+#: Of a number in the key, significant ones: counted from the largest component of its answer, or from its margin where
+#: that is larger. Those behind them differ from one processor to another.
+KEY_DIGITS = 10
+
+
 def key_content(issues: Iterable[Issue]) -> list[dict[str, Any]]:
-    """What ``key.json`` says: the issued records with their answers."""
-    return [{"student": i.student, **record_with_answers(i.variant)} for i in issues]
+    """What ``key.json`` says: the issued records with their answers, to :data:`KEY_DIGITS`."""
+    return [{"student": i.student, **record_with_answers(i.variant, _in_key)} for i in issues]
+
+
+def _in_key(value: Any, margin: float | None = None) -> Any:
+    """A number of an answer, or an array of them, to the digits of the key; anything else as it is."""
+    if not isinstance(value, (float, complex, np.inexact, np.ndarray)):
+        return value
+    array = np.asarray(value)
+    if array.dtype.kind not in "fc":
+        return value
+    numbers = np.atleast_1d(array).ravel().view(float)
+    size = max([margin or 0.0, *np.abs(numbers[np.isfinite(numbers)]).tolist()])
+    if not size:
+        return value
+    decimals = KEY_DIGITS - 1 - math.floor(math.log10(size))
+    kept = np.array([round(number, decimals) + 0.0 for number in numbers.tolist()]).view(array.dtype)
+    return kept[0].item() if array.ndim == 0 else kept.reshape(array.shape)
 
 
 def key_rows(key: Iterable[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol, Self, TypeVar
 
@@ -15,7 +15,8 @@ from coursework.course.asked import Asked
 from coursework.course.course import Course
 from coursework.course.exercise import ALL, USUAL, CourseExercise
 from coursework.course.variant import Variant
-from coursework.errors import BadInput, Starved, counted, unknown
+from coursework.errors import BadInput, NoSolution, Starved, counted, unknown
+from coursework.kinds.kind import Asking
 from coursework.making.flaws import try_judges
 from coursework.making.protection import worthy
 from coursework.making.roster import Student
@@ -39,14 +40,17 @@ def distinct_variants(
     ``parts`` are the ids of those to ask; a variant that asks none of them is passed over, and so is one that
     does not fit, where ``fits`` is told.
 
-    Equal ones are passed over, and so are those that mark badly (:mod:`coursework.making.flaws`), if the course
-    folder has solutions to tell; ``refused`` counts these by their flaw.
+    Equal ones are passed over, and so are those that mark badly (:mod:`coursework.making.flaws`); ``refused`` counts
+    these by their flaw.
 
     Raises
     ------
+    NoSolution
+        The course folder is a students' copy, which cannot tell those that mark badly.
     Starved
         Fewer exist, or so few that they are not found; says how many, and what refuses most.
     """
+    _check_can_tell(exercise)
     found: dict[tuple, V] = {}
     refused = Counter() if refused is None else refused
     seed = first_seed
@@ -62,15 +66,13 @@ def distinct_variants(
                 asking
             )
             drawn = asking
-        if exercise.folder.has_solutions:
-            drawn = worthy(exercise, drawn, refused)
-        for variant in drawn:
+        for variant in worthy(exercise, drawn, refused):
             found.setdefault(tuple(variant.given.values()), variant)
             if len(found) == count:
                 break
         seed = batch.stop
     if len(found) < count:
-        exist = draws.population(exercise.spec)
+        exist = draws.population(exercise.drawing)
         told = f"{len(found)} found" if exist is None or refused else f"only {exist} exist"
         flaws = ", ".join(f"{flaw} ({counted(n, 'time')})" for flaw, n in refused.most_common(3))
         told += f"; passed over as {flaws}" if flaws else ""
@@ -79,6 +81,16 @@ def distinct_variants(
             "ask for fewer, widen a range or make a step finer"
         )
     return list(found.values())
+
+
+def _check_can_tell(exercise: CourseExercise[Any]) -> None:
+    """A students' copy would issue what the full course passes over, and so others than it does."""
+    if not exercise.folder.has_solutions:
+        raise NoSolution(
+            f"{exercise.name}: {exercise.folder.label} has no solutions/, as a students' copy, and cannot tell which "
+            "variants the full course passes over; 'coursework build --issued issued.json' writes the sheets of what was "
+            "issued: ask the teacher for that file, or for the sheets"
+        )
 
 
 def _that_ask(variants: Sequence[V], fits: Callable[[V], bool] | None) -> list[V]:
@@ -114,9 +126,12 @@ def drawn_by(
 
     Raises
     ------
+    NoSolution
+        As :func:`distinct_variants`.
     Starved
         No variant that is worth issuing was found for somebody.
     """
+    _check_can_tell(exercise)
     taken = set() if taken is None else taken
     found: dict[str, V] = {}
     spare: dict[str, V] = {}  # worth issuing, though somebody has the same
@@ -127,8 +142,7 @@ def drawn_by(
         rounds = range(round_, min(round_ + together, _ROUNDS))
         seeds = {(r, who): seed_for(stream, exercise.name, who, r) for r in rounds for who in waiting}
         drawn = _that_ask(exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts), fits)
-        good = worthy(exercise, drawn, refused) if exercise.folder.has_solutions else drawn
-        by_seed = {v.seed: v for v in good}
+        by_seed = {v.seed: v for v in worthy(exercise, drawn, refused)}
         for r in rounds:
             # Who is first where two draw the same hangs on the draw, not on the roster.
             for who in sorted(waiting, key=lambda who: (seeds[r, who], who)):
@@ -153,7 +167,7 @@ def drawn_by(
     return found, shared
 
 
-class Issuable(Asked, Protocol):
+class Issuable(Asked, Asking, Protocol):
     """A variant that can say what its sheets show."""
 
     @property
@@ -208,6 +222,8 @@ def issue(
         A part that none of the exercises has.
     Starved
         An exercise has not enough different variants.
+    NoSolution
+        The course folder is a students' copy.
     BadInput
         An exercise has no text in one of the languages.
     """
@@ -217,10 +233,7 @@ def issue(
     asked = chosen_parts(course, names, parts)
     for name in names:
         exercise = course[name]
-        for lang in {*langs, *(s.lang for s in students if s.lang)}:
-            if lang not in exercise.languages:
-                have = ", ".join(exercise.languages) or "none"
-                raise BadInput(f"{name} has no text in {lang!r}; it has {have}")
+        check_languages(exercise, {*langs, *(s.lang for s in students if s.lang)})
         variants: list[Any]
         if roster:
             people = [student.who for student in roster]
@@ -228,7 +241,7 @@ def issue(
             variants = [drawn[who] for who in people]
         else:
             variants = distinct_variants(exercise, first_seed, len(students), langs[0], parts=asked[name])
-        if course.folder.has_solutions and variants:
+        if variants:
             try_judges(variants[0].key)
         for student, stem, variant in zip(students, stems, variants, strict=True):
             own = (student.lang,) if student.lang else tuple(langs)
@@ -237,6 +250,20 @@ def issue(
                 Issue(student.name, variant.in_language(own[0]), own, stem, columns=student.columns)
             )
     return issues
+
+
+def check_languages(exercise: CourseExercise[Any], langs: Collection[str]) -> None:
+    """Stop at a language that an exercise has no text in.
+
+    Raises
+    ------
+    BadInput
+        Says which it has.
+    """
+    for lang in langs:
+        if lang not in exercise.languages:
+            have = ", ".join(exercise.languages) or "none"
+            raise BadInput(f"{exercise.name} has no text in {lang!r}; it has {have}")
 
 
 def chosen_parts(

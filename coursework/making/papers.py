@@ -14,6 +14,7 @@ from coursework.course.course import Course
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.making import booklets
+from coursework.making.answer_papers import printed_handouts
 from coursework.making.assignment import Assignment, text_in
 from coursework.making.booklets import Booklet
 from coursework.making.build import rendered, tables, tex_stem
@@ -25,6 +26,7 @@ from coursework.sheets.sheet import AnswerSheet, Handout
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
 from coursework.system.writing import File
 
+_DIGITS = 18  #: of a number by which a booklet is sorted; what is longer is sorted as a word
 PAGE_COLUMNS = ("student", "version", "lang", "first page", "last page", "file")
 
 
@@ -35,6 +37,7 @@ class IssuedPaper:
     assignment: Assignment
     issues: tuple[Issue, ...]
     polygons: bool
+    scan: str = ""  #: the size of its answer pages; none where it is answered between its lines
 
     @property
     def first(self) -> Issue:
@@ -49,7 +52,9 @@ class IssuedPaper:
     def sorted_by(self) -> tuple[tuple[int, int, str], ...]:
         """Where the paper stands in a booklet: by words and by numbers, group 10 after group 2."""
         pieces = re.findall(r"\d+|\D+", self._columns.get(folded(self.assignment.sort), ""))
-        return tuple((0, int(p), "") if p.isdecimal() else (1, 0, folded(p)) for p in pieces)
+        return tuple(
+            (0, int(p), "") if p.isdecimal() and len(p) <= _DIGITS else (1, 0, folded(p)) for p in pieces
+        )
 
     def heading(self, lang: str) -> Heading:
         assignment, first, own = self.assignment, self.first, self._columns
@@ -73,6 +78,11 @@ class IssuedPaper:
         handouts = (i.variant.in_language(lang).handout(i.student) for i in self.issues)
         return Paper(self.heading(lang), tuple(handouts))
 
+    def printed(self, lang: str) -> Paper:
+        """The paper as a PDF has it, with its answer pages where it is scanned."""
+        handouts = printed_handouts(self.issues, lang, self.scan, self.assignment.name)
+        return Paper(self.heading(lang), handouts)
+
     def solution(self, lang: str) -> SolutionPaper:
         sheets = (
             i.variant.in_language(lang).answer_sheet(i.student, polygons=self.polygons) for i in self.issues
@@ -88,12 +98,14 @@ def date_text(date: datetime.date | None, lang: str) -> str:
     return str(said["form"]).format(day=date.day, month=said["months"][date.month - 1], year=date.year)
 
 
-def papers(assignment: Assignment, issues: Sequence[Issue], *, polygons: bool) -> list[IssuedPaper]:
-    """What was dealt, a paper each."""
+def papers(
+    assignment: Assignment, issues: Sequence[Issue], *, polygons: bool, scan: str = ""
+) -> list[IssuedPaper]:
+    """What was dealt, a paper each; ``scan`` is the size of their answer pages."""
     found: dict[tuple[str, int], list[Issue]] = {}
     for issue in issues:
         found.setdefault((issue.stem, issue.sitting), []).append(issue)
-    return [IssuedPaper(assignment, tuple(own), polygons) for own in found.values()]
+    return [IssuedPaper(assignment, tuple(own), polygons, scan) for own in found.values()]
 
 
 def files(
@@ -107,10 +119,12 @@ def files(
     polygons: bool = True,
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     only: Collection[str] | None = None,
+    scan: bool = False,
 ) -> Iterator[File]:
-    """Every file of an assignment, in order; with ``only``, the papers of these students alone, and no table."""
+    """Every file of an assignment, in order; with ``only``, the papers of these students alone, and no table; with
+    ``scan``, answer pages that a scanner reads in the PDFs."""
     renderer = renderer_of(course.folder).on(paper)
-    made = papers(assignment, issues, polygons=polygons)
+    made = papers(assignment, issues, polygons=polygons, scan=paper if scan else "")
     for one in made:
         if only is None or one.first.student in only:
             for lang in one.first.langs:
@@ -129,7 +143,7 @@ def _paper(
     for_staff = Path("instructor") / f"{one.first.stem}.{lang}"
     paper, solution = partial(one.paper, lang), partial(one.solution, lang)
     if "pdf" in formats:
-        yield rendered(for_student, ".pdf", renderer.paper_pdf, paper)
+        yield rendered(for_student, ".pdf", renderer.paper_pdf, partial(one.printed, lang))
     if "html" in formats:
         yield rendered(for_student, ".html", renderer.paper_html, paper)
     if "ipynb" in formats:
@@ -183,7 +197,7 @@ def _booklets(renderer: Renderer, made: Sequence[IssuedPaper]) -> Iterator[Bookl
 def _of_papers(renderer: Renderer, name: str, papers: Sequence[IssuedPaper], lang: str) -> Booklet:
     return Booklet(
         name,
-        lambda: renderer.papers_pdf([one.paper(lang) for one in papers]),
+        lambda: renderer.papers_pdf([one.printed(lang) for one in papers]),
         lambda: renderer.papers_pdf([one.solution(lang) for one in papers])[0],
         [{"student": one.first.student, "version": one.first.version, "lang": lang} for one in papers],
     )

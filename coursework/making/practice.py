@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from contextlib import suppress
+from copy import copy
 from typing import Any
 
 from coursework.course.builtin import builtin_root
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
 from coursework.course.lessons import taught_by
-from coursework.errors import BadCourse, Starved, nearest
+from coursework.errors import BadCourse, CourseworkError, Starved, nearest
 from coursework.making.issued import Issued
 from coursework.making.issuing import distinct_variants
 from coursework.sheets.handout import handout
@@ -48,6 +50,15 @@ class PracticeOf:
             () if seed is None else self._asked(exercise, seed, lang),
         )
 
+    def of_student(self, issued: Issued) -> PracticeOf:
+        """The same for one student, of whose part of what was issued alone it holds: little to send elsewhere."""
+        own = copy(self)
+        for exercise in issued.exercises if self._offers else ():
+            with suppress(CourseworkError):  # told where it is asked for
+                self._of_nobody(self._course[exercise])
+        own._issued, own._fresh = issued, self._fresh
+        return own
+
     def _taught(self, exercise: CourseExercise, lang: str) -> tuple[Lesson, ...]:
         place = exercise.name, lang
         if place not in self._lessons:
@@ -63,13 +74,17 @@ class PracticeOf:
 
     def _seed(self, exercise: CourseExercise, student: str) -> int | None:
         name = exercise.name
+        if (seed := self._of_nobody(exercise)) is not None:
+            return seed
+        mine = self._issued.seeds_of(student, name)
+        return unissued_seed(exercise, {seed: self._issued.records[name, seed] for seed in mine})
+
+    def _of_nobody(self, exercise: CourseExercise) -> int | None:
+        name = exercise.name
         if name not in self._fresh:
             everyones = {seed: r for (e, seed), r in self._issued.records.items() if e == name}
             self._fresh[name] = unissued_seed(exercise, everyones)
-        if self._fresh[name] is not None:
-            return self._fresh[name]
-        mine = self._issued.seeds_of(student, name)
-        return unissued_seed(exercise, {seed: self._issued.records[name, seed] for seed in mine})
+        return self._fresh[name]
 
 
 def unissued_seed(exercise: CourseExercise, records: Mapping[int, Mapping[str, Any]]) -> int | None:

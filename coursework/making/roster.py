@@ -13,7 +13,8 @@ from coursework.language.words import languages
 from coursework.making.identity import EMAIL, FIRST_NAME, NUMBER, SURNAME, WHOLE, plain, told_apart
 from coursework.making.platform_rosters import first_name_first, without_marks
 from coursework.making.students import folded
-from coursework.system.tables import decode, delimiter_of, record
+from coursework.system.limits import MOST_COLUMNS, MOST_TABLE_BYTES, beyond, check_size
+from coursework.system.tables import as_written, decode, delimiter_of, record, said_twice
 
 _LANG = ("lang", "language", "langue")
 
@@ -47,20 +48,21 @@ def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> 
         The file cannot be read, has a row without a name or with too many cells, names no student, or one twice.
     """
     header, *rows = _rows(path, tell) or [(1, [])]
+    if len(header[1]) > MOST_COLUMNS:
+        raise BadInput(f"the roster {path}: {beyond('a table', len(header[1]), MOST_COLUMNS, 'columns')}")
     titles = [plain(cell) for cell in header[1]]
     named = _name_columns(titles)
     if not named:
         found = ", ".join(cell.strip() for cell in header[1] if cell.strip()) or "nothing"
         raise BadInput(f"the roster {path} needs a column named student; found {found}")
+    if twice := said_twice(titles, (*(titles[column] for column in named), *_LANG, *NUMBER, *EMAIL)):
+        raise BadInput(f"the roster {path}: {twice}")
     lang_column = next((titles.index(c) for c in _LANG if c in titles), None)
     rows, unused = without_marks(header[1], rows)
     for note in unused.notes:
         tell(f"the roster {path}: {note}")
-    others = [
-        column
-        for column, title in enumerate(header[1])
-        if column not in (*named, *unused.columns) and column != lang_column and title.strip()
-    ]
+    taken = {*named, *unused.columns, lang_column}
+    others = [k for k, title in enumerate(header[1]) if k not in taken and title.strip()]
     lines = []
     for number, cells in rows:
         place = f"the roster {path}, line {number}"
@@ -81,6 +83,7 @@ def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> 
         lines.append((number, Student(name, lang, own)))
     if not lines:
         raise BadInput(f"the roster {path} names no student")
+    _tell_lost(path, [header[1][c].strip() for c in others], tell)
     untitled = [
         column
         for column, title in enumerate(titles)
@@ -91,6 +94,15 @@ def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> 
             f"the roster {path} has a column without a title, which is not used; give it one to carry it through"
         )
     return _apart(path, lines)
+
+
+def _tell_lost(path: Path, titles: Sequence[str], tell: Callable[[str], None]) -> None:
+    """Tell of columns that have one title, of which the last alone is kept."""
+    for title, often in Counter(titles).items():
+        if often > 1:
+            tell(
+                f"the roster {path} has {often} columns {title}; the last is kept: give each a title of its own"
+            )
 
 
 def _apart(path: Path, lines: Sequence[tuple[int, Student]]) -> list[Student]:
@@ -126,6 +138,7 @@ def _name_columns(titles: list[str]) -> list[int]:
 def _rows(path: Path, tell: Callable[[str], None]) -> list[tuple[int, list[str]]]:
     """The lines that are not blank, each with its number."""
     try:
+        check_size(f"the roster {path}", path.stat().st_size, MOST_TABLE_BYTES)
         data = path.read_bytes()
     except OSError as fault:
         raise BadInput(f"the roster {path} cannot be read: {fault.strerror}") from fault
@@ -143,6 +156,6 @@ def _records(lines: list[str]) -> Iterator[tuple[int, list[str]]]:
     while start < len(lines):
         cells, taken = record(lines, start, delimiter, width)
         if any(cell.strip() for cell in cells):
-            yield start + 1, cells
+            yield start + 1, list(map(as_written, cells))
             width = width or len(cells)
         start += taken

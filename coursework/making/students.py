@@ -21,6 +21,12 @@ def folded(name: str) -> str:
     return unicodedata.normalize("NFKC", " ".join(seen.split()).casefold())
 
 
+def namesakes(name: str, students: Iterable[str]) -> list[str]:
+    """The students whom more than this name tells apart: ``Marie Martin (2290)`` for ``marie martin``."""
+    begins = f"{folded(name)} ("
+    return [one for one in students if folded(one).startswith(begins)]
+
+
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{d}{n}" for d in ("com", "lpt") for n in range(10))}
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from markupsafe import Markup
 
 from coursework.figures.moving import COLOURS, Track
-from coursework.language.numbers import localise, significant
+from coursework.language.numbers import localise, rounded, significant
 from coursework.language.words import words
 from coursework.motion.animation import Animation
 from coursework.rendering.environment import render
@@ -22,53 +22,60 @@ from coursework.rendering.keeping import in_script
 def page(folders: Sequence[Path], animation: Animation, paper: str = "a4") -> str:
     """The whole page, in the variant's language."""
     variant = animation.variant
+    names = {
+        "lang": variant.lang,
+        "paper": paper,
+        "title": animation.title,
+        "variant": f"{variant.exercise.name} {variant.seed}",
+        "sheet": {"course": variant.exercise.folder.title(variant.lang), "title": animation.title},
+        **context(animation),
+    }
+    return render(environment_of(tuple(folders), variant.lang), "motion.html.j2", names)
+
+
+def context(animation: Animation, *, told: bool = True) -> dict[str, Any]:
+    """The names that ``_motion_body.html.j2`` sees; the numbers beside the drawing only where they are to be ``told``."""
+    variant = animation.variant
     lang = variant.lang
     shown = animation.drawing(animation.available)
     first = animation.first
     film = animation.film is not None
-    told = animation.angles if film else animation.angles % 360.0
-    angles = [f"{localise(significant(a, 5), lang)}°" for a in told]
+    turned = animation.angles if film else animation.angles % 360.0
+    angles = [f"{localise(significant(a, 5), lang)}°" for a in turned]
+    readings = animation.readings if told else ()
     data = {
         "tracks": [_numbers(track) for track in shown.tracks if track.moves],
         "order": list(animation.order),
-        "times": [round(float(t), 6) for t in animation.times],
+        "times": [rounded(float(t), 6) for t in animation.times],
         "seconds": animation.seconds,
         "first": first,
         "angles": angles,
         "film": film,
-        "degrees": [round(float(a), 4) for a in animation.angles],
-        "readings": [list(reading.values) for reading in animation.readings],
+        "degrees": [rounded(float(a), 4) for a in animation.angles],
+        "readings": [list(reading.values) for reading in readings],
     }
-    sheet = {"course": variant.exercise.folder.title(lang), "title": animation.title}
     said = words(lang)
-    start = said["motion"]["film" if film else "statement"]
-    names = {
-        "lang": lang,
-        "paper": paper,
-        "title": animation.title,
-        "variant": f"{variant.exercise.name} {variant.seed}",
+    return {
         "words": said,
         "said": said["motion"],
-        "sheet": sheet,
         "drawing": Markup(_svg(shown.tracks, shown.size, first, animation)),
         "effects": [(e, e in animation.effects, COLOURS[e]) for e in animation.available],
         "points": list(animation.points),
-        "readings": animation.readings,
+        "readings": readings,
         "driver": variant.exercise.symbol(animation.driver),
         "count": len(animation.angles),
         "first": first,
         "angle": angles[first],
-        "start": start,
+        "start": said["motion"]["film" if film else "statement"],
         "swings": not animation.turns,
         "turns": localise(significant(float(np.ptp(animation.angles)) / 360.0, 3), lang) if film else "",
         "has_vectors": bool(animation.scales),
         "data": in_script(data),
     }
-    return render(environment_of(tuple(folders), lang), "motion.html.j2", names)
 
 
 def _numbers(track: Track) -> dict[str, Any]:
-    rows = [[round(float(x), 2) for x in row] for row in track.numbers]
+    rows = [[rounded(float(x), 2) for x in row] for row in track.numbers]
     return {"mark": bool(track.mark), "closed": track.closed, "rows": rows}
 
 

@@ -6,17 +6,18 @@ import base64
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 from html import escape
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from markupsafe import Markup
 
-from coursework.errors import BadInput
+from coursework.errors import BadCourse, BadInput
+from coursework.figures.picture import Picture
 from coursework.language.numbers import localise
 from coursework.language.words import words
-from coursework.rendering import feedback, html, latex, pdf, views
+from coursework.rendering import answer_pages, feedback, html, latex, pdf, views
 from coursework.rendering.environment import render
 from coursework.rendering.keeping import keeping
 from coursework.sheets.paper import FeedbackPaper, Logo, Paper, SolutionPaper
@@ -162,10 +163,10 @@ def logo_svg(logo: Logo) -> str:
     Raises
     ------
     BadInput
-        It is not of the format that it is said to be.
+        It is not of the format that it is said to be, or it runs or fetches something.
     """
     if logo.format == "svg":
-        return _text(logo.data)
+        return _harmless(_text(logo.data))
     if logo.data[:8] != _PNG or len(logo.data) < 24:
         raise BadInput("the logo is no PNG picture; give a file that is one, or an SVG")
     wide, high = (int.from_bytes(logo.data[start : start + 4], "big") for start in (16, 20))
@@ -173,6 +174,16 @@ def logo_svg(logo: Logo) -> str:
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {wide} {high}" width="{wide}" height="{high}">'
         f'<image width="{wide}" height="{high}" href="data:image/png;base64,{base64.b64encode(logo.data).decode()}"/></svg>'
     )
+
+
+@lru_cache(maxsize=8)
+def _harmless(svg: str) -> str:
+    """The same picture, as an exercise may bring it."""
+    try:
+        Picture(svg.encode()).size_mm  # noqa: B018  what cannot be shown is refused here
+    except BadCourse as fault:
+        raise BadInput(f"the logo: {fault}") from fault
+    return svg
 
 
 def _text(data: bytes) -> str:
@@ -225,6 +236,11 @@ def typst_source(folders: Sequence[Path], papers: Sequence[AnyPaper], size: str 
     for paper in papers:
         env = pdf.environment_of(tuple(folders), paper.heading.lang)
         names = context(paper, "typ.j2", partial(render, env))
+        if isinstance(paper, Paper):
+            head = paper.heading
+            names |= answer_pages.names(
+                paper.handouts, head.title, head.student, head.lang, partial(render, env)
+            )
         body = Markup(render(env, f"{TEMPLATES[type(paper)]}.typ.j2", names))
         contexts.append(names | {"document": body})
     first = contexts[0]

@@ -17,12 +17,13 @@ from coursework.errors import BadStatement
 from coursework.figures import Beginning, Figure, Picture
 from coursework.figures.text import SIZE
 from coursework.figures.writing import Letters
+from coursework.language.numbers import rounded
 from coursework.markup import markdown as markup
 from coursework.markup.spoken import spoken
 from coursework.markup.typst import to_typst
-from coursework.rendering import feedback, views
+from coursework.rendering import answer_pages, feedback, views
 from coursework.rendering.environment import environment, render
-from coursework.sheets.sheet import FeedbackSheet
+from coursework.sheets.sheet import AnswerSheet, FeedbackSheet
 
 _LOCAL = threading.local()
 _FORGETTING = 40  #: documents, a third of a millisecond each
@@ -51,10 +52,13 @@ def source(folders: Sequence[Path], sheets: Sequence[views.Sheet], paper: str = 
 
 def _context(folders: Sequence[Path], sheet: views.Sheet) -> dict[str, Any]:
     """The names that a sheet's template sees."""
-    if not isinstance(sheet, FeedbackSheet):
+    env = environment_of(tuple(folders), views.handout_of(sheet).lang)
+    if isinstance(sheet, FeedbackSheet):
+        return feedback.context(sheet, "typ.j2", partial(render, env))
+    if isinstance(sheet, AnswerSheet):
         return views.context(sheet)
-    env = environment_of(tuple(folders), sheet.handout.lang)
-    return feedback.context(sheet, "typ.j2", partial(render, env))
+    called = answer_pages.names([sheet], sheet.title, sheet.student, sheet.lang, partial(render, env))
+    return views.context(sheet) | called
 
 
 # ------------------------------------------------------------------------ fonts
@@ -191,7 +195,9 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "typed": markup.typst_typed,
         "drawing": _drawing,
     }
-    return environment(folders, lang, markup.typst_text, filters)
+    env = environment(folders, lang, markup.typst_text, filters | answer_pages.filters())
+    env.filters.update(answer_pages.queries())
+    return env
 
 
 def _drawing(figure: Figure | Picture | Beginning, alt: str, room: tuple[float, float] | None = None) -> str:
@@ -212,4 +218,4 @@ def _letters(label: Letters, width: float) -> tuple[object, ...]:
         (run.text, run.italic, *(round(x * SIZE, 2) for x in (run.size, -run.rise, run.back)))
         for run in label.runs
     ]
-    return round(label.x - width / 2, 2), round(label.y, 2), runs
+    return rounded(label.x - width / 2, 2), rounded(label.y, 2), runs

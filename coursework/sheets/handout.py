@@ -12,6 +12,7 @@ from coursework.language.numbers import localise, plain, unit_text
 from coursework.language.words import words as engine_words
 from coursework.model import Part
 from coursework.sheets.sheet import Given, Handout, Question
+from coursework.sheets.units import units_text
 
 if TYPE_CHECKING:
     from coursework.course.variant import Variant
@@ -118,11 +119,6 @@ def _question(variant: Variant, number: int, part: Part, ways: Sequence[str]) ->
         judge=part.judge,
         key=answer_keys(variant.parts)[part.id],
     )
-
-
-def units_text(part: Part, lang: str) -> str:
-    """The unit of a part as it is printed; the units of its columns, parted by a bar."""
-    return " | ".join(filter(None, (unit_text(unit, lang) for unit in part.sort.units(part.unit))))
 
 
 def tolerance_words(part: Part, lang: str) -> str:

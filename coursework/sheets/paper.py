@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from coursework.sheets.answer_pages import AnswerPage
 from coursework.sheets.sheet import AnswerSheet, FeedbackSheet, Handout
 
 
@@ -42,6 +43,11 @@ class Paper:
 
     heading: Heading
     handouts: tuple[Handout, ...]
+
+    @property
+    def answer_pages(self) -> tuple[AnswerPage, ...]:
+        """Where the paper is answered, if not between its lines."""
+        return self.handouts[0].answer_pages if self.handouts else ()
 
     @property
     def points(self) -> float:

@@ -17,6 +17,7 @@ from coursework.course.lessons import Lesson as Lesson
 if TYPE_CHECKING:
     from coursework.figures import Figure, Picture
     from coursework.polygons.construction import Construction
+    from coursework.sheets.answer_pages import AnswerPage
 
 
 @dataclass(frozen=True)
@@ -78,6 +79,9 @@ class Handout:
     record: Mapping[str, object]  #: the variant's JSON record
     more_figures: tuple[tuple[Figure | Picture, str], ...] = ()  #: besides the first, each with what it shows
     drawing_mm: tuple[int, int] | None = None  #: width and height of the box to draw in, where there is one
+    answer_pages: tuple[
+        AnswerPage, ...
+    ] = ()  #: behind the statement, or the paper that it is of, where it is answered there
 
     @property
     def points(self) -> float:

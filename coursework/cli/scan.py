@@ -1,0 +1,110 @@
+"""The command that reads paper back: scan."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from coursework.cli.options import DONE, FOUND, FilePath, decimal_option, opened, writes
+from coursework.cli.printing import progress_bar
+from coursework.errors import BadInput, counted
+
+if TYPE_CHECKING:
+    from coursework.scanning.scan import ScanBook
+
+_TOLD = 10  #: lines of a kind that are told
+
+
+@click.command()
+@click.argument("scans", nargs=-1, type=FilePath(path_type=Path))
+@click.option(
+    "--issued",
+    required=True,
+    type=FilePath(path_type=Path, dir_okay=False),
+    help="The issued.json of the build that printed the answer pages.",
+)
+@click.option(
+    "--out",
+    type=FilePath(path_type=Path, file_okay=False),
+    help="Folder to write, and to go on with; read/ beside issued.json unless told.",
+)
+@click.option(
+    "--typed",
+    multiple=True,
+    type=FilePath(path_type=Path, dir_okay=False),
+    help="What was typed on the page of the queue; typed.csv in the folder is read without this.",
+)
+@click.option(
+    "--sure",
+    type=click.FloatRange(0.9, 1.0),
+    default=0.995,
+    show_default=True,
+    help="The confidence in a box below which nothing is guessed: a person reads it. In black and white doubt counts fivefold.",
+)
+@decimal_option
+@click.pass_context
+def scan(
+    context: click.Context,
+    scans: Sequence[Path],
+    issued: Path,
+    out: Path | None,
+    typed: Sequence[Path],
+    sure: float,
+    decimal: str,
+) -> int:
+    """Read scans of answer pages: PDFs, pictures, zips and folders of them, in any order.
+
+    What could be read is in answers.csv, for 'coursework grade'; what a person must look at, on the page queue/index.html;
+    what is no page of this paper, in rejected.csv. Run again on more scans it adds to what is there.
+    """
+    if issued.is_dir():
+        raise BadInput(f"--issued takes a file; {issued} is a folder: name the issued.json that build wrote")
+    from coursework.scanning import scan as scanning
+    from coursework.system.tables import SPREADSHEETS
+
+    out = out or issued.parent / "read"
+    writes(context, out)
+    with progress_bar("reading", None) as advance:
+        book = scanning.scan(
+            opened(context),
+            scans,
+            issued,
+            out,
+            typed=typed,
+            least=sure,
+            spreadsheet=SPREADSHEETS[decimal],
+            progress=advance,
+        )
+    return _told(book, out)
+
+
+def _told(book: ScanBook, out: Path) -> int:
+    """Say what a folder of scans holds."""
+    beside = [(book.statements, "of statements"), (book.blank, "blank"), (book.copies, "copied")]
+    more = "".join(f", {number} {what}" for number, what in beside if number)
+    click.echo(
+        f"{counted(book.pages, 'page')}{more}: {counted(book.answers, 'answer')}; see {out / 'answers.csv'}"
+    )
+    if book.waiting:
+        what = "1 place waits" if book.waiting == 1 else f"{book.waiting} places wait"
+        click.echo(f"{what} for a person: open {out / 'queue' / 'index.html'}")
+    if book.absent:
+        click.echo(f"{counted(book.absent, 'paper')} not scanned; see {out / 'missing.csv'}")
+    if book.unused:
+        click.echo(
+            f"coursework: note: {counted(book.unused, 'line')} of typed.csv fit nothing that was scanned",
+            err=True,
+        )
+    _told_some([f"{whose} missing" for whose in book.missing], out / "missing.csv")
+    _told_some([f"{place}: {why}" for place, why in book.rejected], out / "rejected.csv")
+    return FOUND if book.needs_a_look else DONE
+
+
+def _told_some(lines: Sequence[str], rest: Path) -> None:
+    for line in lines[:_TOLD]:
+        click.echo(f"coursework: {line}", err=True)
+    if len(lines) > _TOLD:
+        click.echo(f"coursework: and {len(lines) - _TOLD} more in {rest}", err=True)

@@ -1,0 +1,39 @@
+"""The sheets of what was issued, once more."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from coursework.course.course import Course
+from coursework.errors import BadInput
+from coursework.making.issued import Issued
+from coursework.making.issuing import Issue, check_languages
+from coursework.making.students import file_stems
+
+
+def issued_again(course: Course, issued: Issued, langs: Sequence[str] = ()) -> list[Issue]:
+    """What was issued, to be written once more: no variant is drawn. In the language of each record unless told.
+
+    Raises
+    ------
+    BadInput
+        It is what an assignment dealt, a record is of a later version, or an exercise has no text in a language.
+    UnknownName
+        The course lacks an exercise.
+    """
+    if issued.assignment is not None or issued.is_pool:
+        raise BadInput(
+            "what was issued is of an assignment or a platform's pool, which make papers of several exercises; who deals it "
+            "writes them once more"
+        )
+    stems = dict(zip(issued.students, file_stems(issued.students), strict=True))
+    issues = []
+    for key in issued.records:
+        exercise, seed = key
+        for student in issued.owners.get(key, ("",)):
+            variant = course[exercise].from_record(issued.record_of(student, exercise, seed))
+            own = tuple(langs) or (variant.lang,)
+            check_languages(course[exercise], own)
+            stem, columns = stems.get(student, f"{seed:05d}"), issued.columns.get(student, {})
+            issues.append(Issue(student, variant.in_language(own[0]), own, stem, columns=columns))
+    return issues

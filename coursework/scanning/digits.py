@@ -1,0 +1,134 @@
+"""Digits and minus signs written by hand in printed boxes: what stands in each, and how sure that is."""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from types import ModuleType
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coursework.system.extras import library
+
+Floats: TypeAlias = NDArray[np.float32]
+
+EMPTY = -1
+
+#: Classes of the net: the ten digits, an empty box, a minus sign, and what is none of these.
+BLANK, MINUS, OTHER = 10, 11, 12
+
+#: A digit, or an emptiness, of at least this confidence is taken; what is below goes to a person (docs/scans.md: how often it errs).
+CONFIDENT = 0.995
+
+#: What the net sees: a box of 7 mm by 9 mm at 4 px/mm, and a rim of two pixels.
+HEIGHT, WIDTH, RIM = 36, 28, 2
+
+#: The outline, printed or a little beside its place, lies within this many pixels of the net's picture.
+OUTLINE = 3
+
+#: Cells that go through the net at once: bounds the memory.
+BATCH = 256
+
+
+def read_digits(cells: NDArray[np.uint8]) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """The digit in each box, ``EMPTY`` for none, and the confidence in it.
+
+    Parameters
+    ----------
+    cells
+        Grey pictures, dark ink on light paper, shape ``(n, height, width)``: each a box as it is printed,
+        cut along the middle of its outline (up to 0.7 mm beside it does no harm), of any resolution.
+
+    Returns
+    -------
+    digits, confidences
+        Shape ``(n,)`` each. A confidence is the calibrated probability that the box holds this digit, or nothing;
+        it is low where the box holds something else: a letter, a struck-out digit, two digits, a part of one.
+    """
+    chances = probabilities(prepared(cells))
+    taken = chances[:, : BLANK + 1].argmax(axis=1)
+    return np.where(taken == BLANK, EMPTY, taken), chances[np.arange(len(taken)), taken]
+
+
+def read_signs(cells: NDArray[np.uint8]) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """Whether a minus sign stands in each box, and the confidence in that.
+
+    Boxes as for :func:`read_digits`. Low where the box holds neither nothing nor a minus: a plus, an upright stroke.
+    """
+    chances = probabilities(prepared(cells))
+    present = chances[:, MINUS] > chances[:, BLANK]
+    return present, np.where(present, chances[:, MINUS], chances[:, BLANK])
+
+
+def prepared(cells: NDArray[np.uint8]) -> Floats:
+    """What the net sees of boxes: darkness against the paper, 0 to 1, on the scale of the darkest ink; shape (n, 40, 32)."""
+    seen = np.zeros((len(cells), HEIGHT + 2 * RIM, WIDTH + 2 * RIM), np.float32)
+    for cell, place in zip(cells, seen, strict=True):
+        place[RIM:-RIM, RIM:-RIM] = _darkness(_resized(cell))
+    return seen
+
+
+def probabilities(seen: Floats) -> NDArray[np.float64]:
+    """Calibrated probabilities of the classes, shape (n, 13), of prepared boxes."""
+    batches = [_softmax(_logits(seen[k : k + BATCH])) for k in range(0, len(seen), BATCH)]
+    return np.concatenate(batches) if batches else np.zeros((0, OTHER + 1))
+
+
+def _opencv() -> ModuleType:
+    return library("cv2", "Reading scans needs", "scan")
+
+
+def _resized(cell: NDArray[np.uint8]) -> Floats:
+    cv2 = _opencv()
+    smaller = cell.shape[0] >= HEIGHT
+    how = cv2.INTER_AREA if smaller else cv2.INTER_LINEAR
+    grey: Floats = cv2.resize(cell, (WIDTH, HEIGHT), interpolation=how).astype(np.float32)
+    return grey
+
+
+def _darkness(grey: Floats) -> Floats:
+    """Darkness against the paper on the scale of the darkest ink inside; what is fainter than a quarter stays faint."""
+    paper = max(float(np.percentile(grey, 90)), 1.0)
+    dark = np.clip(1 - grey / paper, 0, 1)
+    ink = float(np.percentile(dark[OUTLINE:-OUTLINE, OUTLINE:-OUTLINE], 98))
+    scaled: Floats = np.minimum(dark / max(ink, 0.25), 1).astype(np.float32)
+    return scaled
+
+
+@cache
+def _weights() -> dict[str, Floats]:
+    with (files("coursework.scanning") / "digits.npz").open("rb") as file, np.load(file) as stored:
+        return {name: stored[name].astype(np.float32) for name in stored.files}
+
+
+def _logits(seen: Floats) -> Floats:
+    """Five convolutions, a maximum over two by two, two full layers."""
+    w = _weights()
+    flow = seen[..., None]
+    for layer, stride in (("a", 1), ("b", 2), ("c", 1), ("d", 2), ("e", 1)):
+        flow = np.maximum(_convolved(flow, w[f"{layer}.weight"], stride) + w[f"{layer}.bias"], 0)
+    n, height, width, channels = flow.shape
+    pooled = flow.reshape(n, height // 2, 2, width // 2, 2, channels).max(axis=(2, 4))
+    hidden = np.maximum(pooled.reshape(n, -1) @ w["f.weight"] + w["f.bias"], 0)
+    logits: Floats = (hidden @ w["g.weight"] + w["g.bias"]) / w["temperature"]
+    return logits
+
+
+def _convolved(flow: Floats, weight: Floats, stride: int) -> Floats:
+    """A 3 by 3 convolution with a rim of zeros; ``flow`` (n, h, w, in), ``weight`` (9 in, out)."""
+    around = np.pad(flow, ((0, 0), (1, 1), (1, 1), (0, 0)))
+    height, width = flow.shape[1:3]
+    shifted = [
+        around[:, row : row + height : stride, column : column + width : stride]
+        for row in range(3)
+        for column in range(3)
+    ]
+    return np.concatenate(shifted, axis=-1) @ weight
+
+
+def _softmax(logits: Floats) -> NDArray[np.float64]:
+    raised = np.exp(logits.astype(np.float64) - logits.max(axis=1, keepdims=True))
+    chances: NDArray[np.float64] = raised / raised.sum(axis=1, keepdims=True)
+    return chances

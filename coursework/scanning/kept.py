@@ -1,0 +1,214 @@
+"""What is kept of each page that was read, so that a job that was stopped goes on, and one that is run on more scans adds.
+
+A page is known by the digest of its file and its number there, never by a file's name or place; what is kept of it is written
+whole or not at all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, TypeVar, get_type_hints
+
+from coursework.errors import BadInput
+from coursework.system.json_files import read_json
+from coursework.system.limits import MOST_PAGES
+from coursework.system.tables import json_text
+from coursework.system.writing import write_whole
+
+_Kept = TypeVar("_Kept", "FieldKept", "PageKept", "FileKept")
+
+FORMAT = 1  #: of what is kept; another one is read anew
+FOLDER, PICTURES, CROPS, FILES = ".scanned", "pictures", "crops", "files.json"
+SCALE = 8  #: pixels to the mm of a picture that is kept
+
+#: What a page is.
+ANSWERS, STATEMENT, BLANK, LOST, REFUSED = "answers", "statement", "blank", "lost", "refused"
+
+
+@dataclass(frozen=True)
+class FieldKept:
+    """What was read in the place of one answer, or of one coordinate of it."""
+
+    exercise: str
+    seed: int
+    part: str
+    coordinate: int
+    coordinates: int
+    what: str  #: ticks, number, written, drawing
+    text: str  #: what was read, or the likeliest of it
+    confidence: float
+    waits: str  #: why a person must look; empty where none must
+    crop: str  #: file of its own picture, below the folder of the job; empty where none was cut
+    box: tuple[float, float, float, float]  #: x, y, width, height on the page, mm
+
+
+@dataclass(frozen=True)
+class PageKept:
+    """What one page of a scan is: answers, a page of a statement, blank, lost (nobody knows which page it is), or refused."""
+
+    what: str
+    reason: str = ""  #: why nothing was read of it
+    code: str = ""  #: of its paper
+    number: int = 0  #: of the page among the answer pages of its paper
+    fields: tuple[FieldKept, ...] = ()
+    is_straight: bool = False  #: its picture is the page laid flat, at :data:`SCALE`
+    has_picture: bool = True
+    least: float = 0.0  #: the confidence below which it was left to a person
+
+
+@dataclass(frozen=True)
+class FileKept:
+    """A file that was scanned."""
+
+    name: str
+    digest: str
+    pages: int
+    fault: str = ""
+
+
+def page_id(digest: str, number: int) -> str:
+    """The name of a page, from 1, of a file."""
+    return f"{digest}-{number:04d}"
+
+
+def put_page(out: Path, name: str, page: PageKept, pictures: Mapping[str, bytes]) -> None:
+    """Keep a page: its pictures first, by their files' names, so that a page that is kept has them."""
+    for file, data in pictures.items():
+        write_whole(out / file, data)
+    write_whole(out / FOLDER / f"{name}.json", json_text(page_as_json(page)).encode())
+
+
+def picture_of(name: str) -> str:
+    """Where the picture of a page is, below the folder of the job."""
+    return f"{PICTURES}/{name}.jpg"
+
+
+def crop_of(name: str, place: int) -> str:
+    """Where the picture of a field is, below the folder of the job."""
+    return f"{CROPS}/{name}-{place:02d}.png"
+
+
+def page_of(told: Mapping[str, Any]) -> PageKept | None:
+    """A page as JSON holds it; None where it is of another format."""
+    own = dict(told)
+    try:
+        if own.pop("format") != FORMAT:
+            return None
+        fields = tuple(_checked(FieldKept(**{**one, "box": _box(one["box"])})) for one in own.pop("fields"))
+        return _checked(PageKept(**own, fields=fields))
+    except (ValueError, KeyError, TypeError):
+        return None
+
+
+def _box(numbers: Any) -> tuple[float, float, float, float]:
+    """Four numbers.
+
+    Raises
+    ------
+    TypeError, ValueError
+        They are others.
+    """
+    x, y, width, height = numbers
+    if not all(type(number) in _TYPES[float] for number in numbers):
+        raise TypeError(numbers)
+    return x, y, width, height
+
+
+_TYPES = {str: (str,), int: (int,), float: (int, float), bool: (bool,)}
+
+
+def _checked(kept: _Kept) -> _Kept:
+    """What was kept, if its fields are of the sorts that they are kept as.
+
+    Raises
+    ------
+    TypeError
+        One is not.
+    """
+    for name, sort in get_type_hints(type(kept)).items():
+        if sort in _TYPES and type(getattr(kept, name)) not in _TYPES[sort]:
+            raise TypeError(f"{name} is {getattr(kept, name)!r}"[:80])
+    return kept
+
+
+def page_as_json(page: PageKept) -> dict[str, Any]:
+    """A page as JSON holds it."""
+    return {"format": FORMAT, **asdict(page)}
+
+
+def page_kept(out: Path, name: str) -> PageKept | None:
+    """What is kept of a page; None where that is nothing, or of another format."""
+    try:
+        told = read_json(out / FOLDER / f"{name}.json")
+    except BadInput:
+        return None
+    found = page_of(told) if isinstance(told, dict) else None
+    if found is None:
+        return None
+    return found if not found.has_picture or (out / picture_of(name)).is_file() else None
+
+
+def files_kept(out: Path) -> list[FileKept]:
+    """The files that were scanned before.
+
+    Raises
+    ------
+    BadInput
+        The list is there, and is none.
+    """
+    path = out / FOLDER / FILES
+    if not path.exists():
+        return []
+    try:
+        return [_checked_file(FileKept(**one)) for one in read_json(path)]
+    except (ValueError, TypeError) as fault:
+        raise BadInput(
+            f"{path} is not as 'coursework scan' leaves it ({str(fault)[:80]}): remove it and name all scans again, or choose "
+            "another --out"
+        ) from fault
+
+
+def _checked_file(kept: FileKept) -> FileKept:
+    if not 0 <= _checked(kept).pages <= MOST_PAGES:
+        raise ValueError(f"{kept.name} of {str(kept.pages)[:20]} pages")
+    return kept
+
+
+def put_files(out: Path, files: Iterable[FileKept]) -> None:
+    """Keep the list of files."""
+    write_whole(out / FOLDER / FILES, json_text([asdict(one) for one in files]).encode())
+
+
+def joined(before: Iterable[FileKept], now: Iterable[FileKept]) -> list[FileKept]:
+    """The files of before and of now, each once, in the order of their names."""
+    found = {(one.name, one.digest): one for one in (*before, *now)}
+    return [found[key] for key in sorted(found)]
+
+
+@dataclass(frozen=True)
+class Scanned:
+    """One page of one file, as it stands in the list of pages."""
+
+    file: FileKept
+    number: int  #: in the file; 0 for a file of which no page can be read
+    id: str
+    page: PageKept
+    is_copy: bool = False  #: a file of the same content was met before
+
+
+def scanned(out: Path, files: Iterable[FileKept]) -> Iterator[Scanned]:
+    """Every page of the files, in order; a file that cannot be read is one."""
+    met: set[str] = set()
+    for file in files:
+        if file.fault:
+            yield Scanned(file, 0, "", PageKept(REFUSED, file.fault, has_picture=False))
+            continue
+        for number in range(1, file.pages + 1):
+            name = page_id(file.digest, number)
+            page = page_kept(out, name) or PageKept(
+                REFUSED, "what was read of it is gone: name its scan again", has_picture=False
+            )
+            yield Scanned(file, number, name, page, file.digest in met)
+        met.add(file.digest)

@@ -1,0 +1,205 @@
+"""Rows of boxes to numbers: sign, digits, decimals, power of ten, unit.
+
+The rules, for a row that is not empty:
+
+- anything in the free box or beside the boxes, a stroke across boxes, a box that is not surely empty or one digit: a person reads it;
+- the digits before the comma stand together, at the start of their boxes or at its end, none missing between;
+- the decimals stand together from the comma on, and only after a digit before it;
+- nothing runs through a box from above it to below, as the edge of a shadow does;
+- a one between digits does not lean as the bar of a fraction does;
+- a sign is one level stroke, and stands before digits; so does that of the power; a power stands after digits;
+- the unit is said where its box is ticked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coursework.scanning.beside import written_beside
+from coursework.scanning.digits import CONFIDENT
+from coursework.scanning.straightening import SCALE, Straight
+from coursework.scanning.strokes import STRONG, cells, has_stroke, is_bare, pieces, runs_through
+from coursework.scanning.ticks import EMPTY, TICKED, UNSURE, tick
+from coursework.sheets.answer_pages import Box, Field
+
+#: Pictures of boxes ``(n, h, w)``, dark ink on light, to digits, -1 for an empty one, and the confidence in each.
+Reader = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+LEAST = CONFIDENT  #: the confidence in a box below which a person reads it
+_DASH, _UPRIGHT = 1.1, 2.0  #: mm, the least length of a minus sign, and of a stroke of a digit
+_THIN, _LEAN = 0.15, 16.0  #: of a fraction's bar: its breadth to its length, and degrees from upright
+_CELL = (90, 70)  #: pixels of a box that is handed to the reader
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a field says: its ``text``, the least ``confidence`` of its boxes, the word of why it waits, if it does, and
+    the ``cases`` that are ticked.
+
+    The text of what waits is what it looks like, for a person to confirm.
+    """
+
+    text: str
+    confidence: float = 1.0
+    waits: str = ""
+    cases: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class _Row:
+    """The boxes of a field as read: -1 empty, 0 to 9, and what the signs and the unit say."""
+
+    digits: tuple[int, ...]
+    decimals: tuple[int, ...]
+    power: tuple[int, ...]
+    sign: str
+    power_sign: str
+    unit: str
+
+
+def number(page: Straight, field: Field, reader: Reader, least: float = LEAST) -> Reading:
+    """What a field for a number says."""
+    if field.free is not None and not is_bare(page, field.free, 0.7):
+        return Reading("", 0.0, "free")
+    boxes = [*field.digits, *field.decimals]
+    everywhere = [b for b in (field.sign, *boxes, field.power_sign, *field.power) if b is not None]
+    unit = tick(page, field.unit) if field.unit is not None else EMPTY
+    signs = (field.sign, field.power_sign)
+    bare = {box: _is_bare(page, box, _DASH if box in signs else _UPRIGHT) for box in everywhere}
+    if all(bare.values()):
+        read = Reading("", 1.0, "" if unit in (EMPTY, TICKED) else "unit")
+    else:
+        read = _written(page, field, reader, least, bare, unit)
+    return read if read.waits or not written_beside(page, field) else replace(read, waits="free")
+
+
+def _is_bare(page: Straight, box: Box, stroke: float) -> bool:
+    """Whether a box is empty for certain, of short strokes too: what is lost of a sign is the whole of it."""
+    return is_bare(page, box) and not has_stroke(page, box, stroke)
+
+
+def _written(
+    page: Straight, field: Field, reader: Reader, least: float, bare: dict[Box, bool], unit: str
+) -> Reading:
+    """What a row says that is not empty."""
+    rows = [[*field.digits, *field.decimals], list(field.power)]
+    found: dict[Box, tuple[int, float]] = {}
+    told = "digit" if any(runs_through(page, box) for box, empty in bare.items() if not empty) else ""
+    for row in rows:
+        if row:
+            pictures, across = cells(page, row)
+            read = _digits(pictures, [bare[b] for b in row], reader)
+            told = told or across or ("digit" if _has_bar(pictures, [digit for digit, _ in read]) else "")
+            found |= zip(row, read, strict=True)
+    signs = [_sign(page, box, bare) for box in (field.sign, field.power_sign)]
+    row_read = _Row(
+        tuple(found[b][0] for b in field.digits),
+        tuple(found[b][0] for b in field.decimals),
+        tuple(found[b][0] for b in field.power),
+        signs[0],
+        signs[1],
+        unit,
+    )
+    confidence = min((c for _, c in found.values()), default=1.0)
+    told = told or ("digit" if confidence < least else "") or _against_rules(row_read)
+    return Reading(_text(row_read, field.unit_text), confidence, told)
+
+
+def _digits(pictures: Sequence[np.ndarray], bare: Sequence[bool], reader: Reader) -> list[tuple[int, float]]:
+    """Each box's digit, -1 for an empty one, and the confidence in it: none in a box that is neither."""
+    found = [(-1, 1.0)] * len(bare)
+    inked = [k for k, empty in enumerate(bare) if not empty]
+    if inked:
+        read, sure = reader(np.stack([_framed(pictures[k]) for k in inked]))
+        for k, digit, c in zip(inked, read, sure, strict=True):
+            found[k] = int(digit), float(c) if digit >= 0 else 0.0
+    return found
+
+
+def _has_bar(pictures: Sequence[np.ndarray], digits: Sequence[int]) -> bool:
+    """Whether what looks like a one between two digits leans as the bar of a fraction does: ``1/3`` is not 113."""
+    between = zip(digits, digits[1:], digits[2:], strict=False)
+    return any(
+        one == 1 and min(before, after) >= 0 and _leans(pictures[k])
+        for k, (before, one, after) in enumerate(between, start=1)
+    )
+
+
+def _leans(picture: np.ndarray) -> bool:
+    """Whether ink is one straight stroke that leans to the right."""
+    y, x = np.nonzero(255 - picture > STRONG)
+    if len(x) < SCALE:
+        return False
+    spread, along = np.linalg.eigh(np.cov(x, y))
+    dx, dy = along[:, 1] * (np.sign(along[1, 1]) or 1.0)
+    is_straight = spread[0] < (_THIN * spread[1] ** 0.5) ** 2
+    return bool(is_straight and np.degrees(np.arctan2(-dx, dy)) > _LEAN)
+
+
+def _framed(picture: np.ndarray) -> np.ndarray:
+    """A box at the size that all have; the rest is paper."""
+    high, wide = _CELL
+    cell = np.full(_CELL, 255, np.uint8)
+    piece = picture[:high, :wide]
+    cell[: piece.shape[0], : piece.shape[1]] = piece
+    return cell
+
+
+def _sign(page: Straight, box: Box | None, bare: dict[Box, bool]) -> str:
+    """``-`` where a box for a sign holds one level stroke, nothing where it is empty, ``?`` otherwise."""
+    if box is None or bare[box]:
+        return ""
+    (picture,), _ = cells(page, [box])
+    ink = pieces(255 - picture > STRONG)
+    strokes = ink.boxes[1:][ink.areas[1:] > 0.3 * SCALE**2]
+    if len(strokes) != 1:
+        return "?"
+    _, top, width, height = (int(v) for v in strokes[0])
+    middle = (top + height / 2) / picture.shape[0]
+    level = width > 1.7 * SCALE and height < 0.45 * width and height < 2.2 * SCALE
+    return "-" if level and 0.15 < middle < 0.85 else "?"
+
+
+def _against_rules(row: _Row) -> str:
+    """The word of the first rule that a row breaks; none if it keeps them all."""
+    broken = (
+        ("sign", "?" in (row.sign, row.power_sign)),
+        ("unit", row.unit not in (EMPTY, TICKED)),
+        ("comma", not _any(row.digits)),
+        ("gap", not _stands_together(row.digits) or _gap(row.decimals) or not _stands_together(row.power)),
+        ("power", bool(row.power_sign) and not _any(row.power)),
+    )
+    return next((word for word, is_broken in broken if is_broken), "")
+
+
+def _any(boxes: Sequence[int]) -> bool:
+    return any(digit >= 0 for digit in boxes)
+
+
+def _gap(boxes: Sequence[int]) -> bool:
+    """Whether an empty box stands before a digit."""
+    filled = [digit >= 0 for digit in boxes]
+    return filled != sorted(filled, reverse=True)
+
+
+def _stands_together(boxes: Sequence[int]) -> bool:
+    """Whether digits fill the first boxes, or the last ones, without a gap."""
+    return not _gap(boxes) or not _gap(boxes[::-1])
+
+
+def _text(row: _Row, unit: str) -> str:
+    """The number as it is typed."""
+
+    def joined(boxes: Sequence[int]) -> str:
+        return "".join(str(digit) for digit in boxes if digit >= 0)
+
+    decimals = f".{joined(row.decimals)}" if _any(row.decimals) else ""
+    power = f"e{row.power_sign}{joined(row.power)}" if _any(row.power) else ""
+    said = f" {unit}" if row.unit == TICKED and unit else ""
+    return f"{row.sign}{joined(row.digits)}{decimals}{power}{said}".replace("?", "")
+
+
+__all__ = ["LEAST", "UNSURE", "Reader", "Reading", "number"]

@@ -1,0 +1,232 @@
+"""Pages of one file, read and kept: what a process does while others read other pages."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from coursework.course.course import Course, opened
+from coursework.course.variant import Variant
+from coursework.errors import CourseworkError
+from coursework.making.answer_papers import answer_papers
+from coursework.scanning.kept import (
+    ANSWERS,
+    BLANK,
+    LOST,
+    REFUSED,
+    SCALE,
+    STATEMENT,
+    FieldKept,
+    PageKept,
+    crop_of,
+    page_id,
+    picture_of,
+    put_page,
+)
+from coursework.sheets.answer_pages import AnswerPage, Field
+
+_BARE = 0.0002  #: share of dark pixels below which a page is blank: less than a code and four marks have
+_PAPER = 90  #: of 255: paper of a blank page is lighter
+_HIGHEST = 2376  #: pixels of a picture that is kept of a page that is not straight
+_QUALITY = 60  #: of a JPEG
+_LAID_OUT = 400  #: papers that are kept laid out
+
+#: By what :func:`coursework.scanning.pages.read_page` finds: what the page is, and what is told of it.
+_FOUND = {
+    "no code": (LOST, "no code of a page was found, or it cannot be read"),
+    "no sheet": (REFUSED, "its code is not of a sheet"),
+    "two pages": (REFUSED, "two sheets on one picture: scan them one by one"),
+    "other assignment": (REFUSED, "a sheet of something else that was issued"),
+    "statement": (STATEMENT, ""),
+}
+
+
+class Desk(NamedTuple):
+    """With what pages are read."""
+
+    root: str  #: of the course's folder
+    issued: str  #: path of the ``issued.json``
+    stamp: str  #: its digest: another file is read anew
+    out: str
+    least: float
+
+
+class Pages(NamedTuple):
+    """Some pages of one file."""
+
+    path: str
+    digest: str
+    first: int
+    last: int
+
+
+class Papers(Mapping[str, Sequence[AnswerPage]]):
+    """The answer pages of each paper by its code, laid out when they are asked for."""
+
+    def __init__(self, course: Course[Any], issued: Mapping[str, Any]):
+        self.course, self.papers = course, answer_papers(issued)
+        self._laid_out = lru_cache(_LAID_OUT)(self._pages)
+        self.variant = lru_cache(8 * _LAID_OUT)(self._variant)
+
+    def _pages(self, code: str) -> tuple[AnswerPage, ...]:
+        paper = self.papers[code]
+        return paper.pages(self.course, str(paper.records[0].get("lang", "en")))
+
+    def __getitem__(self, code: str) -> Sequence[AnswerPage]:
+        return self._laid_out(code)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.papers)
+
+    def __len__(self) -> int:
+        return len(self.papers)
+
+    def _variant(self, code: str, place: int) -> Variant:
+        """The variant of an exercise of a paper."""
+        record = self.papers[code].records[place]
+        return self.course[record["exercise"]].from_record(record)
+
+
+@lru_cache(1)
+def _papers(root: str, issued: str, stamp: str) -> Papers:
+    return Papers(opened(root, Variant), json.loads(Path(issued).read_bytes()))
+
+
+def count_pages(path: str) -> tuple[int, str]:
+    """How many pages a file has; or none, and why."""
+    from coursework.scanning.pictures import page_count
+
+    try:
+        return page_count(Path(path)), ""
+    except CourseworkError as fault:
+        return 0, str(fault)
+
+
+def read_pages(desk: Desk, pages: Pages) -> int:
+    """Read pages of a file and keep what they say; gives how many."""
+    papers = _papers(desk.root, desk.issued, desk.stamp)
+    for number in range(pages.first, pages.last + 1):
+        name = page_id(pages.digest, number)
+        page, pictures = _read(Path(pages.path), number, name, papers, desk.least)
+        put_page(Path(desk.out), name, page, pictures)
+    return pages.last + 1 - pages.first
+
+
+def _read(
+    path: Path, number: int, name: str, papers: Papers, least: float
+) -> tuple[PageKept, dict[str, bytes]]:
+    """What a page is, and its pictures by their files."""
+    from coursework.scanning.digits import read_digits
+    from coursework.scanning.pages import read_page
+    from coursework.scanning.pictures import opencv, picture_at
+
+    try:
+        picture = picture_at(path, number)
+    except CourseworkError as fault:
+        return PageKept(REFUSED, str(fault), has_picture=False, least=least), {}
+    try:
+        found = read_page(picture, papers, read_digits, least)
+    except opencv().error as fault:  # one picture does not stop a pile: a person looks at it
+        reason = f"reading it failed: {str(fault.err or fault)[:100]}"
+        return PageKept(LOST, reason, least=least), {picture_of(name): _jpeg(picture.grey, _HIGHEST)}
+    if found.found == "no code" and _is_bare(picture.grey):
+        return PageKept(BLANK, least=least), {picture_of(name): _jpeg(picture.grey, 600)}
+    if found.page is None or found.found == "statement":
+        what, reason = _FOUND.get(found.found, (LOST, found.found))
+        return PageKept(what, reason, _code(found.code), least=least), {
+            picture_of(name): _jpeg(found.grey, _HIGHEST)
+        }
+    code = _code(found.code)
+    if not found.fields:  # known, but it could not be laid flat
+        return typed_page(papers, code, found.page.number, least), {
+            picture_of(name): _jpeg(found.grey, _HIGHEST)
+        }
+    pictures = {picture_of(name): _jpeg(found.grey, round(found.page.height * SCALE))}
+    fields = []
+    for place, one in enumerate(found.fields):
+        crop = ""
+        if one.crop is not None:
+            crop = crop_of(name, place)
+            pictures[crop] = _png(one.crop)
+        text = _text(one.field, one.text, one.cases, papers, code)
+        fields.append(_kept(one.field, text, float(one.confidence), one.waits, crop))
+    return PageKept(ANSWERS, "", code, found.page.number, tuple(fields), True, least=least), pictures
+
+
+def _code(text: str) -> str:
+    """The paper's code of what a QR code says."""
+    pieces = text.split(" ")
+    return pieces[1] if len(pieces) == 3 else ""
+
+
+def _text(field: Field, text: str, cases: Sequence[str], papers: Papers, code: str) -> str:
+    """What was read as students write it."""
+    if field.what != "ticks" or not cases:
+        return text
+    variant = papers.variant(code, field.place)
+    part = next(p for p in variant.parts if p.id == field.part)
+    return part.sort.from_paper(cases, part, variant)
+
+
+def _kept(field: Field, text: str, confidence: float, waits: str, crop: str) -> FieldKept:
+    box = field.whole
+    return FieldKept(
+        field.exercise, field.seed, field.part, field.coordinate, field.coordinates, field.what, text, round(confidence, 4), waits,
+        crop, (box.x, box.y, box.width, box.height),
+    )  # fmt: skip
+
+
+def typed_page(papers: Papers, code: str, number: int, least: float) -> PageKept:
+    """A page that a person types as a whole: it is known, and nothing of it could be read."""
+    page = papers[code][number - 1]
+    fields = tuple(_kept(field, "", 0.0, "page", "") for field in page.fields if field.part)
+    return PageKept(ANSWERS, "not straight", code, number, fields, least=least)
+
+
+# --------------------------------------------------------------------- pictures
+
+
+def _is_bare(grey: np.ndarray) -> bool:
+    """Whether a picture shows paper and nothing on it; what is dark all over shows no paper."""
+    inner = grey[
+        grey.shape[0] // 40 : -(grey.shape[0] // 40) or None,
+        grey.shape[1] // 40 : -(grey.shape[1] // 40) or None,
+    ]
+    paper = np.median(inner)
+    return bool(paper > _PAPER and (inner < paper - 60).mean() < _BARE)
+
+
+def _jpeg(grey: np.ndarray, height: int) -> bytes:
+    """A picture of at most so many pixels' height."""
+    from coursework.scanning.pictures import opencv
+
+    cv2 = opencv()
+    scale = min(1.0, height / max(grey.shape[0], 1))
+    size = (max(1, round(grey.shape[1] * scale)), max(1, round(grey.shape[0] * scale)))
+    smaller = cv2.resize(grey, size, interpolation=cv2.INTER_AREA) if scale < 1 else grey
+    return bytes(cv2.imencode(".jpg", smaller, [cv2.IMWRITE_JPEG_QUALITY, _QUALITY])[1])
+
+
+def _png(grey: np.ndarray) -> bytes:
+    """A crop, 16 levels of grey: enough to see pencil, and half as large."""
+    from coursework.scanning.pictures import opencv
+
+    cv2 = opencv()
+    levels = (np.minimum(grey.astype(np.uint16) + 8, 255) // 17 * 17).astype(np.uint8)
+    return bytes(cv2.imencode(".png", levels, [cv2.IMWRITE_PNG_COMPRESSION, 9])[1])
+
+
+def cut(picture: bytes, field: FieldKept) -> bytes:
+    """A field cut from the picture that is kept of its page, which is straight, with a margin about it."""
+    from coursework.scanning.pictures import opencv
+
+    cv2 = opencv()
+    page = cv2.imdecode(np.frombuffer(picture, np.uint8), cv2.IMREAD_GRAYSCALE)
+    x, y, width, height = field.box
+    top, left = (max(0, round((v - 2.0) * SCALE)) for v in (y, x))
+    return _png(page[top : round((y + height + 2.0) * SCALE), left : round((x + width + 2.0) * SCALE)])

@@ -1,0 +1,158 @@
+"""A picture to what its page says: which page it is, each answer on it, and what waits for a person, and why."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from coursework.scanning.beside import written_below, written_beside
+from coursework.scanning.codes import Code, codes_in
+from coursework.scanning.numbers import LEAST, Reader, Reading, number
+from coursework.scanning.outlines import span_of
+from coursework.scanning.pictures import Picture, is_two_toned, opencv, without_streaks
+from coursework.scanning.straightening import NotStraight, Straight, straightened
+from coursework.scanning.strokes import is_bare
+from coursework.scanning.ticks import TAKEN_BACK, TICKED, UNSURE, tick
+from coursework.sheets.answer_pages import AnswerPage, Field
+
+_CODE = re.compile(r"CW1 ([A-Z2-7]+) (\d+)/(\d+)")
+_SURER = (
+    5  #: times must a box be in black and white, where a gap of a stroke closes and an open 4 looks like a 6
+)
+
+#: What a picture may be found to be.
+FOUND = ("answers", "statement", "no code", "no sheet", "other assignment", "two pages", "not straight")
+#: Why an answer may wait for a person.
+WAITS = (
+    *("free", "struck", "joined", "digit", "sign", "gap", "comma", "power", "unit"),
+    *("tick", "two ticks", "taken back", "written", "drawing", "elsewhere"),
+)
+
+
+@dataclass(frozen=True)
+class FieldRead:
+    """What one field says: its ``text`` (empty for a blank answer), the least ``confidence`` of its boxes; and where a
+    person must look, the word of why it ``waits`` (of :data:`WAITS`) and the ``crop``, grey, 10 pixels a mm: then
+    the text is only what it looks like. ``cases`` are the cases ticked, of a choice."""
+
+    field: Field
+    text: str
+    confidence: float
+    waits: str = ""
+    cases: tuple[str, ...] = ()
+    crop: np.ndarray | None = None
+
+
+@dataclass(frozen=True)
+class PageRead:
+    """What a picture shows: ``found`` is a word of :data:`FOUND`; ``code`` the text of its code, if one was read;
+    ``fields`` what is read of ``page``; ``grey`` the page, laid flat where it could be."""
+
+    file: str
+    number: int
+    found: str
+    grey: np.ndarray
+    code: str = ""
+    page: AnswerPage | None = None
+    fields: tuple[FieldRead, ...] = ()
+
+
+def read_page(
+    picture: Picture, papers: Mapping[str, Sequence[AnswerPage]], reader: Reader, least: float = LEAST
+) -> PageRead:
+    """What a picture says, beside the answer pages of each paper by its code.
+
+    ``reader`` reads digits; what is read of a box with less confidence than ``least`` waits for a person.
+    """
+    codes = codes_in(picture.grey)
+    ours = [code for code in codes if _CODE.fullmatch(code.text)]
+    if len(ours) != 1:
+        found = "two pages" if ours else "no sheet" if codes else "no code"
+        texts = " ".join(code.text for code in ours or codes)
+        return PageRead(picture.file, picture.page, found, picture.grey, texts)
+    return _of_ours(picture, ours[0], papers, reader, least)
+
+
+def _of_ours(
+    picture: Picture,
+    code: Code,
+    papers: Mapping[str, Sequence[AnswerPage]],
+    reader: Reader,
+    least: float,
+) -> PageRead:
+    paper, page_number, _ = _CODE.fullmatch(code.text).groups()  # type: ignore[union-attr]
+    pages = {page.number: page for page in papers.get(paper, ())}
+
+    def told(found: str, page: AnswerPage | None = None) -> PageRead:
+        return PageRead(picture.file, picture.page, found, picture.grey, code.text, page)
+
+    if not pages:
+        return told("other assignment")
+    if int(page_number) == 0:
+        return told("statement")
+    page = pages.get(int(page_number))
+    if page is None or page.code_text != code.text:
+        return told("other assignment")
+    try:
+        flat = straightened(without_streaks(picture.grey), code, page)
+    except NotStraight:
+        return told("not straight", page)
+    if is_two_toned(picture.grey):
+        least = 1 - (1 - least) / _SURER
+    fields = tuple(read_field(flat, field, reader, least) for field in page.fields)
+    if any(_is_blank(one) for one in fields) and written_below(flat, page):
+        fields = tuple(_gone_astray(flat, one) if _is_blank(one) else one for one in fields)
+    return PageRead(picture.file, picture.page, "answers", flat.paper, code.text, page, fields)
+
+
+def _is_blank(one: FieldRead) -> bool:
+    return not one.waits and not one.text and not one.cases
+
+
+def _gone_astray(page: Straight, one: FieldRead) -> FieldRead:
+    """A blank field of a page on which something is written elsewhere: its answer may be that."""
+    return replace(one, confidence=0.0, waits="elsewhere", crop=cropped(page, one.field))
+
+
+def read_field(page: Straight, field: Field, reader: Reader, least: float = LEAST) -> FieldRead:
+    """What a field of a page laid flat says."""
+    if field.what == "ticks":
+        said = _ticks(page, field)
+    elif field.what == "number":
+        said = number(page, field, reader, least)
+    else:
+        said = Reading("", waits="" if is_bare(page, field.whole, 1.2) else field.what)
+    crop = cropped(page, field) if said.waits else None
+    return FieldRead(field, said.text, said.confidence, said.waits, said.cases, crop)
+
+
+def _ticks(page: Straight, field: Field) -> Reading:
+    """What boxes to tick say: one of them, or several where several may be ticked, but none with others."""
+    said = {case: tick(page, box) for case, box in field.ticks}
+    cases = tuple(case for case, word in said.items() if word == TICKED)
+    waits = (
+        ("free", field.free is not None and not is_bare(page, field.free, 0.7)),
+        ("free", written_beside(page, field)),
+        ("tick", UNSURE in said.values()),
+        ("two ticks", len(cases) > 1 and (not field.several or field.none in cases)),
+        ("taken back", not cases and TAKEN_BACK in said.values()),
+    )
+    word = next((word for word, is_so in waits if is_so), "")
+    return Reading(", ".join(cases), 0.0 if word in ("free", "tick") else 1.0, word, cases)
+
+
+def cropped(page: Straight, field: Field) -> np.ndarray:
+    """What a person looks at: the field's place, to scale, with some paper around."""
+    return page.cut(span_of([field.whole], 2.0), of=page.paper).copy()
+
+
+def encoded(crop: np.ndarray) -> bytes:
+    """A picture as PNG."""
+    cv2 = opencv()
+    return bytes(cv2.imencode(".png", crop)[1])
+
+
+__all__ = ["FOUND", "WAITS", "FieldRead", "PageRead", "cropped", "encoded", "read_field", "read_page"]

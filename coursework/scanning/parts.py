@@ -1,0 +1,46 @@
+"""The parts that papers ask: which of them a person marks, and how an answer of several pieces is written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from coursework.scanning.gathering import PaperAsked
+from coursework.scanning.page_reading import Papers
+
+
+class Joins:
+    """How answers of several pieces are written, by what their parts are."""
+
+    def __init__(self, papers: Papers, asked: Mapping[str, PaperAsked]):
+        self._papers = papers
+        self._places: dict[tuple[str, int], tuple[str, int]] = {}
+        for code in asked:
+            for place, record in enumerate(papers.papers[code].records):
+                self._places[str(record["exercise"]), int(record["seed"])] = code, place
+
+    def part_of(self, part: tuple[str, int, str]) -> tuple[Any, Any]:
+        """The variant and the part."""
+        variant = self._papers.variant(*self._places[part[:2]])
+        return variant, next(p for p in variant.parts if p.id == part[2])
+
+    def unit_of(self, part: tuple[str, int, str]) -> str:
+        code, _ = self._places[part[:2]]
+        fields = (f for page in self._papers[code] for f in page.fields)
+        return next((f.unit_text for f in fields if (f.exercise, f.seed, f.part) == part and f.unit_text), "")
+
+    def is_open(self, part: tuple[str, int, str]) -> bool:
+        return bool(self.part_of(part)[1].sort.is_open)
+
+    def is_drawn(self, part: tuple[str, int, str]) -> bool:
+        variant, own = self.part_of(part)
+        return own.unit == "mm" and len(own.sort.coordinates(own, variant)) == 2
+
+    def joined(self, part: tuple[str, int, str], texts: Sequence[str]) -> str:
+        """The texts of several coordinates as one; nothing where nothing is written. A unit that is ticked goes for all."""
+        if not any(text.strip() for text in texts):
+            return ""
+        variant, asked = self.part_of(part)
+        behind = f" {self.unit_of(part)}"
+        bare = [text.removesuffix(behind) if behind.strip() else text for text in texts]
+        return str(asked.sort.from_paper(bare, asked, variant, unit=bare != list(texts)))

@@ -1,0 +1,234 @@
+"""Pictures of pages as a scanner or a telephone gives them: PDF, PNG, JPEG, TIFF of several pages; grey, one at a time."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from coursework.errors import BadInput
+from coursework.system.extras import library
+from coursework.system.limits import MOST_PAGES, beyond
+
+#: A page of so many pixels is A4 at 600 dots an inch, and half as much again.
+LARGEST = 52_000_000
+#: A page is at least so many pixels wide and high: its code alone has 29.
+NARROWEST = 40
+#: Dots an inch at which a page of a PDF is drawn.
+PDF_DPI = 300
+_SMALLEST, _WIDEST = 36.0, 14_400.0  #: points, of a side of a page of a PDF; a PDF has no wider one
+_BESIDE = 4  #: pixels beside a streak where there is none
+_BLACK, _WHITE = 40, 215  #: of 255: what is between is grey
+_STRIPS = 100  #: across the picture, in which a streak is looked for
+_STREAK = 5  #: of 255, by how much a streak is darker at least
+_NEEDS = ("reading scans needs", "scan")
+SUFFIXES = (".pdf", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
+
+
+class BadPicture(BadInput):
+    """A file that is no picture of a page, is damaged, or is larger than a page can be; names it."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One page as it came: ``grey`` is ``(height, width)``, 0 black to 255 white; ``page`` counts from 1."""
+
+    file: str
+    page: int
+    grey: np.ndarray
+
+
+@cache
+def opencv() -> Any:
+    """OpenCV, told before it is loaded how large a picture may be.
+
+    Raises
+    ------
+    NotAtHand
+        It is not installed.
+    """
+    os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", str(LARGEST))
+    os.environ.setdefault("OPENCV_LOG_LEVEL", "OFF")  # what is wrong with a file is told once, by us
+    return library("cv2", *_NEEDS)
+
+
+def pictures(path: Path) -> Iterator[Picture]:
+    """The pages of a file, in its order, one in memory at a time.
+
+    Raises
+    ------
+    BadPicture
+        The file, or a page of it, cannot be read; pages before it have been given.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise BadPicture(f"{path.name} is no scan that can be read: {', '.join(SUFFIXES)}")
+    yield from _of_pdf(path) if suffix == ".pdf" else _of_image(path)
+
+
+def _of_pdf(path: Path) -> Iterator[Picture]:
+    pdfium: Any = library("pypdfium2", *_NEEDS)
+    try:
+        document = pdfium.PdfDocument(path)
+    except pdfium.PdfiumError as fault:
+        raise BadPicture(f"{path.name} is no PDF that can be read: {fault}") from fault
+    with document:
+        for number in range(len(document)):
+            yield Picture(path.name, number + 1, _drawn(pdfium, document, number, path.name))
+
+
+def _drawn(pdfium: Any, document: Any, number: int, name: str) -> np.ndarray:
+    """A page of a PDF, drawn at 300 dots an inch, or at fewer where that would be larger than a page can be."""
+    try:
+        page = document[number]
+        width, height = page.get_width(), page.get_height()
+        if not _SMALLEST <= min(width, height) <= max(width, height) <= _WIDEST:
+            raise BadPicture(
+                f"page {number + 1} of {name} is {width / 72:.3g} by {height / 72:.3g} inches: no paper is so"
+            )
+        scale = min(PDF_DPI / 72, (LARGEST / (width * height)) ** 0.5)
+        drawn = np.array(page.render(scale=scale, grayscale=True, rev_byteorder=False).to_numpy())
+        return drawn.reshape(drawn.shape[:2])
+    except pdfium.PdfiumError as fault:
+        raise BadPicture(f"page {number + 1} of {name} cannot be drawn: {fault}") from fault
+
+
+def _of_image(path: Path) -> Iterator[Picture]:
+    cv2 = opencv()
+    count = _pages_of_image(cv2, path)
+    for number in range(count):
+        yield Picture(path.name, number + 1, _decoded(cv2, path, number))
+
+
+def _pages_of_image(cv2: Any, path: Path) -> int:
+    try:
+        count = int(cv2.imcount(str(path)))
+    except cv2.error:
+        count = 0
+    if not count:
+        raise BadPicture(f"{path.name} is no picture that can be read, or is larger than {LARGEST:,} pixels")
+    return count
+
+
+def _decoded(cv2: Any, path: Path, number: int) -> np.ndarray:
+    """A page of an image, turned as its camera says it was held."""
+    try:
+        if number or path.suffix.lower() in (".tif", ".tiff"):
+            _, found = cv2.imreadmulti(str(path), number, 1, flags=cv2.IMREAD_GRAYSCALE)
+            grey = found[0] if found else None
+        else:
+            grey = _single(cv2, path)
+    except cv2.error as fault:
+        too_large = "MAX_IMAGE_PIXELS" in str(fault.err)
+        why = f"it is larger than {LARGEST:,} pixels" if too_large else fault.err
+        raise BadPicture(f"page {number + 1} of {path.name} cannot be read: {why}") from fault
+    if grey is None:
+        raise BadPicture(f"page {number + 1} of {path.name} cannot be read: it is damaged")
+    if min(grey.shape) < NARROWEST:
+        high, wide = grey.shape
+        raise BadPicture(
+            f"page {number + 1} of {path.name} is {wide} by {high} pixels: nothing can be read of so few"
+        )
+    return np.asarray(grey)
+
+
+def _single(cv2: Any, path: Path) -> Any:
+    """A picture of one page; what is transparent of a PNG lies on white paper."""
+    if path.suffix.lower() != ".png" or not _may_be_transparent(path):
+        return cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+    found = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    if found is None or found.ndim != 3 or found.shape[2] != 4:
+        return found if found is None else cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
+    most = float(np.iinfo(found.dtype).max)
+    grey, cover = cv2.cvtColor(found, cv2.COLOR_BGRA2GRAY), found[..., 3] / np.float32(most)
+    return np.rint((255 / most) * grey * cover + 255 * (1 - cover)).astype(np.uint8)
+
+
+def _may_be_transparent(path: Path) -> bool:
+    """Whether the header of a PNG tells a channel for it."""
+    with path.open("rb") as file:
+        head = file.read(26)
+    return head[:4] == b"\x89PNG" and head[25:] in (b"\x04", b"\x06")
+
+
+def is_two_toned(grey: NDArray[np.uint8]) -> bool:
+    """Whether a picture is in black and white, of dots too: a grey one has more grey about its ink than ink."""
+    some = grey[::2, ::2]
+    black, white = np.count_nonzero(some <= _BLACK), np.count_nonzero(some >= _WHITE)
+    return bool(some.size - black - white < black)
+
+
+def page_count(path: Path) -> int:
+    """How many pages a file has.
+
+    Raises
+    ------
+    BadPicture
+        It cannot be read, or has more than any scan.
+    """
+    count = _pages(path)
+    if count > MOST_PAGES:
+        raise BadPicture(f"{path.name}: {beyond('a file', count, MOST_PAGES, 'pages')}")
+    return count
+
+
+def _pages(path: Path) -> int:
+    if path.suffix.lower() != ".pdf":
+        return _pages_of_image(opencv(), path)
+    with _opened(path) as document:
+        return len(document)
+
+
+def picture_at(path: Path, number: int) -> Picture:
+    """One page of a file, from 1 on.
+
+    Raises
+    ------
+    BadPicture
+        It cannot be read.
+    """
+    if path.suffix.lower() != ".pdf":
+        return Picture(path.name, number, _decoded(opencv(), path, number - 1))
+    with _opened(path) as document:
+        return Picture(
+            path.name, number, _drawn(library("pypdfium2", *_NEEDS), document, number - 1, path.name)
+        )
+
+
+def _opened(path: Path) -> Any:
+    pdfium: Any = library("pypdfium2", *_NEEDS)
+    try:
+        return pdfium.PdfDocument(path)
+    except pdfium.PdfiumError as fault:
+        raise BadPicture(f"{path.name} is no PDF that can be read: {fault}") from fault
+
+
+def without_streaks(grey: np.ndarray) -> np.ndarray:
+    """A picture without the lines that dirt on a scanner's glass draws along a whole page; ink under them stays.
+
+    A line is some pixels wide, and as much darker than what is beside it all along the picture.
+    """
+    for axis in (1, 0):
+        lost = _streaks(grey if axis == 1 else grey.T)
+        if lost.any():
+            light = grey.astype(np.int16) + (lost if axis == 1 else lost[:, None])
+            grey = np.clip(light, 0, 255).astype(np.uint8)
+    return grey
+
+
+def _streaks(grey: np.ndarray) -> np.ndarray:
+    """For each column, by how much a line that runs down it is darker than the paper beside it."""
+    high = max(1, grey.shape[0] // _STRIPS)
+    strips = opencv().resize(grey, (grey.shape[1], grey.shape[0] // high), interpolation=opencv().INTER_AREA)
+    strips = strips.astype(np.int16)
+    beside = np.minimum(np.roll(strips, _BESIDE, axis=1), np.roll(strips, -_BESIDE, axis=1))
+    low, middle = np.percentile(beside - strips, (15, 40), axis=0)
+    lost = np.where((low > 0.5 * middle) & (low >= _STREAK), middle, 0).astype(np.int16)
+    lost[: 2 * _BESIDE] = lost[-2 * _BESIDE :] = 0
+    return lost

@@ -1,0 +1,269 @@
+"""What waits for a person, as a folder: ``queue.json``, and ``index.html``, one page that needs nothing but a browser."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import json
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from coursework.language.words import languages, words
+from coursework.making.issued import COLUMNS as ANSWER_COLUMNS
+from coursework.rendering.environment import render
+from coursework.rendering.html import environment_of
+from coursework.rendering.keeping import in_script
+from coursework.scanning.gathering import Card, Gathered, PaperAsked
+from coursework.scanning.kept import FieldKept, picture_of
+from coursework.scanning.typed import COLUMNS as TYPED_COLUMNS
+from coursework.scanning.typed import NAME, PAGE
+from coursework.system.tables import json_text
+from coursework.system.writing import write_whole
+
+if TYPE_CHECKING:
+    from coursework.scanning.page_reading import Papers
+    from coursework.scanning.parts import Joins
+
+FOLDER = "queue"
+_EMBEDDED = 32_000_000  #: bytes of pictures that the page holds in itself; more lie beside it
+_PLACES = "".join(
+    chr(0xE000 + place) for place in range(256)
+)  #: of coordinates in a pattern: letters that nobody types
+
+#: Gives the file of a field's picture, below the folder of the job.
+Cut = Callable[[Path, str, FieldKept, int], str]
+
+
+@dataclass(frozen=True)
+class Queue:
+    """What waits, with what is needed to show it."""
+
+    papers: Papers
+    asked: Mapping[str, PaperAsked]
+    found: Gathered
+    joins: Joins
+    out: Path
+
+    @cached_property
+    def lang(self) -> str:
+        """The language in which most papers were issued."""
+        spoken = Counter(
+            str(record.get("lang", "en")) for paper in self.papers.papers.values() for record in paper.records
+        )
+        return max(sorted(spoken), key=lambda one: spoken[one]) if spoken else "en"
+
+    @cached_property
+    def _order(self) -> dict[tuple[str, str], int]:
+        """The questions in the order in which they were printed."""
+        places = ((f.place.exercise, f.place.part) for paper in self.asked.values() for f in paper.asked)
+        return {one: number for number, one in enumerate(dict.fromkeys(places))}
+
+    @cached_property
+    def cards(self) -> list[Card]:
+        """Pages and papers that nobody knows, then question after question, all students together."""
+        return sorted(
+            self.found.cards, key=lambda c: (self._rank(c), c.student, c.seed, c.coordinate, c.part)
+        )
+
+    def _rank(self, card: Card) -> int:
+        return (
+            -2
+            if card.exercise == PAGE
+            else -1
+            if card.exercise == NAME
+            else self._order[card.exercise, card.part]
+        )
+
+    def group(self, card: Card) -> dict[str, Any]:
+        """What a card is about, in every language."""
+        if card.exercise in (PAGE, NAME):
+            sort = "pages" if card.exercise == PAGE else "names"
+            return {
+                "id": sort,
+                "sort": sort,
+                "number": "",
+                "exercise": "",
+                "part": "",
+                "title": {},
+                "unit": "",
+                "letters": [],
+            }
+        paper = self.papers.papers[card.paper]
+        place = next(
+            k
+            for k, r in enumerate(paper.records)
+            if (r["exercise"], int(r["seed"])) == (card.exercise, card.seed)
+        )
+        variant = self.papers.variant(card.paper, place)
+        part = next(p for p in variant.parts if p.id == card.part)
+        own = [
+            f
+            for page in self.papers[card.paper]
+            for f in page.fields
+            if (f.place, f.part) == (place, card.part)
+        ]
+        letters = [part.sort.from_paper([t.case], part, variant) for t in part.sort.ticks(part, variant)]
+        return {
+            "id": f"{card.exercise}/{card.part}",
+            "sort": "question",
+            "number": next((f.number for f in own if f.number), ""),
+            "exercise": card.exercise,
+            "part": card.part,
+            "title": _titles(self.papers.course[card.exercise]),
+            "unit": next((f.unit_text for f in own if f.unit_text), ""),
+            "letters": letters if card.what == "ticks" else [],
+        }
+
+
+def _titles(exercise: Any) -> dict[str, str]:
+    return {lang: exercise.title(lang) for lang in exercise.languages}
+
+
+def write_queue(queue: Queue, cut: Cut) -> None:
+    """Write the folder of the queue: its page and its data, each whole."""
+    shown = [_shown(queue, card, cut) for card in queue.cards]
+    groups: dict[str, dict[str, Any]] = {}
+    for card, one in zip(queue.cards, shown, strict=True):
+        if one["group"] not in groups:
+            groups[one["group"]] = queue.group(card)
+    told = {"lang": queue.lang, "groups": list(groups.values()), "cards": shown}
+    write_whole(queue.out / FOLDER / "queue.json", json_text(told).encode())
+    write_whole(queue.out / FOLDER / "index.html", page(queue, told).encode())
+
+
+def _shown(queue: Queue, card: Card, cut: Cut) -> dict[str, Any]:
+    """A card as the page has it; files are told from the folder of the page."""
+    sort = {PAGE: "pages", NAME: "names"}.get(card.exercise, "question")
+    crops = [cut(queue.out, said.page, said.field, said.index) for said in card.said]
+    pages = [picture_of(name) for name in card.pages]
+    return {
+        "id": card.id,
+        "sort": sort,
+        "group": sort if sort != "question" else f"{card.exercise}/{card.part}",
+        "student": card.student,
+        "place": place_of_card(card),
+        "what": card.what,
+        "waits": card.waits,
+        "candidate": card.candidate,
+        "confidence": round(100 * card.confidence),
+        "part": card.part,
+        "coordinate": card.coordinate + 1 if sort == "question" else 1,
+        "coordinates": card.coordinates,
+        "crops": [f"../{file}" for file in (crops if sort == "question" else pages)],
+        "pages": [f"../{file}" for file in pages],
+        "seen": " ".join(card.pages),
+        "drawing": _drawing(queue, card, cut),
+    }
+
+
+def place_of_card(card: Card) -> list[str]:
+    """The first columns of a line of ``typed.csv``."""
+    if card.exercise == PAGE:
+        return ["", PAGE, "", card.part, ""]
+    if card.exercise == NAME:
+        return [card.paper, NAME, "", "", ""]
+    return [
+        card.student,
+        card.exercise,
+        str(card.seed),
+        card.part,
+        str(card.coordinate + 1) if card.coordinates > 1 else "",
+    ]
+
+
+def _drawing(queue: Queue, card: Card, cut: Cut) -> dict[str, Any] | None:
+    """The paper that was drawn on, of a point in millimetres on it, which can be clicked there."""
+    said = queue.found.drawn.get((card.paper, card.exercise, card.seed))
+    if said is None or not queue.joins.is_drawn((card.exercise, card.seed, card.part)):
+        return None
+    _, _, width, height = said.field.box
+    return {
+        "source": f"../{cut(queue.out, said.page, said.field, said.index)}",
+        "width": width,
+        "height": height,
+    }
+
+
+# ---------------------------------------------------------------------------- page
+
+
+def page(queue: Queue, told: Mapping[str, Any]) -> str:
+    """The page on which people type: it holds its pictures, unless they are too many, and runs without a server."""
+    folder = queue.papers.course.folder
+    embedded = dict(_embedded(queue.out / FOLDER, told["cards"]))
+    cards = [_with_pictures(card, embedded) for card in told["cards"]]
+    key = hashlib.sha256(json.dumps([one["place"] for one in told["cards"]]).encode()).hexdigest()[:16]
+    data = {
+        **told,
+        "cards": cards,
+        "key": f"coursework scan {key}",
+        "words": {lang: words(lang, "scan") for lang in languages()},
+        "typed_columns": TYPED_COLUMNS,
+        "answer_columns": ANSWER_COLUMNS,
+        "answers": [[a.student, a.exercise, str(a.seed), a.part, a.answer] for a in queue.found.answers],
+        "joins": list(_joins(queue)),
+        "places": list(_PLACES),
+        "papers": list(_papers(queue)) if any(card["sort"] == "pages" for card in cards) else [],
+    }
+    names = {
+        "lang": queue.lang, "languages": languages(), "said": words(queue.lang, "scan"), "data": in_script(data), "paper": "a4",
+    }  # fmt: skip
+    return render(environment_of(folder.template_folders, queue.lang), "scan_queue.html.j2", names)
+
+
+def _embedded(folder: Path, cards: list[dict[str, Any]]) -> Iterator[tuple[str, str]]:
+    """The pictures that the page holds, by their files; none of whole pages, which lie beside it."""
+    files = dict.fromkeys(
+        file
+        for card in cards
+        for file in (*card["crops"], *([card["drawing"]["source"]] if card["drawing"] else ()))
+    )
+    found = {file: (folder / file).read_bytes() for file in files}
+    if sum(map(len, found.values())) > _EMBEDDED:
+        return
+    for file, data in found.items():
+        kind = "png" if file.endswith(".png") else "jpeg"
+        yield file, f"data:image/{kind};base64,{base64.b64encode(data).decode()}"
+
+
+def _with_pictures(card: Mapping[str, Any], embedded: Mapping[str, str]) -> dict[str, Any]:
+    drawing = card["drawing"]
+    source = {**drawing, "source": embedded.get(drawing["source"], drawing["source"])} if drawing else None
+    return {**card, "crops": [embedded.get(file, file) for file in card["crops"]], "drawing": source}
+
+
+def _papers(queue: Queue) -> Iterator[dict[str, Any]]:
+    """The papers that a page may be of."""
+    sizes = {queue.papers.papers[code].size for code in queue.asked} or {"a4"}
+    several = len({paper.records[0]["exercise"] for paper in queue.papers.papers.values()}) > 1
+    for code, paper in queue.papers.papers.items():
+        if paper.size in sizes:
+            title = (
+                _titles(queue.papers.course[paper.records[0]["exercise"]])
+                if several and not paper.assignment
+                else {}
+            )
+            yield {"code": code, "student": paper.student, "pages": len(queue.papers[code]), "title": title}
+
+
+def _joins(queue: Queue) -> Iterator[dict[str, Any]]:
+    """How the answers of which something waits are put together when nothing does: a pattern with a letter of its own in the
+    place of each coordinate, and another where the printed unit goes for all."""
+    for one in queue.found.pending:
+        exercise, seed, part = one.part
+        places = list(_PLACES[: len(one.pieces)])
+        unit = f" {queue.joins.unit_of(one.part)}".rstrip()
+        patterns = [places[0]] * 2
+        if len(places) > 1:
+            patterns = [queue.joins.joined(one.part, texts) for texts in (places, [p + unit for p in places])]
+        yield {
+            "row": [one.student, exercise, str(seed), part],
+            "cards": [piece.id if isinstance(piece, Card) else None for piece in one.pieces],
+            "texts": [piece if isinstance(piece, str) else "" for piece in one.pieces],
+            "patterns": patterns,
+            "unit": unit if len(places) > 1 else "",
+        }

@@ -1,0 +1,424 @@
+"""The job: scans become answers, a queue for people, and a list of what could not be read; every page is in one of them.
+
+What is written is a function of all scans that were ever named, what was typed, and what was issued: neither the order of
+files, nor how often the job was run or stopped, makes a difference.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future
+from contextlib import nullcontext
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from coursework.course.course import Course
+from coursework.errors import BadInput
+from coursework.making.answer_papers import AnswerPaper
+from coursework.making.issued import COLUMNS, Issued
+from coursework.scanning.digits import CONFIDENT
+from coursework.scanning.gathering import Answer, Asked, Card, Gathered, PaperAsked, Place, gather
+from coursework.scanning.kept import (
+    ANSWERS,
+    LOST,
+    REFUSED,
+    FieldKept,
+    FileKept,
+    PageKept,
+    Scanned,
+    crop_of,
+    files_kept,
+    joined,
+    page_id,
+    page_kept,
+    picture_of,
+    put_files,
+    put_page,
+    scanned,
+)
+from coursework.scanning.page_reading import Desk, Pages, Papers, count_pages, cut, read_pages, typed_page
+from coursework.scanning.parts import Joins
+from coursework.scanning.queue import Queue, write_queue
+from coursework.scanning.sources import Scan, scans
+from coursework.scanning.typed import PAGE, Typed, merged, read_typed, typed_file
+from coursework.system.processes import processes, workers
+from coursework.system.tables import SPREADSHEETS, Spreadsheet
+from coursework.system.writing import Progress, Table, Tables, write_whole, writing
+
+TYPED = "typed.csv"
+LEAST = CONFIDENT  #: the confidence below which nothing is guessed, unless told
+ANSWER_COLUMNS = (*COLUMNS, "source")
+PAGE_COLUMNS = (
+    "file",
+    "page",
+    "what",
+    "student",
+    "paper",
+    "number",
+    "of",
+    "fields",
+    "read",
+    "waiting",
+    "picture",
+)
+REJECTED_COLUMNS = ("file", "page", "reason", "picture")
+MISSING_COLUMNS = ("student", "paper", "pages", "scanned", "missing")
+_CHUNK = 4  #: pages that a process is sent at once
+_WORTH_PROCESSES = 8  #: pages; fewer are read before a process has started
+_WORTH_COUNTING = 60  #: files of which the pages are counted
+_AHEAD = 3  #: chunks a process that wait for it
+_OTHER = "a sheet of something else that was issued"
+
+
+@dataclass
+class ScanBook:
+    """What the job found, counted; the rest is in the folder."""
+
+    pages: int = 0
+    read_now: int = 0
+    answers: int = 0
+    waiting: int = 0
+    rejected: list[tuple[str, str]] = field(default_factory=list)  #: file and page, and why
+    statements: int = 0
+    blank: int = 0
+    copies: int = 0
+    missing: list[str] = field(default_factory=list)  #: whose paper lacks pages, and which
+    absent: int = 0  #: papers of which no page was scanned
+    unused: int = 0  #: lines of typed.csv that fit nothing
+
+    @property
+    def needs_a_look(self) -> bool:
+        return bool(self.waiting or self.rejected or self.missing)
+
+
+def scan(
+    course: Course[Any],
+    sources: Sequence[Path],
+    issued: Path,
+    out: Path,
+    *,
+    typed: Sequence[Path] = (),
+    least: float = LEAST,
+    spreadsheet: Spreadsheet = SPREADSHEETS["point"],
+    progress: Progress = lambda done, of: None,
+) -> ScanBook:
+    """Read scans, add them to those of before, and write what all of them say.
+
+    Parameters
+    ----------
+    sources
+        PDFs, pictures, archives and folders of them; none to go on with what was read before.
+    typed
+        Files of what people typed, beside the ``typed.csv`` of the folder; the later one counts.
+    least
+        The confidence below which nothing is guessed.
+
+    Raises
+    ------
+    BadInput
+        Something that was named is not there or is none, or the folder cannot be written.
+    """
+    papers = Papers(course, _read_issued(issued))
+    wanted = [one for path in typed for one in read_typed(path)]
+    kept = out / TYPED
+    stands = merged(read_typed(kept) if kept.exists() else (), wanted)
+    files, read_now = read_files(papers, sources, issued, out, least, progress)
+    everything = joined(files_kept(out), files)
+    if not everything:
+        raise BadInput(f"nothing to read: name scans; {out} holds none of before")
+    put_files(out, everything)
+    if stands:
+        write_whole(kept, typed_file(stands))
+    book = write_read(papers, list(scanned(out, everything)), stands, out, spreadsheet, least)
+    book.read_now = read_now
+    return book
+
+
+def read_files(
+    papers: Papers,
+    sources: Sequence[Path],
+    issued: Path,
+    out: Path,
+    least: float = LEAST,
+    progress: Progress = lambda done, of: None,
+) -> tuple[list[FileKept], int]:
+    """Read the pages of what is named that were not read before, and keep each; gives the files, and how many pages were read.
+
+    Raises
+    ------
+    BadInput
+        A source is not there, or the folder cannot be written.
+    """
+    with writing(out):
+        out.mkdir(parents=True, exist_ok=True)
+    stamp = hashlib.sha256(issued.read_bytes()).hexdigest()[:16]
+    desk = Desk(str(papers.course.folder.root), str(issued.resolve()), stamp, str(out), least)
+    with TemporaryDirectory(prefix="coursework-") as unpacked:
+        return _read(desk, papers, scans(sources, Path(unpacked)), progress)
+
+
+def _read_issued(path: Path) -> Mapping[str, Any]:
+    try:
+        found = json.loads(path.read_bytes())
+    except OSError as fault:
+        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+    except (ValueError, RecursionError) as fault:
+        raise BadInput(f"{path} is not JSON: {str(fault)[:100]}") from fault
+    if not isinstance(found, dict):
+        raise BadInput(f"{path} is no list of issued records; 'coursework build' writes issued.json")
+    Issued(found, str(path))
+    return found
+
+
+# ------------------------------------------------------------------------ reading
+
+
+def _read(
+    desk: Desk, papers: Papers, found: Sequence[Scan], progress: Progress
+) -> tuple[list[FileKept], int]:
+    """Read the pages of files that were not read before; gives the files and how many pages were read now."""
+    count = workers(len(found)) if len(found) >= _WORTH_COUNTING else 1
+    whole = [scan for scan in found if not scan.fault]
+    paths = {scan.digest: scan.path for scan in whole}
+    with _shared(count) as share:
+        counted = dict(zip(paths, share(count_pages, [(str(path),) for path in paths.values()]), strict=True))
+    files = [
+        FileKept(one.name, one.digest, *((0, one.fault) if one.fault else counted[one.digest]))
+        for one in found
+    ]
+    wanted = [
+        piece
+        for digest, path in paths.items()
+        for piece in _chunks(desk, papers, str(path), digest, counted[digest][0])
+    ]
+    pages = sum(piece.last + 1 - piece.first for piece in wanted)
+    done = 0
+    with _shared(workers(len(wanted)) if pages >= _WORTH_PROCESSES else 1) as share:
+        for number in share(read_pages, [(desk, piece) for piece in wanted]):
+            done += number
+            progress(done, pages)
+    return files, pages
+
+
+def _chunks(desk: Desk, papers: Papers, path: str, digest: str, count: int) -> Iterator[Pages]:
+    """The pages of a file that are to be read, a few at a time."""
+    first = 0
+    for number in range(1, count + 2):
+        is_wanted = number <= count and _is_to_be_read(desk, papers, page_id(digest, number))
+        if first and (not is_wanted or number - first == _CHUNK):
+            yield Pages(path, digest, first, number - 1)
+            first = 0
+        first = first or (number if is_wanted else 0)
+
+
+def _is_to_be_read(desk: Desk, papers: Papers, name: str) -> bool:
+    """Whether nothing is kept of a page, or what was kept may be otherwise now."""
+    page = page_kept(Path(desk.out), name)
+    if page is None or page.least != desk.least:
+        return True
+    return page.what == REFUSED and page.code in papers
+
+
+class _shared:
+    """Work shared by so many processes, or done here by one; results come in the order of what was asked, few ahead."""
+
+    def __init__(self, count: int):
+        self._count = count
+        self._pool = processes(count) if count > 1 else nullcontext(None)
+
+    def __enter__(self) -> Callable[[Callable[..., Any], Sequence[tuple[Any, ...]]], Iterator[Any]]:
+        self._submit: Any = self._pool.__enter__()
+        return self._each
+
+    def __exit__(self, *fault: Any) -> None:
+        self._pool.__exit__(*fault)
+
+    def _each(self, work: Callable[..., Any], asked: Sequence[tuple[Any, ...]]) -> Iterator[Any]:
+        if self._submit is None:
+            yield from (work(*one) for one in asked)
+            return
+        ahead: deque[Future[Any]] = deque()
+        for one in asked:
+            ahead.append(self._submit(work, *one))
+            if len(ahead) > _AHEAD * self._count:
+                yield ahead.popleft().result()
+        while ahead:
+            yield ahead.popleft().result()
+
+
+# ------------------------------------------------------------------------ together
+
+
+def write_read(
+    papers: Papers,
+    pages: Sequence[Scanned],
+    typed: Sequence[Typed],
+    out: Path,
+    spreadsheet: Spreadsheet,
+    least: float,
+) -> ScanBook:
+    """Write what pages say together: answers, the queue, what was rejected, what is missing, and the list of pages."""
+    pages = [as_told(one, papers, typed, least) for one in pages]
+    asked = papers_asked(papers, pages)
+    found = together(papers, asked, pages, typed)
+    book = ScanBook(
+        len([one for one in pages if one.number]),
+        0,
+        len(found.answers),
+        len(found.cards),
+        unused=len(found.unused),
+    )
+    with Tables(out, spreadsheet) as tables:
+        _write_answers(tables.open("answers.csv", ANSWER_COLUMNS), found, pages)
+        _write_pages(tables, book, found, asked, pages)
+        _write_missing(tables.open("missing.csv", MISSING_COLUMNS), book, found, papers, asked)
+        queue = Queue(papers, asked, found, Joins(papers, asked), out)
+        write_queue(queue, _cut)
+        tables.keep()
+    return book
+
+
+def as_told(one: Scanned, papers: Papers, typed: Sequence[Typed], least: float) -> Scanned:
+    """A page as it is now: of another issue, or what a person said that it is."""
+    page = one.page
+    if page.what == ANSWERS and page.code not in papers:
+        return replace(one, page=PageKept(REFUSED, _OTHER, page.code))
+    if page.what != LOST:
+        return one
+    told = next((t.answer for t in typed if (t.exercise, t.part) == (PAGE, one.id)), None)
+    if told is None:
+        return one
+    code, _, number = told.strip().partition(" ")
+    if not told.strip():
+        return replace(one, page=PageKept(REFUSED, "set aside by hand: no answer page", ""))
+    if code in papers and number.isdecimal() and len(number) < 7 and 1 <= int(number) <= len(papers[code]):
+        return replace(one, page=typed_page(papers, code, int(number), least))
+    return one
+
+
+def papers_asked(papers: Papers, pages: Sequence[Scanned]) -> dict[str, PaperAsked]:
+    """The papers of which some page was scanned, in the order in which they were issued."""
+    met = {one.page.code for one in pages if one.page.what == ANSWERS}
+    return {code: _asked(papers, code) for code in papers if code in met}
+
+
+def _asked(papers: Papers, code: str) -> PaperAsked:
+    laid_out = papers[code]
+    asked = tuple(
+        Asked(Place(f.exercise, f.seed, f.part, f.coordinate), f.coordinates, f.what, page.number)
+        for page in laid_out
+        for f in page.fields
+    )
+    return PaperAsked(code, papers.papers[code].student, len(laid_out), asked)
+
+
+def together(
+    papers: Papers, asked: Mapping[str, PaperAsked], pages: Sequence[Scanned], typed: Sequence[Typed]
+) -> Gathered:
+    """What pages and people say together."""
+    return gather(pages, asked, typed, Joins(papers, asked))
+
+
+# ------------------------------------------------------------------------- writing
+
+
+def _write_answers(table: Table, found: Gathered, pages: Sequence[Scanned]) -> None:
+    sources = _sources(pages)
+    for one in sorted(found.answers, key=lambda a: (a.student, a.exercise, a.seed)):
+        source = "; ".join(sources[name] for name in one.pages)
+        row = dict(
+            zip(COLUMNS, (one.student, one.exercise, str(one.seed), one.part, answer_text(one)), strict=True)
+        )
+        table.write({**row, "source": f"{source} (by hand)" if one.by_hand else source})
+
+
+def answer_text(one: Answer) -> str:
+    """An answer as it is marked: of one that a person marks from its picture, where that is."""
+    return "; ".join(s.field.crop or picture_of(s.page) for s in one.pictures) or one.answer
+
+
+def _sources(pages: Sequence[Scanned]) -> dict[str, str]:
+    """Where each page stands: the first file that holds it."""
+    found: dict[str, str] = {}
+    for one in pages:
+        found.setdefault(one.id, f"{one.file.name} p. {one.number}")
+    return found
+
+
+def _write_pages(
+    tables: Tables, book: ScanBook, found: Gathered, asked: Mapping[str, PaperAsked], pages: Sequence[Scanned]
+) -> None:
+    table, rejected = tables.open("pages.csv", PAGE_COLUMNS), tables.open("rejected.csv", REJECTED_COLUMNS)
+    for one in pages:
+        what, page = "copy" if one.is_copy else one.page.what, one.page
+        picture = picture_of(one.id) if one.id and page.has_picture else ""
+        place = {"file": one.file.name, "page": one.number or ""}
+        paper = asked.get(page.code)
+        whose = {"student": found.whose.get(page.code, ""), "paper": page.code, "number": page.number or ""}
+        asking = [f for f in page.fields if f.part]
+        read = {
+            "of": paper.pages if paper else "", "fields": len(asking) if paper else "",
+            "read": sum(not f.waits for f in asking) if paper else "", "waiting": found.waits.get(one.id, 0) if paper or page.what == LOST else "",
+        }  # fmt: skip
+        table.write({**place, "what": what, **whose, **read, "picture": picture})
+        book.copies += one.is_copy
+        if one.is_copy:
+            continue
+        book.statements += page.what == "statement"
+        book.blank += page.what == "blank"
+        if page.what == REFUSED:
+            rejected.write({**place, "reason": page.reason, "picture": picture})
+            book.rejected.append(
+                (f"{one.file.name} p. {one.number}" if one.number else one.file.name, page.reason)
+            )
+
+
+def _write_missing(
+    table: Table, book: ScanBook, found: Gathered, papers: Papers, asked: Mapping[str, PaperAsked]
+) -> None:
+    for paper, missing in found.missing:
+        whose, numbers = found.whose[paper.code], ", ".join(map(str, missing))
+        row = {
+            "student": whose,
+            "paper": paper.code,
+            "pages": paper.pages,
+            "scanned": paper.pages - len(missing),
+            "missing": numbers,
+        }
+        table.write(row)
+        book.missing.append(f"{whose}: page {numbers} of {paper.pages}")
+    met = {_sheet(papers.papers[code]) for code in asked}
+    absent = {
+        _sheet(paper): code for code, paper in reversed(papers.papers.items()) if _sheet(paper) not in met
+    }
+    for (student, *_), code in reversed(absent.items()):
+        if student:
+            table.write({"student": student, "paper": code, "pages": "", "scanned": 0, "missing": "all"})
+            book.absent += 1
+
+
+def _sheet(paper: AnswerPaper) -> tuple[str, int, tuple[tuple[str, int], ...]]:
+    """Which paper it is, on whatever size it was printed."""
+    return paper.student, paper.sitting, tuple((str(r["exercise"]), int(r["seed"])) for r in paper.records)
+
+
+def _cut(out: Path, name: str, field_: FieldKept, place: int) -> str:
+    """The file of a field's picture, cut now where that was not done when its page was read; the whole page where it is
+    not straight."""
+    if field_.crop:
+        return field_.crop
+    page = page_kept(out, name)
+    if page is None or not page.is_straight:
+        return picture_of(name)
+    file = crop_of(name, place)
+    if not (out / file).is_file():
+        write_whole(out / file, cut((out / picture_of(name)).read_bytes(), field_))
+    return file
+
+
+__all__ = ["ANSWER_COLUMNS", "Card", "ScanBook", "put_page", "scan", "write_read"]

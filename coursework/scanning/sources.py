@@ -1,0 +1,108 @@
+"""What is scanned: PDFs and pictures, alone, in folders or in archives; each by its name and what it holds."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+from coursework.errors import BadInput
+from coursework.system.unzipping import Limits, is_zip, unpack
+
+ENDINGS = (".pdf", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
+MAX_BYTES = 2_000_000_000  #: of one file
+_UNZIPPED = Limits(files=20_000, each=MAX_BYTES, whole=4 * MAX_BYTES)
+_KEPT = 16  #: letters of a digest that tell files apart
+
+
+class Scan(NamedTuple):
+    """A file that may hold pages."""
+
+    name: str  #: below the folder or archive that was named, or its own
+    digest: str  #: of its bytes; of its name where it cannot be read
+    path: Path
+    fault: str = ""  #: why no page of it can be read
+
+
+def scans(paths: Iterable[Path], unpacked: Path) -> list[Scan]:
+    """The files of what is named, in an order that does not hang on where they lie; archives are opened in ``unpacked``.
+
+    Raises
+    ------
+    BadInput
+        One of the paths is not there.
+    """
+    paths = tuple(paths)
+    for path in paths:
+        if not path.exists():
+            raise BadInput(f"no such file or folder: {path}")
+    found = {(scan.name, scan.digest): scan for path in paths for scan in _of(path, unpacked)}
+    return [found[key] for key in sorted(found)]
+
+
+def _of(path: Path, unpacked: Path) -> Iterator[Scan]:
+    if not path.is_dir():
+        yield from _file(path, _text(path.name), unpacked)
+        return
+    files = sorted(p for p in path.rglob("*") if p.is_file() and not _is_hidden(p, path))
+    for file in files:
+        yield from _file(file, _text(file.relative_to(path).as_posix()), unpacked)
+    if not files:
+        yield _refused(_text(path.name), path, "the folder holds no file")
+
+
+def _is_hidden(path: Path, below: Path) -> bool:
+    return any(part.startswith((".", "__MACOSX")) for part in path.relative_to(below).parts)
+
+
+def _text(name: str) -> str:
+    """A name as it can be written, whatever bytes it is of."""
+    return "".join(c if c.isprintable() else "\ufffd" for c in os.fsencode(name).decode("utf-8", "replace"))
+
+
+def _file(path: Path, name: str, unpacked: Path) -> Iterator[Scan]:
+    try:
+        size = path.stat().st_size
+        with path.open("rb") as data:
+            head = data.read(4)
+            data.seek(0)
+            digest = hashlib.file_digest(data, "sha256").hexdigest()[:_KEPT] if size <= MAX_BYTES else ""
+    except OSError as fault:
+        yield _refused(name, path, f"cannot be read: {fault.strerror}")
+        return
+    ending = path.suffix.lower()
+    if not size:
+        yield _refused(name, path, "the file is empty")
+    elif not digest:
+        yield _refused(name, path, f"{size:,} bytes are too many for scans; the limit is {MAX_BYTES:,}")
+    elif ending == ".zip" and is_zip(head):
+        yield from _archive(path, name, digest, unpacked)
+    elif ending not in ENDINGS:
+        yield _refused(
+            name, path, f"scans come as {', '.join(ENDINGS)} or .zip; found {ending or 'no ending'}"
+        )
+    else:
+        yield Scan(name, digest, path)
+
+
+def _refused(name: str, path: Path, why: str) -> Scan:
+    """A file of which no page can be read; what is in it does not tell it apart."""
+    return Scan(name, hashlib.sha256(f"{name}\0{why}".encode()).hexdigest()[:_KEPT], path, why)
+
+
+def _archive(path: Path, name: str, digest: str, unpacked: Path) -> Iterator[Scan]:
+    """The files of an archive; an archive in it stays closed."""
+    folder = unpacked / digest
+    try:
+        unpack(path, folder, _UNZIPPED)
+    except BadInput as fault:
+        yield _refused(name, path, str(fault))
+        return
+    for file in sorted(p for p in folder.rglob("*") if p.is_file() and not _is_hidden(p, folder)):
+        inside = f"{name}/{_text(file.relative_to(folder).as_posix())}"
+        if file.suffix.lower() == ".zip":
+            yield _refused(inside, file, "an archive in an archive is not opened")
+        else:
+            yield from _file(file, inside, unpacked)

@@ -1,0 +1,169 @@
+"""What a pen left in and around a box: strong and faint ink, in pieces that hang together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+
+from coursework.scanning.outlines import span_of
+from coursework.scanning.pictures import opencv
+from coursework.scanning.straightening import SCALE, Straight
+from coursework.sheets.answer_pages import Box
+
+STRONG = 70  #: of 255, by how much a stroke of a pen is darker than paper
+FAINT = 16  #: of 255, by how much anything is, on paper without noise
+_SPOT = 0.4  #: mm2, strong ink no larger is dust
+_FAINT_SPOT = 0.9  #: mm2, the same of what is faint, as the rim of dust is
+_SPOTS = 0.025  #: share of an empty box that is faint in spots, at most
+_BEYOND = (
+    0.35,
+    1.15,
+)  #: mm above and below a box: outside of its outline, and short of what is printed there
+_THIN_STROKE = 0.15  #: mm2, the least of a short stroke of a thin pen
+_OUTLINE = 0.45  #: mm to either side of an outline that is dark itself
+_RIM = 1.3  #: mm from a box's outline within which ink of a neighbour ends
+
+
+@dataclass(frozen=True)
+class Pieces:
+    """Ink that hangs together: ``labels`` numbers it pixel by pixel, 0 where there is none; for each piece its
+    ``boxes``: left, top, width, height in pixels, and ``areas`` in pixels (row 0 is the paper)."""
+
+    labels: np.ndarray
+    boxes: np.ndarray
+    areas: np.ndarray
+
+    def inside(self, part: np.ndarray) -> np.ndarray:
+        """Of each piece, the pixels that lie in a part of the picture, given by its labels."""
+        return np.bincount(part.ravel(), minlength=len(self.areas))
+
+
+def pieces(mask: np.ndarray) -> Pieces:
+    cv2 = opencv()
+    _, labels, stats, _ = cv2.connectedComponentsWithStats(mask.astype(np.uint8), connectivity=8)
+    return Pieces(labels, stats[:, :4], stats[:, 4])
+
+
+def darkness(page: Straight, box: Box, inset: float = 0.0) -> np.ndarray:
+    """By how much what lies in a box is darker than paper, 0 to 255."""
+    return 255 - page.cut(box, inset)
+
+
+def faint_limit(page: Straight) -> float:
+    """The darkness from which something may be ink on this page: above the noise of its paper."""
+    return max(FAINT, 6 * page.noise)
+
+
+def is_bare(page: Straight, box: Box, inset: float = 0.9) -> bool:
+    """Whether a box is empty for certain: nothing in it but dust, and nothing faint."""
+    dark = darkness(page, box, inset)
+    if not dark.size:
+        return False
+    strong = pieces(dark > STRONG).areas[1:]
+    faint = pieces(dark > faint_limit(page)).areas[1:]
+    unit = SCALE**2
+    return bool(
+        strong.max(initial=0) < _SPOT * unit
+        and faint[faint > 0.06 * unit].sum() < _SPOTS * dark.size
+        and faint.max(initial=0) < _FAINT_SPOT * unit
+    )
+
+
+def has_stroke(page: Straight, box: Box, length: float) -> bool:
+    """Whether something in a box is as long or high as this, mm: a thin or pale stroke, where dust would be round."""
+    dark = darkness(page, box, 0.9)
+    for limit in (STRONG, faint_limit(page)):
+        found = pieces(dark > limit)
+        long = found.boxes[1:, 2:].max(axis=1, initial=0) >= length * SCALE
+        if bool((long & (found.areas[1:] >= _THIN_STROKE * SCALE**2)).any()):
+            return True
+    return False
+
+
+def runs_through(page: Straight, box: Box) -> bool:
+    """Whether something runs through a box from above it to below, as the edge of a shadow or of a stain and no digit does."""
+    near, far = _BEYOND
+    least = _THIN_STROKE * SCALE**2
+    tops = (box.y - far, box.bottom + near)
+    strips = (replace(box, x=box.x - near, y=y, width=box.width + 2 * near, height=far - near) for y in tops)
+    return all(int((darkness(page, strip) > faint_limit(page)).sum()) >= least for strip in strips)
+
+
+def has_dark_outline(page: Straight, box: Box) -> bool:
+    """Whether the outline of a box came out dark itself, as a scan in black and white may make it."""
+    dark = darkness(page, box, -0.25)
+    if min(dark.shape, default=0) < 12:
+        return False
+    sides = (dark[:, :5].max(axis=1), dark[:, -5:].max(axis=1), dark[:5].max(axis=0), dark[-5:].max(axis=0))
+    return sum(float(np.mean(side > STRONG)) > 0.6 for side in sides) >= 3
+
+
+def row_ink(
+    page: Straight, boxes: Sequence[Box], around: float = 1.5, within: Box | None = None
+) -> tuple[np.ndarray, Box]:
+    """The ink (255 paper) of boxes in a row and what they span, ``around`` mm more, or of what they lie within; outlines
+    that are dark are wiped."""
+    span = within or span_of(boxes, around)
+    ink = page.cut(span).copy()
+    for box in boxes:
+        if has_dark_outline(page, box):
+            _wipe(ink, box, span)
+    return ink, span
+
+
+def _wipe(ink: np.ndarray, box: Box, span: Box) -> None:
+    """Paper where the outline of a box runs."""
+    outer = part_of(ink, box, span, -_OUTLINE)
+    inner = part_of(ink, box, span, _OUTLINE).copy()
+    outer[:] = 255
+    part_of(ink, box, span, _OUTLINE)[:] = inner
+
+
+def part_of(picture: np.ndarray, box: Box, span: Box, inset: float = 0.0) -> np.ndarray:
+    """The view of a box on the picture of a span of boxes."""
+    left, top = box.x - span.x + inset, box.y - span.y + inset
+    right, bottom = left + box.width - 2 * inset, top + box.height - 2 * inset
+    x0, y0, x1, y1 = (max(round(v * SCALE), 0) for v in (left, top, right, bottom))
+    return picture[y0:y1, x0:x1]
+
+
+def cells(page: Straight, boxes: Sequence[Box]) -> tuple[list[np.ndarray], str]:
+    """What is written in each box of a row, its own ink alone: pictures of the boxes, 255 paper.
+
+    A stroke that leaves its box is cut off at the outline; where it ends in a neighbour it is wiped there. Ink that
+    lies in several boxes alike is told: ``struck`` where it runs on across boxes, ``joined`` where it joins two.
+    """
+    ink, span = row_ink(page, boxes)
+    found = pieces(255 - ink > STRONG)
+    shares = np.array([found.inside(part_of(found.labels, box, span)) for box in boxes])
+    shares[:, 0] = 0
+    told = _across(found, shares, boxes)
+    owner = shares.argmax(axis=0)
+    views = []
+    for k, box in enumerate(boxes):
+        view = part_of(ink, box, span).copy()
+        labels = part_of(found.labels, box, span)
+        foreign = np.isin(labels, np.flatnonzero((owner != k) & (shares[k] > 0)))
+        view[_grown(foreign)] = 255
+        views.append(view)
+    return views, told
+
+
+def _across(found: Pieces, shares: np.ndarray, boxes: Sequence[Box]) -> str:
+    """What is wrong with ink that lies in several boxes: more than a millimetre of a stroke in a second one."""
+    unit = SCALE**2
+    pitch = min((b.x - a.x for a, b in pairwise(boxes)), default=boxes[0].width)
+    wide = found.boxes[1:, 2] > 1.9 * pitch * SCALE
+    if len(boxes) > 1 and bool((wide & (found.areas[1:] > unit)).any()):
+        return "struck"
+    second = np.sort(shares, axis=0)[-2] if len(boxes) > 1 else np.zeros(len(found.areas))
+    return "joined" if bool((second[1:] > 1.1 * unit).any()) else ""
+
+
+def _grown(mask: np.ndarray) -> Any:
+    cv2 = opencv()
+    return cv2.dilate(mask.astype(np.uint8), np.ones((5, 5), np.uint8)).astype(bool)

@@ -1,0 +1,88 @@
+"""What people typed where nothing could be read: ``typed.csv``, kept and added to, never lost."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from coursework.errors import BadInput
+from coursework.system.limits import MOST_TABLE_BYTES, check_size
+from coursework.system.tables import as_written, csv_file, delimiter_of, open_csv, said_twice
+
+COLUMNS = ("student", "exercise", "seed", "part", "coordinate", "answer", "seen")
+_NEEDED = ("student", "exercise", "seed", "part", "answer")
+NAME, PAGE = "(name)", "(page)"  #: in the place of an exercise: whose a paper is, and which page a picture is
+
+
+class Typed(NamedTuple):
+    """What somebody typed in the place of one answer, or of one coordinate of it."""
+
+    student: str
+    exercise: str
+    seed: str
+    part: str
+    coordinate: str  #: from 1; empty for an answer of one piece
+    answer: str
+    seen: str  #: the pages that were looked at, parted by spaces; empty for whatever there is
+
+    @property
+    def place(self) -> tuple[str, str, str, str, str]:
+        return self.student, self.exercise, self.seed, self.part, self.coordinate or "1"
+
+    @property
+    def pages(self) -> frozenset[str]:
+        return frozenset(self.seen.split())
+
+
+def read_typed(path: Path) -> list[Typed]:
+    """What a file says was typed.
+
+    Raises
+    ------
+    BadInput
+        It cannot be read, or lacks a column.
+    """
+    try:
+        check_size(str(path), path.stat().st_size, MOST_TABLE_BYTES)
+        with open_csv(path) as file:
+            lines = list(file)  # which end as CSV has it: an answer may hold other ends of lines
+    except OSError as fault:
+        raise BadInput(f"{path} cannot be read: {fault.strerror}") from fault
+    if not lines:
+        return []
+    rows = csv.reader(lines, delimiter=delimiter_of(lines[0]))
+    try:
+        header = [cell.strip().casefold() for cell in next(rows, [])]
+        if missing := [c for c in _NEEDED if c not in header]:
+            raise BadInput(
+                f"{path}: the header must name {', '.join(_NEEDED)}; {', '.join(missing)} missing, found {', '.join(header)[:80]}"
+            )
+        if twice := said_twice(header, COLUMNS):
+            raise BadInput(f"{path}: {twice}")
+        return [_typed(header, row) for row in rows if any(cell.strip() for cell in row)]
+    except csv.Error as fault:
+        raise BadInput(f"{path} is no CSV: {fault}") from fault
+
+
+def _typed(header: Sequence[str], cells: Sequence[str]) -> Typed:
+    told = dict(zip(header, map(as_written, cells), strict=False))
+    own = {c: told.get(c, "").replace("\0", "") for c in COLUMNS}
+    stripped = {c: text if c == "answer" else text.strip() for c, text in own.items()}
+    return Typed(**stripped)
+
+
+def merged(before: Iterable[Typed], more: Iterable[Typed]) -> list[Typed]:
+    """What was typed before and what is typed now, which counts where both say something; in an order of their own."""
+    found = {one.place: one for one in (*before, *more)}
+    return [found[place] for place in sorted(found)]
+
+
+def by_place(typed: Iterable[Typed]) -> Mapping[tuple[str, str, str, str, str], Typed]:
+    return {one.place: one for one in typed}
+
+
+def typed_file(typed: Iterable[Typed]) -> bytes:
+    """``typed.csv``."""
+    return csv_file((one._asdict() for one in typed), COLUMNS)
