@@ -64,8 +64,7 @@
   slider.addEventListener("input", () => { const instant = +slider.value; run(false); show(instant); });
   play.addEventListener("click", () => run(!running));
   document.getElementById("back").addEventListener("click", () => { run(false); show(data.first); });
-  all("input[type=checkbox]").forEach((box) => box.addEventListener("change", choose));
-  document.querySelector(".controls").addEventListener("submit", (event) => event.preventDefault());
+  all(".controls input[type=checkbox]").forEach((box) => box.addEventListener("change", choose));
   document.querySelector(".controls").hidden = false;
   // An address that ends in #135 opens at the nearest angle to 135 degrees.
   const asked = /^#(-?\d+)$/.exec(location.hash);

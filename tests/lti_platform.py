@@ -155,7 +155,8 @@ class FakePlatform:
             NRPS: {"context_memberships_url": f"{SITE}/members", "service_versions": ["2.0"]},
         }  # fmt: skip
         named = {
-            name if ":" in name or name in told else f"{LTI}{name}": value for name, value in changed.items()
+            name if ":" in name or name in (*told, "email") else f"{LTI}{name}": value
+            for name, value in changed.items()
         }
         return {name: value for name, value in {**told, **named}.items() if value is not None}
 
@@ -195,8 +196,8 @@ class Browser:
 class Visitor:
     """A browser that follows links from the platform."""
 
-    def __init__(self, app, platform):
-        self.platform = platform
+    def __init__(self, app, platform, base=""):
+        self.platform, self.base = platform, base
         self.browser = Browser(app)
 
     def login(self, **changed):
@@ -208,7 +209,7 @@ class Visitor:
             "client_id": CLIENT,
             **changed,
         }
-        answer = self.browser.get("/login", params=told)
+        answer = self.browser.get(f"{self.base}/login", params=told)
         assert answer.status_code == 302, answer.text
         assert answer.headers["location"].startswith(f"{SITE}/auth?")
         return {
@@ -219,7 +220,7 @@ class Visitor:
         """The tool's answer to a launch."""
         asked = self.login()
         token = token or self.platform.signed(self.platform.claims(asked["nonce"], **changed))
-        return self.browser.post("/launch", data={"state": asked["state"], "id_token": token})
+        return self.browser.post(f"{self.base}/launch", data={"state": asked["state"], "id_token": token})
 
     def enter(self, **changed):
         """The first page after a launch, and its path."""

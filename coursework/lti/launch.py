@@ -13,6 +13,7 @@ from coursework.lti.roles import Role, role_of
 _LTI = "https://purl.imsglobal.org/spec/lti/claim/"
 _DEEP = "https://purl.imsglobal.org/spec/lti-dl/claim/"
 _GRADES = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint"
+_PERSON = "https://purl.imsglobal.org/spec/lti/claim/lis"
 _ROSTER = "https://purl.imsglobal.org/spec/lti-nrps/claim/namesroleservice"
 
 RESOURCE, PICKING = "LtiResourceLinkRequest", "LtiDeepLinkingRequest"
@@ -53,6 +54,8 @@ class Launch:
     scopes: tuple[str, ...] = ()
     memberships: str = ""  #: address of the roster
     picking: Picking | None = None
+    email: str = ""  #: where the platform tells it
+    number: str = ""  #: by which the institution knows the person, where the platform tells it
 
     @property
     def place(self) -> str:
@@ -96,9 +99,9 @@ def launch_of(claims: Mapping[str, Any]) -> Launch:
     context, shown = _table(claims, f"{_LTI}context"), _table(claims, f"{_LTI}launch_presentation")
     grades, roster = _table(claims, _GRADES), _table(claims, _ROSTER)
     custom = {
-        str(k): str(v)[:_LONGEST]
+        _kept(k): _kept(str(v))
         for k, v in _table(claims, f"{_LTI}custom").items()
-        if isinstance(v, (str, int, float))
+        if isinstance(v, (str, float)) or (isinstance(v, int) and _written(v))
     }
     whole = " ".join(filter(None, (_text(claims, "given_name"), _text(claims, "family_name"))))
     scopes = grades.get("scope")
@@ -119,9 +122,13 @@ def launch_of(claims: Mapping[str, Any]) -> Launch:
         return_url=_address(shown, "return_url"),
         line=_address(grades, "lineitem"),
         lines=_address(grades, "lineitems"),
-        scopes=tuple(str(one) for one in scopes) if isinstance(scopes, list) else (),
+        scopes=tuple(_kept(str(one)) for one in scopes if isinstance(one, str))
+        if isinstance(scopes, list)
+        else (),
         memberships=_address(roster, "context_memberships_url"),
         picking=_picking(_table(claims, f"{_DEEP}deep_linking_settings")) if kind == PICKING else None,
+        email=_text(claims, "email"),
+        number=_text(_table(claims, _PERSON), "person_sourcedid"),
     )
 
 
@@ -150,11 +157,26 @@ def _table(claims: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 
 def _text(claims: Mapping[str, Any], name: str, *, needed: bool = False, called: str = "") -> str:
+    """A claim's text. One that tells people or places apart is taken as it is or refused: cut short, two would be one."""
     found = claims.get(name)
-    text = found[:_LONGEST] if isinstance(found, str) else str(found) if type(found) is int else ""
-    if needed and not text.strip():
-        raise Refused("claim", 400, f"{called or name.rpartition('/')[2]} missing")
-    return text
+    text = found if isinstance(found, str) else _written(found) if type(found) is int else ""
+    kept = _kept(text)
+    if needed and (not text.strip() or kept != text):
+        raise Refused(
+            "claim",
+            400,
+            f"{called or name.rpartition('/')[2]} {'missing' if not text.strip() else 'too odd'}",
+        )
+    return kept
+
+
+def _kept(text: str) -> str:
+    """A text that every database holds."""
+    return text[:_LONGEST].replace("\0", "").encode("utf-8", "replace").decode()
+
+
+def _written(number: int) -> str:
+    return str(number) if number.bit_length() <= 256 else ""
 
 
 def _address(claims: Mapping[str, Any], name: str) -> str:

@@ -88,6 +88,7 @@ def service(
 
     handlers: Mapping[Any, Any] = {HTTPException: desk.no_page}
     app = Starlette(routes=routes, lifespan=running, exception_handlers=handlers)
+    app.router.redirect_slashes = False  # it would lead to whatever host a request names
     app.state.sender = desk.sender
     return app
 
@@ -138,7 +139,7 @@ class _Service:
                 response, why = await run_in_threadpool(self.refused, request, fault), str(fault)
             except Exception as fault:
                 why = _place_of(fault)
-                LOG.error("%s failed: %s", request.url.path.split("/")[1], why)
+                LOG.error("%s failed: %s", _shown_path(request), why)
                 response = await run_in_threadpool(self.refused, request, Refused("failed", 500))
             self._guard(response)
             shown = _shown_path(request)
@@ -213,7 +214,7 @@ class _Service:
             raise Refused("bad_request", 400, "state or id_token missing")
         back = self._login.returned(state, request.cookies)
         claims = verified(token, self.settings, self.key_sets, back.platform)
-        if not hmac.compare_digest(str(claims["nonce"]), back.nonce):
+        if not hmac.compare_digest(str(claims["nonce"]).encode("utf-8", "replace"), back.nonce.encode()):
             raise Refused("nonce", 400, "the nonce of another login")
         launch = launch_of(claims)
         if not self.storage.use(back.nonce, back.until):
@@ -418,7 +419,7 @@ def _first(form: Told, name: str) -> str:
 
 def _shown_path(request: Request) -> str:
     """The path for the log: neither what is asked of it nor the name of a session."""
-    return re.sub(r"^/at/[^/]+", "/at/…", request.url.path)[:100]
+    return re.sub(r"/at/[^/]+", "/at/…", request.url.path)[:100]
 
 
 def _place_of(fault: BaseException) -> str:

@@ -161,7 +161,7 @@ def read_settings(folder: Path) -> Settings:
     try:
         source = path.read_text("utf-8-sig")
         table = tomllib.loads(source)
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as fault:
+    except (OSError, ValueError, RecursionError) as fault:
         raise BadInput(f"{path} cannot be read: {fault}") from fault
     return _Reader(path, source).settings(table)
 

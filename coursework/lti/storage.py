@@ -10,16 +10,18 @@ import sqlite3
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from coursework.errors import BadInput
 from coursework.lti.launch import Launch
 from coursework.lti.refusal import Refused
+from coursework.lti.roles import Role
 
 FILE = "lti.sqlite"
 _WAIT = 10.0  #: seconds for another writer
+_TAKEN = 180.0  #: seconds for which a score that a process is sending is not due for another
 
 _TABLES = """
 CREATE TABLE IF NOT EXISTS used (nonce TEXT PRIMARY KEY, until REAL NOT NULL) WITHOUT ROWID;
@@ -37,6 +39,9 @@ CREATE TABLE IF NOT EXISTS scores (
   due REAL, failures INTEGER NOT NULL DEFAULT 0, said TEXT NOT NULL DEFAULT '',
   PRIMARY KEY (place, person)) WITHOUT ROWID;
 CREATE INDEX IF NOT EXISTS scores_due ON scores (due);
+CREATE TABLE IF NOT EXISTS opened (
+  place TEXT NOT NULL, person TEXT NOT NULL, launch TEXT NOT NULL, PRIMARY KEY (place, person)) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS looked (what TEXT PRIMARY KEY, stood TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS courses (
   course TEXT PRIMARY KEY, title TEXT NOT NULL, memberships TEXT NOT NULL, seen REAL NOT NULL) WITHOUT ROWID;
 """
@@ -154,6 +159,11 @@ class Storage:
                 "INSERT INTO sessions VALUES (?, ?, ?, ?)",
                 [name, _digest(token), now + seconds, launch.as_json()],
             )
+            if launch.link and launch.role is Role.STUDENT:
+                lasting = replace(launch, email="", number="").as_json()
+                file.execute(
+                    "INSERT OR REPLACE INTO opened VALUES (?, ?, ?)", [launch.place, launch.person, lasting]
+                )
             if launch.context and launch.memberships:
                 told = [launch.course, launch.context_title, launch.memberships, now]
                 file.execute("INSERT OR REPLACE INTO courses VALUES (?, ?, ?, ?)", told)
@@ -176,6 +186,12 @@ class Storage:
         if not secrets.compare_digest(row["token"], _digest(token)):
             raise Refused("browser", 403, "the cookie of another session")
         return Launch.from_json(row["launch"])
+
+    def opened(self) -> list[Launch]:
+        """The last launch of each student in each link."""
+        with self._open() as file:
+            rows = file.execute("SELECT launch FROM opened ORDER BY place, person")
+            return [Launch.from_json(row["launch"]) for row in rows]
 
     def end(self, name: str) -> None:
         with self._writing() as file:
@@ -258,12 +274,17 @@ class Storage:
         return True
 
     def due(self, count: int = 50) -> list[tuple[tuple[str, str], Waiting]]:
-        """Scores to send now, those that wait longest first, each with the issuer and the client of its platform."""
+        """Scores to send now, those that wait longest first, each with the issuer and the client of its platform. They are due
+        again in a while, for whoever looks then, unless it is told what became of them."""
+        now = self._clock()
         with self._open() as file:
-            rows = file.execute(
-                "SELECT * FROM scores WHERE due <= ? ORDER BY due LIMIT ?", [self._clock(), count]
-            )
+            if file.execute("SELECT 1 FROM scores WHERE due <= ? LIMIT 1", [now]).fetchone() is None:
+                return []
+        with self._writing() as file:
+            rows = file.execute("SELECT * FROM scores WHERE due <= ? ORDER BY due LIMIT ?", [now, count])
             found = [(json.loads(row["platform"]), _waiting(row)) for row in rows]
+            taken = [[now + _TAKEN, one.place, one.person] for _, one in found]
+            file.executemany("UPDATE scores SET due = ? WHERE place = ? AND person = ?", taken)
         return [((issuer, client_id), waiting) for (issuer, client_id), waiting in found]
 
     def arrived(self, sent: Waiting) -> None:
@@ -301,6 +322,19 @@ class Storage:
         with self._writing() as file:
             return file.execute("UPDATE scores SET due = ? WHERE due IS NOT NULL", [self._clock()]).rowcount
 
+    # ------------------------------------------------------- what was looked at
+
+    def stood(self, what: str) -> str:
+        """How something stood when it was last looked at; nothing before."""
+        with self._open() as file:
+            row = file.execute("SELECT stood FROM looked WHERE what = ?", [what]).fetchone()
+        return str(row["stood"]) if row else ""
+
+    def looked(self, what: str, stood: str) -> None:
+        """Note how something stands."""
+        with self._writing() as file:
+            file.execute("INSERT OR REPLACE INTO looked VALUES (?, ?)", [what, stood])
+
     # ----------------------------------------------------------------- courses
 
     def courses(self) -> list[tuple[tuple[str, str, str, str], str, str]]:
@@ -309,15 +343,20 @@ class Storage:
             rows = file.execute("SELECT * FROM courses ORDER BY seen DESC")
             return [(tuple(json.loads(row["course"])), row["title"], row["memberships"]) for row in rows]
 
-    def forget(self, person: str) -> int:
-        """Take away all that is kept of a person; how many lines that were."""
+    def forget(self, person: str, issuer: str = "") -> int:
+        """Take away all that is kept of a person, of one platform where it is told; how many lines that were."""
+        begins = json.dumps([issuer])[:-1] + "," if issuer else ""  # as places do
         with self._writing() as file:
             gone = sum(
-                file.execute(f"DELETE FROM {table} WHERE person = ?", [person]).rowcount
-                for table in ("papers", "tries", "scores")
+                file.execute(
+                    f"DELETE FROM {table} WHERE person = ? AND substr(place, 1, ?) = ?",
+                    [person, len(begins), begins],
+                ).rowcount
+                for table in ("papers", "tries", "scores", "opened")
             )
             for row in file.execute("SELECT id, launch FROM sessions").fetchall():
-                if json.loads(row["launch"])["person"] == person:
+                launch = json.loads(row["launch"])
+                if launch["person"] == person and issuer in ("", launch["issuer"]):
                     gone += file.execute("DELETE FROM sessions WHERE id = ?", [row["id"]]).rowcount
             return gone
 

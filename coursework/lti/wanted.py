@@ -80,6 +80,6 @@ def tries_of(text: str) -> int | None:
     """A number of tries; none for as many as one likes."""
     if not text.strip():
         return None
-    if not text.strip().isdecimal() or not 1 <= int(text) <= _MOST_TRIES:
+    if not text.strip().isdecimal() or len(text) > 20 or not 1 <= int(text) <= _MOST_TRIES:
         raise Refused("no_question", 400, "tries are no whole number")
     return int(text)

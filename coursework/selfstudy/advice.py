@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from datetime import date
 from typing import TYPE_CHECKING, Any
 
@@ -15,12 +15,17 @@ if TYPE_CHECKING:
     from coursework.course.course import Course
     from coursework.course.exercise import CourseExercise
 
+Called = Callable[["CourseExercise[Any]", str], str]  #: how an exercise is called in a language
+
 _SKILLS = 6  #: that are told, the last lost first
 
 
-def next_step(course: Course[Any], progress: Progress, on: date) -> Advice | None:
-    """What to do next on a day; None for a course without exercises."""
-    return advised(progress, on, course.folder.study_order, _Errors(course))
+def next_step(
+    course: Course[Any], progress: Progress, on: date, order: Sequence[str] | None = None
+) -> Advice | None:
+    """What to do next on a day; None for a course without exercises. ``order`` is its study order, read unless it is told."""
+    known = course.folder.study_order if order is None else order
+    return advised(progress, on, known, _Errors(course))
 
 
 class _Errors(Mapping[str, Iterable[str]]):
@@ -64,8 +69,8 @@ def _line(course: Course[Any], one: Standing, on: date, lang: str, said: Mapping
     return f"- {line} {again}"
 
 
-def told_skills(course: Course[Any], progress: Progress, lang: str) -> str:
-    """What has cost answers, as Markdown lists: what did not come out since, and what did."""
+def told_skills(course: Course[Any], progress: Progress, lang: str, called: Called | None = None) -> str:
+    """What has cost answers, as Markdown lists: what did not come out since, and what did; ``called`` as for :func:`told_advice`."""
     said = words(lang)["study"]["progress"]
     lost = sorted(
         (s for s in skills(progress) if s.last_lost), key=lambda s: s.last_lost or date.min, reverse=True
@@ -78,15 +83,16 @@ def told_skills(course: Course[Any], progress: Progress, lang: str) -> str:
     ):
         if chosen:
             pieces.append(
-                f"**{said[head]}**\n\n" + "\n".join(_skill(course, s, t, lang) for s, t in chosen[:_SKILLS])
+                f"**{said[head]}**\n\n"
+                + "\n".join(_skill(course, s, t, lang, called or title) for s, t in chosen[:_SKILLS])
             )
     return "\n\n".join(pieces)
 
 
-def _skill(course: Course[Any], skill: Skill, told: str, lang: str) -> str:
+def _skill(course: Course[Any], skill: Skill, told: str, lang: str, called: Called) -> str:
     said = words(lang)["study"]["progress"]
     shown = said["shown"].format(count=skill.shown, of=HELD) if skill.shown and skill.is_open else ""
-    place = "" if skill.id.startswith("kind:") else title(course[skill.exercise], lang)
+    place = "" if skill.id.startswith("kind:") else called(course[skill.exercise], lang)
     beside = said["separator"].join(filter(None, (place, shown)))
     return f"- {' '.join(told.split())}{f' ({beside})' if beside else ''}"
 
@@ -107,13 +113,13 @@ def told_skill(course: Course[Any], skill: str, exercise: str, lang: str) -> str
         return ""
 
 
-def told_advice(course: Course[Any], advice: Advice, lang: str) -> str:
-    """Why this exercise now, in a sentence or two."""
+def told_advice(course: Course[Any], advice: Advice, lang: str, called: Called | None = None) -> str:
+    """Why this exercise now, in a sentence or two; ``called`` is how an exercise is called, by title and name unless told."""
     said = words(lang)["study"]["next"]
     skill = told_skill(course, advice.skill, advice.exercise, lang) if advice.skill else ""
     why = "new" if advice.why == "skill" and not skill else advice.why
     return said[why].format(
-        title=title(course[advice.exercise], lang),
+        title=(called or title)(course[advice.exercise], lang),
         day=told_date(advice.day, lang) if advice.day else "",
         skill=" ".join(skill.split()),
         count=len(advice.parts),

@@ -32,6 +32,8 @@ from datetime import UTC, datetime
 from functools import cached_property
 from typing import Any
 
+from coursework.system.json_files import json_of
+
 FORMAT, VERSION = "coursework progress", 1
 ANSWER, PREDICTION, HINT, REVEAL, EXAMPLE = "answer", "prediction", "hint", "reveal", "example"
 
@@ -79,7 +81,8 @@ class Progress:
     def text(self) -> str:
         """The JSON text, an entry a line."""
         head = f'{{"format": {json.dumps(FORMAT)}, "version": {VERSION}, "entries": ['
-        return head + ",".join(f"\n{_identity(one)}" for one in self) + "\n]}\n"
+        text = head + ",".join(f"\n{_identity(one)}" for one in self) + "\n]}\n"
+        return text.encode("utf-8", "replace").decode("utf-8")  # halves of characters stand in no file
 
     @classmethod
     def read(cls, text: str) -> Progress:
@@ -93,7 +96,7 @@ class Progress:
             It was written by a later version.
         """
         try:
-            content = json.loads(text)
+            content = json_of(text.encode("utf-8", "replace"), "progress")
             entries = [_checked(entry) for entry in content["entries"]]
             later = content["version"] > VERSION
             known = content["format"] == FORMAT
@@ -127,10 +130,13 @@ def _checked(one: Any) -> Entry:
     """
     if date_of(one).tzinfo is None:
         raise ValueError(one["at"])
-    if isinstance(one["seed"], bool) or not isinstance(one["seed"], int) or one["seed"] < 0:
-        raise ValueError(one["seed"])
+    for number in (one["seed"], one.get("step", 1)):
+        if isinstance(number, bool) or not isinstance(number, int) or number < 0:
+            raise ValueError(number)
     if not all(isinstance(one[name], str) for name in ("exercise", "part", "what")):
         raise ValueError("an entry names its exercise, its part and what it is")
+    if not all(isinstance(one.get(name, ""), str) for name in ("verdict", "kind")):
+        raise ValueError("a verdict and a kind are texts")
     return one
 
 

@@ -10,7 +10,7 @@ from coursework.errors import CourseworkError
 from coursework.marking.marking import mark
 from coursework.selfstudy.mastery import RIGHT
 from coursework.selfstudy.progress import ANSWER, Entry, date_of, entry
-from coursework.selfstudy.store import ProgressFile, is_blank
+from coursework.selfstudy.store import Keeper, is_blank
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
@@ -37,7 +37,7 @@ def marked_answers(
     return found
 
 
-def mark_what_came_unmarked(course: Course[Any], file: ProgressFile) -> None:
+def mark_what_came_unmarked(course: Course[Any], file: Keeper) -> None:
     """Give their verdicts to answers that were kept without: by an earlier version, or while there were no solutions; with the date of
     the answer."""
     last = {(e["exercise"], e["seed"], e["part"]): e for e in file.progress if e["what"] == ANSWER}

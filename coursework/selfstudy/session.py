@@ -13,7 +13,6 @@ from coursework.course.course import Course
 from coursework.course.variant import Variant
 from coursework.errors import BadCourse, NoSolution, Starved, WrongValue
 from coursework.language.words import words
-from coursework.marking.mark import Marking
 from coursework.marking.marking import mark as grade
 from coursework.markup.shown import Picture, Shown
 from coursework.model import Part
@@ -23,13 +22,14 @@ from coursework.rendering.views import offered, points_number
 from coursework.selfstudy import hints, predictions, refusals
 from coursework.selfstudy import word_answers as wording
 from coursework.selfstudy.advice import next_step, told_advice, told_skills, told_standings
-from coursework.selfstudy.answers import is_open, judged_out_of, quoted, same_as_another, sentence_of, sign_of
+from coursework.selfstudy.answers import is_open, judged_out_of, quoted, sentence_of, sign_of
+from coursework.selfstudy.attempt import Attempt
 from coursework.selfstudy.examples import LEVELS, blanks, example_variant, has_example, told_steps
 from coursework.selfstudy.plotting import curves, usual_parts
 from coursework.selfstudy.predictions import Prediction
 from coursework.selfstudy.progress import EXAMPLE, HINT, REVEAL
-from coursework.selfstudy.recording import mark_what_came_unmarked, marked_answers
-from coursework.selfstudy.right_answers import Own, right_ones
+from coursework.selfstudy.recording import mark_what_came_unmarked
+from coursework.selfstudy.right_answers import Own
 from coursework.selfstudy.sheet import fresh_variants
 from coursework.selfstudy.store import Clock, Kept, ProgressFile, is_blank, now
 from coursework.selfstudy.theory import theory, without_theory
@@ -104,6 +104,7 @@ class StudySession:
     def __init__(self, variant: Variant, kept: Kept, base: int | None = None):
         self.variant = variant
         self._kept = kept
+        self._attempt = Attempt(variant, kept)
         self._base = variant.seed if base is None else base
         self._hints: dict[str, int] = {}
         self._said = words(variant.lang)["study"]
@@ -286,18 +287,13 @@ class StudySession:
 
     def _compared(self, names: Iterable[str], own: Mapping[str, Own]) -> str:
         """Predictions beside what came out, as a list."""
-        asked, lines = self._asked, []
-        for name in names:
-            mine = own.get(asked[name].quantity)
-            value = None if mine is None or mine.is_usual else mine.value
-            found = predictions.compared(self.variant, asked[name], self.predictions.get(name), value)
-            if found is None:
-                continue
+        lines = []
+        for found in self._attempt.compared([self._asked[name] for name in names], own):
             mark = {True: "✓", False: "✗", None: "?"}[found.right]
-            question = predictions.asked(self.variant, asked[name])
+            question = predictions.asked(self.variant, found.prediction)
             line = self._said["compared"].format(said=f"`{found.said.replace('`', '')}`", found=found.found)
             if found.right is None:
-                line += f" — {predictions.options(self.variant, asked[name])}"
+                line += f" — {predictions.options(self.variant, found.prediction)}"
             lines.append(f"- {mark} {question} {line}")
         return "\n".join([f"**{self._said['predictions']}**", "", *lines]) if lines else ""
 
@@ -306,7 +302,7 @@ class StudySession:
     @property
     def answers(self) -> dict[str, Any]:
         """The last answer to each question of this variant that was not blank."""
-        return self._asked_of(self.variant)
+        return self._attempt.answers
 
     def _asked_of(self, variant: Variant) -> dict[str, Any]:
         """The kept answers to a variant that it asks: a file may hold others."""
@@ -328,14 +324,8 @@ class StudySession:
         if missing := self._missing():
             self._kept.add(self.variant.seed, "answers", given)
             return self._shown(missing, self._trouble)
-        now = {**self.answers, **{n: a for n, a in given.items() if not is_blank(a)}}
-        try:
-            marking = grade(self.variant, now)
-        except Exception:
-            self._kept.add(self.variant.seed, "answers", given)  # nothing is lost by a fault of the course
-            raise
-        copied, theirs = same_as_another(self.variant, self._kept, given, marking)
-        self._keep({n: a for n, a in now.items() if n not in theirs}, marking)
+        checked = self._attempt.check(given)
+        marking, now = checked.marking, checked.answers
         lines, unanswered = [], []
         for mark in marking.values():
             number = self._numbered.index(mark.part) + 1
@@ -344,9 +334,8 @@ class StudySession:
             else:
                 said = sentence_of(self.variant, mark, self._call("reveal", mark.part))
                 lines.append(f"- {sign_of(mark)} **{number}.** `{self._keys[mark.part]}` — {said}")
-        if copied is not None:
-            lines.insert(0, self._said["copied"].format(seed=copied) + "\n")
-        right = {m.part for m in marking.values() if m.verdict == "correct"}
+        if checked.copied is not None:
+            lines.insert(0, self._said["copied"].format(seed=checked.copied) + "\n")
         total = self._said["total"].format(
             points=points_number(marking.points, self.variant.lang),
             out_of=points_number(judged_out_of(self.variant, marking), self.variant.lang),
@@ -356,32 +345,21 @@ class StudySession:
         after += (
             [self._said["from_before"].format(names=_names(self._keys[n] for n in before))] if before else []
         )
-        first = next(
-            (n for n, m in marking.items() if m.verdict not in ("correct", "missing", "to_mark")), ""
-        )
+        first = checked.first_missed
         after += [self._said["try_hint"].format(call=self._call("hint", first))] if first else []
-        asked_before = [p.id for p in predictions.before_answers(self.variant) if p.id in right]
+        asked_before = [p.id for p in predictions.before_answers(self.variant) if p.id in checked.right]
         return self._shown(
             "\n".join(lines),
             f"**{total}**",
             " ".join(after),
-            self._compared(asked_before, self._own_in(marking, now)),
+            self._compared(asked_before, self._attempt.own(checked)),
             self._trouble,
         )
-
-    def _keep(self, answers: Mapping[str, Any], marking: Marking) -> None:
-        """Keep answers with what became of them."""
-        before = self._kept.happened(self.variant.seed)
-        self._kept.note(self.variant.seed, marked_answers(self.variant, answers, marking, before))
 
     @property
     def _own(self) -> dict[str, Own]:
         """What the student has right, by quantity."""
-        return self._own_in(grade(self.variant, self.answers), self.answers)
-
-    def _own_in(self, marking: Marking, answers: Mapping[str, Any]) -> dict[str, Own]:
-        right = [name for name, mark in marking.items() if mark.verdict == "correct"]
-        return right_ones(self.variant, answers, right)
+        return self._attempt.own(self._attempt.marked())
 
     # -------------------------------------------------------------------- hints
 
@@ -408,9 +386,7 @@ class StudySession:
         name = self._named(question)
         if step is not None:
             step = refusals.counted(self.variant.lang, "step", step)
-        # Of what is right in another way the reference is not the student's: it stays a symbol.
-        found = {q: own.value for q, own in self._own.items() if own.is_usual and own.value is not None}
-        texts = hints.steps(self.variant, name, found, lambda n: self._call("hint", n))
+        texts = self._attempt.hints(name, lambda n: self._call("hint", n))
         if not texts:
             return self._shown(self._said["hint"]["none"].format(call=self._call("reveal", name)))
         last = step if step is not None else self._hints.get(name, 0) + 1
@@ -446,9 +422,7 @@ class StudySession:
 
     def _note(self, what: str, part: Any, **more: Any) -> None:
         """Keep that something was shown; once."""
-        told = {"part": str(part), "what": what, **more}
-        if not any(told.items() <= one.items() for one in self._kept.happened(self.variant.seed)):
-            self._kept.note(self.variant.seed, [told])
+        self._attempt.note(what, str(part), **more)
 
     # -------------------------------------------------------------------- plots
 
@@ -474,7 +448,7 @@ class StudySession:
                 refusals.expect(self.variant.lang, "curve", name, [self._keys[n] for n in parts])
         own = self._own
         wanted = [parts[name] for name in called] or list(parts.values())
-        free = [p for p in wanted if p.quantity in own or self._is_revealed(p)]
+        free = [p for p in wanted if p.quantity in own or self._attempt.is_revealed(p)]
         held = [self._keys[p.id] for p in wanted if p not in free]
         not_yet = self._said["not_yet"].format(names=_names(held)) if held else ""
         if not free:
@@ -500,11 +474,6 @@ class StudySession:
         asked = [p.id for p in predictions.over_the_cycle(self.variant) if p.quantity in seen]
         picture = Picture(drawn.plot.svg(), drawn.plain)
         return self._shown(said, picture, *notes, more, not_yet, self._compared(asked, own))
-
-    def _is_revealed(self, part: Part) -> bool:
-        """Whether the solution of a question has been shown."""
-        told = {e["part"] for e in self._kept.happened(self.variant.seed) if e["what"] == REVEAL}
-        return not told.isdisjoint((part.id, part.quantity))
 
     # ----------------------------------------------------------- other variants
 

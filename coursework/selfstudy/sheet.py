@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from coursework.course.builtin import builtin_root
 from coursework.course.lessons import taught_by
-from coursework.errors import Starved
+from coursework.errors import NoSolution, Starved
 from coursework.making.issuing import distinct_variants
 from coursework.selfstudy import predictions
 from coursework.selfstudy.examples import has_example
@@ -60,7 +60,7 @@ def fresh_variants(exercise: CourseExercise, seed: int, count: int, lang: str) -
 def _fresh_questions(variant: Variant) -> tuple[Question, ...]:
     try:
         return handout(fresh_variants(variant.exercise, variant.seed, 1, variant.lang)[0]).questions
-    except Starved:
+    except (NoSolution, Starved):
         return ()
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import itertools
-import json
 import os
 import re
 import time
@@ -11,7 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from coursework.selfstudy.progress import (
     ANSWER,
@@ -23,6 +22,7 @@ from coursework.selfstudy.progress import (
     date_of,
     entry,
 )
+from coursework.system.json_files import json_of
 
 FILE = "progress.json"  #: of all the exercises of a folder
 EARLIER = ".study.json"  #: ending of the files of one exercise that earlier versions kept
@@ -35,6 +35,24 @@ _WAIT, _STALE = 5.0, 30.0  #: seconds for another notebook to finish; age of a l
 
 def now() -> datetime:
     return datetime.now(UTC)
+
+
+class Keeper(Protocol):
+    """Where progress is kept: in a file beside notebooks, or elsewhere."""
+
+    progress: Progress
+    clock: Clock
+    trouble: str
+    troubled: str
+
+    def refresh(self) -> None:
+        """Take in what came since."""
+
+    def add(self, entries: Iterable[Entry]) -> None:
+        """Keep what happened."""
+
+    def take_over(self, exercise: str) -> None:
+        """Add what an earlier version kept of an exercise elsewhere, if it did."""
 
 
 class ProgressFile:
@@ -101,6 +119,39 @@ class ProgressFile:
             self.progress |= new
             self._tell("unwritable", self.path)
 
+    def take_over(self, exercise: str) -> None:
+        """Add what ``EXERCISE.study.json``, the file of an earlier version, holds beside this one, and of which nothing is kept here
+        yet; a file that cannot be read is set aside."""
+        path = self.path.parent / f"{exercise}{EARLIER}"
+        if not path.exists():
+            return
+        known = {(e["seed"], e["part"], e["what"]) for e in self.progress.of(exercise)}
+        found = self._of_earlier(path, exercise)
+        self.add(e for e in found if (e["seed"], e["part"], e["what"]) not in known)
+
+    def _of_earlier(self, path: Path, exercise: str) -> list[dict[str, Any]]:
+        try:
+            content = json_of(path.read_bytes(), str(path))
+            variants = {
+                _seed(seed): {kind: dict(texts) for kind, texts in kinds.items()}
+                for seed, kinds in content["variants"].items()
+            }
+        except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
+            self.set_aside("damaged", path)
+            return []
+        if content.get("exercise", exercise) != exercise:
+            self.set_aside("other", path)
+            return []
+        at = datetime.fromtimestamp(path.stat().st_mtime, UTC)
+        return [
+            entry(at, exercise, seed, str(name), _KINDS[kind], answer=text)
+            for seed, kinds in variants.items()
+            for kind, texts in kinds.items()
+            if kind in _KINDS
+            for name, text in texts.items()
+            if not is_blank(text)
+        ]
+
 
 @contextmanager
 def _alone(path: Path) -> Iterator[None]:
@@ -128,39 +179,13 @@ def _alone(path: Path) -> Iterator[None]:
 class Kept:
     """What is kept of one exercise: answers and predictions by seed, and all that happened.
 
-    A blank never takes the place of what was written before. What ``EXERCISE.study.json``, the file of an earlier version,
-    holds beside it is taken over once, with that file's date, and the file itself is left as it is.
+    A blank never takes the place of what was written before. What a file of an earlier version holds is taken over once, with that
+    file's date, and the file itself is left as it is.
     """
 
-    def __init__(self, file: ProgressFile, exercise: str):
+    def __init__(self, file: Keeper, exercise: str):
         self.exercise, self.file = exercise, file
-        earlier = file.path.parent / f"{exercise}{EARLIER}"
-        if earlier.exists():
-            self.file.add(self._of_earlier(earlier))
-
-    def _of_earlier(self, path: Path) -> list[Entry]:
-        """What an earlier version kept, of which nothing is kept here yet; a file that cannot be read is set aside."""
-        try:
-            content = json.loads(path.read_text("utf-8"))
-            variants = {
-                _seed(seed): {kind: dict(texts) for kind, texts in kinds.items()}
-                for seed, kinds in content["variants"].items()
-            }
-        except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
-            self.file.set_aside("damaged", path)
-            return []
-        if content.get("exercise", self.exercise) != self.exercise:
-            self.file.set_aside("other", path)
-            return []
-        at = datetime.fromtimestamp(path.stat().st_mtime, UTC)
-        return [
-            entry(at, self.exercise, seed, str(name), _KINDS[kind], answer=text)
-            for seed, kinds in variants.items()
-            for kind, texts in kinds.items()
-            if kind in _KINDS
-            for name, text in texts.items()
-            if not is_blank(text) and str(name) not in self.of(seed, kind)
-        ]
+        self.file.take_over(exercise)
 
     def beside(self, exercise: str) -> Kept:
         """What is kept of another exercise in the same file."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Protocol
 
 from coursework.course.course import Course
 from coursework.course.error_values import TAKEN
@@ -18,6 +18,16 @@ from coursework.statistics.measures import MistakeStatistics, PartStatistics, St
 
 SHORT = 44  #: characters of a question's words, or of a mistake's, that stand for it
 _OPEN = re.compile(r"\{\w+\}")
+
+
+class Question(Protocol):
+    """A question by its exercise and its part."""
+
+    @property
+    def exercise(self) -> str: ...
+
+    @property
+    def part(self) -> str: ...
 
 
 class Names:
@@ -50,7 +60,7 @@ class Names:
         place = ids.index(part.part)
         return place + 1 if always.issuperset(ids[:place]) else None
 
-    def _known(self, part: PartStatistics) -> tuple[CourseExercise | None, Part | None]:
+    def _known(self, part: Question) -> tuple[CourseExercise | None, Part | None]:
         """The exercise and the part, where the course has them."""
         exercise = self.exercise(part.exercise)
         return exercise, None if exercise is None else exercise.spec.part(part.part)
@@ -62,7 +72,7 @@ class Names:
             return ""
         return exercise.symbol(asked.quantity)
 
-    def question(self, part: PartStatistics) -> str:
+    def question(self, part: Question) -> str:
         """The words of the question, shortened, as plain text; the part's own name where there are none."""
         exercise, asked = self._known(part)
         if exercise is None or asked is None or self._lang not in exercise.languages:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import csv
 from array import array
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from operator import itemgetter
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from coursework.errors import BadInput
 from coursework.gradebook.columns import SITTING, VERDICTS
-from coursework.system.tables import delimiter_of, open_csv
+from coursework.system.tables import as_written, delimiter_of, open_csv, said_twice
 
 MOST_POINTS = 1e9  #: more is no number of points
 
@@ -82,43 +82,75 @@ def read(folder: Path) -> Marks:
     path = folder / "marks.csv"
     if not path.is_file():
         raise BadInput(_no_marks(folder))
-    students, parts, verdicts, decimals = _Numbered(), _Numbered(), _Numbered(), _Decimals()
-    codes = [array("i") for _ in range(3)]
-    student, part, verdict = codes
-    got_points, most_points = array("d"), array("d")
-    for who, exercise, asked, judged, got, of in _counting(folder, decimals):
-        student.append(students[who])
-        part.append(parts[exercise, asked])
-        verdict.append(verdicts[judged])
-        got_points.append(got)
-        most_points.append(of)
-    _check_verdicts(path, verdicts)
-    by_student, by_part, by_verdict = (np.array(c, dtype=np.int64) for c in codes)
-    points, out_of = np.array(got_points, dtype=float), np.array(most_points, dtype=float)
-    if np.any(out_of <= 0):
-        raise BadInput(f"{path}: a line is out of {out_of.min():g} points; every part is out of some")
-
-    marked = len(students)
-    told, asked_blank, unread = _summary(folder / "summary.csv", students, decimals)
-    issued = np.bincount(by_student, out_of, minlength=len(students))
-    issued = np.maximum(issued, [told.get(s, 0.0) for s in students])
-    blank = np.array([family_of(v) == "missing" for v in verdicts], dtype=bool)
-    without_line = max(0, asked_blank - int(np.count_nonzero(blank[by_verdict])))
+    decimals = _Decimals()
+    lines = _Columns(_counting(folder, decimals))
+    _check_verdicts(path, lines.verdicts)
+    if lines.out_of and min(lines.out_of) <= 0:
+        raise BadInput(f"{path}: a line is out of {min(lines.out_of):g} points; every part is out of some")
     rejected = folder / "rejected.csv"
-    return Marks(
-        tuple(students),
-        tuple(parts),
-        tuple(verdicts),
-        by_student,
-        by_part,
-        by_verdict,
-        points,
-        out_of,
-        issued,
-        without_line if told else 0,
-        sum(1 for _ in _lines(rejected, _REJECTED)) if rejected.is_file() else 0,
-        sum(1 for student in unread if students[student] >= marked),
-    )
+    count = sum(1 for _ in _lines(rejected, _REJECTED)) if rejected.is_file() else 0
+    return lines.marks(_summary(folder / "summary.csv", decimals), count)
+
+
+Line = tuple[str, str, str, str, float, float]  #: student, exercise, part, verdict, points, out of
+
+
+class Told(NamedTuple):
+    """What a summary says of a student."""
+
+    out_of: float
+    missing: int  #: answers
+    unreadable: bool  #: something of theirs could not be read
+
+
+def marks_of(lines: Iterable[Line], told: Mapping[str, Told], rejected: int = 0) -> Marks:
+    """The columns of a class's marks, and of what its summary says of each student."""
+    return _Columns(lines).marks(told, rejected)
+
+
+class _Columns:
+    """Lines as columns."""
+
+    def __init__(self, lines: Iterable[Line]):
+        self.students, self.parts, self.verdicts = _Numbered(), _Numbered(), _Numbered()
+        self.student, self.part, self.verdict = (array("i") for _ in range(3))
+        self.points, self.out_of = array("d"), array("d")
+        for who, exercise, asked, judged, got, of in lines:
+            self.student.append(self.students[who])
+            self.part.append(self.parts[exercise, asked])
+            self.verdict.append(self.verdicts[judged])
+            self.points.append(got)
+            self.out_of.append(of)
+
+    def marks(self, told: Mapping[str, Told], rejected: int) -> Marks:
+        """The columns, and what else is known."""
+        students, marked = self.students, len(self.students)
+        unread = [name for name, own in told.items() if own.unreadable]
+        for name in told:
+            students[name]
+        student, part, verdict = (
+            np.array(c, dtype=np.int64) for c in (self.student, self.part, self.verdict)
+        )
+        out_of = np.array(self.out_of, dtype=float)
+        issued = np.bincount(student, out_of, minlength=len(students))
+        issued = np.maximum(issued, [told[s].out_of if s in told else 0.0 for s in students])
+        blank = np.array([family_of(v) == "missing" for v in self.verdicts], dtype=bool)
+        asked_blank = sum(own.missing for own in told.values())
+        without_line = max(0, asked_blank - int(np.count_nonzero(blank[verdict])))
+        return Marks(
+            tuple(students),
+            tuple(self.parts),
+            tuple(self.verdicts),
+            student,
+            part,
+            verdict,
+            np.array(self.points, dtype=float),
+            out_of,
+            issued,
+            without_line if told else 0,
+            rejected,
+            sum(1 for name in unread if students[name] >= marked),
+        )
 
 
 def unlike_summary(folder: Path, marks: Marks) -> list[str]:
@@ -153,19 +185,14 @@ def _header(path: Path) -> list[str]:
     return [name.strip().strip('"').casefold() for name in line.split(delimiter_of(line))]
 
 
-def _summary(path: Path, students: _Numbered, decimals: _Decimals) -> tuple[dict[str, float], int, set[str]]:
-    """The points that each student could have, the count of blank answers, and those who handed in what cannot be
-    read; new students join."""
-    told: dict[str, float] = {}
-    blank, unread = 0, set()
-    if path.is_file():
-        for name, unreadable, out_of, missing in _lines(path, _SUMMARY, decimals):
-            students[name]
-            if unreadable.strip() not in ("", "0"):
-                unread.add(name)
-            told[name] = out_of
-            blank += round(missing)
-    return told, blank, unread
+def _summary(path: Path, decimals: _Decimals) -> dict[str, Told]:
+    """By student, what the summary says."""
+    if not path.is_file():
+        return {}
+    return {
+        name: Told(out_of, round(missing), unreadable.strip() not in ("", "0"))
+        for name, unreadable, out_of, missing in _lines(path, _SUMMARY, decimals)
+    }
 
 
 def _no_marks(folder: Path) -> str:
@@ -215,6 +242,7 @@ def _lines(
             for cells in reader:
                 try:
                     row = named(cells)
+                    row = tuple(map(as_written, row)) if any("'" in cell for cell in row) else row
                     yield row if decimals is None else (*row[:-2], decimals[row[-2]], decimals[row[-1]])
                 except (IndexError, ValueError) as fault:
                     if any(c.strip() for c in cells):
@@ -234,6 +262,8 @@ def _places(path: Path, header: Sequence[str], columns: Sequence[str]) -> list[i
             f"{path} needs the columns {', '.join(columns)}; {', '.join(missing)} missing, found {found}; "
             "'coursework grade' writes them"
         )
+    if twice := said_twice(header, columns):
+        raise BadInput(f"{path}: {twice}")
     return [names.index(c) for c in columns]
 
 

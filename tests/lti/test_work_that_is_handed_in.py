@@ -641,7 +641,7 @@ def test_a_roster_that_leads_elsewhere_is_not_followed(tool):
 def test_a_person_is_forgotten_whole(tool, visitor):
     _page, path = works(visitor, tool.course)
     works(tool.visitor(), tool.course, sub="bob", name="Bob")
-    assert tool.storage.forget("ada") == 4
+    assert tool.storage.forget("ada") == 5
     assert visitor.browser.get(path).status_code == 403
     assert [one.person for one in tool.storage.papers(place(NAME))] == ["bob"]
     data = b"".join(file.read_bytes() for file in tool.storage.path.parent.glob("lti.sqlite*"))

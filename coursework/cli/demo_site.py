@@ -1,0 +1,127 @@
+"""A site to look at: the class of twelve, what it handed in and how it was marked, and what is open to it now.
+
+The same each time: variants hang on the names of students, and times are written here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+from coursework.api import open_course
+from coursework.authoring.new_assignment import new_assignment
+from coursework.cli.demo import CLASS, HABITS, ROSTER
+from coursework.course.course import Course
+from coursework.database.assignments import names, put_issued
+from coursework.database.deliveries import deliver
+from coursework.database.marking import mark_new
+from coursework.database.people import people, put_account, put_person
+from coursework.database.publication import AT_ONCE, CLOSED, Publication, publish
+from coursework.database.store import Store
+from coursework.gradebook.rows import Collected, Row
+from coursework.making.assignment import Assignment, read_assignment
+from coursework.making.dealing import deal
+from coursework.making.issued import Issued, issued_content
+from coursework.making.roster import Student, read_roster
+from coursework.system.folder_lock import only_writer
+
+FILE = "coursework.db"
+DONE, NOW = "homework_1", "homework_2"  #: the assignment that is marked, and the one that is open
+_OPENED = datetime(2026, 10, 5, 8, tzinfo=UTC)
+_CLOSED = datetime(2026, 10, 12, 18, tzinfo=UTC)
+_EXERCISES = 3  #: of another course, in each assignment
+TEACHER = "Ada Keller"
+
+
+def demo_database(folder: str | None, place: Path) -> str:
+    """The database of a demonstration of a course in a folder; as it was left where it is there.
+
+    Raises
+    ------
+    CourseworkError
+        The course cannot be opened, or the folder cannot be written.
+    """
+    file = place / FILE
+    with only_writer(place, "serve"):
+        course, store = open_course(folder), Store(str(file))
+        with store.reading() as connection:
+            is_new = not names(connection)
+        if is_new:
+            _fill(course, store, folder is None, place)
+        store.close()
+    return str(file)
+
+
+def _fill(course: Course[Any], store: Store, is_own: bool, place: Path) -> None:
+    done, now = (_assignment(course, name, k, is_own, place) for k, name in enumerate((DONE, NOW)))
+    students = read_roster(ROSTER)
+    number, content = _issue(course, store, done, students)
+    other, _ = _issue(course, store, now, students)
+    _hand_in(course, store, number, Issued(content, done.name))
+    mark_new(course, store, number)
+    _sign_up(store, students)
+    with store.begin() as connection:
+        publish(connection, number, Publication(opens=_OPENED, closes=_CLOSED, answers=CLOSED))
+        publish(connection, other, Publication(tries=None, feedback=AT_ONCE))
+
+
+def _assignment(course: Course[Any], name: str, place: int, is_own: bool, folder: Path) -> Assignment:
+    """That of the built-in course, or one of some exercises of another."""
+    path = CLASS / f"{name}.toml"
+    if not is_own:
+        path = folder / f"{name}.toml"
+        chosen = (
+            course.folder.in_order[_EXERCISES * place :][:_EXERCISES] or course.folder.in_order[:_EXERCISES]
+        )
+        path.unlink(missing_ok=True)
+        new_assignment(path, course, chosen, course.folder.languages)
+    return read_assignment(path, course)
+
+
+def _issue(
+    course: Course[Any], store: Store, assignment: Assignment, students: list[Student]
+) -> tuple[int, dict[str, Any]]:
+    spoken = [_in_language(course, one) for one in students]
+    dealt = deal(course, assignment, spoken, course.folder.languages[:1])
+    content = issued_content(dealt.issues, assignment)
+    with store.begin() as connection:
+        return put_issued(connection, content, course=course.folder.root.name), content
+
+
+def _in_language(course: Course[Any], student: Student) -> Student:
+    lang = student.lang if student.lang in course.folder.languages else course.folder.language
+    return Student(student.name, lang, student.columns)
+
+
+def _hand_in(course: Course[Any], store: Store, number: int, issued: Issued) -> None:
+    """Each hands in once, by their habit, an hour after another."""
+    with store.begin() as connection:
+        ids = {one.name: one.id for one in people(connection)}
+        for k, student in enumerate(issued.students[:-1]):  # the last one has not handed in
+            came = _CLOSED - timedelta(days=2) + timedelta(hours=k)
+            rows = list(_rows(course, issued, student, k, came))
+            deliver(connection, number, rows, source="site", came=came, person_id=ids[student], number=1)
+
+
+def _rows(course: Course[Any], issued: Issued, student: str, k: int, came: datetime) -> Iterator[Row]:
+    habit = HABITS[k % len(HABITS)]
+    origin = Collected(sitting=1, submitted=came.isoformat())
+    for exercise in issued.exercises:
+        seed = issued.seeds[student, exercise]
+        variant = course[exercise].from_record(issued.records[exercise, seed])
+        for place, part in enumerate(variant.parts):
+            answer = habit(variant, variant.key, part, place)
+            text = answer if isinstance(answer, str) else str(answer)
+            yield Row(student, exercise, str(seed), part.id, text, "site", "", variant.lang, origin)
+
+
+def _sign_up(store: Store, students: list[Student]) -> None:
+    """Everybody of the class, and who teaches it."""
+    with store.begin() as connection:
+        teacher = put_person(connection, who=TEACHER, name=TEACHER, lang="", columns={})
+        put_account(connection, teacher, login="teacher@example.org", role="instructor")
+        for k, student in enumerate(students, 1):
+            person = put_person(connection, student.who, student.name, student.lang, student.columns)
+            put_account(connection, person, login=f"student{k}@example.org", role="student")

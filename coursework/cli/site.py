@@ -1,0 +1,271 @@
+"""Commands of the site: serve, preview."""
+
+from __future__ import annotations
+
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from coursework.cli.options import (
+    FilePath,
+    Whole,
+    exercise_argument,
+    lang_option,
+    tell,
+)
+from coursework.errors import BadInput, unknown
+from coursework.system.limits import MOST_PORT, MOST_VARIANTS, MOST_WORKERS
+
+if TYPE_CHECKING:
+    import socket
+
+    from coursework.site.frame.settings import Entrance
+
+_LIBRARIES = (
+    "alembic", "argon2", "itsdangerous", "limits", "psycopg", "python_multipart", "sqlalchemy", "starlette", "uvicorn",
+)  # fmt: skip
+_FILE = "coursework.db"
+_LOOPBACK = "127.0.0.1"
+
+open_option = click.option("--open/--no-open", "opens", help="Open it in the browser.")
+
+
+def _ready() -> None:
+    """Say which library is missing before anything is begun."""
+    from coursework.system.extras import library
+
+    for name in _LIBRARIES:
+        library(name, "the site needs", "site")
+
+
+# ------------------------------------------------------------------------ serve
+
+
+@click.command()
+@click.option(
+    "--db",
+    metavar="URL",
+    help=f"Where all is kept: a file of SQLite, or postgresql+psycopg://…; {_FILE} in the current folder unless told.",
+)
+@click.option(
+    "--host", default="127.0.0.1", show_default=True, help="Where to listen; 0.0.0.0 is every address."
+)
+@click.option(
+    "--port", type=Whole(0, MOST_PORT), default=8000, show_default=True, help="0 takes any that is free."
+)
+@click.option("--url", help="Where browsers find it, behind a proxy: https://mechanics.example.org.")
+@click.option(
+    "--workers", type=Whole(1, MOST_WORKERS), default=1, show_default=True, help="Processes that answer."
+)
+@click.option(
+    "--demo",
+    is_flag=False,
+    flag_value="",
+    metavar="[FOLDER]",
+    help="A class of twelve with its assignment, in a folder, or in one that is gone afterwards.",
+)
+@click.option(
+    "--instructor", metavar="LOGIN", help="Print a link by which an instructor chooses a password, and end."
+)
+@click.option(
+    "--lti",
+    type=FilePath(path_type=Path, exists=True, file_okay=False),
+    metavar="FOLDER",
+    help="Open to the learning platforms of a folder's platforms.toml, under /lti (see 'coursework lti').",
+)
+@open_option
+@click.pass_context
+def serve(
+    context: click.Context, db: str | None, host: str, port: int, url: str | None, workers: int, demo: str | None,
+    instructor: str | None, lti: Path | None, opens: bool,
+) -> None:  # fmt: skip
+    """Start the site: practice for students, a desk for instructors.
+
+    On this machine alone, without --url, it opens without an account. Ctrl-C ends it.
+    """
+    _ready()
+    from coursework.site import server
+
+    if demo is not None and db is not None:
+        raise BadInput("--demo brings its own database: leave --db out, or name a folder, --demo FOLDER")
+    if instructor is not None:
+        _invite(context.obj, db, instructor, _told(url) if url else f"http://{host}:{port}")
+        return
+    with _kept(context.obj, db, demo) as place, server.listening(host, port) as at:
+        own = _told(url) if url else _address(host, at)
+        if lti is not None:
+            _check_lti(lti, own)
+        entrance = _entrance(host, own, demo, told=url is not None)
+        serving = server.Serving(context.obj, place, entrance, own, lti)
+        shown = serving.check()
+        with server.filling(serving):
+            click.echo(f"coursework: {own}/ (kept in {shown}; Ctrl-C ends it)")
+            _open(own, opens)
+            server.serve(serving, at, workers)
+
+
+def _check_lti(folder: Path, url: str) -> None:
+    """Say what is missing before anything is served; a key is made where there is none.
+
+    Raises
+    ------
+    BadInput
+        The folder's file is for another address, or cannot be read.
+    """
+    from coursework.system.extras import library
+
+    for name in ("cryptography", "httpx", "jwt"):
+        library(name, "LTI needs", "lti")
+    from coursework.lti.keys import KeyFolder
+    from coursework.site.lti.mount import settings_of
+
+    if not settings_of(folder, url).platforms:
+        tell([f"no platform in {folder}: 'coursework lti platform moodle https://… --in {folder}' adds one"])
+    if not (kept := KeyFolder(folder / "keys")).keys:
+        tell([f"a key was made: {kept.new().kid}"])
+
+
+def _invite(course: str | None, db: str | None, login: str, url: str) -> None:
+    """Print where an instructor chooses a password."""
+    from coursework.site.frame.settings import Entrance
+    from coursework.site.people.accounts import first_instructor
+    from coursework.site.server import Serving
+
+    site = Serving(course, db or _usual(), Entrance.ACCOUNTS, url).site()
+    click.echo(first_instructor(site, login))
+    site.store.close()
+
+
+def _usual() -> str:
+    return str(Path(_FILE).resolve())
+
+
+@contextmanager
+def _kept(course: str | None, db: str | None, demo: str | None) -> Iterator[str]:
+    """The database's address."""
+    if demo is None:
+        yield db or _usual()
+        return
+    from coursework.cli.demo_site import demo_database
+
+    if demo:
+        yield demo_database(course, Path(demo))
+        return
+    with tempfile.TemporaryDirectory(prefix="coursework-", ignore_cleanup_errors=True) as folder:
+        yield demo_database(course, Path(folder))
+
+
+def _address(host: str, at: socket.socket) -> str:
+    """Where browsers find what listens there.
+
+    Raises
+    ------
+    BadInput
+        It listens at every address of the machine, and none is told.
+    """
+    if host in ("0.0.0.0", "::"):
+        raise BadInput(f"--host {host}: where do browsers find it? --url https://mechanics.example.org")
+    return f"http://{f'[{host}]' if ':' in host else host}:{at.getsockname()[1]}"
+
+
+def _told(url: str) -> str:
+    """The address that somebody tells.
+
+    Raises
+    ------
+    BadInput
+        It is none, or not that of a whole host.
+    """
+    from urllib.parse import urlsplit
+
+    parts = urlsplit(url)
+    if parts.scheme not in ("http", "https") or not parts.hostname or parts.path.strip("/"):
+        raise BadInput(
+            f"--url is the address of a host, https://mechanics.example.org, with no path behind it; found {url!r}"
+        )
+    return url.rstrip("/")
+
+
+def _entrance(host: str, url: str, demo: str | None, *, told: bool) -> Entrance:
+    """How people come in: without an account on this machine alone, unless an address is told.
+
+    Raises
+    ------
+    BadInput
+        A demonstration, where anybody may be anybody, is open to other machines.
+    """
+    from urllib.parse import urlsplit
+
+    from coursework.lti.settings import is_loopback
+    from coursework.site.frame.settings import Entrance
+
+    is_own = is_loopback(host) and is_loopback(urlsplit(url).hostname or "")
+    if is_own and not (told and demo is None):
+        return Entrance.LOCAL if demo is None else Entrance.DEMO
+    if demo is not None:
+        raise BadInput(
+            "--demo lets anybody be anybody: it is for this machine alone, without --host and --url"
+        )
+    if url.startswith("http:") and not is_own:
+        tell(
+            [
+                f"{url} is plain http: whoever shares the network can read passwords and answers; a proxy with https helps"
+            ]
+        )
+    return Entrance.ACCOUNTS
+
+
+def _open(url: str, opens: bool) -> None:
+    """Open the browser, where there is a screen."""
+    import webbrowser
+
+    has_screen = (
+        sys.platform in ("win32", "darwin") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
+    )
+    if opens and has_screen:
+        webbrowser.open(url)
+    elif opens:
+        tell([f"no screen here: open {url} in a browser"])
+
+
+# ---------------------------------------------------------------------- preview
+
+
+@click.command()
+@exercise_argument
+@click.option("--port", type=Whole(0, MOST_PORT), default=0, help="Any that is free unless told.")
+@click.option(
+    "--variants", type=Whole(1, MOST_VARIANTS), default=50, show_default=True, help="That each check tries."
+)
+@lang_option
+@open_option
+@click.pass_context
+def preview(context: click.Context, exercise: str, port: int, variants: int, lang: str, opens: bool) -> None:
+    """Show an exercise while its files are written: sheet, solution, key and check, anew at each save.
+
+    The page is on this machine alone. Ctrl-C ends it.
+    """
+    _ready()
+    from coursework.course.folder import course_folder
+    from coursework.site import server
+    from coursework.site.preview.preview_page import preview as pages
+    from coursework.site.preview.under_work import UnderWork
+
+    folder = course_folder(context.obj)
+    if exercise not in folder.names:
+        raise unknown("exercise", exercise, folder.names, folder.label)
+    with server.listening(_LOOPBACK, port) as at:
+        work = UnderWork(context.obj, exercise, variants)
+        try:
+            address = _address(_LOOPBACK, at)
+            click.echo(f"coursework: {address}/ (follows {folder.root}; Ctrl-C ends it)")
+            _open(address, opens)
+            server.run(lambda: pages(work, lang), at)
+        finally:
+            work.end()

@@ -1,0 +1,102 @@
+"""The site as an ASGI application: the table of its addresses."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, nullcontext
+
+from anyio.to_thread import current_default_thread_limiter
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
+from starlette.routing import BaseRoute, Mount, Route
+
+from coursework.database.store import CONNECTIONS
+from coursework.site.desk import (
+    class_page,
+    files,
+    overview,
+    printing,
+    question_page,
+    queue,
+    regrading,
+    rejected_rows,
+    scans,
+    student_page,
+)
+from coursework.site.frame.door import Door
+from coursework.site.frame.settings import Site
+from coursework.site.frame.visits import Page
+from coursework.site.lti import links_page
+from coursework.site.papers import assignments
+from coursework.site.people import accounts, home, people_page, privacy
+from coursework.site.practice import practice_page, progress_page
+from coursework.site.publication import publishing
+from coursework.site.warming import begin_warming
+
+#: Requests that a process answers at the same time: none uses more than two connections to the database, so that none waits for
+#: one that never comes.
+_AT_ONCE = CONNECTIONS // 2
+
+#: Every address of the site, a file's after another's.
+PAGES: tuple[Page, ...] = (
+    *home.PAGES,
+    *practice_page.PAGES,
+    *progress_page.PAGES,
+    *accounts.PAGES,
+    *people_page.PAGES,
+    *privacy.PAGES,
+    *overview.PAGES,
+    *links_page.PAGES,
+    *queue.PAGES,
+    *assignments.PAGES,
+    *publishing.PAGES,
+    *printing.PAGES,
+    *class_page.PAGES,
+    *student_page.PAGES,
+    *question_page.PAGES,
+    *files.PAGES,
+    *rejected_rows.PAGES,
+    *scans.PAGES,
+    *regrading.PAGES,
+)
+
+
+def application(site: Site, lti: Starlette | None = None) -> Starlette:
+    """The site, ready for a server; with the service that learning platforms ask, of the site's own folder unless told."""
+    door = Door(site)
+    lti = lti or _lti(site)
+    routes: list[BaseRoute] = [
+        Route(
+            page.path,
+            door.answering(page),
+            methods=["GET", "POST"] if page.posts else ["GET"],
+            name=page.path,
+        )
+        for page in PAGES
+    ]
+    if lti is not None:
+        routes.append(Mount("/lti", app=lti))
+    app = Starlette(
+        routes=routes, exception_handlers={HTTPException: door.lost}, lifespan=lambda app: _beside(site, lti)
+    )
+    app.router.redirect_slashes = False  # it would lead to whatever host a request names
+    return app
+
+
+def _lti(site: Site) -> Starlette | None:
+    """What learning platforms ask, where links of theirs lead here."""
+    if site.lti is None:
+        return None
+    from coursework.site.lti.mount import mounted
+
+    return mounted(site, site.lti)
+
+
+@asynccontextmanager
+async def _beside(site: Site, lti: Starlette | None) -> AsyncIterator[None]:
+    """What goes on beside the requests, while the site is served."""
+    current_default_thread_limiter().total_tokens = _AT_ONCE
+    stop = begin_warming(site)
+    async with lti.router.lifespan_context(lti) if lti else nullcontext():
+        yield
+    stop.set()

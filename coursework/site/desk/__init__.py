@@ -1,0 +1,1 @@
+"""The instructors' desk: the queue, the class, questions, students, files, marking again."""

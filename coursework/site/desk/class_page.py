@@ -1,0 +1,193 @@
+"""The class as a table that fills: students by questions, totals and marks; what is new comes by itself, row by row."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from coursework.database.desk import Stamp, students_since
+from coursework.gradebook.book import Result
+from coursework.gradebook.columns import own_columns
+from coursework.gradebook.graded import Graded
+from coursework.gradebook.scale import mark_of
+from coursework.language.numbers import localise
+from coursework.making.students import folded
+from coursework.marking.mark import Mark
+from coursework.rendering.feedback import verdict_word
+from coursework.site.desk.class_at_hand import ClassNow, assignment_of, class_now, class_page_of
+from coursework.site.desk.question_cards import sign_of
+from coursework.site.frame.visits import Page, Reply, Visit, Who
+
+SORTS = ("name", "total", "waits", "late", "tries")
+
+
+class Cell(NamedTuple):
+    """An answer in the table."""
+
+    sign: str  #: full, part, none, wait, missing; empty for what was not asked
+    points: float
+    verdict: str
+    by_hand: bool
+
+
+BLANK = Cell("", 0.0, "", False)
+
+
+@dataclass(frozen=True)
+class Row:
+    """A student in the table."""
+
+    place: int  #: in the class's own order
+    student: str
+    identity: str
+    cells: tuple[Cell, ...]
+    points: float
+    out_of: float
+    mark: str
+    tries: int
+    late: int  #: seconds
+    handed_in: bool
+
+    @property
+    def waits(self) -> int:
+        return sum(cell.sign == "wait" for cell in self.cells)
+
+    @property
+    def minutes_late(self) -> int:
+        return -(-self.late // 60)
+
+
+def rows(now: ClassNow) -> list[Row]:
+    """Every student of the class, in its own order."""
+    counted: dict[str, dict[tuple[str, str], Cell]] = {}
+    for place, one in now.graded.items():
+        if one.sitting == now.results[one.student].sitting:
+            counted.setdefault(one.student, {}).update(_cells(now, now.machine[place], one))
+    return [
+        _row(now, number, student, result, counted.get(student, {}))
+        for number, (student, result) in enumerate(now.results.items())
+    ]
+
+
+def _cells(now: ClassNow, machine: Graded, stands: Graded) -> dict[tuple[str, str], Cell]:
+    return {
+        (stands.exercise, part): Cell(
+            sign_of(mark), mark.points, mark.verdict, _by_hand(machine.lines[part], mark)
+        )
+        for part, mark in stands.lines.items()
+    }
+
+
+def _by_hand(before: Mark, now: Mark) -> bool:
+    return before is not now and (before.verdict, before.points) != (now.verdict, now.points)
+
+
+def _row(
+    now: ClassNow, number: int, student: str, result: Result, cells: Mapping[tuple[str, str], Cell]
+) -> Row:
+    told = own_columns(now.issued, student)
+    titles = (now.issued.assignment or {}).get("identity") or ()
+    identity = " ".join(filter(None, (told.get(folded(str(title)), "") for title in titles)))
+    came = now.came.get(student)
+    tries = (
+        came.tries
+        if came
+        else max((n for s, n in now.book.students if s == student), default=0)
+        if cells
+        else 0
+    )
+    return Row(
+        number, student, identity, tuple(cells.get(question, BLANK) for question in now.questions),
+        result.points, result.out_of, mark_of(now.issued, result.counts, result.out_of),
+        tries, came.late if came else 0, bool(cells) or came is not None,
+    )  # fmt: skip
+
+
+# ------------------------------------------------------------------------- pages
+
+
+def class_page(visit: Visit) -> Reply:
+    """The table."""
+    now = class_now(visit.site, assignment_of(visit))
+    found = rows(now)
+    sort, sought = visit.query.get("sort", ""), visit.query.get("find", "").strip()
+    shown = sorted((one for one in found if _is_found(one, sought)), key=_sorting(now, sort))
+    return class_page_of(
+        visit, now, "site_desk_class", "class", rows=shown, all_rows=len(found), sort=sort, sought=sought,
+        handed_in=sum(one.handed_in for one in found), has_mark=bool((now.issued.assignment or {}).get("mark")),
+        has_late=any(one.late for one in found), means=_means(now, found), **_words(visit),
+    )  # fmt: skip
+
+
+def news(visit: Visit) -> Reply:
+    """The rows that changed since a stamp, and nothing where none did."""
+    now = class_now(visit.site, assignment_of(visit))
+    before = Stamp.read(visit.query.get("stamp", ""))
+    if before == now.stamp:
+        return Reply(status=204)
+    found = rows(now)
+    if before is None or before.rules != now.stamp.rules or str(len(found)) != visit.query.get("rows"):
+        return Reply(goto=f"/desk/{now.about.id}")
+    with visit.site.store.reading() as connection:
+        changed = students_since(connection, now.about.id, before)
+    return visit.page(
+        "_desk_news", now=now, rows=[one for one in found if one.student in changed], all_rows=len(found),
+        handed_in=sum(one.handed_in for one in found), has_mark=bool((now.issued.assignment or {}).get("mark")),
+        has_late=visit.query.get("late") == "1" or any(one.late for one in found), **_words(visit),
+    )  # fmt: skip
+
+
+def _words(visit: Visit) -> dict[str, Any]:
+    """What a table of thousands of cells says, made once for each word."""
+    verdicts: dict[str, str] = {}
+    numbers: dict[float, str] = {}
+
+    def word(verdict: str) -> str:
+        if verdict not in verdicts:
+            verdicts[verdict] = verdict_word(verdict, visit.lang)
+        return verdicts[verdict]
+
+    def number(value: float) -> str:
+        if value not in numbers:
+            numbers[value] = localise(f"{round(value, 4):g}", visit.lang)
+        return numbers[value]
+
+    return {"word": word, "number": number, "decimal": lambda text: localise(text, visit.lang)}
+
+
+def _is_found(row: Row, sought: str) -> bool:
+    return folded(sought) in folded(f"{row.student} {row.identity}") if sought else True
+
+
+def _sorting(now: ClassNow, sort: str) -> Callable[[Row], Any]:
+    """The key of an order; what is said of nobody stands last."""
+    by: dict[str, Callable[[Row], Any]] = {
+        "name": lambda row: folded(row.student),
+        "total": lambda row: (-row.points, row.place),
+        "waits": lambda row: (-row.waits, row.place),
+        "late": lambda row: (-row.late, row.place),
+        "tries": lambda row: (-row.tries, row.place),
+    }
+    if sort.isdecimal() and len(sort) < 5 and int(sort) < len(now.questions):
+        column = int(sort)
+        return lambda row: (row.cells[column].sign == "", row.cells[column].points, row.place)
+    return by.get(sort, lambda row: row.place)
+
+
+def _means(now: ClassNow, found: Sequence[Row]) -> list[str]:
+    """Of each question, the percent of its points that those have who handed in."""
+    most: dict[tuple[str, str], float] = {}
+    for (name, _), record in now.issued.records.items():
+        most.update({(name, str(p["id"])): float(p["points"]) for p in record["parts"]})
+    told = []
+    for column, question in enumerate(now.questions):
+        had = [one.cells[column].points for one in found if one.cells[column].sign]
+        told.append(f"{100 * sum(had) / (len(had) * most[question]):.0f}" if had else "")
+    return told
+
+
+PAGES = (
+    Page("/desk/{assignment:int}", class_page, Who.STAFF),
+    Page("/desk/{assignment:int}/news", news, Who.STAFF),
+)

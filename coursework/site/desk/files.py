@@ -1,0 +1,372 @@
+"""Files in and out: answers, rosters and what platforms collected; tables, feedback and archives. What is sent is read, never run."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import islice
+from pathlib import Path, PurePath
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from coursework.database.assignments import issued_content, put_issued
+from coursework.database.audit import note
+from coursework.database.deliveries import deliver, deliveries, rows_of
+from coursework.database.desk import decisions_of
+from coursework.database.marking import mark_delivery
+from coursework.errors import BadInput, CourseworkError
+from coursework.gradebook.book import marks_rows, rejected_rows, summary_rows
+from coursework.gradebook.class_points import SCORES, class_points
+from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns, summary_columns
+from coursework.gradebook.feedback_sheets import write_feedback
+from coursework.gradebook.filling import Filled, fill
+from coursework.gradebook.placing import as_texts
+from coursework.gradebook.platform_gradebooks import PLATFORMS, platform_gradebook
+from coursework.gradebook.rows import Rejected, Row, Seen
+from coursework.gradebook.submissions import find, read_file
+from coursework.making.issued import COLUMNS
+from coursework.making.roster import read_roster
+from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.question_cards import moment
+from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit, Who
+from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
+from coursework.system.unzipping import is_zip, unpack
+from coursework.system.zips import zipped
+
+LARGEST = 60 * 1024 * 1024  #: bytes of what is sent at once
+MOST_ROWS = 500_000  #: of what is sent at once
+_NAME = 120  #: bytes of a file's name, the last ones
+_NAMED = 10  #: students that a sentence names
+_DECISIONS = ("made", "by", "kind", "student", "exercise", "seed", "part", "points", "reason", "answer")
+_DELIVERIES = ("came", "source", "number", "late", "receipt")
+
+
+# --------------------------------------------------------------------------- in
+
+
+def files_page(visit: Visit, told: Sequence[str] = (), filled: Filled | None = None, name: str = "") -> Reply:
+    """What can come in and go out."""
+    now = class_now(visit.site, assignment_of(visit))
+    with visit.site.store.reading() as connection:
+        came = deliveries(connection, now.about.id)
+    files = [(moment(one.came, visit.lang), one) for one in came if not one.number]
+    return class_page_of(
+        visit, now, "site_desk_files", "files", told=list(told), files=files[::-1][:50], rejected=now.rejected,
+        platforms=PLATFORMS.values(), scores=SCORES, downloads=list(_TABLES), filled=_filled(visit, filled, name),
+    )  # fmt: skip
+
+
+def answers_in(visit: Visit) -> Reply:
+    """Take answers in, and mark what is new.
+
+    Raises
+    ------
+    BadInput
+        Nothing was sent, or an archive holds more than it may.
+    """
+    number = class_now(visit.site, assignment_of(visit)).about.id
+    sent = [one for one in visit.form.files.get("answers", ()) if one.data]
+    said = visit.said["files"]
+    if not sent:
+        raise BadInput(said["none_sent"])
+    rows = _rows(sent, said["too_many"].format(MOST_ROWS))
+    answers = sum(isinstance(one, Row) for one in rows)
+    source = ", ".join(file_name(one) for one in sent)[:500]
+    with visit.site.store.begin() as connection:
+        came = deliver(connection, number, rows, source=source, came=visit.at)
+        note(
+            connection, visit.at, by_whom(visit), "answers", assignment=number, rows=len(rows), source=source
+        )
+    if not came.is_new:
+        return files_page(visit, [said["again"].format(moment(came.came, visit.lang))])
+    marked = mark_delivery(visit.site.course, visit.site.store, came.id)
+    now = class_now(visit.site, number)
+    sources = {one.source for one in rows if not isinstance(one, Seen)}
+    lost = sum(one.row.source in sources for one in now.rejected)
+    return files_page(visit, [said["came"].format(answers, marked.marked, lost)])
+
+
+def _rows(sent: Sequence[Upload], too_many: str) -> list[Row | Rejected | Seen]:
+    """The rows of what was sent, the files called as they were sent; ``too_many`` is what is told of more than are taken."""
+    with TemporaryDirectory(prefix="coursework-") as made:
+        folder = Path(made).resolve()
+        for number, one in enumerate(sent):
+            _put(one, folder / str(number))
+        rows = list(islice(_read(folder), MOST_ROWS + 1))
+        if len(rows) > MOST_ROWS:
+            raise BadInput(too_many)
+        return rows
+
+
+def _put(one: Upload, folder: Path) -> None:
+    """Write what was sent; an archive is opened."""
+    folder.mkdir()
+    path = folder / file_name(one)
+    path.write_bytes(one.data)
+    if is_zip(one.data) and path.suffix.lower() == ".zip":
+        inside = folder / "zip"
+        inside.mkdir()
+        unpack(path, inside)
+        path.unlink()
+
+
+def file_name(one: Upload) -> str:
+    """A file's own name, whatever a browser says of its folders."""
+    own = PurePath(one.name.replace("\\", "/")).name
+    plain = "".join(c for c in own if c.isprintable() and c not in '/:*?"<>|').lstrip(".")
+    return plain.encode("utf-8", "ignore")[-_NAME:].decode("utf-8", "ignore") or "answers"
+
+
+def _read(folder: Path) -> Iterator[Row | Rejected | Seen]:
+    for found in find([folder]):
+        rows = [found] if isinstance(found, (Rejected, Seen)) else read_file(found)
+        for row in rows:
+            yield _called(row, folder)
+
+
+def _called(row: Row | Rejected | Seen, folder: Path) -> Row | Rejected | Seen:
+    """A row without the folder that it lay in meanwhile."""
+
+    def own(text: str) -> str:
+        for number in range(60):
+            text = text.replace(f"{folder}/{number}/zip/", "").replace(f"{folder}/{number}/", "")
+        return text.replace(str(folder), "")
+
+    if isinstance(row, Row):
+        return row._replace(source=own(row.source), warning=own(row.warning) if row.warning else "")
+    if isinstance(row, Rejected):
+        return Rejected(own(row.source), own(row.reason), row.row)
+    return row._replace(source=own(row.source))
+
+
+def roster_in(visit: Visit) -> Reply:
+    """Take in what a roster says of the students of the assignment; who is on it and was issued nothing is told.
+
+    Raises
+    ------
+    BadInput
+        The file is no roster.
+    """
+    now = class_now(visit.site, assignment_of(visit))
+    said = visit.said["files"]
+    sent = next((one for one in visit.form.files.get("roster", ()) if one.data), None)
+    if sent is None:
+        raise BadInput(said["none_sent"])
+    told: list[str] = []
+    with TemporaryDirectory(prefix="coursework-") as made:
+        path = Path(made) / file_name(sent)
+        path.write_bytes(sent.data)
+        try:
+            students = read_roster(path, told.append)
+        except BadInput as fault:
+            raise BadInput(str(fault).replace(f"{made}/", "")) from fault
+    known = {one.name: now.issued.student(one.name, tuple(one.columns.items())) for one in students}
+    columns = {name: dict(one.columns) for one in students if (name := known[one.name]) and one.columns}
+    with visit.site.store.begin() as connection:
+        content = issued_content(connection, now.about.id)
+        content["students"] = {**content.get("students", {}), **_merged(content.get("students", {}), columns)}
+        put_issued(connection, content, now.about.name)
+        note(connection, visit.at, by_whom(visit), "roster", assignment=now.about.id, students=len(columns))
+    strangers = [one.name for one in students if not known[one.name]]
+    told = [note.replace(f"{made}/", "") for note in told]
+    told.insert(0, said["roster_came"].format(len(students) - len(strangers), len(students)))
+    if strangers:
+        told.append(said["roster_strangers"].format(_list(strangers)))
+    return files_page(visit, told)
+
+
+def _merged(
+    before: Mapping[str, Mapping[str, str]], columns: Mapping[str, Mapping[str, str]]
+) -> dict[str, dict[str, str]]:
+    return {name: {**before.get(name, {}), **own} for name, own in columns.items()}
+
+
+def _list(names: Sequence[str]) -> str:
+    return ", ".join(names[:_NAMED]) + (f", … ({len(names)})" if len(names) > _NAMED else "")
+
+
+# -------------------------------------------------------------------------- out
+
+
+def _spreadsheet(visit: Visit) -> Spreadsheet:
+    """For which spreadsheet tables are written: by the language, unless told."""
+    told = visit.query.get("decimal", "comma" if visit.lang == "fr" else "point")
+    return SPREADSHEETS.get(told, SPREADSHEETS["point"])
+
+
+def _marks(visit: Visit, now: ClassNow) -> bytes:
+    submitted = any(one.submitted for one in now.graded.values())
+    rows = (row for one in now.graded.values() for row in marks_rows(one))
+    return csv_file(rows, marks_columns(now.issued, submitted=submitted), _spreadsheet(visit))
+
+
+def _summary(visit: Visit, now: ClassNow) -> bytes:
+    return csv_file(
+        summary_rows(now.book), summary_columns(now.issued, late=bool(now.charged)), _spreadsheet(visit)
+    )
+
+
+def _rejected(visit: Visit, now: ClassNow) -> bytes:
+    return csv_file(rejected_rows(now.book.rejected), REJECTED_COLUMNS, _spreadsheet(visit))
+
+
+def _decided(visit: Visit, now: ClassNow) -> bytes:
+    with visit.site.store.reading() as connection:
+        made = decisions_of(connection, now.about.id)
+    rows = ({**one._asdict(), "made": one.made.isoformat(timespec="seconds")} for one in made)
+    return csv_file(
+        ({c: "" if row[c] is None else row[c] for c in _DECISIONS} for row in rows),
+        _DECISIONS,
+        _spreadsheet(visit),
+    )
+
+
+def _issued(visit: Visit, now: ClassNow) -> bytes:
+    with visit.site.store.reading() as connection:
+        return json_text(issued_content(connection, now.about.id)).encode()
+
+
+def _answers(visit: Visit, now: ClassNow) -> bytes:
+    with visit.site.store.reading() as connection:
+        rows = [one for one in rows_of(connection, now.about.id) if isinstance(one, Row)]
+    columns = (*COLUMNS, "sitting", "submitted", "source")
+    told = ({**as_texts(one), "source": one.source, **_origin(one)} for one in rows)
+    return csv_file(told, columns)
+
+
+def _origin(row: Row) -> dict[str, str]:
+    if row.origin is None:
+        return {"sitting": "", "submitted": ""}
+    return {"sitting": str(row.origin.sitting or ""), "submitted": row.origin.submitted}
+
+
+def _came(visit: Visit, now: ClassNow) -> bytes:
+    with visit.site.store.reading() as connection:
+        rows = [one._asdict() for one in deliveries(connection, now.about.id)]
+    return csv_file(({c: str(row[c]) for c in _DELIVERIES} for row in rows), _DELIVERIES)
+
+
+#: What can be had, by its file's name.
+_TABLES: Mapping[str, Callable[[Visit, ClassNow], bytes]] = {
+    "marks.csv": _marks,
+    "summary.csv": _summary,
+    "rejected.csv": _rejected,
+    "decisions.csv": _decided,
+    "answers.csv": _answers,
+    "issued.json": _issued,
+}
+
+
+def table(visit: Visit) -> Reply:
+    """One file, or all of them in an archive."""
+    now = class_now(visit.site, assignment_of(visit))
+    name = str(visit.path["file"])
+    if name == "archive.zip":
+        files = {own: make(visit, now) for own, make in _TABLES.items()} | {
+            "deliveries.csv": _came(visit, now)
+        }
+        return Reply(kind="application/zip", data=zipped(files), file=f"{_safe(now.about.name)}.zip")
+    if name not in _TABLES:
+        raise Refused("page", 404)
+    kind = "application/json" if name.endswith(".json") else "text/csv; charset=utf-8"
+    return Reply(kind=kind, data=_TABLES[name](visit, now), file=name)
+
+
+def _safe(name: str) -> str:
+    return "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "-" for c in name) or "assignment"
+
+
+def feedback(visit: Visit) -> Reply:
+    """The feedback of a student, or of all of them in an archive."""
+    now = class_now(visit.site, assignment_of(visit))
+    only = visit.query.get("student", "")
+    shown = [one for one in now.graded.values() if not only or one.student == only]
+    if not shown:
+        raise BadInput(visit.said["class"]["nothing"])
+    with TemporaryDirectory(prefix="coursework-") as made:
+        folder = Path(made) / "feedback"
+        book = now.book if not only else _of_one(now, only)
+        write_feedback(now.course, book, shown, folder, lambda done, of: None)
+        files = {path.name: path.read_bytes() for path in sorted(folder.glob("*.pdf"))}
+    if only and files:
+        name, data = next(iter(files.items()))
+        if len(files) == 1:
+            return Reply(
+                kind="application/pdf", data=data, file=f"feedback-{_safe(name.removesuffix('.pdf'))}.pdf"
+            )
+    return Reply(kind="application/zip", data=zipped(files), file=f"feedback-{_safe(now.about.name)}.zip")
+
+
+def _of_one(now: ClassNow, student: str) -> Any:
+    """The gradebook as it stands, of which one student's feedback alone is written."""
+    from copy import copy
+
+    book, issued = copy(now.book), copy(now.issued)
+    issued.students = (student,)
+    book.issued = issued
+    return book
+
+
+# -------------------------------------------------------------------- gradebooks
+
+
+def gradebook(visit: Visit) -> Reply:
+    """A platform's own export with the marks in it.
+
+    Raises
+    ------
+    BadInput
+        Nothing was sent, or it cannot be filled; nothing is written then.
+    """
+    now = class_now(visit.site, assignment_of(visit))
+    said, form = visit.said["files"], visit.form
+    sent = next((one for one in form.files.get("template", ()) if one.data), None)
+    if sent is None:
+        raise BadInput(said["none_sent"])
+    score = form.text("score", "points")
+    platform = platform_gradebook(form.text("platform"))
+    with TemporaryDirectory(prefix="coursework-") as made:
+        folder = Path(made)
+        (folder / "summary.csv").write_bytes(
+            csv_file(summary_rows(now.book), summary_columns(now.issued, late=bool(now.charged)))
+        )
+        path = folder / "sent" / file_name(sent)
+        path.parent.mkdir()
+        path.write_bytes(sent.data)
+        try:
+            scored = class_points(folder / "summary.csv", score if score in SCORES else "points")
+            most = form.text("most").strip().replace(",", ".")
+            filled = fill(
+                platform, path, form.text("item").strip(), scored, most=float(most) if most else None,
+                zeros=bool(form.text("zeros")),
+            )  # fmt: skip
+        except ValueError as fault:
+            if isinstance(fault, CourseworkError):
+                raise BadInput(str(fault).replace(f"{made}/sent/", "").replace(f"{made}/", "")) from fault
+            raise BadInput(said["no_number"]) from None
+    told = [said["filled"].format(filled.written, filled.column)]
+    for what in ("strangers", "unclear", "absent", "kept"):
+        if names := getattr(filled, what):
+            told.append(said[what].format(len(names), _list(names)))
+    return files_page(visit, told, filled, file_name(sent))
+
+
+def _filled(visit: Visit, filled: Filled | None, name: str) -> Mapping[str, str] | None:
+    """A filled gradebook as a link that holds it."""
+    if filled is None:
+        return None
+    return {"name": name, "data": f"data:text/csv;base64,{base64.b64encode(filled.data).decode()}"}
+
+
+PAGES = (
+    Page("/desk/{assignment:int}/files", files_page, Who.STAFF),
+    Page(
+        "/desk/{assignment:int}/answers", answers_in, Who.STAFF, posts=True, limit="upload", largest=LARGEST
+    ),
+    Page("/desk/{assignment:int}/roster", roster_in, Who.STAFF, posts=True, limit="upload", largest=LARGEST),
+    Page(
+        "/desk/{assignment:int}/gradebook", gradebook, Who.STAFF, posts=True, limit="upload", largest=LARGEST
+    ),
+    Page("/desk/{assignment:int}/feedback", feedback, Who.STAFF),
+    Page("/desk/{assignment:int}/files/{file}", table, Who.STAFF),
+)

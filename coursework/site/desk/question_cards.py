@@ -1,0 +1,152 @@
+"""What the desk shows of one question on somebody's variant: what is asked, the data, the reference, how an answer stands to it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from functools import cached_property, lru_cache
+from typing import Any
+
+from coursework.course.course import Course
+from coursework.course.key_batch import keys_of
+from coursework.course.marking_rules import Rules
+from coursework.course.variant import Variant
+from coursework.errors import CourseworkError
+from coursework.gradebook.class_marking import rules_of
+from coursework.gradebook.graded import Graded
+from coursework.language.numbers import localise, significant, unit_text
+from coursework.language.words import quoted
+from coursework.making.issued import Issued
+from coursework.marking.mark import Mark
+from coursework.model import Part
+from coursework.sheets.answer_sheet import answer_text
+from coursework.sheets.handout import handout
+from coursework.sheets.sheet import Handout, Question
+from coursework.site.frame.moments import moment_text
+from coursework.site.frame.visits import Visit
+
+_HALF = 1.0  #: points from which a part is given by halves; a smaller one by its half
+_STEPS = 12  #: buttons of points at most
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A question of somebody's variant, as the staff sees it."""
+
+    variant: Variant
+    part: Part
+
+    @cached_property
+    def handout(self) -> Handout:
+        return handout(self.variant)
+
+    @cached_property
+    def question(self) -> Question:
+        return next(q for q in self.handout.questions if q.id == self.part.id)
+
+    @cached_property
+    def reference(self) -> str:
+        """The right answer, Markdown; of an open question its model answer, where the solution has one."""
+        if self.part.sort.is_open:
+            section = self.variant.solution_text.sections.get(self.part.id)
+            return section.text if section is not None else ""
+        try:
+            return answer_text(self.variant, self.part, self.variant.walk)
+        except CourseworkError as fault:
+            return str(fault)
+
+    @cached_property
+    def half_width(self) -> str:
+        """The accepted half-width with its unit; empty where there is none."""
+        if not self.part.has_margin or not self.part.sort.rounds or self.part.sort.is_open:
+            return ""
+        lang = self.variant.lang
+        width = localise(significant(self.variant.key.half_width(self.part), 2), lang)
+        unit = unit_text(self.part.unit, lang)
+        return width + (unit if unit == "°" else f" {unit}" if unit else "")
+
+    @property
+    def prompt(self) -> str:
+        return self.question.prompt
+
+    @property
+    def has_figure(self) -> bool:
+        return self.handout.figure is not None
+
+
+def asked(course: Course, issued: Issued, graded: Graded, part: str, lang: str) -> Asked:
+    """The question of an answer, in the language of who looks, where its exercise has it."""
+    exercise = course[graded.exercise]
+    own = str(graded.record.get("lang", ""))
+    spoken = lang if lang in exercise.languages else own
+    return _asked(_Hashed(course, rules_of(course, issued), {**graded.record, "lang": spoken}), part)
+
+
+class _Hashed:
+    """A record to be remembered by what it says of whom."""
+
+    def __init__(self, course: Course, rules: Rules | None, record: Mapping[str, Any]):
+        self.course, self.rules, self.record = course, rules, record
+        self._key = id(course), repr(rules), json.dumps(record, sort_keys=True, default=repr)
+
+    def __hash__(self) -> int:
+        return hash(self._key)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Hashed) and self._key == other._key
+
+
+@lru_cache(maxsize=512)
+def _variant(of: _Hashed) -> Variant:
+    exercise = of.course[of.record["exercise"]]
+    variant = exercise.from_record(of.record)
+    if not all(part.sort.is_open for part in variant.parts):
+        keys_of(exercise, [variant], of.rules)
+    return variant
+
+
+@lru_cache(maxsize=512)
+def _asked(of: _Hashed, part: str) -> Asked:
+    variant = _variant(of)
+    return Asked(variant, next(p for p in variant.parts if p.id == part))
+
+
+def steps(out_of: float) -> tuple[float, ...]:
+    """The points that a button gives: halves, whole points where these are many; the half of a part that is worth less."""
+    step = 0.5 if out_of >= _HALF else out_of / 2
+    while out_of / step > _STEPS:
+        step *= 2
+    count = int(out_of / step + 1e-9)
+    found = [step * k for k in range(count + 1)]
+    return tuple(found if abs(found[-1] - out_of) < 1e-9 else [*found, out_of])
+
+
+def sign_of(mark: Mark) -> str:
+    """``full``, ``part``, ``none``, ``wait`` or ``missing``: how an answer stands, for a table."""
+    if mark.verdict == "missing":
+        return "missing"
+    if mark.verdict in ("unreadable", "to_mark"):
+        return "wait"
+    if mark.points >= mark.out_of:
+        return "full"
+    return "part" if mark.points > 0 else "none"
+
+
+def moment(at: datetime, lang: str) -> str:
+    """A time to the minute."""
+    return moment_text(at.replace(second=0, microsecond=0), lang)
+
+
+def decided_words(visit: Visit, made: Any) -> str:
+    """What was decided, by whom and when, in a line; ``made`` is a decision."""
+    said = visit.said["queue"]["made"]
+    points = localise(f"{made.points or 0:g}", visit.lang)
+    told = str(said[made.kind]).format(by=made.by, at=moment(made.made, visit.lang), points=points)
+    return f"{told} {quoted(made.reason, visit.lang)}" if made.reason else told
+
+
+def raw_texts(marks: Sequence[Mark]) -> tuple[str, ...]:
+    """The different ways in which the same was written."""
+    return tuple(dict.fromkeys(mark.answer for mark in marks))

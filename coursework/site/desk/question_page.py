@@ -1,0 +1,144 @@
+"""A question over the class: how hard it is, whether it tells good students from others, and what was answered; statistics as a
+report makes them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from coursework.gradebook.waiting import written
+from coursework.marking.mark import Mark
+from coursework.rendering.feedback import verdict_word
+from coursework.rendering.renderer import renderer_of
+from coursework.site.desk.class_at_hand import ClassNow, assignment_of, class_now, class_page_of
+from coursework.site.desk.question_cards import asked, sign_of
+from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+from coursework.statistics.captions import Names
+from coursework.statistics.measures import PartStatistics, Statistics, measure
+from coursework.statistics.of_class import marks_of_class
+from coursework.statistics.page import report, sheet_order
+
+_EXAMPLES = 8  #: students named beside what they wrote
+_ANSWERS = 60  #: ways of answering that are listed
+
+
+def statistics_of(now: ClassNow) -> Statistics:
+    """The statistics of the class as it stands."""
+    marks = marks_of_class(now.graded.values(), now.results, len(now.book.rejected))
+    return measure(marks, sheet_order(now.course, now.issued.exercises))
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A question in the list."""
+
+    exercise: str
+    part: str
+    number: str
+    told: PartStatistics | None
+    words: str = ""
+
+
+def questions(visit: Visit) -> Reply:
+    """The questions, hardest or not, in the order of the sheets."""
+    now = class_now(visit.site, assignment_of(visit))
+    told = statistics_of(now)
+    names = Names(now.course, told, visit.lang)
+    known = {(one.exercise, one.part): one for one in told.parts}
+    asked_for = [Asked(*one, now.number(*one), known.get(one)) for one in now.questions]
+    listed = [replace(one, words=names.question(one)) for one in asked_for]
+    if visit.query.get("sort") == "hard":
+        listed.sort(key=lambda one: one.told.mean if one.told and one.told.marked else 2.0)
+    return class_page_of(
+        visit,
+        now,
+        "site_desk_questions",
+        "questions",
+        listed=listed,
+        sort=visit.query.get("sort", ""),
+        told=told,
+    )
+
+
+@dataclass(frozen=True)
+class Written:
+    """One way of answering a question."""
+
+    text: str
+    verdict: str  #: in words
+    sign: str
+    says: str  #: Markdown
+    students: tuple[str, ...]
+    matches: tuple[str, ...]
+
+
+def question(visit: Visit) -> Reply:
+    """One question: its figures, its mistakes, and the answers themselves, those that most wrote first."""
+    now = class_now(visit.site, assignment_of(visit))
+    exercise, part = visit.query.get("exercise", ""), visit.query.get("part", "")
+    if (exercise, part) not in now.questions:
+        raise Refused("own", 404)
+    told = statistics_of(now)
+    own = next((one for one in told.parts if (one.exercise, one.part) == (exercise, part)), None)
+    names = Names(now.course, told, visit.lang)
+    mistakes = [
+        (one, names.says(one) or one.name)
+        for one in told.mistakes
+        if (one.exercise, one.part) == (exercise, part)
+    ]
+    sheet = next(
+        (one for one in now.machine.values() if one.exercise == exercise and part in one.lines), None
+    )
+    shown = None if sheet is None else asked(now.course, now.issued, sheet, part, visit.lang)
+    only = visit.query.get("verdict", "")
+    answers = _answers(visit, now, exercise, part)
+    return class_page_of(
+        visit, now, "site_desk_question", "questions", exercise=exercise, part=part, own=own, mistakes=mistakes,
+        shown=shown, number=now.number(exercise, part), only=only,
+        answers=[one for one in answers if not only or only in one.matches][:_ANSWERS], count=len(answers),
+        waiting=sum((one.group.exercise, one.group.part) == (exercise, part) for one in now.open.values()),
+        examples=_EXAMPLES, verdicts=_verdicts(visit, own),
+    )  # fmt: skip
+
+
+def _answers(visit: Visit, now: ClassNow, exercise: str, part: str) -> list[Written]:
+    found: dict[tuple[str, str], list[tuple[str, Mark]]] = {}
+    for one in now.graded.values():
+        mark = one.lines.get(part) if one.exercise == exercise else None
+        if mark is not None and mark.verdict != "missing" and one.sitting == now.results[one.student].sitting:
+            found.setdefault((mark.verdict, written(mark)), []).append((one.student, mark))
+    listed = [_written(visit, own) for own in found.values()]
+    return sorted(listed, key=lambda one: (-len(one.students), one.sign == "full", one.text))
+
+
+def _written(visit: Visit, own: list[tuple[str, Mark]]) -> Written:
+    mark = own[0][1]
+    return Written(
+        mark.answer, verdict_word(mark.verdict, visit.lang), sign_of(mark), mark.says,
+        tuple(dict.fromkeys(student for student, _ in own)), (mark.verdict.partition(":")[0], mark.verdict),
+    )  # fmt: skip
+
+
+def _verdicts(visit: Visit, own: PartStatistics | None) -> list[tuple[str, str, int]]:
+    """The verdicts that some answer has: name, word, count."""
+    counts: Mapping[str, int] = Counter() if own is None else own.counts
+    return [(name, verdict_word(name, visit.lang), count) for name, count in counts.items() if count]
+
+
+def statistics(visit: Visit) -> Reply:
+    """The report as a page of its own, or as a PDF to keep."""
+    now = class_now(visit.site, assignment_of(visit))
+    told = report(now.course, statistics_of(now), visit.lang)
+    renderer = renderer_of(now.course.folder)
+    if visit.address.endswith(".pdf"):
+        return Reply(kind="application/pdf", data=renderer.report_pdf(told), file="report.pdf")
+    return Reply(renderer.report_html(told))
+
+
+PAGES = (
+    Page("/desk/{assignment:int}/questions", questions, Who.STAFF),
+    Page("/desk/{assignment:int}/question", question, Who.STAFF),
+    Page("/desk/{assignment:int}/report", statistics, Who.STAFF),
+    Page("/desk/{assignment:int}/report.pdf", statistics, Who.STAFF),
+)

@@ -1,0 +1,388 @@
+"""The queue: what waits for a person, a card a question and a way of answering it; decided by a key or a thumb, for all who
+wrote the same."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from coursework.database.audit import note
+from coursework.database.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, Place, decide
+from coursework.database.desk import Made, decided_since, place_of, undoable
+from coursework.errors import BadInput
+from coursework.gradebook.accepted import points_of
+from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, Group, Waits, written
+from coursework.language.numbers import localise, significant
+from coursework.site.desk.class_at_hand import (
+    ClassNow,
+    Open,
+    RejectedRow,
+    assignment_of,
+    by_whom,
+    class_now,
+    class_page_of,
+)
+from coursework.site.desk.question_cards import Asked, asked, decided_words, raw_texts, steps
+from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+
+REJECTED = "rejected"
+LONGEST = 2000  #: characters of a comment
+_SCAN = re.compile(r"scan ([0-9a-f]{16}-\d{4,6})/(\d{1,4})")  #: an answer that is a picture
+
+
+@dataclass(frozen=True)
+class Filters:
+    """Which of the queue is shown."""
+
+    why: str = ""  #: all but what waits for nobody, unless told
+    exercise: str = ""
+    part: str = ""
+
+    @staticmethod
+    def of(told: Mapping[str, str]) -> Filters:
+        why = told.get("why", "")
+        return Filters(why if why in (*WHY, REJECTED) else "", told.get("exercise", ""), told.get("part", ""))
+
+    @property
+    def query(self) -> dict[str, str]:
+        """As an address holds them."""
+        return {k: v for k, v in (("why", self.why), ("exercise", self.exercise), ("part", self.part)) if v}
+
+    def shows(self, why: str, exercise: str, part: str) -> bool:
+        if self.exercise and (self.exercise, self.part or part) != (exercise, part):
+            return False
+        return why == self.why if self.why else why not in SHOWN_ON_REQUEST
+
+
+@dataclass(frozen=True)
+class Item:
+    """One card of the queue."""
+
+    id: str
+    why: str
+    exercise: str
+    part: str
+    count: int
+    group: Group | None = None
+    row: RejectedRow | None = None
+
+
+def items(now: ClassNow, filters: Filters) -> list[Item]:
+    """What waits and is shown, in order."""
+    found = [
+        Item(one.group.id, one.why, one.group.exercise, one.group.part, len(one.members), one.group)
+        for one in now.open.values()
+    ]
+    found += [
+        Item(f"r{one.id}", REJECTED, one.row.row.get("exercise", ""), one.row.row.get("part", ""), 1, row=one)
+        for one in now.named
+        if one.waits
+    ]
+    return [one for one in found if filters.shows(one.why, one.exercise, one.part)]
+
+
+# --------------------------------------------------------------------------- card
+
+
+@dataclass(frozen=True)
+class Card:
+    """A group as it is shown."""
+
+    item: Item
+    asked: Asked
+    first: Waits
+    members: tuple[Waits, ...]  #: those who wait
+    decided: tuple[tuple[str, str], ...]  #: those who wrote the same, and what was decided of it
+    number: str
+    margin: str
+    spellings: tuple[str, ...]
+    steps: tuple[float, ...]
+    elsewhere: int  #: answers to other questions in which the same cannot be read
+
+    @property
+    def is_open(self) -> bool:
+        return self.first.mark.verdict == "to_mark"
+
+    @property
+    def scans(self) -> tuple[tuple[str, str], ...]:
+        """Page and field of the pictures that an answer on paper is."""
+        told = [_SCAN.fullmatch(one) for one in str(self.first.mark.answer).split("; ")]
+        return tuple((one[1], one[2]) for one in told if one)
+
+
+def card_of(visit: Visit, now: ClassNow, item: Item) -> Card:
+    """The card of a group, decided or not."""
+    assert item.group is not None
+    group = item.group
+    waits = now.open[group.id].members if group.id in now.open else ()
+    made = [(one, now.decisions.standing(one.sheet, one.mark)) for one in group.members]
+    first = (waits or group.members)[0]
+    margin = "" if first.margin is None else localise(significant(first.margin, 2), visit.lang)
+    return Card(
+        item, asked(now.course, now.issued, first.sheet, group.part, visit.lang), first, waits,
+        tuple((one.student, decided_words(visit, done)) for one, done in made if done is not None), now.number(group.exercise, group.part), margin,
+        raw_texts([one.mark for one in group.members]), steps(first.mark.out_of),
+        sum(len(one.members) for one in _alike(now, group)),
+    )  # fmt: skip
+
+
+def _alike(now: ClassNow, group: Group) -> list[Open]:
+    """What waits of other questions because the same cannot be read there."""
+    if group.why != "unreadable":
+        return []
+    text = written(group.first.mark)
+    others = (one for one in now.open.values() if one.why == "unreadable" and one.group.id != group.id)
+    return [one for one in others if written(one.group.first.mark) == text]
+
+
+# --------------------------------------------------------------------------- pages
+
+
+def queue(visit: Visit) -> Reply:
+    """The card that is asked for, else the first."""
+    filters = Filters.of(visit.query)
+    now = class_now(visit.site, assignment_of(visit))
+    return shown_card(visit, now, filters, visit.query.get("at", ""))
+
+
+def decided(visit: Visit) -> Reply:
+    """Decide what the form says, and show the next card."""
+    filters = Filters.of({k: visit.form.text(k) for k in ("why", "exercise", "part")})
+    now = class_now(visit.site, assignment_of(visit))
+    asked_for = visit.form.text("do")
+    if asked_for == "undo":
+        return _undone(visit, now, filters)
+    name = visit.form.text("group")
+    group = next((one for one in now.groups if one.id == name), None)
+    if group is None:
+        return shown_card(visit, now, filters, "", told=visit.said["queue"]["anew"])
+    before = [one.id for one in _around(now, filters)]
+    try:
+        told = _decide(visit, now, group, asked_for)
+    except BadInput as fault:
+        return shown_card(visit, now, filters, name, told=str(fault))
+    later = class_now(visit.site, now.about.id)
+    return shown_card(visit, later, filters, _after(before, name, later, filters), told=told)
+
+
+def queue_page(visit: Visit) -> Reply:
+    return decided(visit) if visit.posted else queue(visit)
+
+
+def watch(visit: Visit) -> Reply:
+    """Whether somebody else decided on a card meanwhile: nothing, or what."""
+    now = class_now(visit.site, assignment_of(visit))
+    name = visit.query.get("group", "")
+    group = next((one for one in now.groups if one.id == name), None)
+    if group is None or name in now.open:
+        return Reply(status=204)
+    made = now.decisions.standing(group.first.sheet, group.first.mark)
+    told = visit.said["queue"]["taken"].format(made.by, 1) if made else ""
+    return visit.page("_desk_told", told=told)
+
+
+def _around(now: ClassNow, filters: Filters) -> list[Item]:
+    return items(now, filters)
+
+
+def _after(before: Sequence[str], name: str, now: ClassNow, filters: Filters) -> str:
+    """The card that follows another in the order before: the same, where somebody of it waits still."""
+    left = {one.id for one in items(now, filters)}
+    if name in before:
+        place = before.index(name)
+        return next((one for one in (*before[place:], *before[:place]) if one in left), "")
+    return ""
+
+
+def shown_card(visit: Visit, now: ClassNow, filters: Filters, at: str, told: str = "") -> Reply:
+    """The card that is asked for, else the first; or that nothing waits."""
+    shown = items(now, filters)
+    place = next((k for k, one in enumerate(shown) if one.id == at), None)
+    item = shown[place or 0] if shown else None
+    if place is None and at:
+        item = _closed(now, at) or item
+        told = told or _by_whom_told(visit, now, at)
+    card = card_of(visit, now, item) if item is not None and item.group is not None else None
+    number = next((k for k, one in enumerate(shown) if item is not None and one.id == item.id), 0)
+    names: dict[str, Any] = {
+        "filters": filters,
+        "item": item,
+        "card": card,
+        "row": item.row if item is not None else None,
+        "place": number + 1,
+        "count": len(shown),
+        "before": shown[number - 1].id if shown else "",
+        "after": shown[(number + 1) % len(shown)].id if shown else "",
+        "told": told,
+        "counts": _counts(now),
+        "done": _done(now),
+        "since": now.stamp.decisions[1],
+        "can_undo": _can_undo(visit, now),
+        "by_question": _by_question(now, filters),
+        "place_url": f"/desk/{now.about.id}/queue",
+    }
+    if visit.is_piece:
+        return visit.page("_desk_queue_piece", now=now, swapped=True, **names)
+    return class_page_of(visit, now, "site_desk_queue", "queue", **names)
+
+
+def _closed(now: ClassNow, name: str) -> Item | None:
+    """A card of which nobody waits any more, to be looked at once more."""
+    group = next((one for one in now.groups if one.id == name), None)
+    if group is None:
+        return None
+    return Item(group.id, group.why, group.exercise, group.part, len(group.members), group)
+
+
+def _by_whom_told(visit: Visit, now: ClassNow, name: str) -> str:
+    item = _closed(now, name)
+    if item is None or item.group is None:
+        return str(visit.said["queue"]["anew"])
+    first = item.group.first
+    made = now.decisions.standing(first.sheet, first.mark)
+    return str(visit.said["queue"]["taken"]).format(made.by, len(item.group.members)) if made else ""
+
+
+def _counts(now: ClassNow) -> list[tuple[str, int]]:
+    """How many cards wait, by why."""
+    found = Counter(one.why for one in now.open.values())
+    found[REJECTED] = sum(one.waits for one in now.named)
+    return [(why, found[why]) for why in (*WHY, REJECTED) if found[why]]
+
+
+def _done(now: ClassNow) -> int:
+    """How many answers were decided."""
+    return sum(now.is_decided(one) for group in now.groups for one in group.members)
+
+
+def _can_undo(visit: Visit, now: ClassNow) -> bool:
+    if not now.stamp.decisions[0]:
+        return False
+    with visit.site.store.reading() as connection:
+        return bool(undoable(connection, now.about.id, by_whom(visit)))
+
+
+def _by_question(now: ClassNow, filters: Filters) -> list[tuple[str, str, str, int]]:
+    """The questions of which something waits: number, exercise, part, cards."""
+    shown = items(now, replace(filters, exercise="", part=""))
+    found = Counter((one.exercise, one.part) for one in shown if one.group is not None)
+    return [
+        (now.number(*question), *question, found[question]) for question in now.questions if found[question]
+    ]
+
+
+# ------------------------------------------------------------------------ deciding
+
+
+def _decide(visit: Visit, now: ClassNow, group: Group, asked_for: str) -> str:
+    """Keep the decision on those whom nobody decided on meanwhile; says what was done."""
+    kind, points = _asked_kind(asked_for, visit, group)
+    members = list(_chosen(visit, now, group))
+    if visit.form.text("everywhere") and not points:
+        members += [one for other in _alike(now, group) for one in other.members]
+    since = visit.form.text("since")
+    with visit.site.store.begin() as connection:
+        taken = _taken(
+            decided_since(
+                connection, now.about.id, int(since) if since.isdecimal() and len(since) < 16 else 0
+            )
+        )
+        free = [one for one in members if _key(one) not in taken]
+        comment = visit.form.text("comment").strip()[:LONGEST]
+        decide(connection, now.about.id, map(_place, free), kind, points, comment, by_whom(visit))
+        about = {"assignment": now.about.id, "exercise": group.exercise, "part": group.part, "kind": kind}
+        if free:
+            note(connection, visit.at, by_whom(visit), "decision", count=len(free), points=points, **about)
+    others = [taken[_key(one)].by for one in members if _key(one) in taken]
+    return _told(visit, kind, points, len(free), others)
+
+
+def _told(visit: Visit, kind: str, points: float | None, count: int, others: Sequence[str]) -> str:
+    """What was decided, and of how many somebody else had decided already."""
+    said = visit.said["queue"]
+    told = str(said["decided"][kind]).format(count, localise(f"{points or 0:g}", visit.lang)) if count else ""
+    return f"{told} {said['taken'].format(others[0], len(others))}".strip() if others else told
+
+
+def _key(one: Waits) -> tuple[str, str, str, str]:
+    return one.student, one.sheet.exercise, str(one.sheet.seed), one.mark.part
+
+
+def _chosen(visit: Visit, now: ClassNow, group: Group) -> Sequence[Waits]:
+    """Whom a decision is on: all who wrote the same and wait, or the first alone; of a card that is done, all of it."""
+    waits = now.open[group.id].members if group.id in now.open else group.members
+    if visit.form.text("all"):
+        return waits
+    student = visit.form.text("student")
+    return [one for one in waits if one.student == student] or waits[:1]
+
+
+def _asked_kind(asked_for: str, visit: Visit, group: Group) -> tuple[str, float | None]:
+    """The kind of a decision, and its points.
+
+    Raises
+    ------
+    Refused
+        It is none.
+    BadInput
+        Its points are no number.
+    """
+    if asked_for == "accept":
+        return ACCEPTED, None
+    if asked_for == "refuse":
+        return (GIVEN, 0.0) if group.first.mark.verdict in ("unreadable", "to_mark") else (KEPT, None)
+    told = visit.form.text("points") if asked_for == "points" else asked_for.removeprefix("give:")
+    if asked_for != "points" and not asked_for.startswith("give:"):
+        raise Refused("bad_request", 400)
+    points = points_of(told.strip(), visit.said["queue"]["points"])
+    if points is None:
+        raise BadInput(visit.said["queue"]["no_points"])
+    if points > group.first.mark.out_of:
+        most = localise(f"{group.first.mark.out_of:g}", visit.lang)
+        raise BadInput(visit.said["queue"]["too_many"].format(localise(told, visit.lang), most))
+    return GIVEN, points
+
+
+def _place(one: Waits) -> Place:
+    return Place(one.student, one.sheet.exercise, str(one.sheet.seed), one.mark.part, one.mark.answer)
+
+
+def _taken(later: Sequence[Made]) -> dict[tuple[str, str, str, str], Made]:
+    """The answers on which a later decision stands."""
+    found: dict[tuple[str, str, str, str], Made] = {}
+    for one in later:
+        key = one.student, one.exercise, one.seed, one.part
+        if one.kind == WITHDRAWN:
+            found.pop(key, None)
+        else:
+            found[key] = one
+    return found
+
+
+def _undone(visit: Visit, now: ClassNow, filters: Filters) -> Reply:
+    """Withdraw what was decided last, and show its card."""
+    said = visit.said["queue"]
+    with visit.site.store.begin() as connection:
+        batch = undoable(connection, now.about.id, by_whom(visit))
+        if batch:
+            decide(connection, now.about.id, map(place_of, batch), WITHDRAWN, None, "", by_whom(visit))
+            note(connection, visit.at, by_whom(visit), "undo", assignment=now.about.id, count=len(batch))
+    later = class_now(visit.site, now.about.id)
+    if not batch:
+        return shown_card(visit, later, filters, visit.form.text("group"), told=said["nothing_to_undo"])
+    at = next((one.group.id for one in later.open.values() if _is_of(one.members, batch[0])), "")
+    shown = filters if any(one.id == at for one in items(later, filters)) else Filters()
+    return shown_card(visit, later, shown, at, told=said["undone"].format(len(batch)))
+
+
+def _is_of(members: Sequence[Waits], one: Made) -> bool:
+    return any(_key(w) == (one.student, one.exercise, one.seed, one.part) for w in members)
+
+
+PAGES = (
+    Page("/desk/{assignment:int}/queue", queue_page, Who.STAFF, posts=True),
+    Page("/desk/{assignment:int}/queue/watch", watch, Who.STAFF),
+)

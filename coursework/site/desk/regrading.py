@@ -1,0 +1,108 @@
+"""Marking again, after a solution, a rule or the engine was corrected: what would change is shown before it changes."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from coursework.course.course import Course
+from coursework.database.audit import note
+from coursework.database.marking import Change, MarkedNow, mark_new, would_change
+from coursework.database.states import exercise_state
+from coursework.language.numbers import localise
+from coursework.rendering.feedback import verdict_word
+from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.frame.settings import Site
+from coursework.site.frame.visits import Page, Reply, Visit, Who
+from coursework.system.tables import SPREADSHEETS, csv_file
+
+_SHOWN = 500  #: changes in the table
+
+
+class Row(NamedTuple):
+    """A change, in words."""
+
+    student: str
+    number: str
+    answer: str
+    before: str
+    now: str
+    points_before: str
+    points_now: str
+    is_less: bool
+
+
+def regrade(visit: Visit) -> Reply:
+    """What would change; after a press, what did."""
+    now = class_now(visit.site, assignment_of(visit))
+    course = _as_it_stands(visit.site, now)
+    done = visit.posted and visit.form.text("do") == "regrade"
+    if done:
+        told = mark_new(course, visit.site.store, now.about.id)
+        visit.site.take(course)
+        with visit.site.store.begin() as connection:
+            about = {"assignment": now.about.id, "sheets": told.marked, "changes": len(told.changes)}
+            note(connection, visit.at, by_whom(visit), "regrade", **about)
+        now = class_now(visit.site, now.about.id)
+    else:
+        told = would_change(course, visit.site.store, now.about.id)
+    return class_page_of(
+        visit, now, "site_desk_regrade", "regrade", told=told, done=done, is_new=course is not visit.site.course,
+        rows=[_row(visit, now, one) for one in told.changes[:_SHOWN]], questions=_questions(visit, now, told),
+        students=len({one.student for one in told.changes}),
+    )  # fmt: skip
+
+
+def _as_it_stands(site: Site, now: ClassNow) -> Course[Any]:
+    """The course as its files stand: the open one, where nothing of what was issued changed in them."""
+    course, fresh = site.course, site.reopened()
+    same = fresh.folder.rules == course.folder.rules and all(
+        exercise_state(fresh, name) == exercise_state(course, name) for name in now.issued.exercises
+    )
+    return course if same else fresh
+
+
+def _row(visit: Visit, now: ClassNow, one: Change) -> Row:
+    before, after = (verdict_word(v, visit.lang) if v else "" for v in (one.verdict_before, one.verdict_now))
+    points_before, points_now = (localise(p, visit.lang) for p in (one.points_before, one.points_now))
+    is_less = _number(one.points_now) < _number(one.points_before)
+    number = now.number(one.exercise, one.part)
+    return Row(one.student, number, one.answer, before, after, points_before, points_now, is_less)
+
+
+def _questions(visit: Visit, now: ClassNow, told: MarkedNow) -> list[tuple[str, int, int, str]]:
+    """By question: its number, how many marks rise, how many fall, and the points that the class gains or loses."""
+    found: dict[tuple[str, str], list[float]] = {}
+    for one in told.changes:
+        gain = _number(one.points_now) - _number(one.points_before)
+        found.setdefault((one.exercise, one.part), []).append(gain)
+    return [
+        (now.number(*question), *_signs(found[question]), localise(f"{sum(found[question]):+g}", visit.lang))
+        for question in now.questions
+        if question in found
+    ]
+
+
+def _signs(gains: Sequence[float]) -> tuple[int, int]:
+    counts = Counter("rise" if gain > 0 else "fall" for gain in gains if gain)
+    return counts["rise"], counts["fall"]
+
+
+def _number(points: str) -> float:
+    return float(points or 0)
+
+
+def changes(visit: Visit) -> Reply:
+    """The same as a table to keep."""
+    now = class_now(visit.site, assignment_of(visit))
+    told = would_change(_as_it_stands(visit.site, now), visit.site.store, now.about.id)
+    spreadsheet = SPREADSHEETS["comma" if visit.lang == "fr" else "point"]
+    data = csv_file((one.row() for one in told.changes), Change._fields, spreadsheet)
+    return Reply(kind="text/csv; charset=utf-8", data=data, file="changes.csv")
+
+
+PAGES = (
+    Page("/desk/{assignment:int}/regrade", regrade, Who.STAFF, posts=True),
+    Page("/desk/{assignment:int}/changes.csv", changes, Who.STAFF),
+)

@@ -1,0 +1,97 @@
+"""Rows that could not be placed: placed by hand, as an answer of its own that keeps where it came from, or put aside."""
+
+from __future__ import annotations
+
+from coursework.database.audit import note
+from coursework.database.deliveries import deliver
+from coursework.database.desk import Placed, drop_placing, put_placing
+from coursework.database.marking import mark_delivery
+from coursework.errors import BadInput
+from coursework.gradebook.rows import Collected, Row
+from coursework.site.desk.class_at_hand import ClassNow, RejectedRow, assignment_of, by_whom, class_now
+from coursework.site.desk.files import files_page
+from coursework.site.desk.queue import Filters, shown_card
+from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+
+_LONGEST = 500  #: characters of a reason
+
+
+def rejected(visit: Visit) -> Reply:
+    """Decide on a rejected row; back to where it was shown."""
+    now = class_now(visit.site, assignment_of(visit))
+    row = next((one for one in now.rejected if one.id == visit.form.text("row")), None)
+    if row is None:
+        raise Refused("own", 404)
+    try:
+        told = _decided(visit, now, row)
+    except BadInput as fault:
+        told = str(fault)
+    if visit.form.text("from") == "queue":
+        filters = Filters.of({k: visit.form.text(k) for k in ("why", "exercise", "part")})
+        return shown_card(visit, class_now(visit.site, now.about.id), filters, "", told)
+    return files_page(visit, [told])
+
+
+def _decided(visit: Visit, now: ClassNow, row: RejectedRow) -> str:
+    """What was done.
+
+    Raises
+    ------
+    BadInput
+        Nobody and nothing is named, or an answer stands there already.
+    """
+    said, asked_for = visit.said["files"], visit.form.text("do")
+    if asked_for == "back":
+        with visit.site.store.begin() as connection:
+            drop_placing(connection, now.about.id, row.id)
+        return str(said["is_back"])
+    if row.became is not None:
+        return str(said["was_placed" if row.became.delivery_id else "was_aside"]).format(row.became.by)
+    reason = visit.form.text("reason").strip()[:_LONGEST]
+    if asked_for == "aside":
+        with visit.site.store.begin() as connection:
+            put_placing(connection, now.about.id, Placed(row.id, None, reason, by_whom(visit), visit.at))
+            note(connection, visit.at, by_whom(visit), "row put aside", assignment=now.about.id, row=row.id)
+        return str(said["aside_done"])
+    if asked_for != "place":
+        raise Refused("bad_request", 400)
+    answer = _answer(visit, now, row)
+    source = f"{row.row.source} ({said['by_hand'].format(by_whom(visit))})"
+    with visit.site.store.begin() as connection:
+        came = deliver(
+            connection,
+            now.about.id,
+            [answer._replace(source=source)],
+            source=source,
+            came=visit.at,
+            in_place=True,
+        )
+        put_placing(connection, now.about.id, Placed(row.id, came.id, reason, by_whom(visit), visit.at))
+        note(connection, visit.at, by_whom(visit), "row placed", assignment=now.about.id, row=row.id)
+    mark_delivery(visit.site.course, visit.site.store, came.id)
+    return str(said["placed_done"]).format(answer.student, now.number(answer.exercise, answer.part))
+
+
+def _answer(visit: Visit, now: ClassNow, row: RejectedRow) -> Row:
+    """The answer that a rejected row is, where a person says that it belongs."""
+    said, issued = visit.said["files"], now.issued
+    student = issued.student(visit.form.text("student"))
+    exercise, _, part = visit.form.text("question").partition("/")
+    if not student or (exercise, part) not in now.questions:
+        raise BadInput(said["place_whose"])
+    text = row.row.row.get("answer", "")
+    own = [(place, one) for place, one in now.machine.items() if place[:2] == (student, exercise)]
+    place, sheet = max(own, key=lambda found: found[1].sitting) if own else (None, None)
+    if sheet is not None and part in sheet.lines and sheet.lines[part].verdict != "missing":
+        raise BadInput(
+            said["place_taken"].format(student, now.number(exercise, part), sheet.lines[part].answer[:80])
+        )
+    seeds = issued.seeds_of(student, exercise)
+    seed = str(place[2]) if place is not None else str(seeds[-1]) if seeds else row.row.row.get("seed", "")
+    attempt = place[3] if place is not None else 0
+    return Row(
+        student, exercise, seed, part, text, "", origin=Collected(sitting=attempt) if attempt else None
+    )
+
+
+PAGES = (Page("/desk/{assignment:int}/rejected", rejected, Who.STAFF, posts=True),)

@@ -1,0 +1,148 @@
+"""Scans that were sent, read by a process of its own, so that no page of a student waits for it.
+
+How far it is stands in the database: whoever serves the next page can tell.
+"""
+
+from __future__ import annotations
+
+import json
+import threading
+from collections.abc import Mapping, Sequence
+from datetime import datetime, timedelta
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
+
+from coursework.course.course import opened
+from coursework.course.variant import Variant
+from coursework.database.assignments import issued_content
+from coursework.database.audit import note
+from coursework.database.scans import Page, put_scanned
+from coursework.database.settings import put_value, value_of
+from coursework.errors import CourseworkError
+from coursework.scanning.kept import REFUSED, PageKept, page_as_json, page_id, page_kept, picture_of
+from coursework.scanning.page_reading import Papers
+from coursework.scanning.scan import read_files
+from coursework.site.frame.settings import Site
+from coursework.system.processes import processes, workers
+
+_PATIENCE = 1.5  #: seconds for which a form waits for it
+_GIVEN_UP = timedelta(minutes=60)  #: after which what has not ended is taken for interrupted
+RUNNING, DONE, FAILED = "running", "done", "failed"
+
+
+class Job(NamedTuple):
+    """How far the reading of what was sent last is."""
+
+    state: str
+    files: int
+    pages: int = 0  #: that are new, when it is done
+    told: tuple[str, ...] = ()  #: why it failed
+
+
+class _Found(NamedTuple):
+    """A page that was read."""
+
+    page: str
+    file: str
+    number: int
+    kept: PageKept
+    picture: bytes
+
+
+def begin(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
+    """Read what was sent, files by their names, as ``by`` asks. Back at once, or when it is over."""
+    _put(site, number, Job(RUNNING, len(sent)))
+    thread = threading.Thread(target=_run, args=(site, number, dict(sent), by), daemon=True)
+    thread.start()
+    thread.join(_PATIENCE)
+
+
+def job(site: Site, number: int) -> Job | None:
+    """How far it is; None where nothing was ever sent. What was interrupted says so."""
+    with site.store.reading() as connection:
+        kept = value_of(connection, _key(number))
+    if kept is None:
+        return None
+    state, files, pages, told = kept["job"]
+    found = Job(state, files, pages, tuple(told))
+    if state == RUNNING and site.clock() - datetime.fromisoformat(kept["at"]) > _GIVEN_UP:
+        return found._replace(state=FAILED)
+    return found
+
+
+def _key(number: int) -> str:
+    return f"scans {number}"
+
+
+def _put(site: Site, number: int, now: Job) -> None:
+    with site.store.begin() as connection:
+        put_value(connection, _key(number), {"job": list(now), "at": site.clock().isoformat()})
+
+
+def _run(site: Site, number: int, sent: Mapping[str, bytes], by: str) -> None:
+    begun = Job(RUNNING, len(sent))
+    try:
+        with site.store.reading() as connection:
+            content = issued_content(connection, number)
+        found = _read_apart(str(site.course.folder.root), content, sent)
+        pages = _keep(site, number, content, found, by)
+        _put(site, number, begun._replace(state=DONE, pages=pages))
+    except CourseworkError as fault:
+        _put(site, number, begun._replace(state=FAILED, told=(str(fault),)))
+    except Exception as fault:  # nobody waits for this thread: what happened is told on the page
+        _put(site, number, begun._replace(state=FAILED, told=(type(fault).__name__,)))
+
+
+def _read_apart(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> list[_Found]:
+    if workers(2) < 2:
+        return _read(root, content, sent)
+    with processes(1) as submit:
+        found: list[_Found] = submit(_read, root, content, sent).result()
+        return found
+
+
+def _read(root: str, content: Mapping[str, Any], sent: Mapping[str, bytes]) -> list[_Found]:
+    course = opened(root, Variant)
+    with TemporaryDirectory(prefix="coursework-") as made:
+        folder = Path(made).resolve()
+        issued, scans, out = folder / "issued.json", folder / "scans", folder / "read"
+        issued.write_text(json.dumps(content), "utf-8")
+        scans.mkdir()
+        for name, data in sent.items():
+            (scans / name).write_bytes(data)
+        files, _ = read_files(Papers(course, content), [scans], issued, out)
+        return [
+            found for file in files for found in _found(out, file.name, file.digest, file.pages, file.fault)
+        ]
+
+
+def _found(out: Path, name: str, digest: str, pages: int, fault: str) -> Sequence[_Found]:
+    if fault:
+        return [_Found(page_id(digest, 0), name, 0, PageKept(REFUSED, fault, has_picture=False), b"")]
+    found = []
+    for number in range(1, pages + 1):
+        own = page_id(digest, number)
+        page = page_kept(out, own)
+        if page is not None:
+            found.append(_Found(own, name, number, page, _bytes(out / picture_of(own))))
+    return found
+
+
+def _bytes(path: Path) -> bytes:
+    return path.read_bytes() if path.is_file() else b""
+
+
+def _keep(site: Site, number: int, content: Mapping[str, Any], found: Sequence[_Found], by: str) -> int:
+    """All of it is kept, or nothing; gives how many pages are new."""
+    papers = Papers(site.course, content).papers
+    at = site.clock()
+    with site.store.begin() as connection:
+        new = 0
+        for one in found:
+            student = papers[one.kept.code].student if one.kept.code in papers else ""
+            page = Page(one.page, one.file, one.number, student, page_as_json(one.kept), at)
+            is_new = put_scanned(connection, number, page, one.picture)
+            new += is_new and one.number > 0
+        note(connection, at, by, "scans", assignment=number, pages=len(found), new=new)
+    return new

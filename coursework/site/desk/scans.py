@@ -1,0 +1,221 @@
+"""Scans on the desk: they are sent, read beside the pages, and what could not be read is typed card by card, like the queue."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from coursework.database.audit import note
+from coursework.database.scans import TypedRow, name_scanned, picture_scanned, put_typed
+from coursework.errors import BadInput
+from coursework.language.words import words
+from coursework.scanning.gathering import Card
+from coursework.scanning.page_reading import cut
+from coursework.scanning.queue import place_of_card
+from coursework.scanning.sources import ENDINGS
+from coursework.scanning.typed import NAME, PAGE
+from coursework.site.desk import scan_jobs
+from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.files import file_name
+from coursework.site.desk.scans_now import ScansNow, hand_over, scans_now
+from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit, Who
+
+LARGEST = 60 * 1024 * 1024  #: bytes of what is sent at once
+LONGEST = 4000  #: characters of an answer
+_ID = re.compile(r"[0-9a-f]{16}-\d{4,6}")
+_KEPT = 3600  #: seconds for which a browser may keep a picture
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A card as it is shown."""
+
+    card: Card
+    group: Mapping[str, Any]
+    why: str
+    crops: tuple[str, ...]  #: addresses of pictures of the field, or of the page
+    pages: tuple[str, ...]
+
+
+# ------------------------------------------------------------------------ pages
+
+
+def scans_page(visit: Visit, told: str = "") -> Reply:
+    """What was scanned, and what became of it; with a form, more is sent."""
+    now = class_now(visit.site, assignment_of(visit))
+    if visit.posted:
+        told = _sent(visit, now)
+    job = scan_jobs.job(visit.site, now.about.id)
+    scans = scans_now(visit.site, now.about.id)
+    if visit.posted and visit.form.text("do") == "hand over":
+        told = visit.said["scans"]["handed_over"].format(hand_over(visit.site, now.about.id, scans))
+    absent = _absent(now, scans)
+    return class_page_of(
+        visit, now, "site_desk_scans", "scans", told=told, job=job, scans=scans, endings=",".join((*ENDINGS, ".zip")),
+        absent=absent if scans.pages else [],
+    )  # fmt: skip
+
+
+def _sent(visit: Visit, now: ClassNow) -> str:
+    """Begin to read what was sent.
+
+    Raises
+    ------
+    BadInput
+        Nothing was.
+    """
+    if visit.form.text("do") == "hand over":
+        return ""
+    sent = [one for one in visit.form.files.get("scans", ()) if one.data]
+    if not sent:
+        raise BadInput(visit.said["files"]["none_sent"])
+    scan_jobs.begin(visit.site, now.about.id, _by_names(sent), by_whom(visit))
+    return ""
+
+
+def _by_names(sent: list[Upload]) -> dict[str, bytes]:
+    """Files by names that differ."""
+    found: dict[str, bytes] = {}
+    for number, one in enumerate(sent, 1):
+        name = file_name(one)
+        found[name if name not in found else f"{number}-{name}"] = one.data
+    return found
+
+
+def _absent(now: ClassNow, scans: ScansNow) -> list[str]:
+    """Who has a paper of which no page was scanned."""
+    met = set(scans.found.whose.values())
+    return [student for student in now.issued.students if student not in met]
+
+
+def cards_page(visit: Visit) -> Reply:
+    """One card after another; a form decides on one."""
+    now = class_now(visit.site, assignment_of(visit))
+    scans = scans_now(visit.site, now.about.id)
+    if not visit.posted:
+        return _shown(visit, now, scans, visit.query.get("at", ""))
+    asked_for, id_ = visit.form.text("do"), visit.form.text("card")
+    before = [card.id for card in scans.cards]
+    card = next((one for one in scans.cards if one.id == id_), None)
+    if card is None:
+        return _shown(visit, now, scans, "", visit.said["scans"]["taken"])
+    if asked_for not in ("confirm", "nothing"):
+        raise Refused("bad_request", 400)
+    told = _typed(visit, now, scans, card, "" if asked_for == "nothing" else _answer(visit, card))
+    later = scans_now(visit.site, now.about.id)
+    if not later.cards:
+        told = visit.said["scans"]["handed_over"].format(hand_over(visit.site, now.about.id, later))
+    left = {one.id for one in later.cards}
+    place = before.index(id_)
+    at = next((one for one in (*before[place:], *before[:place]) if one in left), "")
+    return _shown(visit, class_now(visit.site, now.about.id), later, at, told)
+
+
+def _answer(visit: Visit, card: Card) -> str:
+    """What was typed.
+
+    Raises
+    ------
+    BadInput
+        It is no page, or no name, where one is asked.
+    """
+    told = visit.form.text("answer").strip()[:LONGEST]
+    if card.exercise == PAGE:
+        return f"{visit.form.text('paper')} {visit.form.text('number').strip() or '1'}"
+    if card.exercise == NAME and not told:
+        raise BadInput(visit.said["scans"]["no_name"])
+    return told
+
+
+def _typed(visit: Visit, now: ClassNow, scans: ScansNow, card: Card, answer: str) -> str:
+    """Keep what was typed; says so."""
+    student, exercise, seed, part, coordinate = place_of_card(card)
+    row = TypedRow(
+        student, exercise, seed, part, coordinate, answer, " ".join(card.pages), by_whom(visit), visit.at
+    )
+    code, _, number = answer.partition(" ")
+    if exercise == PAGE and answer and not (code in scans.papers.papers and number in _numbers(scans, code)):
+        raise BadInput(visit.said["scans"]["no_page"])
+    with visit.site.store.begin() as connection:
+        put_typed(connection, now.about.id, [row])
+        if exercise == PAGE and answer:
+            name_scanned(connection, now.about.id, part, scans.papers.papers[code].student)
+        about = {"assignment": now.about.id, "exercise": exercise, "part": part if exercise != PAGE else ""}
+        note(connection, visit.at, by_whom(visit), "scan typed", **about)
+    return str(visit.said["scans"]["kept"])
+
+
+def _numbers(scans: ScansNow, code: str) -> list[str]:
+    return [str(page.number) for page in scans.papers[code]]
+
+
+def _shown(visit: Visit, now: ClassNow, scans: ScansNow, at: str, told: str = "") -> Reply:
+    """The card that is asked for, else the first; or that nothing waits."""
+    cards = scans.cards
+    place = next((k for k, one in enumerate(cards) if one.id == at), 0)
+    names: dict[str, Any] = {
+        "shown": _as_shown(visit, now, scans, cards[place]) if cards else None,
+        "place": place + 1,
+        "count": len(cards),
+        "before": cards[place - 1].id if cards else "",
+        "after": cards[(place + 1) % len(cards)].id if cards else "",
+        "scans": scans,
+        "told": told,
+        "place_url": f"/desk/{now.about.id}/scans/queue",
+        "papers": [(code, p.student) for code, p in scans.papers.papers.items() if p.size == "a4"],
+    }
+    if visit.is_piece:
+        return visit.page("_desk_scan_card", now=now, **names)
+    return class_page_of(visit, now, "site_desk_scan_queue", "scans", **names)
+
+
+def _as_shown(visit: Visit, now: ClassNow, scans: ScansNow, card: Card) -> Shown:
+    said = words(visit.lang, "scan")["waits"]
+    base = f"/desk/{now.about.id}/scans"
+    pages = tuple(f"{base}/picture?page={name}" for name in card.pages)
+    crops = tuple(f"{base}/crop?page={one.page}&field={one.index}" for one in card.said) or pages
+    why = said.get(card.waits) or said["other"].format(card.waits)
+    return Shown(card, scans.queue.group(card), why, crops, pages)
+
+
+# --------------------------------------------------------------------- pictures
+
+
+def picture(visit: Visit) -> Reply:
+    """The picture of a page."""
+    name, data = _picture(visit)
+    return Reply(kind="image/jpeg", data=data) if name else Reply(status=404)
+
+
+def crop(visit: Visit) -> Reply:
+    """The picture of a field of a page."""
+    name, data = _picture(visit)
+    scans = scans_now(visit.site, assignment_of(visit))
+    told, page = visit.query.get("field", ""), scans.by_id[name].page
+    number = int(told) if told.isascii() and told.isdecimal() and len(told) < 5 else -1
+    if not 0 <= number < len(page.fields):
+        raise Refused("own", 404)
+    if not page.is_straight:
+        return Reply(kind="image/jpeg", data=data)
+    return Reply(kind="image/png", data=cut(data, page.fields[number]))
+
+
+def _picture(visit: Visit) -> tuple[str, bytes]:
+    """The page of this assignment that an address names, and its picture."""
+    number, name = assignment_of(visit), visit.query.get("page", "")
+    if _ID.fullmatch(name):
+        with visit.site.store.reading() as connection:
+            data = picture_scanned(connection, number, name)
+        if data:
+            return name, data
+    raise Refused("own", 404)
+
+
+PAGES = (
+    Page("/desk/{assignment:int}/scans", scans_page, Who.STAFF, posts=True, limit="upload", largest=LARGEST),
+    Page("/desk/{assignment:int}/scans/queue", cards_page, Who.STAFF, posts=True),
+    Page("/desk/{assignment:int}/scans/picture", picture, Who.STAFF),
+    Page("/desk/{assignment:int}/scans/crop", crop, Who.STAFF),
+)

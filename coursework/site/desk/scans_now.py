@@ -1,0 +1,131 @@
+"""The scans of an assignment as they stand: what they say together, what waits, and what became of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from coursework.database.assignments import issued_content
+from coursework.database.deliveries import deliver
+from coursework.database.marking import mark_new
+from coursework.database.scans import pages_scanned, typed_rows
+from coursework.gradebook.rows import Row
+from coursework.scanning.gathering import Answer, Card, Gathered
+from coursework.scanning.kept import ANSWERS, LOST, REFUSED, FileKept, PageKept, Scanned, page_of
+from coursework.scanning.page_reading import Papers
+from coursework.scanning.parts import Joins
+from coursework.scanning.queue import Queue
+from coursework.scanning.scan import LEAST, as_told, papers_asked, together
+from coursework.scanning.typed import Typed
+from coursework.site.frame.settings import Site
+
+SOURCE = "scans"  #: of the delivery that their answers are: the next one takes its place
+_GONE = PageKept(REFUSED, "read by another version: send its file again", has_picture=False)
+
+
+@dataclass(frozen=True)
+class ScansNow:
+    """The pages that were scanned, and what people typed."""
+
+    papers: Papers
+    pages: tuple[Scanned, ...]
+    typed: tuple[Typed, ...]
+
+    @cached_property
+    def asked(self) -> Any:
+        return papers_asked(self.papers, self.pages)
+
+    @cached_property
+    def found(self) -> Gathered:
+        return together(self.papers, self.asked, self.pages, self.typed)
+
+    @cached_property
+    def queue(self) -> Queue:
+        return Queue(self.papers, self.asked, self.found, Joins(self.papers, self.asked), Path())
+
+    @property
+    def cards(self) -> Sequence[Card]:
+        return self.queue.cards
+
+    @property
+    def rejected(self) -> list[Scanned]:
+        return [one for one in self.pages if one.page.what == REFUSED]
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Pages by what they are."""
+        found: dict[str, int] = {}
+        for one in self.pages:
+            if one.number:
+                found[one.page.what] = found.get(one.page.what, 0) + 1
+        return found
+
+    @property
+    def answers(self) -> list[Answer]:
+        """Answers of papers of which it is known whose they are."""
+        return [one for one in self.found.answers if one.student not in self.papers.papers]
+
+    @cached_property
+    def by_id(self) -> dict[str, Scanned]:
+        return {one.id: one for one in self.pages}
+
+
+def scans_now(site: Site, number: int) -> ScansNow:
+    """The scans of an assignment."""
+    with site.store.reading() as connection:
+        content = issued_content(connection, number)
+        rows = pages_scanned(connection, number)
+        told = typed_rows(connection, number)
+    papers = site.shelf.get(
+        ("papers that are scanned", number, _stamp(content)), lambda: Papers(site.course, content)
+    )
+    typed = tuple(Typed(*map(str, row[:7])) for row in told)
+    pages = tuple(
+        as_told(
+            Scanned(FileKept(row.file, row.page.partition("-")[0], 0), row.number, row.page, page_of(row.kept) or _GONE),
+            papers, typed, LEAST,
+        )
+        for row in rows
+    )  # fmt: skip
+    return ScansNow(papers, pages, typed)
+
+
+def _stamp(content: dict[str, Any]) -> int:
+    """What tells an issue from what it was before: who has which record."""
+    return hash(
+        tuple(
+            (str(i.get("student")), i["record"]["exercise"], str(i["record"]["seed"]))
+            for i in content["issued"]
+        )
+    )
+
+
+def hand_over(site: Site, number: int, now: ScansNow) -> int:
+    """Let the answers that are known be marked, in place of those of the scans before; gives how many they are."""
+    rows = [
+        Row(one.student, one.exercise, str(one.seed), one.part, answer_told(one), _source(now, one))
+        for one in now.answers
+    ]
+    if not rows:
+        return 0
+    with site.store.begin() as connection:
+        deliver(connection, number, rows, source=SOURCE, came=site.clock(), replaces=True)
+    mark_new(site.course, site.store, number)
+    return len(rows)
+
+
+def answer_told(one: Answer) -> str:
+    """An answer as it is marked; of one that a person marks from its picture, which that is."""
+    return "; ".join(f"scan {s.page}/{s.index}" for s in one.pictures) or one.answer
+
+
+def _source(now: ScansNow, one: Answer) -> str:
+    return "; ".join(
+        f"{now.by_id[name].file.name} p. {now.by_id[name].number}" for name in one.pages if name in now.by_id
+    )
+
+
+__all__ = ["ANSWERS", "LOST", "SOURCE", "ScansNow", "hand_over", "scans_now"]

@@ -1,0 +1,223 @@
+"""A student on the desk: what was handed in and when, every try, each answer with its reading, verdict and history, decided here too.
+
+Of what a student practises alone the desk shows how often and when last, for the exercises of this assignment; never an
+answer, a mark or a mistake: practice is the student's own.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from datetime import datetime
+from itertools import groupby
+from typing import Any
+
+from coursework.database.audit import note
+from coursework.database.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, Happened, Place, decide, history
+from coursework.database.desk import people_of, practised, tries_of
+from coursework.errors import BadInput
+from coursework.gradebook.accepted import points_of
+from coursework.gradebook.columns import own_columns
+from coursework.gradebook.graded import Graded
+from coursework.gradebook.scale import mark_of
+from coursework.language.numbers import localise
+from coursework.making.students import folded
+from coursework.marking.mark import Mark
+from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
+from coursework.site.desk.question_cards import Asked, asked, decided_words, moment, sign_of, steps
+from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+
+_LONGEST = 2000  #: characters of a comment
+
+
+@dataclass(frozen=True)
+class Line:
+    """An answer as it stands, and what became of it."""
+
+    asked: Asked
+    number: str  #: on the student's own paper
+    in_class: str  #: of the question among all that the class was asked; nothing where it is the same
+    machine: Mark
+    mark: Mark
+    sign: str
+    history: tuple[str, ...]
+    is_decided: bool
+    steps: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """One exercise of one try."""
+
+    graded: Graded
+    title: str
+    lines: tuple[Line, ...]
+    counts: bool
+
+
+@dataclass(frozen=True)
+class Practised:
+    """What a student did alone, as far as it is the staff's business."""
+
+    title: str
+    variants: int
+    last: str
+
+
+def student_page(visit: Visit) -> Reply:
+    """The page, or a decision on one of its answers."""
+    now = class_now(visit.site, assignment_of(visit))
+    student = _student(visit, now)
+    told = ""
+    if visit.posted:
+        try:
+            told = _decided(visit, now, student)
+        except BadInput as fault:
+            told = str(fault)
+        now = class_now(visit.site, now.about.id)
+    result = now.results[student]
+    with visit.site.store.reading() as connection:
+        happened = history(connection, now.about.id, student)
+        tries = tries_of(connection, now.about.id, student)
+        person = people_of(connection, now.about.id).get(student)
+        alone = practised(connection, person, now.issued.exercises) if person else {}
+    by_place: dict[tuple[str, str], list[Happened]] = {}
+    for _, exercise, part, one in happened:
+        by_place.setdefault((exercise, part), []).append(one)
+    sheets = [_sheet(visit, now, place, by_place) for place in now.machine if place[0] == student]
+    sheets.sort(key=lambda one: (-one.graded.sitting, now.issued.exercises.index(one.graded.exercise)))
+    return class_page_of(
+        visit, now, "site_desk_student", "class", student=student, result=result, told=told,
+        mark=localise(mark_of(now.issued, result.counts, result.out_of), visit.lang), columns=_columns(now, student),
+        tries=[(moment(one.came, visit.lang), one) for one in tries], known=person or 0,
+        sittings=[(n, list(own)) for n, own in groupby(sheets, key=lambda one: one.graded.sitting)],
+        practised=[_practised(visit, name, *alone[name]) for name in now.issued.exercises if name in alone],
+        rejected=[one for one in now.rejected if one.student == student],
+    )  # fmt: skip
+
+
+def _student(visit: Visit, now: ClassNow) -> str:
+    told = visit.form.text("name") if visit.posted else visit.query.get("name", "")
+    if told in now.results:
+        return told
+    found = {folded(name): name for name in now.results}.get(folded(told))
+    if found is None:
+        raise Refused("own", 404)
+    return found
+
+
+def _columns(now: ClassNow, student: str) -> list[tuple[str, str]]:
+    told = own_columns(now.issued, student)
+    titles = {folded(title): title for title in now.issued.columns.get(student, {})}
+    return [(titles.get(key, key), value) for key, value in told.items() if value]
+
+
+def _sheet(visit: Visit, now: ClassNow, place: Any, happened: dict[tuple[str, str], list[Happened]]) -> Sheet:
+    machine, stands = now.machine[place], now.graded[place]
+    lines = [
+        _line(visit, now, machine, stands, part, happened.get((machine.exercise, part), []))
+        for part in machine.lines
+    ]
+    title = lines[0].asked.handout.title if lines else machine.exercise
+    return Sheet(stands, title, tuple(lines), stands.sitting == now.results[stands.student].sitting)
+
+
+def _line(
+    visit: Visit, now: ClassNow, machine: Graded, stands: Graded, part: str, happened: list[Happened]
+) -> Line:
+    own = [one for one in happened if one.seed in ("", str(machine.seed))]
+    own = [one for one in own if one.sitting in (0, machine.sitting)]
+    told = tuple(_told(visit, one) for one in own)
+    mark, in_class = stands.lines[part], now.number(machine.exercise, part)
+    number = f"{in_class.partition('.')[0]}.{list(machine.lines).index(part) + 1}"
+    return Line(
+        asked(now.course, now.issued, machine, part, visit.lang), number, in_class if in_class != number else "",
+        machine.lines[part], mark, sign_of(mark), told,
+        now.decisions.standing(machine, machine.lines[part]) is not None, steps(mark.out_of),
+    )  # fmt: skip
+
+
+def _told(visit: Visit, one: Happened) -> str:
+    """A line of the history."""
+    if one.kind == "marked":
+        from coursework.rendering.feedback import verdict_word
+
+        said = visit.said["class"]["marked"]
+        at = moment(one.at, visit.lang)
+        return str(said).format(verdict_word(one.verdict, visit.lang), f"{one.points or 0:g}", at)
+    return decided_words(visit, _Made(one))
+
+
+class _Made:
+    """What happened, in the words of a decision."""
+
+    def __init__(self, one: Happened):
+        self.kind, self.points, self.by, self.made, self.reason = (
+            one.kind,
+            one.points,
+            one.by,
+            one.at,
+            one.reason,
+        )
+
+
+def _practised(visit: Visit, name: str, variants: int, last: datetime | None) -> Practised:
+    exercise = visit.site.course[name]
+    lang = visit.lang if visit.lang in exercise.languages else exercise.languages[0]
+    return Practised(exercise.title(lang), variants, moment(last, visit.lang) if last else "")
+
+
+def _decided(visit: Visit, now: ClassNow, student: str) -> str:
+    """Decide on one answer, or take back what was decided.
+
+    Raises
+    ------
+    BadInput
+        The points are no number, or more than there are.
+    """
+    form, said = visit.form, visit.said["queue"]
+    exercise, seed, part = form.text("exercise"), form.text("seed"), form.text("part")
+    sheet = next(
+        (
+            one
+            for one in now.machine.values()
+            if (one.student, one.exercise, str(one.seed)) == (student, exercise, seed)
+            and str(one.sitting) == form.text("sitting")
+        ),
+        None,
+    )
+    if sheet is None or part not in sheet.lines:
+        raise Refused("own", 404)
+    kind, points = _kind(form.text("do"), form.text("points"), sheet.lines[part], said)
+    place = Place(student, exercise, seed, part, sheet.lines[part].answer)
+    with visit.site.store.begin() as connection:
+        decide(
+            connection,
+            now.about.id,
+            [place],
+            kind,
+            points,
+            form.text("comment").strip()[:_LONGEST],
+            by_whom(visit),
+        )
+        note(
+            connection, visit.at, by_whom(visit), "decision", assignment=now.about.id, exercise=exercise, part=part,
+            kind=kind, points=points, count=1,
+        )  # fmt: skip
+    return str(said["decided"][kind]).format(1, f"{points or 0:g}")
+
+
+def _kind(asked_for: str, points: str, mark: Mark, said: Any) -> tuple[str, float | None]:
+    if asked_for == "points":
+        given = points_of(points.strip(), said["points"])
+        if given is None:
+            raise BadInput(said["no_points"])
+        if given > mark.out_of:
+            raise BadInput(said["too_many"].format(points, f"{mark.out_of:g}"))
+        return GIVEN, given
+    kinds = {"accept": ACCEPTED, "keep": KEPT, "withdraw": WITHDRAWN}
+    if asked_for not in kinds:
+        raise Refused("bad_request", 400)
+    return kinds[asked_for], None
+
+
+PAGES = (Page("/desk/{assignment:int}/student", student_page, Who.STAFF, posts=True),)

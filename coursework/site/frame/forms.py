@@ -1,0 +1,93 @@
+"""What a form brings, read within bounds: of size, of number, of time."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Sequence
+from email.message import Message
+from typing import Any
+
+from starlette.datastructures import UploadFile
+from starlette.exceptions import HTTPException
+from starlette.formparsers import MultiPartException
+from starlette.requests import Request
+
+from coursework.site.frame.visits import Form, Refused, Upload
+
+_FIELDS = 2000  #: of a form
+_FILES = 50
+_TYPED = 1024 * 1024  #: bytes of a form without files, and of a field beside files
+_SECONDS, _RATE = 30.0, 20_000  #: that a form may take: at once, and bytes a second
+_PLAIN, _WITH_FILES = "application/x-www-form-urlencoded", "multipart/form-data"
+
+
+async def read_form(request: Request, largest: int) -> Form:
+    """What a form brings.
+
+    Raises
+    ------
+    Refused
+        It is larger than ``largest`` bytes, does not say how large it is, takes too long, or cannot be read.
+    """
+    size = _size(request)
+    if not size:
+        return Form()
+    kind = _kind(request)
+    most = min(largest, _TYPED) if kind == _PLAIN else largest
+    if size > most:
+        raise Refused("too_large", 413, shown_size(most))
+    try:
+        async with (
+            asyncio.timeout(_SECONDS + size / _RATE),
+            request.form(max_fields=_FIELDS, max_files=_FILES, max_part_size=_TYPED) as fields,
+        ):
+            return await _read(fields.multi_items())
+    except TimeoutError:
+        raise Refused("too_slow", 408) from None
+    except (MultiPartException, HTTPException, ValueError):
+        raise Refused("bad_request", 400) from None
+
+
+def _size(request: Request) -> int:
+    """Bytes that it says to have, and has: what comes in pieces may be of any length, whatever else it says."""
+    told = request.headers.get("content-length", "")
+    if "transfer-encoding" in request.headers:
+        raise Refused("bad_request", 411)
+    if not (told.isascii() and told.isdecimal()) or len(told) > 15:
+        raise Refused("bad_request", 411)
+    return int(told)
+
+
+def _kind(request: Request) -> str:
+    """A form, in the only encoding that pages of the site send; another one could make reading slow."""
+    told = Message()
+    told["content-type"] = request.headers.get("content-type", "")
+    if told.get_content_type() not in (_PLAIN, _WITH_FILES) or told.get_param("charset", "utf-8") not in (
+        "utf-8",
+        "UTF-8",
+    ):
+        raise Refused("bad_request", 415)
+    return told.get_content_type()
+
+
+async def _read(items: Sequence[tuple[str, Any]]) -> Form:
+    texts: dict[str, list[str]] = {}
+    files: dict[str, list[Upload]] = {}
+    for name, value in items:
+        if isinstance(value, UploadFile):
+            if value.filename:
+                files.setdefault(clean(name), []).append(Upload(clean(value.filename), await value.read()))
+        else:
+            texts.setdefault(clean(name), []).append(clean(str(value)))
+    if len(items) > _FIELDS:
+        raise Refused("bad_request", 400)
+    return Form(texts, files)
+
+
+def clean(text: str) -> str:
+    """A text that databases and pages hold: lines end in one way, without zeros and without halves of characters."""
+    return text.replace("\r\n", "\n").replace("\0", "").encode("utf-8", "replace").decode()
+
+
+def shown_size(count: int) -> str:
+    return f"{count // (1024 * 1024)} MB" if count >= 1024 * 1024 else f"{count // 1024} kB"

@@ -1,0 +1,73 @@
+"""Times as people read and write them: in the zone of the machine that serves, which pages name."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime, timedelta
+
+from coursework.language.words import words
+from coursework.making.papers import date_text
+
+_FORM = "%Y-%m-%dT%H:%M"  #: of a field of a form
+
+
+def moment_text(at: datetime, lang: str) -> str:
+    """``4 décembre 2026, 14 h 05``; with its seconds where it has some."""
+    here = at.astimezone()
+    said = words(lang, "site")["moments"]
+    form = said["time_seconds"] if here.second or here.microsecond else said["time"]
+    return str(said["moment"]).format(date_text(here.date(), lang), _time(here, str(form)))
+
+
+def exact_text(at: datetime, lang: str) -> str:
+    """With its seconds, whatever they are."""
+    here, said = at.astimezone(), words(lang, "site")["moments"]
+    return str(said["moment"]).format(date_text(here.date(), lang), _time(here, str(said["time_seconds"])))
+
+
+def _time(here: datetime, form: str) -> str:
+    return form.format(hour=here.hour, minute=f"{here.minute:02}", second=f"{here.second:02}")
+
+
+def zone_name(at: datetime) -> str:
+    """The zone in which times are told."""
+    return at.astimezone().tzname() or "UTC"
+
+
+def length_text(length: timedelta, lang: str) -> str:
+    """How long: the two greatest units that there are, ``3 days 4 hours``; less than a minute in seconds."""
+    said = words(lang, "site")["moments"]
+    seconds = max(0, int(length.total_seconds()))
+    units = (("day", 86400), ("hour", 3600), ("minute", 60))
+    counts = []
+    for name, size in units:
+        counts.append((name, seconds // size))
+        seconds %= size
+    found = [(name, count) for name, count in counts if count][:2]
+    if not found:
+        found = [("second", seconds)]
+    below_two = words(lang)["numbers"]["one_below_two"]
+    return " ".join(
+        str(said[name]["one" if (count < 2 if below_two else count == 1) else "many"]).format(count)
+        for name, count in found
+    )
+
+
+def field_text(at: datetime | None) -> str:
+    """As a field of a form holds it."""
+    return "" if at is None else at.astimezone().strftime(_FORM)
+
+
+def from_field(text: str) -> datetime | None:
+    """What a field of a form holds; none where it is empty.
+
+    Raises
+    ------
+    ValueError
+        It holds no moment.
+    """
+    if not text.strip():
+        return None
+    found = datetime.fromisoformat(text.strip())
+    if not 2000 <= found.year <= 2200:
+        raise ValueError(f"no year for a course: {found.year}")
+    return found.astimezone(UTC)

@@ -1,0 +1,68 @@
+"""The pages of the site, through the templates of a course, in the dress of its sheets."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+from coursework.course.folder import Folder
+from coursework.language.words import words
+from coursework.rendering.environment import render
+from coursework.rendering.html import environment_of
+
+STATIC = Path(__file__).parents[1] / "static"
+KINDS = {".css": "text/css; charset=utf-8", ".js": "text/javascript; charset=utf-8", ".svg": "image/svg+xml"}
+
+#: What sheets and pages hold as well, by the name of the file that it is here.
+_OF_SHEETS = {
+    "sheet.css": "_page_style.css.j2",
+    "motion.css": "_motion_style.html.j2",
+    "paper.css": "_paper_style.html.j2",
+    "motion.js": "_motion.js",
+}
+
+
+class Pages:
+    """Renders pages of one course."""
+
+    def __init__(self, folder: Folder):
+        self._folder = folder
+
+    def page(self, template: str, lang: str, names: Mapping[str, Any]) -> str:
+        """A page of a template with what all pages need."""
+        said = words(lang, "site")
+        usual = {
+            "lang": lang,
+            "words": words(lang),
+            "said": said,
+            "paper": "a4",
+            "title": said["site"]["title"],
+            "title_of_page": "",
+            "course_title": self._folder.title(lang),
+            "file": self.file,
+        }
+        return self.rendered(template, lang, {**usual, **names})
+
+    def rendered(self, template: str, lang: str, names: Mapping[str, Any]) -> str:
+        return render(environment_of(self._folder.template_folders, lang), f"{template}.html.j2", names)
+
+    def static(self, name: str) -> tuple[str, bytes] | None:
+        """The kind and the bytes of a file that all pages share; none where there is no such file."""
+        if name in _OF_SHEETS:
+            env = environment_of(self._folder.template_folders, "en")
+            return KINDS[Path(name).suffix], render(env, _OF_SHEETS[name], {"paper": "a4"}).encode()
+        known = {path.name: path for path in STATIC.iterdir() if path.suffix in KINDS}
+        return (KINDS[known[name].suffix], known[name].read_bytes()) if name in known else None
+
+    def file(self, name: str) -> str:
+        """The address of such a file: another one when the file changes, so that browsers may keep it."""
+        return f"/static/{name}?{_stamp(self, name)}"
+
+
+@cache
+def _stamp(pages: Pages, name: str) -> str:
+    found = pages.static(name)
+    return sha256(found[1]).hexdigest()[:12] if found else ""

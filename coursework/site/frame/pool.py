@@ -1,0 +1,139 @@
+"""Variants to practise, drawn ahead, since some exercises pass over fifty draws for one that is worth issuing."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Collection
+from contextlib import suppress
+from hashlib import sha256
+from threading import Lock
+from typing import Any
+
+from sqlalchemy.exc import IntegrityError
+
+from coursework.course.course import Course
+from coursework.database.pool import Pooled, issued_given, issued_seeds, pooled, pools, put_pooled
+from coursework.database.store import Store
+from coursework.errors import CourseworkError, Starved
+from coursework.making.issuing import distinct_variants
+
+LOG = logging.getLogger("coursework.site")
+FIRST_SEED = 3_000_000  #: far from those of classes, of self-study and of books
+COUNTS = (8, 60)  #: variants of an exercise that are found ahead, in turns
+
+
+class Pool:
+    """Seeds that are worth practising, by exercise: the same for all, kept in the database."""
+
+    def __init__(self, course: Course[Any], store: Store):
+        self._course, self._store = course, store
+        self._found: dict[str, Pooled] = {}
+        self._locks: dict[str, Lock] = {}
+        self._lock = Lock()
+
+    def seeds(self, exercise: str) -> tuple[int, ...]:
+        """Those that were found; the first of them are found now, where nobody did."""
+        known = self._found.get(exercise)
+        if known is None or not _is_whole(known):  # another process may have found more
+            known = self._grown(exercise, COUNTS[0])
+        return known.seeds
+
+    def holds(self, exercise: str, seed: int) -> bool:
+        """Whether a seed is one of them."""
+        known = self._found.get(exercise, Pooled())
+        return seed in known.seeds or seed in self.seeds(exercise)
+
+    def own(self, exercise: str, person: int, begun: Collection[int]) -> int:
+        """The seed of a person who has begun some: it hangs on person and exercise, and no class was given its variant while
+        there is another.
+
+        Raises
+        ------
+        Starved
+            The exercise has no variant that is worth issuing.
+        """
+        left = self._left(exercise, begun)
+        in_order = sorted(left, key=lambda seed: _draw(exercise, person, seed))
+        return next((s for s in in_order if not self._is_issued(exercise, s)), in_order[0])
+
+    def _left(self, exercise: str, begun: Collection[int]) -> list[int]:
+        """Seeds not begun; all where everything is."""
+        seeds: tuple[int, ...] = self.seeds(exercise)
+        left = [seed for seed in seeds if seed not in begun]
+        if not left:
+            seeds = self._grown(exercise, 2 * len(seeds)).seeds
+            left = [seed for seed in seeds if seed not in begun]
+        if not seeds:
+            raise Starved(f"{exercise}: no variant that is worth issuing was found")
+        return left or list(seeds)
+
+    def _is_issued(self, exercise: str, seed: int) -> bool:
+        with self._store.reading() as connection:
+            if not (seeds := issued_seeds(connection, exercise)):
+                return False
+            if str(seed) in seeds:
+                return True
+            own = self._course[exercise].variant(seed).record["given"]
+            return any(given == own for given in issued_given(connection, exercise))
+
+    def _grown(self, exercise: str, count: int) -> Pooled:
+        """At least so many, or all that are found."""
+        one = self._course[exercise]
+        with self._lock:
+            lock = self._locks.setdefault(exercise, Lock())
+        with lock:
+            with self._store.reading() as connection:
+                found = pooled(connection, exercise, one.version)
+            if len(found.seeds) < count and not found.are_all:
+                found = self._kept(exercise, one.version, _drawn(one, count))
+            self._found[exercise] = found
+        return found
+
+    def _kept(self, exercise: str, version: int, found: Pooled) -> Pooled:
+        """What was found, or what another process has kept meanwhile where that is more: nothing that somebody began is let go."""
+        with (
+            suppress(IntegrityError),
+            self._store.begin() as connection,
+        ):  # what it kept this moment is the same
+            stands = pooled(connection, exercise, version)
+            if len(stands.seeds) > len(found.seeds):
+                return stands
+            put_pooled(connection, exercise, version, found)
+        return found
+
+    # ---------------------------------------------------------------------- ahead
+
+    def is_filled(self) -> bool:
+        """Whether all that is wanted ahead was found: one look at the database."""
+        known = {name: self._course[name].version for name in self._course.folder.study_order}
+        with self._store.reading() as connection:
+            found = pools(connection, known)
+        return all(_is_whole(found.get(name, Pooled())) for name in known)
+
+    def fill(self) -> None:
+        """Find all that is wanted ahead, exercise after exercise in the order in which they are learnt."""
+        for count in COUNTS:
+            for exercise in self._course.folder.study_order:
+                try:
+                    self._grown(exercise, count)
+                except CourseworkError as fault:
+                    LOG.error("no variants of %s were drawn ahead: %s", exercise, type(fault).__name__)
+
+
+def _is_whole(found: Pooled) -> bool:
+    return found.are_all or len(found.seeds) >= COUNTS[-1]
+
+
+def _drawn(exercise: Any, count: int) -> Pooled:
+    """So many of an exercise, or as many as are found."""
+    wanted = count
+    while wanted:
+        with suppress(Starved):
+            found = distinct_variants(exercise, FIRST_SEED, wanted, exercise.languages[0])
+            return Pooled(tuple(one.seed for one in found), wanted < count)
+        wanted = wanted * 3 // 4
+    return Pooled((), True)
+
+
+def _draw(exercise: str, person: int, seed: int) -> bytes:
+    return sha256(f"coursework/practice/{exercise}/{person}/{seed}".encode()).digest()

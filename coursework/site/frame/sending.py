@@ -1,0 +1,72 @@
+"""How an answer goes back: its headers, what browsers may keep of it, and its bytes made small."""
+
+from __future__ import annotations
+
+import gzip
+from functools import lru_cache
+from hashlib import sha256
+from urllib.parse import quote
+
+from starlette.requests import Request
+from starlette.responses import RedirectResponse, Response
+
+from coursework.site.frame.visits import Reply, local
+
+_HEADERS = {
+    "content-security-policy": "default-src 'none'; img-src 'self' data:; style-src 'self' 'unsafe-inline'; script-src 'self'; "
+    "connect-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'; manifest-src 'self'",
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "same-origin",
+    "x-frame-options": "DENY",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+    "permissions-policy": "camera=(), microphone=(), geolocation=()",
+}
+_HTTPS = {"strict-transport-security": "max-age=31536000"}
+_SMALL = 1000  #: bytes that are sent as they are
+_PACKED = ("text/", "application/json", "image/svg+xml")
+
+
+def response_of(request: Request, reply: Reply, is_secure: bool) -> Response:
+    """A reply as it is sent."""
+    headers = {**_HEADERS, **(_HTTPS if is_secure else {})}
+    headers["cache-control"] = f"public, max-age={reply.keep}, immutable" if reply.keep else "no-store"
+    if reply.goto and request.headers.get("hx-request") == "true":
+        return Response("", 200, {**headers, "hx-redirect": _written(local(reply.goto))})
+    if reply.goto:
+        return RedirectResponse(_written(local(reply.goto)), 303, headers)
+    if reply.file:
+        headers["content-disposition"] = attached(reply.file)
+    return _whole(request, reply, reply.data or reply.html.encode("utf-8", "replace"), headers)
+
+
+def _whole(request: Request, reply: Reply, data: bytes, headers: dict[str, str]) -> Response:
+    if reply.keep:
+        headers["etag"] = f'"{sha256(data).hexdigest()[:20]}"'
+        if headers["etag"] in request.headers.get("if-none-match", ""):
+            return Response(status_code=304, headers=headers)
+    if reply.kind.startswith(_PACKED) and len(data) > _SMALL:
+        headers["vary"] = "accept-encoding"
+        if "gzip" in request.headers.get("accept-encoding", ""):
+            headers["content-encoding"] = "gzip"
+            data = _kept_small(data) if reply.keep else gzip.compress(data, 5, mtime=0)
+    return Response(data, reply.status, headers, media_type=reply.kind)
+
+
+@lru_cache(maxsize=64)
+def _kept_small(data: bytes) -> bytes:
+    return gzip.compress(data, 9, mtime=0)
+
+
+def attached(name: str) -> str:
+    """A file that is to be kept, by its name: in letters that every browser reads, and as it is."""
+    plain = "".join(
+        letter if letter.isascii() and (letter.isalnum() or letter in " ._-()") else "_" for letter in name
+    )
+    whole = quote(name.encode("utf-8", "replace"), safe="")
+    return f"attachment; filename=\"{plain}\"; filename*=UTF-8''{whole}"
+
+
+def _written(address: str) -> str:
+    """An address as a header holds it."""
+    return quote(address, safe="/:%#?=@[]!$&'()*+,;~")

@@ -1,0 +1,127 @@
+"""What the site stands on: a course, a database, its address, and how people come in."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from enum import Enum
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from sqlalchemy import Connection
+
+from coursework.api import Variant
+from coursework.course.course import Course
+from coursework.course.folder import course_folder
+from coursework.database.settings import course_taken, secret, take_course
+from coursework.database.store import Store
+from coursework.site.frame.limits import Limits
+from coursework.site.frame.pages import Pages
+from coursework.site.frame.pool import Pool
+from coursework.site.frame.shelf import Shelf
+
+_VARIANTS = (
+    1200  #: that are kept at hand: variants with the keys by which they are marked, and what is drawn of them
+)
+
+Clock = Callable[[], datetime]
+
+
+class Entrance(Enum):
+    """How people come in."""
+
+    LOCAL = "local"  #: whoever opens it on this machine is its owner
+    DEMO = "demo"  #: one chooses who to be
+    ACCOUNTS = "accounts"  #: with a password, or from a platform
+
+
+def _now() -> datetime:
+    return datetime.now(UTC)
+
+
+@dataclass
+class Site:
+    """A site: one course, one database."""
+
+    course: Course[Any]
+    store: Store
+    entrance: Entrance = Entrance.LOCAL
+    url: str = "http://127.0.0.1:8000"
+    clock: Clock = _now
+    shelf: Shelf = field(default_factory=lambda: Shelf(_VARIANTS))
+    limits: Limits = field(default_factory=Limits)
+    lti: Path | None = None  #: folder of the platforms from which links lead here
+    _taken: int = field(init=False)
+
+    def __post_init__(self) -> None:
+        with self.store.reading() as connection:
+            self._taken = course_taken(connection)
+
+    @cached_property
+    def pages(self) -> Pages:
+        return Pages(self.course.folder)
+
+    @cached_property
+    def pool(self) -> Pool:
+        return Pool(self.course, self.store)
+
+    def ahead(self, key: Hashable, work: Callable[[], object]) -> None:
+        """Do something beside the requests that somebody will soon ask for; once."""
+        self.shelf.get(("ahead", key), lambda: self._aside.submit(work))
+
+    @cached_property
+    def _aside(self) -> ThreadPoolExecutor:
+        return ThreadPoolExecutor(1, thread_name_prefix="ahead")
+
+    @cached_property
+    def secret(self) -> bytes:
+        """What signs cookies and seals: kept in the database, the same for all workers."""
+        with self.store.begin() as connection:
+            return secret(connection)
+
+    def take(self, course: Course[Any]) -> None:
+        """Go on with the course as its files stand now, in all processes; what is drawn ahead for practice stays until the next
+        start."""
+        with self.store.begin() as connection:
+            self._taken = take_course(connection)
+        self._go_on_with(course)
+
+    def follow(self, connection: Connection) -> None:
+        """Go on with the course that another process took."""
+        taken = course_taken(connection)
+        if taken != self._taken:
+            self._taken = taken
+            self._go_on_with(self.reopened())
+
+    def reopened(self) -> Course[Any]:
+        """The course, its files read anew."""
+        return Course(course_folder(self.course.folder.root), Variant)
+
+    def _go_on_with(self, course: Course[Any]) -> None:
+        self.course, self.shelf = course, Shelf(_VARIANTS)
+        self.__dict__.pop("pages", None)
+
+    @property
+    def languages(self) -> tuple[str, ...]:
+        """Those of the course, its own first."""
+        own = self.course.folder.language
+        return (own, *(one for one in self.course.folder.languages if one != own))
+
+    @property
+    def is_secure(self) -> bool:
+        return self.url.startswith("https:")
+
+    def variant(self, exercise: str, seed: int, lang: str) -> Any:
+        """A variant that asks the usual parts, kept at hand; in a language that the exercise has.
+
+        Raises
+        ------
+        UnknownName
+            The course has no such exercise.
+        """
+        one = self.course[exercise]
+        spoken = lang if lang in one.languages else one.languages[0]
+        return self.shelf.get((exercise, seed, spoken), lambda: one.variant(seed, spoken))

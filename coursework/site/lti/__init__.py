@@ -1,0 +1,1 @@
+"""Links of learning platforms that lead to the site."""

@@ -1,0 +1,95 @@
+"""The class as a platform's frame shows it to who teaches: the rows of the desk's table, and where each score stands."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from sqlalchemy import Connection, select
+
+from coursework.database.desk import people_of
+from coursework.database.publication import CHARGE, Publication
+from coursework.database.tables import identity
+from coursework.language.words import words
+from coursework.lti.host import Visit
+from coursework.lti.storage import Waiting
+from coursework.site.desk import class_page
+from coursework.site.desk.class_at_hand import ClassNow
+from coursework.site.frame.moments import moment_text
+from coursework.site.frame.settings import Site
+from coursework.site.lti.scores import marked_in, number_text, standing
+
+
+class Row(NamedTuple):
+    """A student of the class."""
+
+    name: str
+    person: str  #: what the platform calls them; empty for who never came by a launch
+    tries: int
+    minutes_late: int
+    points: str
+    mark: str
+    waits: int  #: answers that a person has to look at
+    gradebook: str
+
+
+def class_rows(connection: Connection, site: Site, now: ClassNow, visit: Visit, here: set[str]) -> list[Row]:
+    """Who was issued a paper, in the order of the desk's table; of who came from elsewhere than this course, too."""
+    people, subjects = people_of(connection, now.about.id), _subjects(connection, visit.launch.issuer)
+    charges = Publication.of(now.about.published or {}).late == CHARGE
+    scores, found = visit.scores(), []
+    for row in class_page.rows(now):
+        person = people.get(row.student, 0)
+        subject = subjects.get(person, "")
+        points = row.points
+        if (
+            charges
+            and row.late
+            and (state := standing(connection, now.about.id, person, visit.lang, site.clock()))
+        ):
+            marked = marked_in(now, row.student)
+            points = marked.given(state) if marked else points
+        told = (
+            f"{number_text(points, visit.lang)} / {number_text(row.out_of, visit.lang)}"
+            if row.handed_in
+            else ""
+        )
+        on_its_way = _way(scores.get(subject), subject, visit.lang) if row.handed_in else ""
+        found.append(
+            Row(row.student, subject, row.tries, row.minutes_late, told, row.mark, row.waits, on_its_way)
+        )
+    return found
+
+
+def _subjects(connection: Connection, issuer: str) -> dict[int, str]:
+    found = select(identity.c.person_id, identity.c.subject).where(identity.c.issuer == issuer)
+    return {row.person_id: row.subject for row in connection.execute(found)}
+
+
+def _way(waiting: Waiting | None, subject: str, lang: str) -> str:
+    """Where a score stands on its way."""
+    said, own = words(lang)["lti"]["class"], words(lang, "site")["lti"]["class"]
+    if waiting is None:
+        return str(own["kept_back"] if subject else own["never_came"])
+    if waiting.due is None:
+        return str(said["waits_person"] if waiting.score.waits else said["arrived"])
+    return str(said["waits_because"].format(waiting.said) if waiting.said else said["on_its_way"])
+
+
+def rules_rows(visit: Visit, now: ClassNow, said: Publication | None) -> list[tuple[str, str]]:
+    """What the assignment is published with, each with its name."""
+    link, own = words(visit.lang)["lti"]["class"], words(visit.lang, "site")["lti"]["class"]
+    if said is None:
+        return [(own["published"], own["hidden"])]
+    counts = (now.about.stated or {}).get("sittings", "best")
+
+    def moment(at: object) -> str:
+        return moment_text(at, visit.lang) if at else own["never"]  # type: ignore[arg-type]
+
+    return [
+        (own["opens"], moment(said.opens) if said.opens else own["at_once"]),
+        (own["closes"], moment(said.closes)),
+        (link["tries"], link["any_number"] if said.tries is None else str(said.tries)),
+        (link["counts"], link["best" if counts == "best" else "last"]),
+        (own["feedback"], own["feedback_is"][said.feedback].format(moment(said.feedback_on))),
+        (link["sends"], link["yes" if visit.launch.line or visit.launch.lines else "no"]),
+    ]

@@ -1,0 +1,42 @@
+"""Points on their way to platforms, for the staff: which have not arrived, and why."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sqlalchemy import Connection, select
+
+from coursework.database.tables import identity, person
+from coursework.lti.storage import Storage
+from coursework.site.frame.visits import Page, Reply, Visit, Who
+from coursework.site.lti.scores import number_text
+
+
+def waiting(visit: Visit) -> Reply:
+    """The scores that wait, and how many arrived."""
+    if visit.site.lti is None:
+        return visit.page("site_lti", is_on=False, rows=[], arrived=0)
+    every = list(Storage(visit.site.lti).scores().values())
+    with visit.site.store.reading() as connection:
+        names = _names(connection)
+    rows: list[dict[str, Any]] = [
+        {
+            "link": one.title or one.link,
+            "name": names.get(one.person, one.person),
+            "points": f"{number_text(one.score.given, visit.lang)} / {number_text(one.score.maximum, visit.lang)}",
+            "failures": one.failures,
+            "why": one.said,
+        }
+        for one in every
+        if one.due is not None
+    ]
+    return visit.page("site_lti", is_on=True, rows=rows, arrived=len(every) - len(rows))
+
+
+def _names(connection: Connection) -> dict[str, str]:
+    """Names by what platforms call people; of one identifier on two platforms the first."""
+    found = select(identity.c.subject, person.c.name).join(person).order_by(identity.c.id.desc())
+    return {row.subject: row.name for row in connection.execute(found)}
+
+
+PAGES = (Page("/desk/lti", waiting, Who.STAFF),)

@@ -1,0 +1,129 @@
+"""Who comes by a launch: the person whom the platform's identifier tells, and the paper that is dealt to them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
+
+from sqlalchemy import Connection, select
+
+from coursework.database.assignments import issued_content, put_issued
+from coursework.database.audit import note
+from coursework.database.desk import stamp
+from coursework.database.identities import fitting, person_known, take_over, tie
+from coursework.database.people import person_by_who, put_person
+from coursework.database.tables import assignment
+from coursework.making.assignment import Assignment, assignment_of
+from coursework.making.dealing import deal
+from coursework.making.issued import issued_content as content_of
+from coursework.making.roster import Student
+from coursework.making.students import folded
+from coursework.site.frame.settings import Site
+from coursework.site.frame.visits import Refused
+from coursework.site.publication.dealings import holders
+
+if TYPE_CHECKING:
+    from coursework.lti.launch import Launch
+
+_ROUNDS = 20  #: tries to deal while others are dealt to
+_AGAIN = 5  #: seconds after which to try again
+
+
+def platform_name(launch: Launch) -> str:
+    """What pages and the audit call the platform."""
+    return urlsplit(launch.issuer).hostname or launch.issuer
+
+
+def comer(site: Site, launch: Launch, lang: str) -> Any:
+    """The person of a launch, with the name and the language that it tells; one who is new is added."""
+    with site.store.reading() as connection:
+        known = person_known(connection, launch.issuer, launch.person)
+    if known is not None and _is_as_told(known, launch, lang):
+        return known
+    with site.store.begin() as connection:
+        known = person_known(connection, launch.issuer, launch.person)
+        if known is None:
+            _put(site, connection, launch, lang)
+        elif not known.login:
+            take_over(connection, known.id, launch.name, lang)
+        return person_known(connection, launch.issuer, launch.person)
+
+
+def _is_as_told(known: Any, launch: Launch, lang: str) -> bool:
+    """Whether nothing is to be taken over; who has an account keeps the name of it."""
+    return bool(known.login) or (launch.name in ("", known.name) and lang == known.lang)
+
+
+def _put(site: Site, connection: Connection, launch: Launch, lang: str) -> None:
+    """Tie the one person of the rosters whom the platform's e-mail or number tells, else a new one."""
+    found = fitting(connection, launch.issuer, launch.email, launch.number)
+    if len(found) == 1:
+        number, how = found[0].id, "roster"
+    else:
+        own = _new(connection, launch)
+        number, how = put_person(connection, own.who, launch.name, lang, own.columns), "new"
+    tie(connection, number, launch.issuer, launch.person)
+    about = {"person": number, "platform": platform_name(launch), "how": how}
+    note(connection, site.clock(), platform_name(launch), "came from a platform", **about)
+
+
+def _new(connection: Connection, launch: Launch) -> Student:
+    """Somebody new, as a roster would tell them: by the number or the e-mail, unless somebody has it; never by the name."""
+    told = [
+        {"number": launch.number.strip()},
+        {"email": launch.email.strip()},
+        {"number": f"{launch.person} {platform_name(launch)}"},
+        {"number": f"{launch.person} {launch.issuer}"},
+    ]
+    for columns in told:
+        one = Student(launch.name, columns=columns)
+        if all(columns.values()) and person_by_who(connection, one.who) is None:
+            return one
+    raise Refused("own", 404)
+
+
+# ------------------------------------------------------------------------- dealing
+
+
+def deal_to(site: Site, number: int, known: Any, launch: Launch, lang: str) -> None:
+    """Deal somebody a paper as who comes late is dealt one: everybody else keeps theirs.
+
+    Raises
+    ------
+    Refused
+        It was issued without a file that says what to deal, or others are dealt to all the time.
+    """
+    for _ in range(_ROUNDS):
+        with site.store.reading() as connection:
+            before, stood = issued_content(connection, number), stamp(connection, number).dealt
+            about = connection.execute(select(assignment).where(assignment.c.id == number)).one()
+        if about.asked is None:
+            raise Refused("not_dealt", 409)
+        asked = assignment_of(about.name, about.asked, site.course)
+        everybody = holders(before)
+        own = _student(known, launch, _spoken(site, asked, lang), {folded(one.name) for one in everybody})
+        made = deal(site.course, asked, [*everybody, own], [site.languages[0]], before)
+        with site.store.begin() as connection:
+            connection.execute(
+                select(assignment.c.id).where(assignment.c.id == number).with_for_update(key_share=True)
+            )
+            if stamp(connection, number).dealt == stood:
+                put_issued(connection, content_of(made.issues, asked), about.name)
+                told = {"assignment": about.name, "students": 1, "person": known.id}
+                note(connection, site.clock(), platform_name(launch), "late ones added", **told)
+                return
+    raise Refused("busy", 503, _AGAIN)
+
+
+def _spoken(site: Site, asked: Assignment, lang: str) -> str:
+    """The language of a person, where all the exercises have it."""
+    return lang if all(lang in site.course[name].languages for name in asked.names) else ""
+
+
+def _student(known: Any, launch: Launch, lang: str, taken: set[str]) -> Student:
+    """Somebody as a roster would tell them; two of one name are told apart."""
+    name = launch.name or known.name or launch.person
+    if folded(name) in taken:
+        name = f"{name} ({launch.number or launch.email or launch.person})"
+    own = Student(name, lang, {title: str(text) for title, text in known.columns.items()})
+    return own if own.who == known.who else Student(name, lang, {"number": known.who})

@@ -1,0 +1,220 @@
+"""Points for platforms: those of the class page, less what coming late costs, once they may be told; sent anew when they change.
+
+What changes them is not asked of the pages that change it: whoever decides, marks again or grades from the command line, the
+assignment's stamp is another afterwards, and that is looked at every few seconds.
+"""
+
+from __future__ import annotations
+
+import logging
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from datetime import datetime
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection
+
+from coursework.database.assignments import issued_of, names
+from coursework.database.decisions import Decisions
+from coursework.database.deliveries import deliveries
+from coursework.database.desk import stamp
+from coursework.database.identities import person_known
+from coursework.database.publication import extensions, last_end, places, published
+from coursework.database.standing import lines_of, machine_marks, stood
+from coursework.errors import CourseworkError
+from coursework.gradebook.book import Gradebook, Result, results
+from coursework.gradebook.graded import Graded
+from coursework.language.numbers import localise, plain
+from coursework.language.words import words
+from coursework.lti.launch import Launch
+from coursework.lti.refusal import Refused as LtiRefused
+from coursework.lti.storage import Score, Storage
+from coursework.lti.wanted import Wanted
+from coursework.making.issued import Issued
+from coursework.rendering.feedback import verdict_word
+from coursework.site.desk.class_at_hand import ClassNow, class_now
+from coursework.site.frame.settings import Site
+from coursework.site.papers.handing_in import pass_dates
+from coursework.site.papers.own_assignment import State
+
+LOG = logging.getLogger("coursework.lti")
+WAITS = ("to_mark", "unreadable")  #: verdicts of answers that a person has to look at
+_COMMENT = 900  #: characters of a comment in the gradebook
+_PAUSE = 5.0  #: seconds between two looks
+
+
+class Marked(NamedTuple):
+    """What the marks of somebody come to, as they stand."""
+
+    issued: Issued
+    result: Result
+    sheets: Sequence[Graded]  #: of the hand-in that counts
+    waits: bool  #: a person has to look at some of it
+
+    def given(self, state: State) -> float:
+        """The points with what coming late costs taken off."""
+        late = next((one.late for one in state.done if one.number == self.result.sitting), 0)
+        return round(self.result.points * (1 - state.place.own.charged(late)), 9)
+
+
+def marked_in(now: ClassNow, student: str) -> Marked | None:
+    """Of somebody of a class; none before anything was handed in."""
+    sheets = [one for one in now.graded.values() if one.student == student]
+    return _marked(now.issued, now.results.get(student), sheets, now.decisions)
+
+
+def marked_of(connection: Connection, number: int, student: str) -> Marked | None:
+    """The same of one student alone, whatever the size of the class."""
+    stands = stood(connection, number, student).values()
+    issued = issued_of(connection, number, student=student)
+    decisions = Decisions.read(connection, number, student)
+    found = machine_marks(issued, stands, lines_of(connection, stands))
+    sheets = [decisions.apply(one) for _, one in found if not isinstance(one, str)]
+    book = Gradebook(issued)
+    for one in sheets:
+        book.add(one)
+    return _marked(issued, dict(results(book)).get(student), sheets, decisions)
+
+
+def _marked(
+    issued: Issued, result: Result | None, sheets: Sequence[Graded], decisions: Decisions
+) -> Marked | None:
+    counted = [one for one in sheets if result and one.sitting == result.sitting]
+    if result is None or not counted:
+        return None
+    waits = any(
+        line.verdict in WAITS and decisions.standing(one, line) is None
+        for one in counted
+        for line in one.lines.values()
+    )
+    return Marked(issued, result, counted, waits)
+
+
+def score_of(site: Site, launch: Launch, now: ClassNow | None = None) -> Score | None:
+    """What the platform of a launch is told of its person; nothing before marks may be told."""
+    number, lang = assignment_number(site, launch), lang_of(site, launch)
+    if number is None:
+        return None
+    with site.store.reading() as connection:
+        known = person_known(connection, launch.issuer, launch.person)
+        state = None if known is None else standing(connection, number, known.id, lang, site.clock())
+        if state is None or not state.done or not state.tells("feedback"):
+            return None
+        student = state.place.student
+        marked = marked_in(now, student) if now else marked_of(connection, number, student)
+    if marked is None:
+        return None
+    comment = _comment(marked, marked.given(state), lang)
+    return Score(marked.given(state), marked.result.out_of, comment, marked.waits)
+
+
+def assignment_number(site: Site, launch: Launch) -> int | None:
+    """The assignment that a link opens; none where it opens an exercise, or what there is not."""
+    try:
+        name = Wanted.of(launch.custom).assignment
+    except LtiRefused:
+        return None
+    with site.store.reading() as connection:
+        return names(connection).get(name)
+
+
+def standing(connection: Connection, number: int, person: int, lang: str, at: datetime) -> State | None:
+    """Where a published assignment stands for somebody; none where they have no paper of it."""
+    place = next(iter(places(connection, person, number)), None)
+    if place is None or place.publication is None:
+        return None
+    ends = last_end(place.publication, list(extensions(connection, number).values()))
+    return State(place, lang, place.publication.now(at), deliveries(connection, number, person), ends)
+
+
+def _comment(marked: Marked, given: float, lang: str) -> str:
+    said = words(lang)["lti"]
+    stated = (marked.issued.assignment or {}).get("exercises") or marked.issued.exercises
+    order = {str(exercise): place for place, exercise in enumerate(stated, 1)}
+    lines = [
+        said["comment_line"].format(f"{order[one.exercise]}.{k}", verdict_word(line.verdict, lang))
+        for one in sorted(marked.sheets, key=lambda one: order[one.exercise])
+        for k, line in enumerate(one.lines.values(), 1)
+    ]
+    told = {"points": number_text(given, lang), "out_of": number_text(marked.result.out_of, lang)}
+    comment = str(said["comment"]).format(**told, number=marked.result.sitting, verdicts="; ".join(lines))
+    return comment if len(comment) <= _COMMENT else comment[:_COMMENT].rpartition(";")[0] + "; …"
+
+
+def number_text(number: float, lang: str) -> str:
+    return localise(plain(round(number, 3)), lang)
+
+
+# --------------------------------------------------------------------- sent anew
+
+
+class Watch:
+    """Puts scores on their way that something has changed."""
+
+    def __init__(self, site: Site, storage: Storage, wake: Any):
+        self._site, self._storage, self._wake = site, storage, wake
+        self._over = threading.Event()
+
+    def look(self) -> int:
+        """Look at every assignment that a link opens; how many scores are new."""
+        return sum(self._look(number, launches) for number, launches in self._opened().items())
+
+    def _opened(self) -> Mapping[int, list[Launch]]:
+        found: dict[int, list[Launch]] = {}
+        for launch in self._storage.opened():
+            number = assignment_number(self._site, launch)
+            if number is not None and (launch.line or launch.lines):
+                found.setdefault(number, []).append(launch)
+        return found
+
+    def _look(self, number: int, launches: Sequence[Launch]) -> int:
+        pass_dates(self._site, number, self._site.clock())
+        what, stands = f"assignment {number}", f"{self._stands(number)} {len(launches)}"
+        if self._storage.stood(what) == stands:
+            return 0
+        now = class_now(self._site, number)
+        new = sum(self._put(launch, now) for launch in launches)
+        self._storage.looked(what, stands)
+        if new:
+            self._wake()
+        return new
+
+    def _stands(self, number: int) -> str:
+        """What is another text when a score may be another."""
+        with self._site.store.reading() as connection:
+            said, more = published(connection, number), extensions(connection, number)
+            stamped = stamp(connection, number)
+        if said is None:
+            return str(stamped)
+        passed = sum(one < said.now(self._site.clock()) for one in said.dates(list(more.values())))
+        rules = replace(said, reached=None).as_json()
+        return f"{stamped} {passed} {sorted(rules.items())} {len(more)}"
+
+    def _put(self, launch: Launch, now: ClassNow) -> bool:
+        score = score_of(self._site, launch, now)
+        return score is not None and self._storage.put_score(launch, score)
+
+    # ------------------------------------------------------------------ beside
+
+    def start(self) -> None:
+        self._over.clear()
+        threading.Thread(target=self._run, name="lti-watch", daemon=True).start()
+
+    def stop(self) -> None:
+        self._over.set()
+
+    def _run(self) -> None:
+        while not self._over.wait(_PAUSE):
+            try:
+                self.look()
+            except CourseworkError as fault:
+                LOG.warning("scores were not looked at: %s", type(fault).__name__)
+            except Exception as fault:
+                LOG.error("scores could not be looked at: %s", type(fault).__name__)
+
+
+def lang_of(site: Site, launch: Launch) -> str:
+    """The language of a launch."""
+    told = launch.locale[:2].lower()
+    return told if told in site.languages else site.languages[0]

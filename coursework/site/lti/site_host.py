@@ -1,0 +1,351 @@
+"""The site behind the LTI service: a link opens a published assignment of the database, or an exercise for practice.
+
+A student answers their own paper, which is handed in, marked and told of as on the site; who teaches sees the class. An
+exercise is served by the host that the package brings, with papers and tries of its own beside those of the site.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from sqlalchemy import Connection
+
+from coursework.database.assignments import issued_of
+from coursework.database.deliveries import rows_of
+from coursework.database.publication import Phase, places, published
+from coursework.errors import BadInput
+from coursework.gradebook.rows import Row
+from coursework.language.words import words
+from coursework.lti.class_list import students
+from coursework.lti.course_host import CourseHost
+from coursework.lti.host import Form, Offer, Reply, Shelf, Visit
+from coursework.lti.pages import Form as Surrounding
+from coursework.lti.pages import Pages
+from coursework.lti.refusal import Refused as LtiRefused
+from coursework.lti.roles import Role
+from coursework.lti.services import Member, NotServed
+from coursework.lti.storage import Score, Storage
+from coursework.lti.wanted import Wanted
+from coursework.making.students import folded
+from coursework.site.desk.class_at_hand import called, class_now
+from coursework.site.frame.moments import exact_text, moment_text
+from coursework.site.frame.settings import Site
+from coursework.site.frame.visits import Form as SiteForm
+from coursework.site.frame.visits import Person, Refused
+from coursework.site.frame.visits import Visit as SiteVisit
+from coursework.site.lti import people_of_platforms
+from coursework.site.lti.class_in_frame import class_rows, rules_rows
+from coursework.site.lti.scores import assignment_number, score_of
+from coursework.site.papers.assignments import feedback_from
+from coursework.site.papers.feedback import feedback_of
+from coursework.site.papers.handing_in import hand_in
+from coursework.site.papers.own_assignment import State, own_assignment
+from coursework.site.papers.own_paper import OwnPaper, read_lines
+from coursework.site.publication.publishing import handed_out
+
+FROM_A_PLATFORM = "site: from a platform"
+_BEST = "best"
+
+
+class SiteHost:
+    """A site behind the service."""
+
+    def __init__(self, site: Site, storage: Storage):
+        self._site, self._storage = site, storage
+        self._practice: CourseHost | None = None
+
+    @property
+    def languages(self) -> tuple[str, ...]:
+        return self._site.languages
+
+    @property
+    def practice(self) -> CourseHost:
+        """Behind links that open an exercise."""
+        if self._practice is None or self._practice.course is not self._site.course:
+            self._practice = CourseHost(
+                self._site.course, self._storage, clock=lambda: self._site.clock().timestamp()
+            )
+        return self._practice
+
+    @property
+    def pages(self) -> Pages:
+        return Pages(self._site.course.folder)
+
+    # -------------------------------------------------------------- what there is
+
+    def shelves(self, lang: str) -> Sequence[Shelf]:
+        """The published assignments, then the exercises by chapter."""
+        with self._site.store.reading() as connection:
+            found = [one for one in handed_out(connection) if one.publication is not None]
+            offers = [
+                Offer(
+                    f"assignment:{one.name}", one.title(lang), _worth(connection, one.id),
+                    " ".join([one.name, *(one.stated.get("title") or {}).values()]),
+                )
+                for one in found
+            ]  # fmt: skip
+        own = [Shelf(words(lang, "site")["lti"]["shelf"], tuple(offers))] if offers else []
+        return [*own, *self.practice.shelves(lang)]
+
+    # ---------------------------------------------------------------------- pages
+
+    def show(self, visit: Visit) -> Reply:
+        if not Wanted.of(visit.launch.custom).assignment:
+            return self.practice.show(visit)
+        return self._answered(visit, lambda number: self._shown(visit, number))
+
+    def take(self, visit: Visit, form: Form) -> Reply:
+        if not Wanted.of(visit.launch.custom).assignment:
+            return self.practice.take(visit, form)
+        return self._answered(visit, lambda number: self._taken(visit, number, form))
+
+    def score(self, visit: Visit) -> Score | None:
+        try:
+            wanted = Wanted.of(visit.launch.custom)
+        except LtiRefused:
+            return None
+        return score_of(self._site, visit.launch) if wanted.assignment else self.practice.score(visit)
+
+    def _answered(self, visit: Visit, work: Callable[[int], Reply]) -> Reply:
+        """What is done with the assignment of a link; what the site refuses is told in its words."""
+        if visit.launch.role is not Role.STUDENT and not visit.launch.role.sees_class:
+            raise LtiRefused("nobody", 403, f"role {visit.launch.role}")
+        number = assignment_number(self._site, visit.launch)
+        if number is None:
+            raise LtiRefused("unknown_choice", 404, "no such assignment")
+        try:
+            return work(number)
+        except Refused as why:
+            return self._refused(visit, why)
+        except BadInput as fault:
+            return self._refused(visit, Refused("mistaken", 422, str(fault)))
+
+    def _refused(self, visit: Visit, why: Refused) -> Reply:
+        said = words(visit.lang, "site")
+        sentence = said["lti"]["refused"].get(why.sentence) or said["refused"][why.sentence]
+        names = {
+            "title": said["refused"]["title"], "message": str(sentence).format(*why.parts), "again": "", "action": "",
+            "targets": "", "back": "",
+        }  # fmt: skip
+        return Reply(self.pages.page("lti_message", visit.lang, names), why.status)
+
+    def _shown(self, visit: Visit, number: int) -> Reply:
+        if visit.launch.role is not Role.STUDENT:
+            return self._class(visit, number)
+        if visit.path:
+            raise LtiRefused("page", 404, "a student")
+        own_visit = self._visit(visit, number, SiteForm())
+        state, own = own_assignment(own_visit)
+        if state.done and not ("again" in visit.query and state.may_hand_in):
+            return self._became(visit, own_visit, state, own)
+        if not state.may_hand_in:
+            raise Refused("closed", 409)
+        texts = self._handed_in(state, own) if state.done else {}
+        return Reply(self._sheet(visit, state, own, texts))
+
+    # ------------------------------------------------------------------- a student
+
+    def _visit(self, visit: Visit, number: int, form: SiteForm) -> SiteVisit:
+        """The visit as the site's own pages have one, of the person of the launch, who has a paper from now on.
+
+        Raises
+        ------
+        Refused
+            It is not published, not open, or there is nothing to be dealt.
+        """
+        site, launch = self._site, visit.launch
+        with site.store.reading() as connection:
+            if published(connection, number) is None:
+                raise Refused("own", 404)
+        known = people_of_platforms.comer(site, launch, visit.lang)
+        self._deal(visit, number, known)
+        person = Person(known.id, known.name, "student", visit.lang)
+        return SiteVisit(
+            site,
+            person,
+            visit.lang,
+            site.clock(),
+            visit.home,
+            {"number": number},
+            form=form,
+            posted=bool(form.texts),
+        )
+
+    def _deal(self, visit: Visit, number: int, known: Any) -> None:
+        with self._site.store.reading() as connection:
+            said = published(connection, number)
+            if said is None or places(connection, known.id, number):
+                return
+        phase = said.phase(said.now(self._site.clock()))
+        if phase is Phase.TO_COME:
+            raise Refused("not_yet", 409, moment_text(said.opens, visit.lang) if said.opens else "")
+        if not phase.takes:
+            raise Refused("closed", 409)
+        people_of_platforms.deal_to(self._site, number, known, visit.launch, visit.lang)
+
+    def _sheet(
+        self, visit: Visit, state: State, own: OwnPaper, texts: Mapping[str, str], *, notes: Sequence[str] = (),
+        unread: Sequence[str] = (),
+    ) -> str:  # fmt: skip
+        filled = {
+            name: [text, *text.split(", ")] if ", " in text else [text]
+            for name, text in texts.items()
+            if text
+        }
+        more = [(visit.home, words(visit.lang)["lti"]["see_again"])] if state.done else []
+        form = Surrounding(
+            visit.home, visit.seal, len(state.done) + 1, filled, (*notes, *self._rules(visit, state)), tuple(unread),
+            bool(unread), tuple(more), visit.launch.return_url,
+        )  # fmt: skip
+        return self.pages.sheet(own.paper, form, alone=False)
+
+    def _handed_in(self, state: State, own: OwnPaper) -> dict[str, str]:
+        """What was handed in last, by box."""
+        with self._site.store.reading() as connection:
+            rows = [
+                one for one in rows_of(connection, state.place.id, state.done[-1].id) if isinstance(one, Row)
+            ]
+        told = {(one.exercise, one.seed, one.part): str(one.answer or "") for one in rows}
+        return {
+            name: told.get((box.variant.exercise.name, str(box.variant.seed), box.part.id), "")
+            for name, box in own.boxes.items()
+        }
+
+    def _rules(self, visit: Visit, state: State) -> list[str]:
+        """Until when, how often, and what counts."""
+        said, own = words(visit.lang)["lti"], words(visit.lang, "site")["lti"]
+        found = []
+        if state.phase is Phase.OPEN and state.place.own.closes:
+            found.append(str(own["open_until"]).format(state.moment(state.place.own.closes)))
+        elif state.phase is Phase.LATE:
+            found.append(str(own["late_now"]))
+        left = state.tries_left
+        if left is None:
+            found.append(str(said["tries_free"]))
+        elif state.phase.takes:
+            one = left < 2 if words(visit.lang)["numbers"]["one_below_two"] else left == 1
+            found.append(
+                str(said["tries_left"]["one" if one else "many"]).format(left)
+                if left
+                else said["no_try_left"]
+            )
+        if state.place.own.tries != 1:
+            counts = state.place.stated.get("sittings", _BEST)
+            found.append(str(said["counts_best" if counts == _BEST else "counts_last"]))
+        return [" ".join(found)]
+
+    def _became(self, visit: Visit, own_visit: SiteVisit, state: State, own: OwnPaper) -> Reply:
+        """What became of what was handed in last, as far as it is told by now; else that it is there."""
+        said, last = words(visit.lang)["lti"], state.done[-1]
+        came = said["try_number"].format(last.number, exact_text(last.came, visit.lang))
+        receipt = own_visit.said["lti"]["receipt"].format(last.receipt)
+        more = [(f"{visit.home}?again=1", said["again"])] if state.may_hand_in else []
+        if state.tells("feedback"):
+            told, notes = feedback_of(own_visit, state, own, last)
+            notes = [f"{came}. {receipt}", *notes, *self._rules(visit, state), self._sent(visit)]
+            form = Surrounding("", "", notes=tuple(notes), more=tuple(more), leave=visit.launch.return_url)
+            return Reply(self.pages.feedback(told, form, alone=False))
+        notes = [
+            f"{came}.",
+            receipt,
+            feedback_from(own_visit, state),
+            *self._rules(visit, state),
+            self._sent(visit, state),
+        ]
+        names = {
+            "title": state.title, "notes": [one for one in notes if one], "more": more, "leave": visit.launch.return_url,
+            "handed_in": own_visit.said["lti"]["handed_in"],
+        }  # fmt: skip
+        return Reply(self.pages.page("lti_site_handed_in", visit.lang, names))
+
+    def _sent(self, visit: Visit, state: State | None = None) -> str:
+        """Where the points stand on their way."""
+        said, launch = words(visit.lang)["lti"], visit.launch
+        if not (launch.line or launch.lines):
+            return str(said["score_none"])
+        waiting = visit.scores().get(launch.person)
+        if waiting is None and state is not None:
+            kept_back = "score_never" if state.place.own.feedback == "never" else "score_later"
+            return str(words(visit.lang, "site")["lti"][kept_back])
+        return str(said["score_sent" if waiting is not None and waiting.due is None else "score_waits"])
+
+    def _taken(self, visit: Visit, number: int, form: Form) -> Reply:
+        """Hand in what a form brings: once, whatever comes twice."""
+        if visit.launch.role is not Role.STUDENT or visit.path:
+            raise LtiRefused("page", 404, "nothing is handed in there")
+        own_visit = self._visit(visit, number, SiteForm(form))
+        state, own = own_assignment(own_visit)
+        texts, place = own.texts(own_visit.form), _number(form)
+        if place <= len(state.done):
+            return Reply(goto=visit.home)  # the same form once more
+        if not any(text.strip() for text in texts.values()):
+            empty = words(visit.lang)["lti"]["empty"]
+            return Reply(self._sheet(visit, state, own, texts, notes=[empty]), 422)
+        unread = _unread(visit, own, texts)
+        if unread and not form.get("_as_it_is"):
+            return Reply(self._sheet(visit, state, own, texts, unread=unread), 422)
+        hand_in(self._site, state.place, own, own_visit.who.id, texts, place, own_visit.at, FROM_A_PLATFORM)
+        return Reply(goto=visit.home)
+
+    # ------------------------------------------------------------------------ class
+
+    def _class(self, visit: Visit, number: int) -> Reply:
+        """The class as the desk has it, to look at; what is decided is decided on the site, by who has an account there."""
+        if visit.path:
+            raise LtiRefused("page", 404, "no such page")
+        now, lang = class_now(self._site, number), visit.lang
+        members, note = _members(visit, lang)
+        with self._site.store.reading() as connection:
+            said = published(connection, number)
+            rows = class_rows(
+                connection, self._site, now, visit, {one.person for one in students(members or ())}
+            )
+        missing = _not_there(members, {folded(row.name) for row in rows}, {row.person for row in rows})
+        names = {
+            "title": visit.launch.link_title or called(now.about, lang), "context": visit.launch.context_title, "home": visit.home,
+            "desk": f"{self._site.url}/desk/{number}", "rules": rules_rows(visit, now, said), "rows": rows, "missing": missing,
+            "roster_note": note, "has_roster": members is not None, "own": words(lang, "site")["lti"]["class"],
+        }  # fmt: skip
+        return Reply(self.pages.page("lti_site_class", lang, names))
+
+
+def _worth(connection: Connection, number: int) -> float:
+    """The points of an assignment: those of the first paper that was issued."""
+    issued = issued_of(connection, number)
+    student = next(iter(issued.students), "")
+    own = issued.issued_to(student) if student else {}
+    records = [issued.record_of(student, exercise, seed) for exercise, seed in own.items()]
+    return sum(float(part["points"]) for record in records for part in record["parts"]) or 1.0
+
+
+def _unread(visit: Visit, own: OwnPaper, texts: Mapping[str, str]) -> list[str]:
+    """A sentence for each answer that could not be read."""
+    form = str(words(visit.lang)["lti"]["unread_line"])
+    return [form.format(box.number, told.says) for box, _, told in read_lines(own, texts) if told.is_in_doubt]
+
+
+def _number(form: Form) -> int:
+    text = next(iter(form.get("_number", ())), "")
+    if not text.isdecimal() or not 1 <= len(text) <= 6 or int(text) < 1:
+        raise LtiRefused("answer", 400, "no number of a try")
+    return int(text)
+
+
+def _members(visit: Visit, lang: str) -> tuple[Sequence[Member] | None, str]:
+    """The platform's roster, and what to say where there is none."""
+    said = words(lang)["lti"]["class"]
+    if visit.roster is None:
+        return None, said["no_roster"].format(said["roster_off"])
+    try:
+        return visit.roster(), ""
+    except NotServed as fault:
+        return None, said["no_roster"].format(fault)
+
+
+def _not_there(members: Sequence[Member] | None, names: set[str], known: set[str]) -> list[str]:
+    """Students of the platform who have no paper yet."""
+    return sorted(
+        (one.name or one.person for one in students(members or ()) if one.person not in known and folded(one.name) not in names),
+        key=folded,
+    )  # fmt: skip

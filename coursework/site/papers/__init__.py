@@ -1,0 +1,1 @@
+"""Assignments as students see them: their own papers, handing in, receipts, feedback."""

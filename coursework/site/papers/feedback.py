@@ -1,0 +1,84 @@
+"""What is told of what was handed in: the sheets that ``grade`` prints, as far as the publication tells them."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+from typing import Any
+
+from coursework.database.assignments import issued_content
+from coursework.database.deliveries import Delivery
+from coursework.database.marking import mark_delivery
+from coursework.database.standing import graded
+from coursework.gradebook.feedback_form import Form, shows_solutions
+from coursework.gradebook.feedback_sheets import Telling, feedback_paper
+from coursework.gradebook.scale import mark_of
+from coursework.language.numbers import localise, plain
+from coursework.making.issued import Issued
+from coursework.sheets.paper import FeedbackPaper
+from coursework.site.frame.moments import length_text
+from coursework.site.frame.visits import Visit
+from coursework.site.papers.own_assignment import State
+from coursework.site.papers.own_paper import OwnPaper
+
+
+def feedback_of(
+    visit: Visit, state: State, own: OwnPaper, chosen: Delivery
+) -> tuple[FeedbackPaper, list[str]]:
+    """What became of a hand-in, and what is said above it: of a late one, what it costs."""
+    mark_delivery(visit.site.course, visit.site.store, chosen.id)
+    with visit.site.store.reading() as connection:
+        sheets = [
+            one for one in graded(connection, state.place.id, own.student) if one.sitting == chosen.number
+        ]
+        content = issued_content(connection, state.place.id, visit.who.id)
+    issued = Issued(_allowed(content, state), state.place.name)
+    telling = Telling(solutions=_shows_solutions(issued, state))
+    told = feedback_paper(visit.site.course, issued, own.student, sheets, visit.lang, telling=telling)
+    return told, _charged(visit, state, issued, told, chosen)
+
+
+def _allowed(content: dict[str, Any], state: State) -> dict[str, Any]:
+    """What was issued, with the right answers kept back before their time."""
+    stated = content.get("assignment") or {"name": state.place.name, "exercises": _exercises(content)}
+    if not state.tells("answers"):
+        stated = {**stated, "answers": "never"}
+    return {**content, "assignment": stated}
+
+
+def _exercises(content: dict[str, Any]) -> list[str]:
+    return list(dict.fromkeys(str(item["record"]["exercise"]) for item in content["issued"]))
+
+
+def _shows_solutions(issued: Issued, state: State) -> bool:
+    """The worked solutions come with the right answers, and not before the day that the assignment states."""
+    stated = issued.assignment or {}
+    if not state.tells("answers") or stated.get("answers") == "never":
+        return False
+    today = state.now.astimezone().date()
+    return not stated.get("solutions_after") or shows_solutions(issued, Form(today=today))
+
+
+def _charged(visit: Visit, state: State, issued: Issued, told: FeedbackPaper, chosen: Delivery) -> list[str]:
+    """What coming late costs, beside the points: the marks of the answers are what they are."""
+    if not chosen.late:
+        return []
+    said = visit.said["assignments"]
+    late = length_text(timedelta(seconds=chosen.late), visit.lang)
+    share = state.place.own.charged(min(chosen.late, state.place.own.late_seconds(chosen.came)))
+    if not share:
+        return [said["was_late"].format(late)]
+    left = round(told.points * (1 - share), 9)
+    points, out_of = _number(left, visit.lang), _number(told.out_of, visit.lang)
+    found = [said["was_charged"].format(late, charged_text(share, visit.lang), points, out_of)]
+    if mark := mark_of(issued, left, told.out_of):
+        found.append(said["charged_mark"].format(localise(mark, visit.lang)))
+    return found
+
+
+def _number(number: float, lang: str) -> str:
+    return localise(plain(round(number, 3)), lang)
+
+
+def charged_text(share: float, lang: str) -> str:
+    """A share as its percent, ``10 %``, without the sign."""
+    return _number(100 * share, lang)

@@ -1,0 +1,233 @@
+"""What somebody hands in: once, whatever is pressed twice, opened twice, or sent again after the line was lost.
+
+A form holds which of the person's hand-ins it is to be. A number that is taken is that hand-in again, and never another; the
+person's row in the database is held meanwhile, so that two that come together come one after the other.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import logging
+from collections.abc import Iterable, Sequence
+from datetime import datetime
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, func, select
+
+from coursework.database.deliveries import Delivery, deliver, deliveries, next_number, rows_of, tries_used
+from coursework.database.drafts import drafts
+from coursework.database.marking import mark_delivery
+from coursework.database.people import hold
+from coursework.database.publication import Phase, Place, extensions, places, published, reach
+from coursework.database.tables import dealt, draft, person, variant
+from coursework.errors import CourseworkError
+from coursework.gradebook.rows import Collected, Row
+from coursework.site.frame.settings import Site
+from coursework.site.frame.visits import Refused
+from coursework.site.papers.own_paper import OwnPaper, Texts, own_paper
+
+LOG = logging.getLogger("coursework.site")
+ON_THE_PAGE, IN_A_FILE, AS_SAVED = "site", "site: a file", "site: as saved when it closed"
+
+
+class HandedIn(NamedTuple):
+    """What became of a form that was sent to be handed in."""
+
+    delivery: Delivery
+    is_new: bool
+    differs: bool = False  #: it holds something else than what was handed in under its number
+
+
+def sheet_of(place: Place, paper: OwnPaper) -> str:
+    """What drafts of the paper are kept under."""
+    return f"assignment/{place.id}" if paper.sitting == 1 else f"assignment/{place.id}/{paper.sitting}"
+
+
+def hand_in(
+    site: Site,
+    place: Place,
+    paper: OwnPaper,
+    person_id: int,
+    texts: Texts,
+    number: int,
+    at: datetime,
+    source: str,
+) -> HandedIn:
+    """Hand in what was typed, as which of the person's hand-ins the form says.
+
+    Raises
+    ------
+    Refused
+        It is not open, or no try is left.
+    """
+    with site.store.begin() as connection:
+        hold(connection, person_id)
+        done = deliveries(connection, place.id, person_id)
+        if number <= len(done):
+            before = done[number - 1]
+            return HandedIn(before, False, not _holds(connection, place, before, paper, texts))
+        if done and _holds(connection, place, done[-1], paper, texts):
+            return HandedIn(done[-1], False)  # what stands already costs no try
+        fresh, now = _check(connection, place, person_id, at)
+        made = _deliver(connection, fresh, paper, person_id, texts, now, source)
+    mark(site, made.id)
+    return HandedIn(made, True)
+
+
+def _holds(connection: Connection, place: Place, made: Delivery, paper: OwnPaper, texts: Texts) -> bool:
+    return content(rows_of(connection, place.id, made.id)) == content_of(paper, texts)
+
+
+def _check(connection: Connection, place: Place, person_id: int, at: datetime) -> tuple[Place, datetime]:
+    """What the publication says this very moment, and the time that counts, where something is taken at it."""
+    (fresh,) = places(connection, person_id, place.id)
+    if fresh.publication is None:
+        raise Refused("own", 404)
+    own, now = fresh.own, fresh.publication.now(at)
+    if not own.phase(now).takes:
+        raise Refused("not_open", 409)
+    if own.tries is not None and tries_used(connection, place.id, person_id) >= own.tries:
+        raise Refused("no_try_left", 409)
+    return fresh, now
+
+
+def _deliver(
+    connection: Connection,
+    place: Place,
+    paper: OwnPaper,
+    person_id: int,
+    texts: Texts,
+    came: datetime,
+    source: str,
+) -> Delivery:
+    number = next_number(connection, place.id, person_id, paper.student)
+    late = place.own.late_seconds(came)
+    rows = rows_for(paper, texts, number, came, source)
+    return deliver(
+        connection, place.id, rows, source=source, came=came, person_id=person_id, number=number, late=late
+    )
+
+
+def mark(site: Site, made: int) -> None:
+    """Mark what was handed in. It is kept already: what goes wrong here is marked later."""
+    try:
+        mark_delivery(site.course, site.store, made)
+    except Exception as fault:  # who handed in is told so, whatever becomes of the marking
+        LOG.error("delivery %d is not marked yet: %s", made, type(fault).__name__)
+
+
+def rows_for(paper: OwnPaper, texts: Texts, number: int, came: datetime, source: str) -> list[Row]:
+    """A row for every question, blank ones too: what was handed in says what was not answered."""
+    origin = Collected(sitting=number, submitted=came.isoformat(timespec="seconds"))
+    return [
+        Row(
+            paper.student, box.variant.exercise.name, str(box.variant.seed), box.part.id, texts.get(name, ""), source,
+            lang=box.variant.lang, origin=origin,
+        )
+        for name, box in paper.boxes.items()
+    ]  # fmt: skip
+
+
+# ---------------------------------------------------------------------- content
+
+
+def content(rows: Iterable[Any]) -> list[list[str]]:
+    """What was handed in: exercise, seed, part and answer of each question."""
+    return [[r.exercise, r.seed, r.part, str(r.answer or "")] for r in rows if isinstance(r, Row)]
+
+
+def content_of(paper: OwnPaper, texts: Texts) -> list[list[str]]:
+    return [
+        [box.variant.exercise.name, str(box.variant.seed), box.part.id, texts.get(name, "")]
+        for name, box in paper.boxes.items()
+    ]
+
+
+def digest(told: Sequence[Sequence[str]]) -> str:
+    """SHA-256 of what was handed in, as compact JSON: anybody can compute it again."""
+    text = json.dumps([list(one) for one in told], ensure_ascii=False, separators=(",", ":"))
+    return hashlib.sha256(text.encode("utf-8", "backslashreplace")).hexdigest()
+
+
+# ------------------------------------------------------------------- when it closes
+
+
+def pass_dates(site: Site, number: int, at: datetime) -> None:
+    """Write down which dates of an assignment have passed; of what was saved as it closed, hand in what is to be."""
+    with site.store.reading() as connection:
+        said = published(connection, number)
+        if said is None:
+            return
+        dates = said.dates(list(extensions(connection, number).values()))
+    passed = [one for one in dates if one < at]
+    if not passed or (said.reached is not None and passed[-1] < said.reached):
+        return
+    with (
+        site.store.begin() as connection
+    ):  # both or nothing: a date that is written down is not looked at again
+        if reach(connection, number, at) and said.takes_saved:
+            hand_in_saved(site, connection, number, at)
+
+
+def hand_in_saved(site: Site, connection: Connection, number: int, at: datetime) -> None:
+    """Hand in what stood in the boxes of who handed in nothing, once it closed for them; it is marked later.
+
+    It counts as handed in when the last of it was typed: in time, where that was in time.
+    """
+    theirs = select(dealt.c.person_id).join(variant).where(variant.c.assignment_id == number)
+    wrote = select(draft.c.person_id).where(draft.c.sheet.like(f"assignment/{number}%"), draft.c.text != "")
+    found = theirs.where(dealt.c.person_id.in_(wrote)).distinct().order_by(dealt.c.person_id)
+    for person_id in list(connection.execute(found).scalars()):
+        hold(connection, person_id)
+        try:
+            _saved(site, connection, number, person_id, at)
+        except CourseworkError as fault:  # it stands in the boxes still; the others' is handed in
+            LOG.error("what person %d saved is not handed in: %s", person_id, type(fault).__name__)
+
+
+def _saved(site: Site, connection: Connection, number: int, person_id: int, at: datetime) -> Delivery | None:
+    (place,) = places(connection, person_id, number)
+    if place.publication is None or place.own.phase(place.publication.now(at)) is not Phase.CLOSED:
+        return None
+    if deliveries(connection, number, person_id):
+        return None
+    lang = str(connection.execute(select(person.c.lang).where(person.c.id == person_id)).scalar() or "")
+    paper = own_paper(
+        connection, site.course, place, person_id, lang if lang in site.languages else site.languages[0]
+    )
+    boxes = drafts(connection, person_id, sheet_of(place, paper))
+    texts = {name: box.text for name, box in boxes.items() if name in paper.boxes}
+    if not any(text.strip() for text in texts.values()):
+        return None
+    of_it = draft.c.person_id == person_id, draft.c.sheet == sheet_of(place, paper)
+    came = connection.execute(select(func.max(draft.c.changed)).where(*of_it)).scalar()
+    ends = place.own.ends or at
+    return _deliver(connection, place, paper, person_id, texts, min(_known(came, ends), ends), AS_SAVED)
+
+
+def _known(came: Any, otherwise: datetime) -> datetime:
+    """A time that the database computed."""
+    if isinstance(came, str):
+        came = datetime.fromisoformat(came)
+    if not isinstance(came, datetime):
+        return otherwise
+    return came if came.tzinfo else came.replace(tzinfo=otherwise.tzinfo)
+
+
+# ------------------------------------------------------------------------- papers
+
+
+def receipt_called(connection: Connection, code: str, number: int | None = None) -> Any | None:
+    """The delivery of a receipt, with its assignment and its person; None where nobody was given it."""
+    from coursework.database.tables import assignment, delivery
+
+    found = (
+        select(delivery, assignment.c.name.label("assignment"), person.c.name.label("student"))
+        .join(assignment, assignment.c.id == delivery.c.assignment_id)
+        .join(person, person.c.id == delivery.c.person_id)
+        .where(delivery.c.receipt == code.strip().upper(), delivery.c.receipt != "")
+    )
+    if number is not None:
+        found = found.where(delivery.c.assignment_id == number)
+    return connection.execute(found).first()

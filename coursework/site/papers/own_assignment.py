@@ -1,0 +1,120 @@
+"""One assignment as it stands for the person who asks: whether it is theirs, open, handed in, told."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from sqlalchemy import Connection
+
+from coursework.database.deliveries import Delivery, deliveries, tries_used
+from coursework.database.publication import Phase, Place, extensions, last_end, places
+from coursework.language.numbers import localise, plain
+from coursework.making.assignment import text_in
+from coursework.site.frame.moments import length_text, moment_text
+from coursework.site.frame.visits import Refused, Visit
+from coursework.site.papers.handing_in import pass_dates
+from coursework.site.papers.own_paper import OwnPaper, own_paper
+
+
+@dataclass(frozen=True)
+class State:
+    """Where an assignment stands for the person who asks."""
+
+    place: Place
+    lang: str
+    now: datetime
+    done: Sequence[Delivery]
+    everybody_ends: datetime | None
+    used: int = 0  #: tries of the paper that is to be done
+
+    @property
+    def phase(self) -> Phase:
+        return self.place.own.phase(self.now)
+
+    @property
+    def tries_left(self) -> int | None:
+        tries = self.place.own.tries
+        return None if tries is None else max(0, tries - self.used)
+
+    @property
+    def may_hand_in(self) -> bool:
+        return self.phase.takes and self.tries_left != 0
+
+    @property
+    def title(self) -> str:
+        return text_in(self.place.stated.get("title") or {}, self.lang) or self.place.name
+
+    @property
+    def address(self) -> str:
+        return f"/assignments/{self.place.id}"
+
+    @property
+    def closed_for_both(self) -> datetime | None:
+        """When it has closed for the class and for this person; none where that never comes."""
+        assert self.place.publication is not None
+        ends = self.place.own.ends, self.place.publication.ends
+        return None if ends[0] is None or ends[1] is None else max(ends[0], ends[1])
+
+    def tells(self, what: str) -> bool:
+        """Whether ``feedback`` or ``answers`` are told now."""
+        ends = self.closed_for_both if what == "feedback" else self.everybody_ends
+        return self.place.own.tells(what, self.now, ends)
+
+    def moment(self, at: datetime | None) -> str:
+        return "" if at is None else moment_text(at, self.lang)
+
+    def percent(self, number: float) -> str:
+        return localise(plain(number), self.lang)
+
+    @property
+    def left(self) -> str:
+        """What is left of the time; nothing where it does not close, or has."""
+        own = self.place.own
+        ends = own.closes if self.phase is Phase.OPEN else own.ends if self.phase is Phase.LATE else None
+        return "" if ends is None else length_text(ends - self.now, self.lang)
+
+
+def state_of(visit: Visit, place: Place, connection: Connection) -> State:
+    assert place.publication is not None
+    done = deliveries(connection, place.id, visit.who.id)
+    ends = last_end(place.publication, list(extensions(connection, place.id).values()))
+    used = tries_used(connection, place.id, visit.who.id)
+    return State(place, visit.lang, place.publication.now(visit.at), done, ends, used)
+
+
+def to_hand_in(visit: Visit) -> list[State]:
+    """What somebody may hand in now and has not yet."""
+    with visit.site.store.reading() as connection:
+        published = [one for one in places(connection, visit.who.id) if one.publication is not None]
+        found = [state_of(visit, one, connection) for one in published]
+    return [one for one in found if one.may_hand_in and not one.done]
+
+
+def own_place(visit: Visit) -> Place:
+    """The assignment that is asked for, where it is published and the person was issued a paper of it.
+
+    Raises
+    ------
+    Refused
+        There is none such: nobody is told which of it is wanting.
+    """
+    number = int(visit.path["number"])
+    pass_dates(visit.site, number, visit.at)
+    with visit.site.store.reading() as connection:
+        found = places(connection, visit.who.id, number)
+    if len(found) != 1 or found[0].publication is None:
+        raise Refused("own", 404)
+    return found[0]
+
+
+def own_assignment(visit: Visit) -> tuple[State, OwnPaper]:
+    """Where it stands, and the paper; nothing of it before it opens."""
+    place = own_place(visit)
+    with visit.site.store.reading() as connection:
+        state = state_of(visit, place, connection)
+        if state.phase is Phase.TO_COME:
+            raise Refused("not_yet", 409, state.moment(place.own.opens))
+        site = visit.site
+        return state, own_paper(connection, site.course, place, visit.who.id, visit.lang, site.shelf)

@@ -1,0 +1,157 @@
+"""The paper that somebody was issued, as their pages show it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
+from json import dumps
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, select
+
+from coursework.course.course import Course
+from coursework.database.assignments import issued_content
+from coursework.database.publication import Place
+from coursework.database.tables import assignment
+from coursework.gradebook.feedback_sheets import heading_of
+from coursework.making.assignment import text_in
+from coursework.making.issued import Issued
+from coursework.model import Part
+from coursework.rendering import papers
+from coursework.rendering.environment import render
+from coursework.rendering.html import environment_of
+from coursework.sheets.paper import FeedbackPaper, Heading, Paper
+from coursework.site.frame.keeping import LONGEST, held
+from coursework.site.frame.shelf import Shelf
+from coursework.site.frame.visits import Form, Refused
+from coursework.site.papers.read_back import ReadBack, read_back
+
+_VARIANTS = 100  #: of one paper
+Texts = Mapping[str, str]  #: what stands in the boxes, by their names
+
+
+class Box(NamedTuple):
+    """A question of the paper, and where its answer is typed."""
+
+    name: str  #: on the page
+    number: str  #: of the question, 2.1
+    exercise: str  #: its title
+    variant: Any
+    part: Part
+
+
+@dataclass(frozen=True)
+class OwnPaper:
+    """What a student was issued: a variant of each exercise, in one language."""
+
+    course: Course[Any]
+    issued: Issued
+    student: str
+    lang: str
+    instructions: Mapping[str, str]
+    shelf: Shelf = field(default_factory=lambda: Shelf(_VARIANTS))  #: where its variants are at hand
+
+    @cached_property
+    def seeds(self) -> Mapping[str, int]:
+        """The seeds of the sheet that is to be done, by exercise in the paper's order: of a make-up, where there is one."""
+        own = self.issued.issued_to(self.student)
+        stated = (self.issued.assignment or {}).get("exercises") or self.issued.exercises
+        return {exercise: own[exercise] for exercise in map(str, stated) if exercise in own} or own
+
+    @property
+    def sitting(self) -> int:
+        """Which paper it is: 2 for a make-up."""
+        return max(self.issued.sitting_of(self.student, e, seed) for e, seed in self.seeds.items())
+
+    @cached_property
+    def variants(self) -> tuple[Any, ...]:
+        return tuple(self._variant(exercise, seed) for exercise, seed in self.seeds.items())
+
+    def _variant(self, exercise: str, seed: int) -> Any:
+        one, record = self.course[exercise], self.issued.record_of(self.student, exercise, seed)
+        spoken = self.lang if self.lang in one.languages else one.languages[0]
+        whole = {**record, "lang": spoken}
+        return self.shelf.get(("issued", dumps(whole, sort_keys=True)), lambda: one.from_record(whole))
+
+    @cached_property
+    def boxes(self) -> dict[str, Box]:
+        """The boxes of the page by their names, in order."""
+        return {box.name: box for box in self._boxes()}
+
+    def _boxes(self) -> Iterator[Box]:
+        for place, variant in enumerate(self.variants, 1):
+            title = variant.exercise.title(variant.lang)
+            for number, part in enumerate(variant.parts, 1):
+                yield Box(f"e{place}-{part.id}", f"{place}.{number}", title, variant, part)
+
+    @cached_property
+    def heading(self) -> Heading:
+        """What stands above it."""
+        found = heading_of(self.course, self.issued, self.student, self.sitting, self.lang)
+        return replace(found, instructions=text_in(self.instructions, self.lang))
+
+    @cached_property
+    def paper(self) -> Paper:
+        """As it is printed."""
+        return Paper(self.heading, tuple(variant.handout(self.student) for variant in self.variants))
+
+    def read(self, name: str, text: str) -> ReadBack:
+        """How what stands in a box is read."""
+        box = self.boxes[name]
+        return read_back(box.variant, box.part, text)
+
+    def texts(self, form: Form) -> dict[str, str]:
+        """What a form of the page holds, by box; ticks of one box joined.
+
+        Raises
+        ------
+        Refused
+            A field is no box of the paper, or holds more than anybody types.
+        """
+        if strange := [name for name in form.texts if name not in self.boxes and not name.startswith("_")]:
+            raise Refused("bad_request", 400, len(strange))
+        found = {name: ", ".join(form.texts.get(name, ())) for name in self.boxes}
+        if any(len(text) > LONGEST for text in found.values()):
+            raise Refused("too_large", 413, LONGEST)
+        return found
+
+    def shown(self, texts: Texts, told: FeedbackPaper | None = None) -> dict[str, Any]:
+        """The names that the page of a paper sees, with texts in its boxes; or of what was said of it."""
+        one = told or self.paper
+        env = environment_of(self.course.folder.template_folders, self.lang)
+        filled = {name: held(text) for name, text in texts.items() if text}
+        files = [{"filled": filled}] * len(papers.sheets_of(one))
+        names = papers.context(one, "html.j2", partial(render, env), files)
+        return {**names, "image": papers.image, "keeping": ""}
+
+
+def own_paper(
+    connection: Connection,
+    course: Course[Any],
+    place: Place,
+    person: int,
+    lang: str,
+    shelf: Shelf | None = None,
+) -> OwnPaper:
+    """The paper of a person, who was issued one; its variants are kept on a shelf, where one is told."""
+    content = issued_content(connection, place.id, person)
+    asked = connection.execute(select(assignment.c.asked).where(assignment.c.id == place.id)).scalar() or {}
+    told = asked.get("instructions") or {}
+    instructions = {"": told} if isinstance(told, str) else told
+    kept = Shelf(_VARIANTS) if shelf is None else shelf
+    return OwnPaper(course, Issued(content, place.name), place.student, lang, instructions, kept)
+
+
+def read_lines(paper: OwnPaper, texts: Texts) -> list[tuple[Box, str, ReadBack]]:
+    """Each question, what was typed, and how it is read."""
+    return [
+        (box, texts.get(name, ""), paper.read(name, texts.get(name, ""))) for name, box in paper.boxes.items()
+    ]
+
+
+def counts(lines: Sequence[tuple[Box, str, ReadBack]]) -> dict[str, int]:
+    """How many are answered, in doubt, and blank."""
+    doubt = sum(one.is_in_doubt for _, _, one in lines)
+    blank = sum(one.status == "missing" for _, _, one in lines)
+    return {"answered": len(lines) - doubt - blank, "doubt": doubt, "blank": blank, "all": len(lines)}

@@ -1,0 +1,38 @@
+"""How an answer is read, told before it counts: nothing here knows whether it is right."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from coursework.language.words import words
+from coursework.marking.answers import read
+from coursework.marking.feedback import say_not_read
+from coursework.markup.markdown import plain_line
+from coursework.model import Part
+from coursework.selfstudy.reading_back import read_back as readings
+
+
+class ReadBack(NamedTuple):
+    """What was understood of a text."""
+
+    status: str  #: ``read``, ``waits`` for a person, ``missing``, ``unreadable`` or ``wrong_unit``
+    says: str  #: plain text; nothing of an empty box
+
+    @property
+    def is_in_doubt(self) -> bool:
+        return self.status in ("unreadable", "wrong_unit")
+
+
+def read_back(variant: Any, part: Part, text: str) -> ReadBack:
+    """How an answer is read: as what, or why not. Of two honest readings both are told, since which is meant hangs on the
+    reference, and that is not looked at."""
+    reading, said = read(variant, part, text), words(variant.lang, "site")["read_back"]
+    if reading.status == "missing":
+        return ReadBack("missing", "")
+    if reading.status != "read":
+        return ReadBack(reading.status, say_not_read(variant, part, reading).plain(variant.lang))
+    if part.sort.is_open:
+        return ReadBack("waits", said["waits"])
+    shown = [plain_line(one, variant.lang) for one in readings(variant, part, text)[1]]
+    form = said["two"] if len(shown) > 1 else said["read_as"]
+    return ReadBack("read", form.format(*shown))

@@ -1,0 +1,100 @@
+"""What somebody is given to show that they handed in: a code, a time, a digest, and what was handed in."""
+
+from __future__ import annotations
+
+import json
+from datetime import timedelta
+from typing import Any
+
+from coursework.database.audit import note
+from coursework.database.deliveries import rows_of
+from coursework.language.words import words
+from coursework.site.frame.moments import exact_text, length_text, zone_name
+from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+from coursework.site.papers.handing_in import content, digest, receipt_called
+
+
+def told_of(visit: Visit, row: Any, *, answers: bool) -> dict[str, Any]:
+    """What a receipt says of a delivery; with the ``answers`` where they may be shown."""
+    with visit.site.store.reading() as connection:
+        handed = content(rows_of(connection, row.assignment_id, row.id))
+    told = {
+        "receipt": row.receipt,
+        "assignment": row.assignment,
+        "student": row.student,
+        "number": row.number,
+        "handed_in": row.came.isoformat(timespec="seconds"),
+        "late_seconds": row.late,
+        "answered": sum(bool(one[3].strip()) for one in handed),
+        "asked": len(handed),
+        "sha256": digest(handed),
+    }
+    return {**told, "answers": handed} if answers else told
+
+
+def as_text(visit: Visit, told: dict[str, Any], row: Any) -> str:
+    """A receipt as a text to keep."""
+    said = words(visit.lang, "site")["receipts"]
+    lines = [
+        said["title"], "",
+        f"{said['code']}: {told['receipt']}",
+        f"{said['assignment']}: {told['assignment']}",
+        f"{said['student']}: {told['student']}",
+        f"{said['came']}: {exact_text(row.came, visit.lang)} ({zone_name(row.came)})",
+        *([f"{said['late']}: {length_text(timedelta(seconds=row.late), visit.lang)}"] if row.late else []),
+        f"{said['answered']}: {told['answered']} / {told['asked']}",
+        f"SHA-256: {told['sha256']}", "",
+        *(f"{exercise} {seed} {part}: {' '.join(answer.split())}" for exercise, seed, part, answer in told["answers"]),
+        "", said["how"], "",
+    ]  # fmt: skip
+    return "\n".join(lines)
+
+
+def find(visit: Visit, number: int, code: str) -> Any:
+    """The person's own delivery of a receipt.
+
+    Raises
+    ------
+    Refused
+        There is none, or it is somebody else's.
+    """
+    with visit.site.store.reading() as connection:
+        row = receipt_called(connection, code, number)
+    if row is None or row.person_id != visit.who.id:
+        raise Refused("own", 404)
+    return row
+
+
+def file(visit: Visit) -> Reply:
+    """A receipt to keep, as a text or as JSON."""
+    row = find(visit, int(visit.path["number"]), str(visit.path["code"]))
+    told = told_of(visit, row, answers=True)
+    if visit.path["ending"] == "json":
+        data = json.dumps(told, ensure_ascii=False, indent=1).encode("utf-8", "backslashreplace")
+        return Reply(kind="application/json", data=data, file=f"receipt-{row.receipt}.json")
+    if visit.path["ending"] != "txt":
+        raise Refused("page", 404)
+    data = as_text(visit, told, row).encode("utf-8", "backslashreplace")
+    return Reply(kind="text/plain; charset=utf-8", data=data, file=f"receipt-{row.receipt}.txt")
+
+
+def verify(visit: Visit) -> Reply:
+    """Whose a receipt is, for the staff: its code is looked up, and a digest compared."""
+    code, told_digest = visit.query.get("code", "")[:40], visit.query.get("digest", "").strip().lower()[:80]
+    row = told = None
+    if code:
+        with visit.site.store.begin() as connection:
+            row = receipt_called(connection, code)
+            note(connection, visit.at, visit.who.name, "receipt looked up", code=code, found=row is not None)
+        told = None if row is None else told_of(visit, row, answers=False)
+    names: dict[str, Any] = {"code": code, "row": row, "told": told, "digest": told_digest}
+    if row is not None:
+        names |= {"came": exact_text(row.came, visit.lang), "zone": zone_name(row.came)}
+        names["late"] = length_text(timedelta(seconds=row.late), visit.lang) if row.late else ""
+    return visit.page("site_receipt_check", **names)
+
+
+PAGES = (
+    Page("/assignments/{number:int}/receipts/{code}.{ending}", file, Who.SOMEBODY),
+    Page("/desk/receipts", verify, Who.STAFF),
+)

@@ -1,0 +1,37 @@
+"""What somebody may be told of an assignment by now: the paper from when it opens, marks from when they are told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from sqlalchemy import Connection
+
+from coursework.database.publication import Phase, places
+from coursework.site.frame.visits import Visit
+from coursework.site.papers.own_assignment import state_of
+
+
+class Told(NamedTuple):
+    """What may be told."""
+
+    paper: bool = True
+    marks: bool = True
+
+
+def all_told(number: int) -> Told:
+    """What the staff is told."""
+    return Told()
+
+
+def told_to(connection: Connection, visit: Visit) -> Callable[[int], Told]:
+    """What who asks may be told, by assignment: of one that is not published, nothing."""
+    if visit.who.is_staff:
+        return all_told
+    states = [state_of(visit, one, connection) for one in places(connection, visit.who.id) if one.publication]
+    # A mark's sentence may say what is right.
+    known = {
+        one.place.id: Told(one.phase is not Phase.TO_COME, one.tells("feedback") and one.tells("answers"))
+        for one in states
+    }
+    return lambda number: known.get(number, Told(False, False))

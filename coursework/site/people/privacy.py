@@ -1,0 +1,167 @@
+"""What is kept of somebody: given to them, erased, and who did what."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from collections.abc import Callable, Mapping, Sequence
+from datetime import datetime
+from typing import Any
+
+from sqlalchemy import Connection
+
+from coursework.database.accounts import is_last_instructor
+from coursework.database.audit import note, noted
+from coursework.database.belongings import belongings, whose
+from coursework.database.erasing import erase
+from coursework.database.identities import known_as
+from coursework.database.people import people
+from coursework.language.words import words
+from coursework.lti.storage import Storage
+from coursework.making.students import file_stems
+from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+from coursework.site.papers.telling import Told, all_told, told_to
+from coursework.site.people.people_page import number, somebody
+from coursework.system.tables import csv_text
+
+_READ_ME = {"fr": "LISEZ-MOI.txt", "en": "README.txt"}
+_LINES = 200  #: of the audit on a page
+
+Rows = Sequence[Mapping[str, Any]]
+
+
+# ---------------------------------------------------------------- what is kept
+
+
+def own_data(visit: Visit) -> Reply:
+    """All that is kept of who asks; of what an assignment keeps back until its time, that it is kept back."""
+    with visit.site.store.reading() as connection:
+        return _given(visit, connection, visit.who.id, told_to(connection, visit))
+
+
+def their_data(visit: Visit) -> Reply:
+    """All that is kept of somebody, for the staff."""
+    with visit.site.store.begin() as connection:
+        one = somebody(visit, connection)
+        note(connection, visit.at, visit.who.name, "data given", person=one.id)
+        return _given(visit, connection, one.id, all_told)
+
+
+def _given(visit: Visit, connection: Connection, person: int, told: Callable[[int], Told]) -> Reply:
+    who = whose(connection, person)
+    if who is None:
+        raise Refused("own", 404)
+    tables = _withheld(belongings(connection, who), told)
+    name = next(iter(file_stems([who.name or "me"])))
+    return Reply(kind="application/zip", data=_zip(visit, tables, who.name), file=f"{name}.zip")
+
+
+def _withheld(tables: Mapping[str, Rows], told: Callable[[int], Told]) -> dict[str, Rows]:
+    """The tables without what is not told yet."""
+    markings = {row["id"]: row["assignment_id"] for row in tables["marking"]}
+    seen = {
+        "dealt": [row for row in tables["dealt"] if told(row["assignment_id"]).paper],
+        "marking": [row for row in tables["marking"] if told(row["assignment_id"]).marks],
+        "mark": [row for row in tables["mark"] if told(markings[row["marking_id"]]).marks],
+        "decision": [row for row in tables["decision"] if told(row["assignment_id"]).marks],
+    }
+    return {**tables, **seen}
+
+
+def _zip(visit: Visit, tables: Mapping[str, Rows], name: str) -> bytes:
+    found = io.BytesIO()
+    with zipfile.ZipFile(found, "w", zipfile.ZIP_DEFLATED) as archive:
+        for lang in visit.site.languages:
+            archive.writestr(
+                _READ_ME.get(lang, f"README.{lang}.txt"), _explained(tables, lang, name, visit.at)
+            )
+        for table, rows in tables.items():
+            if rows:
+                archive.writestr(f"{table}.csv", _as_csv(rows))
+        archive.writestr("everything.json", json.dumps(tables, ensure_ascii=False, indent=1, default=str))
+    return found.getvalue()
+
+
+def _explained(tables: Mapping[str, Rows], lang: str, name: str, at: datetime) -> str:
+    said = words(lang, "site")["data"]
+    lines = [str(said["title"]).format(name, f"{at:%Y-%m-%d %H:%M} UTC"), "", str(said["says"]), ""]
+    lines += [f"{table}.csv ({len(rows)}): {said['tables'][table]}" for table, rows in tables.items() if rows]
+    return "\r\n".join([*lines, "", str(said["withheld"]), "", str(said["hidden"]), ""])
+
+
+def _as_csv(rows: Rows) -> bytes:
+    told = ({column: _cell(value) for column, value in row.items()} for row in rows)
+    return csv_text(told, tuple(rows[0])).encode("utf-8-sig", "replace")
+
+
+def _cell(value: Any) -> Any:
+    return json.dumps(value, ensure_ascii=False) if isinstance(value, (dict, list)) else value
+
+
+# -------------------------------------------------------------------- erasing
+
+
+def erase_person(visit: Visit) -> Reply:
+    """Take somebody away, when their name is typed once more."""
+    with visit.site.store.reading() as connection:
+        one = somebody(visit, connection)
+        who = whose(connection, one.id)
+        if is_last_instructor(connection, one.id):
+            raise Refused("last_instructor", 409)
+        kept = (
+            {table: len(rows) for table, rows in belongings(connection, who).items() if rows} if who else {}
+        )
+    typed = " ".join(visit.form.text("name").split())
+    if not visit.posted or typed != one.name:
+        return visit.page(
+            "site_erase",
+            422 if visit.posted else 200,
+            one=one,
+            kept=kept,
+            mistyped=visit.posted,
+            tables=visit.said["data"]["tables"],
+        )
+    with visit.site.store.begin() as connection:
+        if is_last_instructor(connection, one.id):
+            raise Refused("last_instructor", 409)
+        called = known_as(connection, one.id)
+        gone = erase(connection, one.id)
+        by = "" if one.id == visit.who.id else visit.who.name
+        note(connection, visit.at, by, "erased", rows=sum(gone.values()))
+    if visit.site.lti is not None:
+        for issuer, subject in called:
+            Storage(visit.site.lti).forget(subject, issuer)
+    return Reply(goto="/desk/people")
+
+
+# ---------------------------------------------------------------------- audit
+
+
+def audit(visit: Visit) -> Reply:
+    """Who did what, the latest first."""
+    before = number(visit.query.get("before", ""))
+    with visit.site.store.reading() as connection:
+        lines = noted(connection, _LINES, before)
+        names = {one.id: (one.name, one.created) for one in people(connection)}
+    shown = [(one, _about(one, names)) for one in lines]
+    return visit.page("site_audit", lines=shown, more=lines[-1].id if len(lines) == _LINES else 0)
+
+
+def _about(line: Any, names: Mapping[int, tuple[str, datetime]]) -> str:
+    """What a line is about: people by their names, as long as they are there."""
+    told = dict(line.about) if isinstance(line.about, Mapping) else {"": line.about}
+    people = [*told.pop("people", ()), *([told.pop("person")] if "person" in told else [])]
+    called = [names[one][0] for one in people if one in names and names[one][1] <= line.at]
+    if len(called) < len(people):
+        called.append("…")
+    rest = [f"{key} {value}" if key else f"{value}" for key, value in told.items()]
+    return ", ".join([*called, *rest])
+
+
+PAGES: tuple[Page, ...] = (
+    Page("/account/data", own_data, Who.SOMEBODY, limit="upload"),
+    Page("/desk/people/{person}/data", their_data, Who.STAFF, limit="upload"),
+    Page("/desk/people/{person}/erase", erase_person, Who.STAFF, posts=True),
+    Page("/desk/audit", audit, Who.STAFF),
+)

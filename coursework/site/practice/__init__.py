@@ -1,0 +1,1 @@
+"""Practice: the course in its order, a variant of one's own, progress."""

@@ -1,0 +1,62 @@
+"""What somebody has begun to practise, the last touched first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from datetime import datetime
+from typing import TYPE_CHECKING, NamedTuple
+
+from coursework.database.drafts import sheets
+from coursework.selfstudy.mastery import RIGHT
+from coursework.selfstudy.progress import ANSWER, EXAMPLE, Progress, date_of
+
+if TYPE_CHECKING:
+    from coursework.site.frame.visits import Visit
+
+
+class Begun(NamedTuple):
+    """A variant that was begun, and is not done."""
+
+    exercise: str
+    seed: int
+    right: int
+    asked: int
+
+    @property
+    def address(self) -> str:
+        return f"/practice/{self.exercise}/{self.seed}"
+
+
+def begun(visit: Visit, progress: Progress, exercise: str = "") -> Iterator[Begun]:
+    """Variants to go on with, of one exercise where it is told."""
+    for name, seed in _touched(visit, progress, exercise):
+        if name not in visit.site.course or not visit.site.pool.holds(name, seed):
+            continue
+        found = _standing(visit, progress, name, seed)
+        if found is not None and found.right < found.asked:
+            yield found
+
+
+def _touched(visit: Visit, progress: Progress, exercise: str) -> list[tuple[str, int]]:
+    with visit.site.store.reading() as connection:
+        typed = sheets(connection, visit.who.id, f"practice/{exercise}/" if exercise else "practice/")
+    when: dict[tuple[str, int], datetime] = {}
+    for sheet, changed in typed.items():
+        _, name, seed = sheet.split("/")
+        when[name, int(seed)] = changed
+    for one in progress:
+        if exercise in ("", one["exercise"]):
+            place = str(one["exercise"]), int(one["seed"])
+            when[place] = max(when.get(place, date_of(one)), date_of(one))
+    return sorted(when, key=lambda place: when[place], reverse=True)
+
+
+def _standing(visit: Visit, progress: Progress, exercise: str, seed: int) -> Begun | None:
+    """How far one is; none where the variant was shown with its solution."""
+    mine = [e for e in progress.of(exercise) if e["seed"] == seed]
+    if any(e["what"] == EXAMPLE for e in mine):
+        return None
+    last = {e["part"]: e.get("verdict") for e in mine if e["what"] == ANSWER}
+    variant = visit.site.variant(exercise, seed, visit.lang)
+    asked = [part.id for part in variant.parts if not part.sort.is_open]
+    return Begun(exercise, seed, sum(last.get(name) in RIGHT for name in asked), len(asked))

@@ -1,0 +1,243 @@
+"""Practice: the course in its order, an exercise with a variant of one's own, answers checked one by one or together."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Any
+
+from coursework.database.progress import PersonProgress
+from coursework.marking.marking import mark
+from coursework.motion.gauges import EFFECTS
+from coursework.rendering import motion_page, views
+from coursework.rendering.displayed import DisplayedAnimation
+from coursework.selfstudy.attempt import Checked
+from coursework.selfstudy.store import is_blank
+from coursework.sheets.answer_sheet import answer_sheet
+from coursework.site.frame.keeping import kept
+from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+from coursework.site.papers.own_assignment import to_hand_in
+from coursework.site.practice.begun import begun
+from coursework.site.practice.contents import called, contents, next_of
+from coursework.site.practice.worksheet import OWN, Hinted, Worksheet
+
+
+def course(visit: Visit) -> Reply:
+    """The course in the order in which it is learnt, where one stands in it, what to do next."""
+    progress = PersonProgress(visit.site.store, visit.who.id, visit.site.clock).progress
+    going = next(begun(visit, progress), None)
+    return visit.page(
+        "site_practice",
+        title=visit.said["practice"]["title"],
+        chapters=contents(visit, progress),
+        going=going,
+        going_title=going and called(visit.site.course[going.exercise], visit.lang),
+        next=next_of(visit, progress),
+        due=to_hand_in(visit),
+    )
+
+
+def exercise(visit: Visit) -> Reply:
+    """On to the variant that one is at, or to a fresh one, which a form asks for."""
+    name, site = str(visit.path["exercise"]), visit.site
+    if name not in site.course:
+        raise Refused("page", 404)
+    progress = PersonProgress(site.store, visit.who.id, site.clock, name).progress
+    going = None if visit.posted else next(begun(visit, progress, name), None)
+    if going is not None:
+        return Reply(goto=going.address)
+    seeds = {int(one["seed"]) for one in progress}
+    return Reply(goto=f"/practice/{name}/{site.pool.own(name, visit.who.id, seeds)}")
+
+
+def sheet(visit: Visit) -> Reply:
+    """A variant to work on; what a form asks of it: check, hint, the solution of a step, predictions."""
+    work = _worksheet(visit)
+    if visit.posted:
+        return _asked(visit, work)
+    _warm(visit, work)
+    return _page(visit, work, work.attempt.marked(), work.stands())
+
+
+def _worksheet(visit: Visit) -> Worksheet:
+    return Worksheet(visit, str(visit.path["exercise"]), str(visit.path["seed"]))
+
+
+def _warm(visit: Visit, work: Worksheet) -> None:
+    """Find beforehand what wrong answers are compared with: it is the longest part of a first check."""
+    wrong = {part.id: "1.2345" for part in work.variant.parts if not part.choices}
+    visit.site.ahead(("keys", work.variant), partial(mark, work.variant, wrong))
+
+
+def _asked(visit: Visit, work: Worksheet) -> Reply:
+    others = {} if visit.is_piece else _keep_typed(visit, work)
+    _keep_predictions(visit, work)
+    if place := visit.form.text("go"):
+        return _gone(visit, work, place)
+    texts = visit.form.texts
+    hinted: dict[str, tuple[Hinted, ...]] = {}
+    shown: tuple[str, ...] = ()
+    if "hint" in texts or "reveal" in texts:
+        checked, hinted = work.attempt.marked(), _hinted(visit, work)
+    elif "check" in texts:
+        checked, shown = _checked(visit, work)
+    else:
+        checked = work.attempt.marked()
+    if visit.is_piece:
+        return _pieces(visit, work, checked, shown, hinted)
+    names = {"others": {OWN + n: box for n, box in others.items()}, "came": shown}
+    return _page(visit, work, checked, work.typed, hinted, **names)
+
+
+def _gone(visit: Visit, work: Worksheet, place: str) -> Reply:
+    """On to another page, once what was typed is kept."""
+    if place == "fresh":
+        return exercise(visit)
+    if place not in ("solution", "motion"):
+        raise Refused("bad_request", 400)
+    return Reply(goto=f"{work.address}/{place}")
+
+
+def _checked(visit: Visit, work: Worksheet) -> tuple[Checked, tuple[str, ...]]:
+    """What becomes of one answer, or of all; and of which something is to be shown."""
+    one = visit.form.text("check")
+    given = work.typed if not one else {work.part(one).id: work.typed[one]}
+    checked = work.attempt.check(given)
+    answered = (name for name in given if one or not is_blank(checked.answers.get(name)))
+    return checked, tuple(dict.fromkeys((*answered, *checked.changed)))
+
+
+def _hinted(visit: Visit, work: Worksheet) -> dict[str, tuple[Hinted, ...]]:
+    """The hints of a question, below them those of the step on the way to it that were asked for."""
+    what = "hint" if "hint" in visit.form.texts else "reveal"
+    under, _, name = visit.form.text(what).partition(" ")
+    work.part(under)
+    name = name or under
+    new = work.hint(name) if what == "hint" else work.reveal(name)
+    return {under: (new,) if name == under else (work.hinted(under), new)}
+
+
+def _keep_predictions(visit: Visit, work: Worksheet) -> None:
+    said = {name: visit.form.text(f"predict-{name}") for name in work.parts}
+    work.kept.add(work.seed, "predictions", dict(said))
+
+
+def _page(
+    visit: Visit, work: Worksheet, checked: Checked, stands: dict[str, str],
+    hinted: dict[str, tuple[Hinted, ...]] | None = None, **more: Any,
+) -> Reply:  # fmt: skip
+    names = {"others": {}, "came": (), **work.names(checked, stands), **more}
+    names["hinted"] = {**names["hinted"], **(hinted or {})}
+    for name in names["came"]:
+        names["results"].setdefault(name, None)
+    return visit.page("site_practice_sheet", **names, **_after(visit, names["summary"]))
+
+
+def _pieces(
+    visit: Visit, work: Worksheet, checked: Checked, shown: tuple[str, ...], hinted: dict[str, Any]
+) -> Reply:
+    """What a script puts in the places of what was there."""
+    results = work.results(checked, work.typed)
+    summary = work.summary(checked, work.typed)
+    return visit.page(
+        "site_practice_pieces",
+        own=OWN,
+        sheet_page=work,
+        results={name: results.get(name) for name in shown},
+        compared=work.compared(checked) if shown else {},
+        hinted=hinted,
+        summary=summary,
+        focus=_focus(visit, hinted),
+        is_shown=work.attempt.is_example,
+        **_after(visit, summary),
+    )
+
+
+def _focus(visit: Visit, hinted: dict[str, Any]) -> str:
+    """The id of what came, to which a keyboard goes on."""
+    if hinted:
+        return f"hints-{OWN}{next(iter(hinted))}"
+    one = visit.form.text("check")
+    return f"told-{OWN}{one}" if one else "summary" if "check" in visit.form.texts else ""
+
+
+def _after(visit: Visit, summary: dict[str, Any]) -> dict[str, Any]:
+    """What to do next, where all is done."""
+    if not summary["is_done"]:
+        return {"next": None}
+    return {"next": next_of(visit, PersonProgress(visit.site.store, visit.who.id, visit.site.clock).progress)}
+
+
+# ------------------------------------------------------------------- what is typed
+
+
+def _keep_typed(visit: Visit, work: Worksheet) -> dict[str, Any]:
+    """Keep what a form without script brings; gives the boxes that another page wrote to since."""
+    others = work.keep_typed(visit.form.text("versions"))
+    return {n: box for n, box in others.items() if box.text != work.typed[n]}
+
+
+def draft(visit: Visit) -> Reply:
+    """Keep what a script sends while one types."""
+    _only_posted(visit)
+    work = _worksheet(visit)
+    return kept(visit, work.name, work.parts)
+
+
+def read(visit: Visit) -> Reply:
+    """What is read in a box; nothing is kept."""
+    _only_posted(visit)
+    work = _worksheet(visit)
+    part = work.part(visit.form.text("part"))
+    return Reply(str(work.read_as(part.id, work.typed[part.id])))
+
+
+def _only_posted(visit: Visit) -> None:
+    if not visit.posted:
+        raise Refused("method", 405)
+
+
+# ---------------------------------------------------------- the solution, the motion
+
+
+def solution(visit: Visit) -> Reply:
+    """The worked solution, once it is said that the variant then counts no more."""
+    work = _worksheet(visit)
+    if visit.posted:
+        work.attempt.reveal()
+        return Reply(goto=f"{work.address}/solution")
+    names: dict[str, Any] = {"sheet_page": work, "title": work.variant.text.title}
+    if not work.attempt.is_example:
+        return visit.page("site_practice_sure", **names)
+    sheet_ = answer_sheet(work.variant)
+    return visit.page("site_practice_solution", **{**views.context(sheet_), **names})
+
+
+def motion(visit: Visit) -> Reply:
+    """The mechanism in motion; its numbers once everything is answered right, or the solution was shown."""
+    work = _worksheet(visit)
+    if not work.variant.exercise.is_animated:
+        raise Refused("page", 404)
+    told = work.attempt.is_example or set(work.attempt.marked().right) >= {
+        part.id for part in work.variant.parts if not part.sort.is_open
+    }
+    key = ("motion", work.exercise, work.seed, work.variant.lang, told)
+    names = visit.site.shelf.get(key, lambda: _motion(work.variant, told))
+    more = {"sheet_page": work, "motion_title": work.variant.text.title, "is_piece": visit.is_piece}
+    return visit.page("site_practice_motion", **{**more, "motion": names})
+
+
+def _motion(variant: Any, told: bool) -> dict[str, Any]:
+    moving = DisplayedAnimation(variant)
+    usual = [one for one in EFFECTS[:2] if one == "position" or one in moving.available]
+    return motion_page.context(DisplayedAnimation(variant, usual), told=told)
+
+
+PAGES = (
+    Page("/practice", course, Who.SOMEBODY),
+    Page("/practice/{exercise}", exercise, Who.SOMEBODY, posts=True),
+    Page("/practice/{exercise}/{seed}", sheet, Who.SOMEBODY, posts=True),
+    Page("/practice/{exercise}/{seed}/draft", draft, Who.SOMEBODY, posts=True),
+    Page("/practice/{exercise}/{seed}/read", read, Who.SOMEBODY, posts=True),
+    Page("/practice/{exercise}/{seed}/solution", solution, Who.SOMEBODY, posts=True),
+    Page("/practice/{exercise}/{seed}/motion", motion, Who.SOMEBODY),
+)

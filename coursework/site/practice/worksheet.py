@@ -1,0 +1,370 @@
+"""A person's sheet of one variant to practise: what stands in its boxes, what was said of it, and the page that shows it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+from html import escape
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from markupsafe import Markup
+
+from coursework.course.lessons import Lesson, taught_by
+from coursework.database.drafts import Box, drafts
+from coursework.database.progress import PersonProgress
+from coursework.errors import BadInput, CourseworkError
+from coursework.language.words import words
+from coursework.marking.answers import read
+from coursework.markup import markdown
+from coursework.rendering import views
+from coursework.rendering.feedback import verdict_word
+from coursework.selfstudy import hints, predictions
+from coursework.selfstudy.answers import judged_out_of, sentence_of, sign_of
+from coursework.selfstudy.attempt import Attempt, Checked
+from coursework.selfstudy.progress import HINT, REVEAL
+from coursework.selfstudy.reading_back import read_back
+from coursework.selfstudy.store import Kept, is_blank
+from coursework.selfstudy.theory import theory
+from coursework.sheets.handout import handout
+from coursework.site.frame.keeping import LONGEST, keep_form, keeper
+from coursework.site.frame.visits import Refused
+
+if TYPE_CHECKING:
+    from coursework.course.variant import Variant
+    from coursework.marking.mark import Mark
+    from coursework.model import Part
+    from coursework.site.frame.visits import Visit
+
+OWN = "a-"  #: before the names of boxes, which no other field of the form has
+_ASKS = re.compile(r'<a href="#(hint|reveal)-([^"]+)">(.*?)</a>')
+
+
+class Told(NamedTuple):
+    """What is said of an answer."""
+
+    sign: str
+    verdict: str  #: in a word or two; empty where the sentence says all
+    html: Markup
+    is_right: bool = False
+
+
+class Hinted(NamedTuple):
+    """The hints of a question, or of a step on the way to it, that were asked for."""
+
+    name: str
+    title: Markup
+    steps: tuple[Markup, ...]
+    of: int
+    solution: Markup = Markup("")
+
+
+class Worksheet:
+    """One variant of one person.
+
+    Raises
+    ------
+    Refused
+        There is no such exercise, or it is no variant to practise: those of classes stay theirs.
+    BadInput
+        The solutions are not in this copy of the course.
+    """
+
+    def __init__(self, visit: Visit, exercise: str, seed: str):
+        self.visit, site = visit, visit.site
+        if exercise not in site.course or not re.fullmatch(r"0|[1-9][0-9]{0,15}", seed):
+            raise Refused("page", 404)
+        if not visit.who.is_staff and not site.pool.holds(exercise, int(seed)):
+            raise Refused("own", 404)
+        if not site.course.folder.has_solutions:
+            raise BadInput(words(visit.lang)["study"]["no_solutions"])
+        self.exercise, self.seed = exercise, int(seed)
+        progress = PersonProgress(site.store, visit.who.id, site.clock, exercise)
+        self.kept = Kept(progress, exercise)
+        self.variant: Variant = self._asked()
+        self.attempt = Attempt(self.variant, self.kept)
+
+    def _asked(self) -> Variant:
+        """The variant; without its theory where another was begun before."""
+        whole: Variant = self.visit.site.variant(self.exercise, self.seed, self.visit.lang)
+        begun = list(self.kept.progress)
+        known = theory(whole.exercise) if begun and begun[0]["seed"] != self.seed else frozenset()
+        known -= {e["part"] for e in begun if e["seed"] == self.seed}
+        if not known:
+            return whole
+        key = ("without", self.exercise, self.seed, whole.lang, known)
+        left = [part for part in whole.parts if part.id not in known]
+        return self.visit.site.shelf.get(key, lambda: whole.asking(left))
+
+    # ------------------------------------------------------------------ addresses
+
+    @property
+    def name(self) -> str:
+        """What its drafts are kept under."""
+        return f"practice/{self.exercise}/{self.seed}"
+
+    @property
+    def address(self) -> str:
+        return f"/{self.name}"
+
+    # ---------------------------------------------------------------------- boxes
+
+    @cached_property
+    def parts(self) -> Mapping[str, Part]:
+        return {part.id: part for part in self.variant.parts}
+
+    def part(self, name: str) -> Part:
+        """The part of a name.
+
+        Raises
+        ------
+        Refused
+            It is not asked here.
+        """
+        if name not in self.parts:
+            raise Refused("bad_request", 400)
+        return self.parts[name]
+
+    @cached_property
+    def typed(self) -> dict[str, str]:
+        """What a form brings, by part; blank where a box is, or nothing is ticked."""
+        texts = self.visit.form.texts
+        return {name: ", ".join(texts.get(OWN + name, ()))[:LONGEST] for name in self.parts}
+
+    @cached_property
+    def drafts(self) -> dict[str, Box]:
+        """What was typed and kept, by part."""
+        with self.visit.site.store.reading() as connection:
+            return drafts(connection, self.visit.who.id, self.name)
+
+    def stands(self) -> dict[str, str]:
+        """What stands in each box: what was typed last, else what was answered, as the box writes it."""
+        answers = self.attempt.answers
+        found = {
+            name: self.drafts[name].text if name in self.drafts else str(answers.get(name) or "")
+            for name in self.parts
+        }
+        return {
+            name: ", ".join(_ticked(self.variant, self.parts[name], text)) for name, text in found.items()
+        }
+
+    def keep_typed(self, versions: str) -> dict[str, Box]:
+        """Keep what a form without script brings; gives the boxes that another page wrote to since."""
+        self.drafts, others = keep_form(self.visit, self.name, self.typed, self.stands(), versions)
+        return others
+
+    # -------------------------------------------------------------------- what is said
+
+    def told(self, mark: Mark) -> Told:
+        """What is said of an answer."""
+        said = sentence_of(self.variant, mark, self._asks("reveal", mark.part))
+        html = self._with_buttons(markdown.html_inline(said, self.variant.lang), mark.part)
+        says_all = mark.verdict in ("correct", "to_mark")
+        word = "" if says_all else verdict_word(mark.verdict, self.variant.lang)
+        return Told(sign_of(mark), word, html, mark.verdict == "correct")
+
+    def results(self, checked: Checked, stands: Mapping[str, str]) -> dict[str, Told]:
+        """What is said of the answers that still stand in their boxes."""
+        return {
+            name: self.told(mark)
+            for name, mark in checked.marking.items()
+            if not is_blank(checked.answers.get(name)) and self._is_same(name, checked.answers[name], stands)
+        }
+
+    def _is_same(self, name: str, answer: Any, stands: Mapping[str, str]) -> bool:
+        part = self.parts[name]
+        return _ticked(self.variant, part, str(answer)) == _ticked(self.variant, part, stands[name])
+
+    def read_as(self, name: str, text: str) -> Markup:
+        """What is read in a box, as HTML; nothing of one that is blank, or holds no words."""
+        part, said = self.parts[name], self.visit.said["practice"]
+        if part.choices or is_blank(text):
+            return Markup("")
+        is_read, readings = read_back(self.variant, part, text)
+        if is_read:
+            told = said["read_as"].format(said["or"].join(readings)) if readings else ""
+        else:
+            told = readings[0]
+        return Markup(markdown.html_inline(told, self.variant.lang))
+
+    def hinted(self, name: str, most: int | None = None) -> Hinted:
+        """The first hints for a question or a step on the way: those that were seen unless told.
+
+        Raises
+        ------
+        Refused
+            There is nothing of that name here.
+        """
+        try:
+            quantity = hints.quantity_of(self.variant, name)
+        except CourseworkError:
+            raise Refused("bad_request", 400) from None
+        seen = self.attempt.hints_seen(name) if most is None else most
+        texts = self.attempt.hints(name, lambda other: self._asks("hint", other))
+        lang, solution = self.variant.lang, ""
+        if self._is_revealed(name):
+            solution = hints.revealed_text(self.variant, name)
+        number = next((k for k, p in enumerate(self.parts, 1) if p == name), 0)
+        symbol = self.variant.exercise.solution.symbols.get(quantity) or self.variant.exercise.symbol(
+            quantity
+        )
+        title = "" if number else f"${symbol}$"
+        return Hinted(
+            name,
+            Markup(markdown.html_inline(title, lang)),
+            tuple(self._with_buttons(markdown.to_html(text, lang), name) for text in texts[:seen]),
+            len(texts),
+            Markup(markdown.to_html(solution, lang)) if solution else Markup(""),
+        )
+
+    def hint(self, name: str) -> Hinted:
+        """The same with one hint more, which is kept."""
+        before = self.hinted(name, 0)
+        step = min(self.attempt.hints_seen(name) + 1, before.of)
+        if step:
+            self.attempt.note(HINT, name, step=step)
+        return self.hinted(name, step)
+
+    def reveal(self, name: str) -> Hinted:
+        """The same with the step of the solution, which is kept."""
+        self.hinted(name, 0)
+        self.attempt.note(REVEAL, name)
+        return self.hinted(name)
+
+    def _is_revealed(self, name: str) -> bool:
+        return any(e["what"] == REVEAL and e["part"] == name for e in self.kept.happened(self.variant.seed))
+
+    def _asks(self, what: str, name: str) -> str:
+        """A link in Markdown that :meth:`_with_buttons` makes a button."""
+        return f"[{self.visit.said['practice'][f'{what}_call']}](#{what}-{name})"
+
+    def _with_buttons(self, html: str, under: str) -> Markup:
+        def button(found: re.Match[str]) -> str:
+            what, name, text = found.groups()
+            return f'<button class="plain" name="{what}" value="{escape(under)} {name}" formaction="#hints-{OWN}{escape(under)}">{text}</button>'
+
+        return Markup(_ASKS.sub(button, html))
+
+    # ------------------------------------------------------------------ predictions
+
+    def asked_before(self) -> list[dict[str, Any]]:
+        """What is predicted before anything is computed, each with its options and what was said."""
+        said = self.attempt.predictions
+        return [
+            {
+                "id": one.id,
+                "question": Markup(
+                    markdown.html_inline(predictions.asked(self.variant, one), self.variant.lang)
+                ),
+                "options": self._options(one),
+                "said": str(said.get(one.id, "")),
+            }
+            for one in predictions.before_answers(self.variant)
+        ]
+
+    def _options(self, one: predictions.Prediction) -> list[tuple[str, str]]:
+        """What may be chosen, each with what it is called."""
+        if one.kind != "guess":
+            told = self.visit.said["practice"]["options"][one.kind]
+            return list(zip(told["values"], told["names"], strict=True))
+        part, letters = self.parts[one.id], self.variant.letters(self.parts[one.id])
+        lang = self.variant.lang
+        return [
+            (letters.get(case, case), markdown.plain_line(self.variant.called(part, case), lang))
+            for case in self.variant.cases(part)
+        ]
+
+    def compared(self, checked: Checked) -> dict[str, Markup]:
+        """Predictions beside what came out, by the part that is right."""
+        asked = [one for one in predictions.before_answers(self.variant) if one.id in checked.right]
+        if not any(one.id in self.attempt.predictions for one in asked):
+            return {}
+        said = words(self.variant.lang)["study"]["compared"]
+        return {
+            one.prediction.id: Markup(
+                f"{ {True: '✓', False: '✗', None: '?'}[one.right] } "
+                + markdown.html_inline(
+                    said.format(said=f"`{one.said.replace('`', '')}`", found=one.found), self.variant.lang
+                )
+            )
+            for one in self.attempt.compared(asked, self.attempt.own(checked))
+        }
+
+    # ------------------------------------------------------------------------ the page
+
+    def summary(self, checked: Checked, stands: Mapping[str, str]) -> dict[str, Any]:
+        """How far one is: points, and the questions by their numbers that are still open."""
+        numbers = {name: k for k, name in enumerate(self.parts, 1)}
+        blank = [n for n in self.parts if is_blank(checked.answers.get(n)) and not self._is_drawn(n)]
+        missed = [n for n in self.parts if n not in checked.right and n not in blank and not self._is_open(n)]
+        lang = self.variant.lang
+        points = words(lang)["study"]["total"].format(
+            points=views.points_number(checked.marking.points, lang),
+            out_of=views.points_number(judged_out_of(self.variant, checked.marking), lang),
+        )
+        return {
+            "points": points,
+            "answered": any(not is_blank(a) for a in checked.answers.values()),
+            "blank": [(n, numbers[n]) for n in blank],
+            "missed": [(n, numbers[n]) for n in missed],
+            "before": [(n, numbers[n]) for n in checked.answers if is_blank(stands.get(n))],
+            "is_done": not blank and not missed,
+            "copied": checked.copied,
+        }
+
+    def _is_open(self, name: str) -> bool:
+        return self.parts[name].sort.is_open
+
+    def _is_drawn(self, name: str) -> bool:
+        return self.parts[name].sort.box in ("blank", "millimetre")
+
+    def names(self, checked: Checked, stands: Mapping[str, str]) -> dict[str, Any]:
+        """What the page's template sees."""
+        shown = views.context(handout(self.variant))
+        results = self.results(checked, stands)
+        said = self.visit.said["practice"]["keeping"]
+        return {
+            **shown,
+            "own": OWN,
+            "filled": {OWN + n: _ticked(self.variant, self.parts[n], text) for n, text in stands.items()},
+            "before_questions": "_site_practice_before.html.j2",
+            "below_question": "_site_practice_below.html.j2",
+            "sheet_page": self,
+            "results": results,
+            "reads": {n: self.read_as(n, text) for n, text in stands.items()},
+            "hinted": {n: (self.hinted(n),) for n in self._hinted_before()},
+            "compared": self.compared(checked),
+            "predicted": self.asked_before(),
+            "summary": self.summary(checked, stands),
+            "is_shown": self.attempt.is_example,
+            "moves": self.variant.exercise.is_animated,
+            "lessons": self._lessons(),
+            "form": keeper(self.visit, f"{self.address}/draft", self.name, self.drafts, OWN, **said),
+        }
+
+    def _lessons(self) -> Sequence[Lesson]:
+        one, lang = self.variant.exercise, self.variant.lang
+        found: Sequence[Lesson] = self.visit.site.shelf.get(
+            ("lessons", self.exercise, lang), lambda: taught_by(one.folder, self.exercise, lang)
+        )
+        return found
+
+    def _hinted_before(self) -> Iterable[str]:
+        happened = self.kept.happened(self.variant.seed)
+        seen = {e["part"] for e in happened if e["what"] in (HINT, REVEAL)}
+        return [name for name in self.parts if name in seen and not self.attempt.is_example]
+
+
+def _ticked(variant: Variant, part: Part, text: str) -> tuple[str, ...]:
+    """What a box holds: a text; of choices the letters that are ticked."""
+    if not part.choices or is_blank(text):
+        return (text,) if text else ()
+    reading = read(variant, part, text)
+    if reading.status != "read":
+        return ()
+    letters = variant.letters(part)
+    value = reading.values[0]
+    if part.sort.box == "several":
+        none = words(variant.lang)["choices"]["none"][0]
+        return tuple(letter for case, letter in letters.items() if case in value) or (none,)
+    return (letters.get(value, str(value)),)

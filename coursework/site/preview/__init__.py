@@ -1,0 +1,1 @@
+"""An exercise under work, its page anew at each save."""

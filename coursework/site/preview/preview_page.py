@@ -1,0 +1,134 @@
+"""The page of an exercise under work, on this machine alone: variant, sheet, solution, key and check, anew at each save."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from datetime import datetime
+from typing import Any
+from urllib.parse import urlencode, urlsplit
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
+
+from coursework.course.folder import course_folder
+from coursework.language.words import languages, words
+from coursework.site.frame.pages import Pages
+from coursework.site.preview.previewed import Asked
+from coursework.site.preview.under_work import Shown, UnderWork
+
+#: What may be looked at, in order: its name, the view and the form of it.
+VIEWS = {
+    "sheet": ("sheet", "html"),
+    "pdf": ("sheet", "pdf"),
+    "solution": ("solution", "html"),
+    "solution_pdf": ("solution", "pdf"),
+    "key": ("key", ""),
+    "check": ("check", ""),
+}
+_LARGEST = 2**31  #: seed
+_DIGITS = 12  #: of a seed in an address: more is beyond the largest, whatever they are
+_OWN = {
+    "content-security-policy": "default-src 'none'; img-src 'self' data:; style-src 'self'; script-src 'self'; connect-src 'self'; "
+    "frame-src 'self'; base-uri 'none'; form-action 'self'; frame-ancestors 'none'",
+    "cache-control": "no-store",
+    "x-content-type-options": "nosniff",
+}
+#: A sheet brings its own rule for its own scripts.
+_FRAMED = {
+    "content-security-policy": "frame-ancestors 'self'",
+    "cache-control": "no-store",
+    "x-content-type-options": "nosniff",
+}
+
+
+def preview(work: UnderWork, lang: str) -> Starlette:
+    """The application; ``lang`` is spoken unless another is chosen."""
+    pages = _Pages(work, lang)
+    routes = [
+        Route("/", _local(pages.page)),
+        Route("/state", _local(pages.state)),
+        Route("/view/{view}", _local(pages.view)),
+        Route("/static/{name}", _local(pages.static)),
+    ]
+    return Starlette(routes=routes)
+
+
+def _local(answer: Callable[[Request], Response]) -> Callable[[Request], Response]:
+    """What is asked under another name than this machine's own is a trick of a page elsewhere."""
+
+    def answered(request: Request) -> Response:
+        host = urlsplit(f"//{request.headers.get('host', '')}").hostname
+        if host not in ("127.0.0.1", "localhost", "::1"):
+            return Response("this page is for this machine alone\n", 421, media_type="text/plain")
+        return answer(request)
+
+    return answered
+
+
+class _Choice:
+    """What an address asks for."""
+
+    def __init__(self, query: Mapping[str, str], lang: str):
+        told = query.get("seed", "0")
+        self.seed = min(int(told[:_DIGITS]), _LARGEST) if told.isascii() and told.isdecimal() else 0
+        self.lang = query.get("lang", lang) if query.get("lang", lang) in languages() else lang
+        self.view = query.get("view", "sheet") if query.get("view") in VIEWS else "sheet"
+
+    def address(self, **other: Any) -> str:
+        return f"/?{urlencode({**vars(self), **other})}"
+
+
+class _Pages:
+    def __init__(self, work: UnderWork, lang: str):
+        self._work, self._lang = work, lang
+        self._pages = Pages(course_folder(None))
+
+    def page(self, request: Request) -> Response:
+        """The whole page; the script asks for it again when something is new, and takes over what differs."""
+        work, choice = self._work, _Choice(request.query_params, self._lang)
+        stamp = work.stamp
+        about = work.shown(Asked("about"))
+        known: Any = about.content or {"languages": [choice.lang], "version": ""}
+        if choice.lang not in known["languages"]:
+            choice.lang = known["languages"][0]
+        shown = self._shown(choice, about)
+        said = words(choice.lang, "site")["preview"]
+        names = {
+            "lang": choice.lang, "said": said, "exercise": work.exercise, "choice": choice, "stamp": stamp,
+            "views": list(VIEWS), "spoken": known["languages"], "version": known["version"], "shown": shown,
+            "framed": VIEWS[choice.view][1] and shown.content is not None, "check": work.check, "file": self._pages.file,
+            "worked": _clock(shown.worked), "words": words(choice.lang),
+        }  # fmt: skip
+        return Response(self._pages.rendered("site_preview", choice.lang, names), 200, _OWN, "text/html")
+
+    def _shown(self, choice: _Choice, about: Shown) -> Shown:
+        view, form = VIEWS[choice.view]
+        if view == "check":
+            made = self._work.check
+            return Shown(made and made.content, made.fault if made else about.fault, None)
+        return self._work.shown(Asked(view, choice.seed, choice.lang, form or "html"))
+
+    def state(self, request: Request) -> Response:
+        return JSONResponse({"stamp": self._work.stamp}, headers=_OWN)
+
+    def view(self, request: Request) -> Response:
+        """A sheet by itself, as it is or as it last was."""
+        choice = _Choice({**request.query_params, "view": request.path_params["view"]}, self._lang)
+        view, form = VIEWS[choice.view]
+        found = self._work.shown(Asked(view, choice.seed, choice.lang, form)) if form else None
+        if found is None or not isinstance(found.content, bytes):
+            return Response("", 404, _FRAMED)
+        kind = "application/pdf" if form == "pdf" else "text/html; charset=utf-8"
+        return Response(found.content, 200, _FRAMED, kind)
+
+    def static(self, request: Request) -> Response:
+        found = self._pages.static(str(request.path_params["name"]))
+        if found is None:
+            return Response("", 404, _OWN)
+        return Response(found[1], 200, {**_OWN, "cache-control": "max-age=3600"}, found[0])
+
+
+def _clock(at: datetime | None) -> str:
+    return at.strftime("%H:%M:%S") if at else ""

@@ -1,0 +1,127 @@
+"""What a preview shows of an exercise: made in a process of its own, which opens the course once and never again."""
+
+from __future__ import annotations
+
+import sys
+import traceback
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from coursework.api import open_course
+from coursework.authoring import check_report, checks
+from coursework.errors import CourseworkError
+from coursework.rendering.renderer import builtin_renderer, renderer_of
+from coursework.sheets.answer_sheet import answer_sheet
+from coursework.sheets.handout import handout
+from coursework.sheets.sheet import AnswerSheet, Handout
+from coursework.system.ending import follow_parent
+
+_SAID = 20  #: promises that do not hold, of one check
+
+
+class Asked(NamedTuple):
+    """A view of a variant: ``about``, ``sheet``, ``solution``, each as a page or ``pdf``, ``key``; or ``check``."""
+
+    view: str
+    seed: int = 0
+    lang: str = ""
+    form: str = "html"
+    variants: int = 0  #: of a check
+
+
+class Made(NamedTuple):
+    """What was asked for, or in a line why it cannot be shown."""
+
+    content: Any = None
+    fault: str = ""
+
+
+def work(pipe: Connection, folder: str | None, exercise: str) -> None:
+    """Wait for what is asked of an exercise, and give it; the course is opened when the first comes."""
+    follow_parent()
+    _warm_up()
+    while True:
+        try:
+            asked = pipe.recv()
+        except (EOFError, KeyboardInterrupt):
+            return
+        pipe.send(_made(folder, exercise, asked))
+
+
+def _warm_up() -> None:
+    """Load what every view needs. From here on Python reads sources alone: a file saved twice within a second is another."""
+
+    builtin_renderer().undrawn("a")
+    sys.dont_write_bytecode = True
+    sys.pycache_prefix = str(Path(__file__).parent / "no such folder")
+
+
+def _made(folder: str | None, exercise: str, asked: Asked) -> Made:
+    try:
+        return Made(_VIEWS[asked.view](folder, exercise, asked))
+    except CourseworkError as fault:
+        return Made(fault=str(fault))
+    except Exception as fault:  # an author's slip in a function of the course
+        return Made(fault=_told(fault, folder))
+
+
+def _told(fault: Exception, folder: str | None) -> str:
+    said = f"{type(fault).__name__}: {fault}"
+    root = open_course(folder).folder.root
+    frames = [f for f in traceback.extract_tb(fault.__traceback__) if f.filename.startswith(str(root))]
+    if not frames:
+        return said
+    return f"{Path(frames[-1].filename).relative_to(root).as_posix()}, line {frames[-1].lineno}: {said}"
+
+
+def _about(folder: str | None, exercise: str, asked: Asked) -> Any:
+    found = open_course(folder)[exercise]
+    return {"languages": list(found.languages), "version": found.spec.version}
+
+
+def _sheet(folder: str | None, exercise: str, asked: Asked) -> Any:
+    return _printed(folder, handout(_variant(folder, exercise, asked)), asked)
+
+
+def _solution(folder: str | None, exercise: str, asked: Asked) -> Any:
+    return _printed(folder, answer_sheet(_variant(folder, exercise, asked)), asked)
+
+
+def _printed(folder: str | None, sheet: Handout | AnswerSheet, asked: Asked) -> bytes:
+    renderer = renderer_of(open_course(folder).folder)
+    return renderer.pdf(sheet) if asked.form == "pdf" else renderer.html(sheet).encode()
+
+
+def _variant(folder: str | None, exercise: str, asked: Asked) -> Any:
+    found = open_course(folder)[exercise]
+    return found.variant(asked.seed, asked.lang if asked.lang in found.languages else found.languages[0])
+
+
+def _key(folder: str | None, exercise: str, asked: Asked) -> Any:
+    """Given values; a row a part; and what each known mistake gives."""
+    variant = _variant(folder, exercise, asked)
+    key = variant.key
+    return {
+        "given": [(name, repr(value), variant.record["given"][name]["unit"]) for name, value in variant.given.items()],
+        "parts": [
+            (p.id, p.quantity, str(key.reference[p.quantity]), p.unit, p.kind, p.points) for p in variant.parts
+        ],
+        "mistakes": [
+            (name, part.id, str(values[part.quantity]))
+            for name, values in key.wrong.items()
+            for part in variant.parts
+            if values.get(part.quantity) is not None
+        ],
+    }  # fmt: skip
+
+
+def _check(folder: str | None, exercise: str, asked: Asked) -> Any:
+    report = checks.check(open_course(folder)[exercise], asked.variants)
+    (row,) = check_report.table([report])
+    told = [str(note) for note in check_report.notes([report])]
+    return {"passed": report.passed, "failures": report.failures[:_SAID], "more": max(0, len(report.failures) - _SAID),
+            "row": {k: str(v) for k, v in row.items()}, "notes": told}  # fmt: skip
+
+
+_VIEWS = {"about": _about, "sheet": _sheet, "solution": _solution, "key": _key, "check": _check}

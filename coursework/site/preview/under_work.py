@@ -1,0 +1,178 @@
+"""An exercise under work: its course is watched, and each state of it is shown by a process of its own.
+
+A process that has opened a course keeps what it has loaded; a file that is saved is therefore read by the next process, which
+stands ready with all libraries loaded.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import threading
+from collections.abc import Iterator
+from contextlib import suppress
+from datetime import datetime
+from pathlib import Path
+from typing import NamedTuple
+
+from coursework.course.folder import course_folder
+from coursework.site.preview.previewed import Asked, Made, work
+
+_EVERY = 0.12  #: seconds between two looks at the files
+_PAGE_FIRST = 0.6  #: seconds before a check begins
+_LONGEST = 60  #: seconds that a view may take
+_PLACES = ("exercises", "solutions", "templates")
+_SPAWN = multiprocessing.get_context("spawn")
+
+_Files = dict[str, tuple[int, int]]
+
+
+class Shown(NamedTuple):
+    """A view as it is now, or as it last was where it cannot be made now."""
+
+    content: object
+    fault: str
+    worked: datetime | None  #: when the content could be made, where that is not now
+
+
+class _Process:
+    """Makes views of one state of a course."""
+
+    def __init__(self, folder: str | None, exercise: str):
+        self._pipe, other = _SPAWN.Pipe()
+        self._process = _SPAWN.Process(target=work, args=(other, folder, exercise), daemon=True)
+        self._process.start()
+        other.close()
+        self._lock = threading.Lock()
+
+    def made(self, asked: Asked, seconds: float = _LONGEST) -> Made | None:
+        """A view; None where the process was ended meanwhile."""
+        with self._lock:
+            try:
+                self._pipe.send(asked)
+                if not self._pipe.poll(seconds):
+                    self.end()
+                    return Made(
+                        fault=f"this took more than {seconds:g} s, and was stopped: a loop that does not end?"
+                    )
+                found: Made = self._pipe.recv()
+                return found
+            except (EOFError, OSError):
+                return None
+
+    def end(self) -> None:
+        """At once, whatever it does."""
+        self._process.kill()
+        with suppress(OSError):
+            self._pipe.close()
+
+
+class UnderWork:
+    """An exercise whose files somebody is writing."""
+
+    def __init__(self, folder: str | None, exercise: str, variants: int):
+        self.exercise = exercise
+        self._folder, self._variants = folder, variants
+        self._root = course_folder(folder).root
+        self._lock = threading.Lock()
+        self._good: dict[Asked, tuple[object, datetime]] = {}
+        self._spare = [self._begun(), self._begun()]
+        self._views = self._checks = self._spare[0]
+        self.state = 0
+        self.check: Made | None = None  #: None while it is under way
+        self._ended = threading.Event()
+        self._take()
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def _begun(self) -> _Process:
+        return _Process(self._folder, self.exercise)
+
+    # ------------------------------------------------------------------- a state
+
+    @property
+    def stamp(self) -> str:
+        """Another one whenever there is something new to show."""
+        return f"{self.state}.{int(self.check is not None)}"
+
+    def shown(self, asked: Asked) -> Shown:
+        """A view of the state that stands; where it cannot be made, the last that could, and why not."""
+        while True:
+            state, process = self.state, self._views
+            made = process.made(asked)
+            if made is not None and state == self.state:
+                break
+            if (
+                made is None and process is self._views and not self._ended.is_set()
+            ):  # it was stopped, or fell
+                self._views = self._begun()
+            if self._ended.is_set():
+                return Shown(None, "the preview has ended", None)
+        if not made.fault:
+            self._good[asked] = made.content, datetime.now().astimezone()
+            return Shown(made.content, "", None)
+        content, worked = self._good.get(asked, (None, None))
+        return Shown(content, made.fault, worked)
+
+    def _take(self) -> None:
+        """The files as they are now are the state that is shown."""
+        with self._lock:
+            for process in {self._views, self._checks} - set(self._spare):
+                process.end()
+            self._views, self._checks = self._spare or [self._begun(), self._begun()]
+            self._spare = []
+            self.check = None
+            self.state += 1
+            threading.Thread(target=self._run_check, args=(self.state, self._checks), daemon=True).start()
+
+    def _run_check(self, state: int, process: _Process) -> None:
+        """Once the page is there: it comes first where processors are few."""
+        if self._ended.wait(_PAGE_FIRST) or not self._make_ready(state):
+            return
+        made = process.made(Asked("check", variants=self._variants), 10 * _LONGEST)
+        with self._lock:
+            if made is not None and state == self.state:
+                self.check = made
+
+    def _make_ready(self, state: int) -> bool:
+        """Begin the processes of the next state; whether this one still stands."""
+        with self._lock:
+            if state == self.state and not self._spare:
+                self._spare = [self._begun(), self._begun()]
+            return state == self.state
+
+    # --------------------------------------------------------------------- files
+
+    def _watch(self) -> None:
+        """A state is taken once its files have stood still for a moment: an editor may write in steps."""
+        taken = before = self._files()
+        while not self._ended.wait(_EVERY):
+            now = self._files()
+            if now == before and now != taken:
+                taken = now
+                self._take()
+            before = now
+
+    def _files(self) -> _Files:
+        return dict(file for place in _PLACES for file in _files(self._root / place))
+
+    def end(self) -> None:
+        self._ended.set()
+        with self._lock:
+            for process in {self._views, self._checks, *self._spare}:
+                process.end()
+
+
+def _files(folder: Path) -> Iterator[tuple[str, tuple[int, int]]]:
+    """Every file that a course may read, with its date and size; what editors keep for themselves is none."""
+    with suppress(OSError):
+        for entry in os.scandir(folder):
+            if entry.name.startswith((".", "#", "_" * 2 + "pycache")) or entry.name.endswith(
+                ("~", ".swp", ".tmp", ".pyc")
+            ):
+                continue
+            with suppress(OSError):
+                if entry.is_dir():
+                    yield from _files(Path(entry.path))
+                else:
+                    about = entry.stat()
+                    yield entry.path, (about.st_mtime_ns, about.st_size)

@@ -1,0 +1,1 @@
+"""Assignments as the staff hands them out: dealt, published, extended."""

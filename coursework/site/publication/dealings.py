@@ -1,0 +1,151 @@
+"""Dealing: variants drawn for a class by a process of its own, so that no page of a student waits for it.
+
+What is asked for stands in the database until it is done, and so does what became of it: whoever serves the next page can tell.
+"""
+
+from __future__ import annotations
+
+import secrets
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import datetime, timedelta
+from typing import Any, NamedTuple
+
+from sqlalchemy import update
+
+from coursework.course.course import opened
+from coursework.course.variant import Variant
+from coursework.database.assignments import put_issued
+from coursework.database.audit import note
+from coursework.database.settings import put_value, value_of
+from coursework.database.tables import assignment
+from coursework.errors import CourseworkError
+from coursework.making.assignment import assignment_of
+from coursework.making.dealing import deal
+from coursework.making.issued import issued_content
+from coursework.making.roster import Student
+from coursework.site.frame.settings import Site
+from coursework.system.processes import processes, workers
+
+_ALONE = 40  #: papers of exercises that are dealt before a process has started
+_PATIENCE = 1.5  #: seconds for which a form waits for it
+_GIVEN_UP = timedelta(minutes=20)  #: after which what has not ended is taken for interrupted
+RUNNING, DONE, FAILED = "running", "done", "failed"
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is to be dealt: an assignment as its file says it, to whom."""
+
+    name: str
+    table: Mapping[str, Any]
+    students: Sequence[Student]
+    lang: str
+    before: Mapping[str, Any] | None = None  #: what was issued
+    make_up: Sequence[str] = ()
+
+    @property
+    def papers(self) -> int:
+        return len(self.students) * len(self.table.get("exercises", ()))
+
+
+class Dealing(NamedTuple):
+    """How far it is."""
+
+    state: str
+    name: str
+    papers: int
+    number: int = 0  #: of the assignment, when it is done
+    told: tuple[str, ...] = ()  #: what is to be known of it, or why it failed
+
+    @property
+    def is_over(self) -> bool:
+        return self.state != RUNNING
+
+
+@dataclass
+class _Outcome:
+    content: dict[str, Any] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+
+def holders(content: Mapping[str, Any]) -> list[Student]:
+    """Who was issued something, with the columns of their roster."""
+    names = dict.fromkeys(str(item.get("student", "")) for item in content["issued"])
+    return [Student(name, columns=content.get("students", {}).get(name, {})) for name in names if name]
+
+
+def begin(site: Site, wanted: Wanted, by: str, what: str) -> str:
+    """Deal, as ``by`` asks, and note it as ``what``; gives a name to ask after it by. Back at once, or when it is over."""
+    token = secrets.token_hex(8)
+    _put(site, token, Dealing(RUNNING, wanted.name, wanted.papers))
+    thread = threading.Thread(target=_run, args=(site, token, wanted, by, what), daemon=True)
+    thread.start()
+    thread.join(_PATIENCE)
+    return token
+
+
+def dealing(site: Site, token: str) -> Dealing | None:
+    """How far it is; None where nobody asked for it. What was interrupted says so: nothing of it was issued."""
+    with site.store.reading() as connection:
+        kept = value_of(connection, _key(token))
+    if kept is None:
+        return None
+    state, name, papers, number, told = kept["dealing"]
+    found = Dealing(state, name, papers, number, tuple(told))
+    if not found.is_over and site.clock() - datetime.fromisoformat(kept["at"]) > _GIVEN_UP:
+        return found._replace(state=FAILED)
+    return found
+
+
+def _key(token: str) -> str:
+    return f"dealing {token[:40]}"
+
+
+def _put(site: Site, token: str, now: Dealing) -> None:
+    with site.store.begin() as connection:
+        put_value(connection, _key(token), {"dealing": list(now), "at": site.clock().isoformat()})
+
+
+def _run(site: Site, token: str, wanted: Wanted, by: str, what: str) -> None:
+    begun = Dealing(RUNNING, wanted.name, wanted.papers)
+    try:
+        found = _dealt_apart(site, wanted)
+        number = _keep(site, wanted, found, by, what)
+        _put(site, token, begun._replace(state=DONE, number=number, told=tuple(found.notes)))
+    except CourseworkError as fault:
+        _put(site, token, begun._replace(state=FAILED, told=(str(fault),)))
+    except Exception as fault:  # nobody waits for this thread: what happened is told on the page
+        _put(site, token, begun._replace(state=FAILED, told=(type(fault).__name__,)))
+
+
+def _dealt_apart(site: Site, wanted: Wanted) -> _Outcome:
+    """Dealt in another process where there is much to do."""
+    root = str(site.course.folder.root)
+    if wanted.papers <= _ALONE or workers(2) < 2:
+        return _dealt(root, wanted)
+    with processes(1) as submit:
+        found: _Outcome = submit(_dealt, root, wanted).result()
+        return found
+
+
+def _dealt(root: str, wanted: Wanted) -> _Outcome:
+    course = opened(root, Variant)
+    asked = assignment_of(wanted.name, wanted.table, course)
+    found = deal(course, asked, wanted.students, [wanted.lang], wanted.before, wanted.make_up)
+    return _Outcome(issued_content(found.issues, asked), found.notes)
+
+
+def _keep(site: Site, wanted: Wanted, found: _Outcome, by: str, what: str) -> int:
+    """All of it is issued, or nothing."""
+    with site.store.begin() as connection:
+        number = put_issued(connection, found.content, wanted.name)
+        connection.execute(
+            update(assignment).where(assignment.c.id == number).values(asked=dict(wanted.table))
+        )
+        note(
+            connection, site.clock(), by, what, assignment=wanted.name, students=len(wanted.students),
+            make_up=list(wanted.make_up),
+        )  # fmt: skip
+    return number

@@ -1,0 +1,485 @@
+"""Publishing, for the staff: what is handed out, to whom, from when to when; and what a student sees of it."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from datetime import datetime
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, Select, func, select
+
+from coursework.database.assignments import issued_content, issued_of, put_issued
+from coursework.database.audit import note
+from coursework.database.publication import (
+    ANSWERS,
+    FEEDBACK,
+    LATE,
+    MOST_TRIES,
+    Extension,
+    Fault,
+    Phase,
+    Place,
+    Publication,
+    extend,
+    extensions,
+    places,
+    publish,
+    say_sittings,
+)
+from coursework.database.tables import assignment, audit, dealt, delivery, variant
+from coursework.errors import BadInput
+from coursework.making.assignment import (
+    MOST_VERSIONS,
+    SITTINGS,
+    AskedExercise,
+    Assignment,
+    assignment_of,
+    text_in,
+)
+from coursework.making.dealing import deal
+from coursework.making.issued import Issued
+from coursework.making.issued import issued_content as content_of
+from coursework.making.roster import Student
+from coursework.site.frame.moments import exact_text, field_text, from_field, moment_text, zone_name
+from coursework.site.frame.visits import Form, Page, Refused, Reply, Visit, Who
+from coursework.site.papers.own_assignment import State, state_of
+from coursework.site.papers.own_paper import OwnPaper, own_paper
+from coursework.site.publication import dealings, handing_out
+from coursework.site.publication.dealings import Wanted
+
+_UPLOAD = 4 * 1024 * 1024
+_NOTED = 30  #: lines of what was done that a page shows
+
+
+class Handed(NamedTuple):
+    """An assignment, as the desk lists it."""
+
+    id: int
+    name: str
+    stated: Mapping[str, Any]
+    asked: Mapping[str, Any] | None
+    publication: Publication | None
+    students: int
+    handed_in: int  #: how many students have
+
+    def title(self, lang: str) -> str:
+        return text_in(self.stated.get("title") or {}, lang) or self.name
+
+
+def handed_out(connection: Connection, number: int | None = None) -> list[Handed]:
+    """The assignments that there are, the latest first; or one."""
+    columns = (
+        assignment.c.id,
+        assignment.c.name,
+        assignment.c.stated,
+        assignment.c.asked,
+        assignment.c.published,
+    )
+    found = select(*columns).order_by(assignment.c.id.desc())
+    if number is not None:
+        found = found.where(assignment.c.id == number)
+    many = select(variant.c.assignment_id, func.count(dealt.c.student.distinct())).select_from(
+        dealt.join(variant)
+    )
+    many = many.where(dealt.c.person_id.is_not(None)).group_by(variant.c.assignment_id)
+    students = _by_number(connection, many)
+    came = select(delivery.c.assignment_id, func.count(delivery.c.person_id.distinct())).group_by(
+        delivery.c.assignment_id
+    )
+    handed = _by_number(connection, came)
+    return [
+        Handed(
+            row.id, row.name, row.stated or {}, row.asked,
+            None if row.published is None else Publication.of(row.published),
+            students.get(row.id, 0), handed.get(row.id, 0),
+        )
+        for row in connection.execute(found)
+    ]  # fmt: skip
+
+
+def _by_number(connection: Connection, counted: Select[Any]) -> dict[int, int]:
+    """A count by number."""
+    return {row[0]: row[1] for row in connection.execute(counted)}
+
+
+def assignment_here(visit: Visit, connection: Connection) -> Handed:
+    found = handed_out(connection, int(visit.path["number"]))
+    if not found:
+        raise Refused("page", 404)
+    return found[0]
+
+
+# ------------------------------------------------------------------------- lists
+
+
+def listed(visit: Visit) -> Reply:
+    with visit.site.store.reading() as connection:
+        found = handed_out(connection)
+    phases = {one.id: _phase(one.publication, visit.at) for one in found}
+    return visit.page("site_publish_list", found=found, phases=phases, lang_of=visit.lang)
+
+
+def _phase(publication: Publication | None, clock: datetime) -> str:
+    return "hidden" if publication is None else publication.phase(publication.now(clock)).value
+
+
+def new(visit: Visit) -> Reply:
+    """Hand out a new one: a file of an assignment or exercises that are chosen, and a roster; or what ``build`` issued."""
+    if not visit.posted:
+        return _new_page(visit)
+    try:
+        made = handing_out.read(visit)
+    except BadInput as fault:
+        return _new_page(visit, str(fault), 422)
+    if made.issued is not None:
+        return Reply(goto=f"/desk/assignments/{_take_in(visit, made)}")
+    assert made.wanted is not None
+    token = dealings.begin(visit.site, made.wanted, visit.who.name, "assignment dealt")
+    return Reply(goto=f"/desk/assignments/dealing/{token}")
+
+
+def _new_page(visit: Visit, problem: str = "", status: int = 200) -> Reply:
+    shelves = handing_out.shelves(visit.site.course, visit.lang)
+    return visit.page(
+        "site_publish_new", status, shelves=shelves, problem=problem, sent=visit.form, most_versions=MOST_VERSIONS,
+        accounts=len(handing_out.students_with_accounts(visit)),
+    )  # fmt: skip
+
+
+def _take_in(visit: Visit, made: handing_out.HandOut) -> int:
+    """What was issued elsewhere is issued here as well, as it is."""
+    assert made.issued is not None
+    with visit.site.store.begin() as connection:
+        number = put_issued(connection, made.issued, made.name)
+        note(connection, visit.at, visit.who.name, "assignment taken in", assignment=made.name)
+    return number
+
+
+def dealing(visit: Visit) -> Reply:
+    """How far a dealing is; to the assignment when it is done, unless something is to be told."""
+    found = dealings.dealing(visit.site, str(visit.path["token"]))
+    if found is None:
+        raise Refused("page", 404)
+    if found.state == dealings.DONE and not found.told:
+        return Reply(goto=f"/desk/assignments/{found.number}")
+    return visit.page("site_publish_dealing", dealing=found)
+
+
+# ------------------------------------------------------------------- one assignment
+
+
+def shown(visit: Visit) -> Reply:
+    with visit.site.store.reading() as connection:
+        one = assignment_here(visit, connection)
+    return _page(visit, one, one.publication or Publication())
+
+
+def _page(
+    visit: Visit, one: Handed, publication: Publication, faults: Sequence[Fault] = (), problem: str = ""
+) -> Reply:
+    with visit.site.store.reading() as connection:
+        people = holders(connection, one.id)
+        more = extensions(connection, one.id)
+        noted = _noted(connection, one.name)
+    return visit.page(
+        "site_publish", 422 if faults or problem else 200, one=one, said_now=publication, faults=faults, problem=problem,
+        people=people, extensions=more, noted=noted, phase=_phase(one.publication, visit.at), zone=zone_name(visit.at),
+        field=field_text, moment=lambda at: "" if at is None else moment_text(at, visit.lang),
+        exact=lambda at: exact_text(at, visit.lang), late_rules=LATE, feedback_rules=FEEDBACK, answer_rules=ANSWERS,
+        sittings=SITTINGS, sittings_now=one.stated.get("sittings", SITTINGS[0]), most_tries=MOST_TRIES,
+    )  # fmt: skip
+
+
+class Holder(NamedTuple):
+    """Somebody who was issued a paper."""
+
+    person: int
+    student: str
+    letter: str
+    sittings: int
+    lang: str  #: of the paper
+    done: int  #: hand-ins on the site
+
+
+def holders(connection: Connection, number: int) -> list[Holder]:
+    """Who was issued a paper, in the order in which they were."""
+    found = (
+        select(
+            dealt.c.person_id, dealt.c.student, func.max(variant.c.letter), func.max(dealt.c.sitting), func.max(dealt.c.lang),
+            func.min(dealt.c.place),
+        )
+        .select_from(dealt.join(variant))
+        .where(variant.c.assignment_id == number, dealt.c.person_id.is_not(None))
+        .group_by(dealt.c.person_id, dealt.c.student)
+        .order_by(func.min(dealt.c.place))
+    )  # fmt: skip
+    came = select(delivery.c.person_id, func.count()).where(delivery.c.assignment_id == number)
+    done = _by_number(connection, came.group_by(delivery.c.person_id))
+    return [
+        Holder(row[0], row[1], row[2], row[3], row[4], done.get(row[0], 0))
+        for row in connection.execute(found)
+    ]
+
+
+def _noted(connection: Connection, name: str) -> list[Any]:
+    """What was done with an assignment, the latest first."""
+    found = select(audit).order_by(audit.c.id.desc()).limit(500)
+    own = [row for row in connection.execute(found) if row.about.get("assignment") == name]
+    return own[:_NOTED]
+
+
+def _noting(visit: Visit, connection: Connection, one: Handed, what: str, **about: Any) -> None:
+    note(connection, visit.at, visit.who.name, what, assignment=one.name, **about)
+
+
+def _back(one: Handed) -> Reply:
+    return Reply(goto=f"/desk/assignments/{one.id}")
+
+
+# --------------------------------------------------------------------- publishing
+
+
+def put_out(visit: Visit) -> Reply:
+    """Publish it with what the form says, or say what makes no sense; published again, by the new dates."""
+    _posted(visit)
+    with visit.site.store.reading() as connection:
+        one = assignment_here(visit, connection)
+    publication, faults = publication_of(visit.form)
+    faults += publication.faults()
+    sittings = visit.form.text("sittings", SITTINGS[0])
+    if sittings not in SITTINGS:
+        faults.append(Fault("sittings", "choice"))
+    if faults:
+        return _page(visit, one, publication, faults)
+    with visit.site.store.begin() as connection:
+        publish(connection, one.id, publication)
+        say_sittings(connection, one.id, sittings)
+        _noting(visit, connection, one, "assignment published", **publication.as_json(), sittings=sittings)
+    return _back(one)
+
+
+def publication_of(form: Form) -> tuple[Publication, list[Fault]]:
+    """What a form says, and what in it is no date, no number or no choice."""
+    faults: list[Fault] = []
+
+    def moment(name: str) -> datetime | None:
+        try:
+            return from_field(form.text(name))
+        except (ValueError, OverflowError):
+            faults.append(Fault(name, "moment"))
+            return None
+
+    def number(name: str, kind: Any, usual: Any) -> Any:
+        text = form.text(name).strip().replace(",", ".")
+        try:
+            found = kind(text) if text else usual
+            if found is not None and not math.isfinite(found):
+                raise ValueError(text)
+            return found
+        except (ValueError, OverflowError):
+            faults.append(Fault(name, "number"))
+            return usual
+
+    def choice(name: str, known: Sequence[str], usual: str) -> str:
+        told = form.text(name, usual)
+        if told not in known:
+            faults.append(Fault(name, "choice"))
+        return told if told in known else usual
+
+    usual = Publication()
+    found = Publication(
+        opens=moment("opens"),
+        closes=moment("closes"),
+        tries=number("tries", int, None),
+        late=choice("late", LATE, usual.late),
+        late_until=moment("late_until"),
+        late_percent=number("late_percent", float, 0.0),
+        feedback=choice("feedback", FEEDBACK, usual.feedback),
+        feedback_on=moment("feedback_on"),
+        answers=choice("answers", ANSWERS, usual.answers),
+        answers_on=moment("answers_on"),
+        takes_saved=bool(form.text("takes_saved")),
+    )
+    return found, faults
+
+
+def take_back(visit: Visit) -> Reply:
+    """Unpublish it: no student sees it any more; what was handed in stays."""
+    _posted(visit)
+    with visit.site.store.begin() as connection:
+        one = assignment_here(visit, connection)
+        publish(connection, one.id, None)
+        _noting(visit, connection, one, "assignment unpublished")
+    return _back(one)
+
+
+def give_more(visit: Visit) -> Reply:
+    """An extension for one person, with its reason."""
+    _posted(visit)
+    with visit.site.store.reading() as connection:
+        one = assignment_here(visit, connection)
+        holder = next(
+            (h for h in holders(connection, one.id) if str(h.person) == visit.form.text("person")), None
+        )
+    said = visit.said["publishing"]["faults"]
+    reason = visit.form.text("reason").strip()[:500]
+    told, faults = publication_of(
+        Form({"closes": [visit.form.text("closes")], "tries": [visit.form.text("tries")]})
+    )
+    if holder is None:
+        return _page(visit, one, one.publication or Publication(), problem=said["who"])
+    if faults or (told.tries is not None and not 1 <= told.tries <= MOST_TRIES):
+        return _page(visit, one, one.publication or Publication(), problem=said["extension"])
+    if not reason:
+        return _page(visit, one, one.publication or Publication(), problem=said["reason"])
+    more = Extension(told.closes, told.tries, reason, visit.who.name, visit.at)
+    with visit.site.store.begin() as connection:
+        extend(connection, one.id, holder.person, more)
+        closes = told.closes.isoformat() if told.closes else ""
+        _noting(visit, connection, one, "extension", student=holder.student, closes=closes, tries=told.tries)
+    return _back(one)
+
+
+def _posted(visit: Visit) -> None:
+    if not visit.posted:
+        raise Refused("method", 405)
+
+
+# ------------------------------------------------------------------- who comes later
+
+
+def add_late(visit: Visit) -> Reply:
+    """A longer roster: who is late is dealt a paper, and everybody else keeps theirs."""
+    _posted(visit)
+    return _deal_more(visit, handing_out.roster(visit), (), "late ones added")
+
+
+def make_up(visit: Visit) -> Reply:
+    """Another variant for one person, for a second sitting."""
+    _posted(visit)
+    return _deal_more(visit, [], (visit.form.text("student"),), "make-up dealt")
+
+
+def _deal_more(visit: Visit, students: Sequence[Student], names: Sequence[str], what: str) -> Reply:
+    with visit.site.store.reading() as connection:
+        one = assignment_here(visit, connection)
+        content = issued_content(connection, one.id)
+    if one.asked is None:
+        return _page(
+            visit, one, one.publication or Publication(), problem=visit.said["publishing"]["no_file"]
+        )
+    issued = dealings.holders(content)
+    known = {student.who for student in issued}
+    everybody = [*issued, *(student for student in students if student.who not in known)]
+    wanted = Wanted(one.name, one.asked, everybody, visit.site.languages[0], content, tuple(names))
+    return Reply(goto=f"/desk/assignments/dealing/{dealings.begin(visit.site, wanted, visit.who.name, what)}")
+
+
+# ------------------------------------------------------------------ as a student sees it
+
+
+def preview(visit: Visit) -> Reply:
+    """The page as students will see it, with a variant that is nobody's."""
+    with visit.site.store.reading() as connection:
+        one = assignment_here(visit, connection)
+        issued = issued_of(connection, one.id)
+    asked = _as_asked(visit, one, issued)
+    made = deal(
+        visit.site.course,
+        asked,
+        [Student(visit.said["publishing"]["nobody"])],
+        [handing_out.spoken(visit, asked)],
+    )
+    student = made.issues[0].student
+    own = OwnPaper(
+        visit.site.course,
+        Issued(content_of(made.issues, asked), one.name),
+        student,
+        visit.lang,
+        asked.instructions,
+    )
+    said = one.publication or Publication()
+    state = State(
+        Place(one.id, one.name, asked.stated(), student, said, None),
+        visit.lang,
+        said.now(visit.at),
+        (),
+        None,
+    )
+    return _seen(visit, one, state, own, visit.said["publishing"]["look_preview"])
+
+
+def _as_asked(visit: Visit, one: Handed, issued: Issued) -> Assignment:
+    """The assignment as its file says it; of one that was issued elsewhere, as its records ask."""
+    if one.asked is not None:
+        return assignment_of(one.name, one.asked, visit.site.course)
+    exercises = []
+    for exercise in issued.exercises:
+        record = next(record for (name, _), record in issued.records.items() if name == exercise)
+        points = {str(part["id"]): float(part["points"]) for part in record["parts"]}
+        exercises.append(AskedExercise(exercise, tuple(points), points))
+    return Assignment(one.name, tuple(exercises), title=dict(one.stated.get("title") or {}))
+
+
+def as_somebody(visit: Visit) -> Reply:
+    """What a student of a name sees, to look at alone; what they typed and did not hand in is theirs."""
+    with visit.site.store.begin() as connection:
+        one = assignment_here(visit, connection)
+        person_id = int(visit.path["person"])
+        found = places(connection, person_id, one.id)
+        if not found:
+            raise Refused("page", 404)
+        _noting(visit, connection, one, "seen as a student", student=found[0].student)
+        place = found[0]._replace(publication=found[0].publication or Publication())
+        own = own_paper(connection, visit.site.course, place, person_id, visit.lang)
+        theirs = state_of(replace(visit, person=visit.who._replace(id=person_id)), place, connection)
+    look = visit.said["publishing"]["look_as"].format(place.student)
+    if theirs.phase is Phase.TO_COME or one.publication is None:
+        look += " " + visit.said["publishing"]["look_hidden"]
+    return _seen(visit, one, theirs, own, look)
+
+
+def _seen(visit: Visit, one: Handed, state: State, own: OwnPaper, look: str) -> Reply:
+    names = {
+        name: value
+        for name, value in own.shown({}).items()
+        if name not in ("visit", "person", "said", "seal")
+    }
+    return visit.page(
+        "site_assignment", state=state, form={}, versions="{}", problem="", look=look, zone=zone_name(visit.at),
+        back=f"/desk/assignments/{one.id}", **names,
+    )  # fmt: skip
+
+
+def issued_file(visit: Visit) -> Reply:
+    """What was issued, as ``grade`` takes it."""
+    with visit.site.store.reading() as connection:
+        content = issued_content(connection, assignment_here(visit, connection).id)
+    data = json.dumps(content, ensure_ascii=False, indent=1).encode("utf-8", "backslashreplace")
+    return Reply(kind="application/json", data=data, file="issued.json")
+
+
+PAGES = (
+    Page("/desk/assignments", listed, Who.STAFF),
+    Page("/desk/assignments/new", new, Who.STAFF, posts=True, limit="upload", largest=_UPLOAD),
+    Page("/desk/assignments/dealing/{token}", dealing, Who.STAFF),
+    Page("/desk/assignments/{number:int}", shown, Who.STAFF),
+    Page("/desk/assignments/{number:int}/publish", put_out, Who.STAFF, posts=True),
+    Page("/desk/assignments/{number:int}/unpublish", take_back, Who.STAFF, posts=True),
+    Page("/desk/assignments/{number:int}/extend", give_more, Who.STAFF, posts=True),
+    Page(
+        "/desk/assignments/{number:int}/roster",
+        add_late,
+        Who.STAFF,
+        posts=True,
+        limit="upload",
+        largest=_UPLOAD,
+    ),
+    Page("/desk/assignments/{number:int}/make-up", make_up, Who.STAFF, posts=True),
+    Page("/desk/assignments/{number:int}/preview", preview, Who.STAFF),
+    Page("/desk/assignments/{number:int}/as/{person:int}", as_somebody, Who.STAFF),
+    Page("/desk/assignments/{number:int}/issued.json", issued_file, Who.STAFF),
+)

@@ -1,0 +1,230 @@
+"""The site on the network: an address to listen at, processes that answer, and a clean end."""
+
+from __future__ import annotations
+
+import errno
+import logging
+import multiprocessing
+import os
+import signal
+import socket
+import sys
+import threading
+import time
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext, suppress
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from coursework.api import open_course
+from coursework.database.store import Store
+from coursework.errors import BadInput, CourseworkError
+from coursework.site.application import application
+from coursework.site.frame.settings import Entrance, Site
+from coursework.site.people.accounts import check_instructor
+from coursework.system.processes import beside
+
+if TYPE_CHECKING:
+    from uvicorn import Config
+
+LOG = logging.getLogger("coursework.site")
+_LAST_REQUESTS = 15  #: seconds that requests under way are given when the server ends
+_SILENCE = 60  #: seconds after which a process that says nothing is taken for dead
+_WAITING = 1024  #: connections that may wait to be answered
+_MOST_FILES = 65_536  #: and connections that a process holds, where the machine lets it
+_AGAIN = 2.0  #: seconds before a process that could not begin is begun again
+Application = Callable[..., Any]
+
+
+@dataclass(frozen=True)
+class Serving:
+    """What a process is told of the site that it serves."""
+
+    course: str | None  #: its folder; the built-in course where none is told
+    db: str
+    entrance: Entrance
+    url: str
+    lti: Path | None = None  #: folder of the platforms
+
+    def site(self) -> Site:
+        """The site.
+
+        Raises
+        ------
+        CourseworkError
+            The course or the database cannot be opened.
+        """
+        return Site(open_course(self.course), Store(self.db), self.entrance, self.url, lti=self.lti)
+
+    def check(self) -> str:
+        """Try once what every process will do; the database is made, or brought to this version. Gives where it is.
+
+        Raises
+        ------
+        CourseworkError
+            The course or the database cannot be opened, or nobody could come in to teach.
+        """
+        site = self.site()
+        check_instructor(site)
+        site.store.close()
+        return site.store.shown
+
+
+def listening(host: str, port: int) -> socket.socket:
+    """A socket that listens; at any port that is free where 0 is asked.
+
+    Raises
+    ------
+    BadInput
+        The port is taken or not ours to take, or the machine has no such address.
+    """
+    if port > 65535:
+        raise BadInput(f"--port {port}: a port is a number from 0 to 65535")
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    try:
+        return socket.create_server((host, port), family=family, backlog=_WAITING)
+    except OSError as fault:
+        raise BadInput(_refusal(host, port, fault)) from fault
+
+
+def _refusal(host: str, port: int, fault: OSError) -> str:
+    if fault.errno == errno.EADDRINUSE:
+        return (
+            f"port {port} of {host} is taken, perhaps by another 'coursework serve': end that one, or say another, "
+            f"--port {port + 1 if port < 65535 else port - 1}, or --port 0 for any that is free"
+        )
+    if fault.errno == errno.EACCES:
+        return f"port {port} is kept for the system: say one from 1024 on, and let a proxy in front listen at {port}"
+    return (
+        f"--host {host}: this machine cannot listen there ({fault.strerror or fault}); 127.0.0.1 is this machine alone, "
+        "0.0.0.0 every address that it has"
+    )
+
+
+def serve(serving: Serving, at: socket.socket, workers: int = 1) -> None:
+    """Answer until a signal says to end (Ctrl-C, SIGTERM, a closed terminal); requests under way are answered first."""
+    is_shared = serving.entrance is Entrance.ACCOUNTS
+    run(partial(_application, serving), at, workers, tells_all=is_shared, has_proxy=is_shared)
+
+
+def run(
+    made: Callable[[], Application],
+    at: socket.socket,
+    workers: int = 1,
+    *,
+    tells_all: bool = False,
+    has_proxy: bool = False,
+) -> None:
+    """Serve the application that ``made`` gives in each process.
+
+    ``tells_all`` writes a line of the log for each request, not for faults alone; ``has_proxy`` believes a proxy on this
+    machine who asks.
+    """
+    from uvicorn import Config
+
+    config = Config(
+        partial(_made, made), factory=True, workers=workers, log_config=_logs(tells_all), access_log=False, server_header=False,
+        proxy_headers=has_proxy, forwarded_allow_ips="127.0.0.1",
+        timeout_graceful_shutdown=_LAST_REQUESTS, timeout_worker_healthcheck=_SILENCE,
+    )  # fmt: skip
+    _open_more()
+    if workers > 1:
+        _many(config, at)
+    else:
+        _one(config, at)
+
+
+def _open_more() -> None:
+    """Hold as many connections as the machine lets a process hold: the usual 1024 are filled by who sends half of a request."""
+    with suppress(ImportError, OSError, ValueError):
+        import resource
+
+        _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+        resource.setrlimit(
+            resource.RLIMIT_NOFILE, (min(most, _MOST_FILES) if most > 0 else _MOST_FILES, most)
+        )
+
+
+def _logs(tells_all: bool) -> dict[str, Any]:
+    """What is written to standard error."""
+    return {
+        "version": 1,
+        "disable_existing_loggers": False,
+        "formatters": {
+            "line": {
+                "class": "coursework.system.visible.VisibleLines",
+                "format": "%(asctime)s %(levelname)s %(message)s",
+            }
+        },
+        "handlers": {"out": {"class": "logging.StreamHandler", "formatter": "line"}},
+        "loggers": {
+            "coursework": {"handlers": ["out"], "level": "INFO" if tells_all else "WARNING"},
+            "uvicorn": {"handlers": ["out"], "level": "WARNING"},
+        },
+    }
+
+
+def _one(config: Config, at: socket.socket) -> None:
+    from uvicorn import Server
+
+    for number in (signal.SIGINT, signal.SIGTERM):  # raised once more behind the server's end
+        signal.signal(number, lambda *_: None)
+    _end_with_terminal(lambda: signal.raise_signal(signal.SIGTERM))
+    Server(config).run(sockets=[at])
+
+
+def _many(config: Config, at: socket.socket) -> None:
+    from uvicorn.supervisors import Multiprocess
+
+    supervisor = Multiprocess(config, sockets=[at])
+    _end_with_terminal(lambda: supervisor.signal_queue.append(signal.SIGTERM))
+    supervisor.run()
+
+
+def _end_with_terminal(end: Callable[[], None]) -> None:
+    """A terminal that is closed ends the server, unless it was begun to outlive it."""
+    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, lambda *_: end())
+
+
+def _made(made: Callable[[], Application]) -> Application:
+    """The application of this process, which ends with the process that began it."""
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return made()
+    threading.Thread(target=_follow, args=(parent.join,), daemon=True).start()
+    try:
+        return made()
+    except CourseworkError as fault:  # what stood when the server began, and is out of reach for a while
+        LOG.error("%s", fault)
+        time.sleep(_AGAIN)
+        sys.exit(1)
+
+
+def _follow(ended: Callable[[], None]) -> None:
+    ended()
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
+def filling(serving: Serving) -> AbstractContextManager[None]:
+    """One process, whatever the number of those that answer, that finds variants to practise; none where all were found."""
+    site = serving.site()
+    try:
+        return nullcontext() if site.pool.is_filled() else beside(_fill, serving)
+    finally:
+        site.store.close()
+
+
+def _fill(serving: Serving) -> None:
+    try:
+        serving.site().pool.fill()
+    except (
+        CourseworkError
+    ) as fault:  # the database is away: the rest is found when it is asked for, or at the next start
+        LOG.error("%s", fault)
+
+
+def _application(serving: Serving) -> Application:
+    return application(serving.site())

@@ -1,0 +1,4 @@
+// What all pages share. Each page works without it.
+(function () {
+  "use strict";
+})();

@@ -1,0 +1,54 @@
+"""What a process makes ready when it begins, since whoever asks first would wait for it: solutions, the course's contents, templates."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator
+from functools import partial
+from threading import Event, Thread
+
+from coursework.errors import CourseworkError
+from coursework.rendering.html import environment_of
+from coursework.selfstudy.theory import theory
+from coursework.site.frame.settings import Site
+from coursework.site.practice.contents import titles
+
+LOG = logging.getLogger("coursework.site")
+_PAUSE = 0.01  #: seconds between two pieces, for requests
+
+
+def begin_warming(site: Site) -> Event:
+    """Make all ready beside the requests, which takes a few seconds; gives what ends that."""
+    stop = Event()
+    Thread(target=warm, args=(site, stop), name="warming", daemon=True).start()
+    return stop
+
+
+def warm(site: Site, stop: Event) -> None:
+    """Make all ready, until that is stopped; what cannot be made tells so whoever asks for it."""
+    for piece in _pieces(site):
+        if stop.wait(_PAUSE):
+            return
+        try:
+            piece()
+        except CourseworkError as fault:
+            LOG.error("not ready ahead: %s", type(fault).__name__)
+
+
+def _pieces(site: Site) -> Iterator[Callable[[], object]]:
+    for lang in site.languages:
+        env = environment_of(site.course.folder.template_folders, lang)
+        yield partial(titles, site, lang)
+        for name in env.list_templates(filter_func=_is_of_pages):
+            yield partial(env.get_template, name)
+    for exercise in site.course.folder.study_order:
+        yield partial(_solved, site, exercise)
+
+
+def _is_of_pages(name: str) -> bool:
+    return name.endswith(".html.j2")
+
+
+def _solved(site: Site, exercise: str) -> None:
+    if site.course.folder.has_solutions:
+        theory(site.course[exercise])

@@ -1,0 +1,28 @@
+"""The marks of a class that was just marked, as its tables would give them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from coursework.gradebook.book import Result
+from coursework.gradebook.graded import Graded
+from coursework.statistics.marks import Line, Marks, Told, marks_of
+
+
+def marks_of_class(graded: Iterable[Graded], results: Mapping[str, Result], rejected: int = 0) -> Marks:
+    """The columns of a class; of a student with several sittings those of the one that counts."""
+    told = {student: _told(own) for student, own in results.items()}
+    return marks_of(_lines(graded, results), told, rejected)
+
+
+def _told(own: Result) -> Told:
+    return Told(own.out_of, own.verdicts["missing"], bool(own.verdicts["unreadable"]))
+
+
+def _lines(graded: Iterable[Graded], results: Mapping[str, Result]) -> Iterator[Line]:
+    for one in graded:
+        if one.sitting != results[one.student].sitting:
+            continue
+        for part in (*one.answered, *one.unanswered):
+            line = one.lines[part]
+            yield one.student, one.exercise, part, line.verdict, line.points, line.out_of

@@ -1,0 +1,81 @@
+"""Every page of the site in Chromium, on a telephone and on a desk, in French and English: it fits, it is read aloud, it is what
+its title says, a thumb hits what there is, nothing fails behind it, and it prints."""
+
+import pytest
+from site_browser import chromium, context_of, cut_in_print, low, serious, served, too_wide, watched
+from site_lived import NO_PAGES, Lived, shown
+
+from coursework.site.application import PAGES
+
+REPORT = "/report"  #: a page of its own, to keep; it is printed as a PDF
+FAST = ("/practice", "/assignments/{number:int}", "/desk/{assignment:int}", "/desk/{assignment:int}/queue")
+LOOKS = [("fr", "telephone"), ("en", "desk"), ("en", "telephone"), ("fr", "desk")]
+
+
+@pytest.fixture(scope="module")
+def lived(tmp_path_factory):
+    """The class of twelve behind a server, and a browser."""
+    pytest.importorskip("playwright")
+    site = Lived(tmp_path_factory.mktemp("lived"))
+    with chromium() as browser, served(site) as address:
+        yield site, address, browser
+
+
+def faults(page, address, lang, size):
+    """What is wrong with a page, in words."""
+    behind = watched(page)
+    page.goto(address, wait_until="load")
+    heading = page.locator("h1").all_inner_texts()
+    found = {
+        "wider than the screen": too_wide(page),
+        "axe": serious(page),
+        "headings": heading if len(heading) != 1 else [],
+        "title": [] if heading and _begins(page.title(), heading[0]) else [page.title(), *heading],
+        "language": []
+        if page.get_attribute("html", "lang") == lang
+        else [page.get_attribute("html", "lang")],
+        "low": low(page) if size == "telephone" else [],
+        "in print": [one for one in cut_in_print(page) if one] if not address.endswith(REPORT) else [],
+        "behind": behind,
+    }
+    return {what: told for what, told in found.items() if told}
+
+
+def _begins(title, heading):
+    """A title says what a page is before it says of what course."""
+    plain = " ".join(heading.split())
+    return plain in " ".join(title.split())
+
+
+def looked_at(lived, lang, size, chosen):
+    site, address, browser = lived
+    contexts, found = {}, {}
+    for one in shown(site):
+        if not chosen(one):
+            continue
+        if one.name not in contexts:
+            contexts[one.name] = context_of(browser, site, address, one.name, lang, size)
+        page = contexts[one.name].new_page()
+        if told := faults(page, address + one.address, lang, size):
+            found[one.address] = told
+        page.close()
+    for context in contexts.values():
+        context.close()
+    return found
+
+
+def test_every_address_is_looked_at_or_is_no_page(lived):
+    seen = {one.path for one in shown(lived[0])}
+    assert seen | NO_PAGES == {page.path for page in PAGES}
+    assert not seen & NO_PAGES
+
+
+@pytest.mark.parametrize(("lang", "size"), LOOKS[:2])
+def test_the_pages_that_most_see_are_without_fault(lived, lang, size):
+    assert looked_at(lived, lang, size, lambda one: one.path in FAST) == {}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("lang", "size"), LOOKS)
+def test_every_page_is_without_fault(lived, lang, size):
+    assert looked_at(lived, lang, size, lambda one: one.path not in FAST) == {}

@@ -1,0 +1,389 @@
+"""The site behind links of a learning platform: who comes, what they are dealt, their points, what the staff sees."""
+
+import html
+import re
+import shutil
+from dataclasses import asdict, replace
+from datetime import timedelta
+
+import pytest
+from lti_platform import (
+    DEEP,
+    LTI,
+    PLATFORM,
+    SITE,
+    TEACHER,
+    TOOL,
+    FakePlatform,
+    Visitor,
+    _made_keys,
+    field,
+)
+from site_assignments import ASSIGNMENT, CLOSES, USUAL, dealt, right
+from site_people import MAX, ZOE, Class
+from site_people import TEACHER as ADA
+from sqlalchemy import func, select, update
+
+from coursework.database.assignments import issued_of
+from coursework.database.audit import noted
+from coursework.database.decisions import GIVEN, Place, decide
+from coursework.database.publication import AT_ONCE, CHARGE, NEVER, publish
+from coursework.database.tables import account, assignment, delivery, identity, person
+from coursework.errors import BadInput
+from coursework.lti.keys import KeyFolder
+from coursework.lti.settings import Settings
+from coursework.site.application import application
+from coursework.site.desk.class_at_hand import class_now
+from coursework.site.desk.class_page import rows
+from coursework.site.lti.mount import mounted, settings_of
+
+AT_ONCE_TOLD = replace(USUAL, feedback=AT_ONCE)
+
+
+class Linked(Class):
+    """A site with a platform in front; its assignment is dealt to Zoé and Max."""
+
+    def __init__(self, folder, publication=AT_ONCE_TOLD):
+        super().__init__(f"sqlite:///{folder}/site.db")
+        self.platform, self.site.lti = FakePlatform(), folder / "lti"
+        keys = KeyFolder(self.site.lti / "keys")
+        shutil.copytree(_made_keys(), keys.folder)
+        self.platform.tool_keys = lambda: keys.public
+        self.lti = mounted(
+            self.site,
+            self.site.lti,
+            self.platform.client,
+            Settings(self.site.lti, f"{TOOL}/lti", (PLATFORM,)),
+        )
+        self.app = application(self.site, self.lti)
+        self.number = dealt(self, publication)
+        with self.site.store.begin() as connection:
+            connection.execute(update(assignment).values(asked=_table()))
+
+    def visitor(self):
+        return Visitor(self.app, self.platform, "/lti")
+
+    def enter(self, visitor=None, **changed):
+        visitor = visitor or self.visitor()
+        page, path = visitor.enter(**{"custom": {"assignment": "week3"}, **changed})
+        return visitor, page, path
+
+    def right(self, name):
+        with self.site.store.reading() as connection:
+            self.issued = issued_of(connection, self.number)
+        return right(self, name)
+
+    def points(self, name):
+        return next(row for row in rows(class_now(self.site, self.number)) if row.student == name)
+
+    def one(self, *columns):
+        with self.site.store.reading() as connection:
+            return connection.execute(select(*columns)).all()
+
+    def sent(self):
+        self.lti.state.sender.send_due()
+        return self.platform.scores
+
+    def publish(self, publication):
+        with self.site.store.begin() as connection:
+            publish(connection, self.number, publication)
+
+
+def _table():
+    """The assignment as its file says it."""
+    exercises = [
+        {"name": one.name, **({"parts": list(one.parts)} if one.parts else {})}
+        for one in ASSIGNMENT.exercises
+    ]
+    return {
+        "title": dict(ASSIGNMENT.title), "instructions": dict(ASSIGNMENT.instructions), "exercises": exercises,
+        "mark": asdict(ASSIGNMENT.mark),
+    }  # fmt: skip
+
+
+@pytest.fixture
+def linked(tmp_path):
+    return Linked(tmp_path)
+
+
+def text_of(page):
+    return " ".join(html.unescape(re.sub(r"<[^>]+>", " ", page.text)).split())
+
+
+def hands_in(linked, name="Ada Byron", wrong=(), **changed):
+    visitor, page, path = linked.enter(name=name, **changed)
+    texts = linked.right(name)
+    done = visitor.hand_in(path, page, {**texts, **dict.fromkeys(list(texts)[: len(wrong)], "1.2345")})
+    assert done.status_code == 303, done.text
+    return visitor, path
+
+
+# ------------------------------------------------------------------------ who comes
+
+
+def test_who_comes_is_dealt_a_paper_as_late_ones_are_and_everybody_keeps_theirs(linked):
+    before = linked.right(ZOE)
+    _, page, _ = linked.enter()
+    assert "Midterm" in page.text
+    assert linked.right(ZOE) == before
+    with linked.site.store.reading() as connection:
+        issued = issued_of(connection, linked.number)
+        done = noted(connection)
+    assert set(issued.students) == {ZOE, MAX, "Ada Byron"}
+    assert {one.what for one in done} == {"came from a platform", "late ones added"}
+    own = issued.issued_to("Ada Byron")["slotted_mechanism"]
+    assert own not in {issued.issued_to(ZOE)["slotted_mechanism"], issued.issued_to(MAX)["slotted_mechanism"]}
+
+
+def test_a_second_launch_is_the_same_person_with_the_same_paper(linked):
+    _, first, _ = linked.enter()
+    _, again, _ = linked.enter(name="Ada Lovelace", launch_presentation={"locale": "fr_FR"})
+    assert len(linked.one(identity)) == 1
+    seeds = [re.findall(r"slotted_mechanism · (\d+)", page.text) for page in (first, again)]
+    assert seeds[0] == seeds[1] != []
+    assert 'lang="fr"' in again.text
+    assert linked.one(person.c.name, person.c.lang)[-1] == ("Ada Lovelace", "fr")
+
+
+def test_nobody_is_taken_for_another_by_the_name(linked):
+    linked.enter(name=ZOE, sub="stranger")
+    ((tied,),) = linked.one(identity.c.person_id)
+    assert tied != linked.ids[ZOE]
+    with linked.site.store.reading() as connection:
+        assert f"{ZOE} (stranger)" in issued_of(connection, linked.number).students
+
+
+def test_a_person_of_the_roster_is_known_by_the_one_e_mail(linked):
+    with linked.site.store.begin() as connection:
+        connection.execute(
+            update(person).where(person.c.id == linked.ids[ZOE]).values(columns={"Email": "zoe@uni.example"})
+        )
+    linked.enter(name="Zoé Martin", email="ZOE@uni.example")
+    assert linked.one(identity.c.person_id) == [(linked.ids[ZOE],)]
+    linked.enter(name="Zoé Again", sub="other", email="zoe@uni.example")
+    assert len({one for (one,) in linked.one(identity.c.person_id)}) == 2  # she is somebody's already
+    with linked.site.store.reading() as connection:
+        assert [one.about["how"] for one in noted(connection) if one.what == "came from a platform"] == [
+            "new",
+            "roster",
+        ]
+
+
+def test_no_address_makes_anybody_an_instructor(linked):
+    logins = dict(linked.one(account.c.person_id, account.c.login))
+    linked.enter(email=logins[linked.ids[ADA]])
+    assert linked.one(identity.c.person_id)[0][0] != linked.ids[ADA]
+
+
+def test_another_s_session_is_not_shown(linked):
+    _, _, path = linked.enter()
+    other, _, _ = linked.enter(sub="bob", name="Bob")
+    assert other.browser.get(path).status_code in (403, 404)
+    assert linked.visitor().browser.get(path).status_code in (403, 404)
+
+
+# ------------------------------------------------------------------------ handing in
+
+
+def test_a_score_is_that_of_the_class_page(linked):
+    visitor, path = hands_in(linked, wrong=[0])
+    (score,) = linked.sent()
+    row = linked.points("Ada Byron")
+    assert 0 < row.points < row.out_of
+    assert (score["scoreGiven"], score["scoreMaximum"]) == (row.points, row.out_of)
+    assert (score["userId"], score["gradingProgress"]) == ("ada", "FullyGraded")
+    assert "Receipt" in text_of(visitor.browser.get(path))
+    assert linked.one(delivery.c.source) == [("site: from a platform",)]
+
+
+def test_a_decision_sends_the_score_anew(linked):
+    hands_in(linked, wrong=[0])
+    linked.sent()
+    assert linked.lti.state.watch.look() == 0
+    before = linked.points("Ada Byron")
+    part = "rA"
+    with linked.site.store.begin() as connection:
+        decide(
+            connection,
+            linked.number,
+            [Place("Ada Byron", "slotted_mechanism", "", part)],
+            GIVEN,
+            0.5,
+            "half",
+            "Ada",
+        )
+    assert linked.lti.state.watch.look() == 1
+    assert linked.lti.state.watch.look() == 0
+    last = linked.sent()[-1]
+    assert len(linked.platform.scores) == 2
+    assert last["scoreGiven"] == linked.points("Ada Byron").points == before.points + 0.5
+
+
+def test_a_form_that_comes_twice_is_one_hand_in_and_tries_are_those_of_the_publication(linked):
+    visitor, page, path = linked.enter()
+    texts = linked.right("Ada Byron")
+    for _ in range(2):
+        assert visitor.hand_in(path, page, texts).status_code == 303
+    assert linked.one(func.count(delivery.c.id)) == [(1,)]
+    sheet = visitor.browser.get(f"{path}?again=1")
+    assert field(sheet.text, "_number") == "2"
+    assert visitor.hand_in(path, sheet, texts | dict.fromkeys(list(texts)[:1], "7")).status_code == 303
+    more = visitor.hand_in(path, sheet, texts, _number="3")
+    assert more.status_code == 409
+    assert linked.sent()[-1]["scoreGiven"] == linked.points("Ada Byron").points
+
+
+def test_what_cannot_be_read_is_handed_in_only_when_one_insists_and_is_pending(linked):
+    visitor, page, path = linked.enter()
+    texts = linked.right("Ada Byron") | {"e1-rA": "hello?"}
+    back = visitor.hand_in(path, page, texts)
+    assert back.status_code == 422
+    assert 'value="hello?"' in back.text
+    assert visitor.hand_in(path, page, texts, _as_it_is="1").status_code == 303
+    assert linked.sent()[-1]["gradingProgress"] == "PendingManual"
+    with linked.site.store.begin() as connection:
+        place = Place("Ada Byron", "slotted_mechanism", "", "rA")
+        decide(connection, linked.number, [place], GIVEN, 0.25, "", "Ada")
+    linked.lti.state.watch.look()
+    assert linked.sent()[-1]["gradingProgress"] == "FullyGraded"
+
+
+def test_what_is_late_is_charged_and_the_staff_sees_the_same_points(linked):
+    linked.publish(replace(AT_ONCE_TOLD, late=CHARGE, late_percent=10.0))
+    linked.at = CLOSES + timedelta(hours=1)
+    hands_in(linked)
+    row = linked.points("Ada Byron")
+    assert linked.sent()[-1]["scoreGiven"] == pytest.approx(row.points * 0.9)
+    _, page, _ = linked.enter(sub="emmy", name="Emmy", roles=TEACHER)
+    assert f"{round(row.points * 0.9, 3):g} / {row.out_of:g}" in text_of(page)
+
+
+# --------------------------------------------------------------------- when it is told
+
+
+def test_no_score_goes_before_marks_are_told(tmp_path):
+    linked = Linked(tmp_path, USUAL)
+    visitor, path = hands_in(linked)
+    linked.lti.state.watch.look()
+    assert linked.sent() == []
+    assert "Your points go to the course’s gradebook when they are told" in text_of(visitor.browser.get(path))
+    linked.at = CLOSES + timedelta(minutes=1)
+    assert linked.lti.state.watch.look() == 1
+    assert linked.sent()[0]["scoreGiven"] == linked.points("Ada Byron").points
+    linked.publish(replace(USUAL, feedback=NEVER))
+
+
+def test_what_is_not_published_opens_for_no_student(linked):
+    linked.publish(None)
+    _, page, _ = linked.enter()
+    assert page.status_code == 404
+    assert "not published" in text_of(page)
+    assert not linked.one(identity)
+
+
+def test_what_is_closed_deals_nothing(linked):
+    linked.at = CLOSES + timedelta(hours=1)
+    _, page, _ = linked.enter()
+    assert page.status_code == 409
+    with linked.site.store.reading() as connection:
+        assert "Ada Byron" not in issued_of(connection, linked.number).students
+
+
+# ------------------------------------------------------------------------- the staff
+
+
+def picks(linked):
+    settings = {
+        "deep_link_return_url": f"{SITE}/return", "accept_types": ["ltiResourceLink"],
+        "accept_presentation_document_targets": ["iframe"], "accept_multiple": True,
+    }  # fmt: skip
+    visitor = linked.visitor()
+    page, _ = visitor.enter(
+        sub="emmy", roles=TEACHER,
+        **{f"{LTI}message_type": "LtiDeepLinkingRequest", f"{DEEP}deep_linking_settings": settings, f"{LTI}resource_link": None},
+    )  # fmt: skip
+    return page
+
+
+def test_an_instructor_picks_among_published_assignments(linked):
+    assert 'value="assignment:week3"' in picks(linked).text
+    assert 'value="exercise:slotted_mechanism"' in picks(linked).text
+    linked.publish(None)
+    assert "week3" not in picks(linked).text
+
+
+def test_an_instructor_sees_the_class_and_no_person_is_made_of_them(linked):
+    hands_in(linked, wrong=[0])
+    before = len(linked.one(person))
+    linked.platform.members = [
+        {"user_id": "ada", "name": "Ada Byron", "roles": ["Learner"]},
+        {"user_id": "new", "name": "New One", "roles": ["Learner"]},
+    ]
+    _, page, _ = linked.enter(sub="emmy", name="Emmy", roles=TEACHER)
+    told, row = text_of(page), linked.points("Ada Byron")
+    assert f"{row.points:g} / {row.out_of:g}" in told
+    assert "New One" in told
+    assert f"/desk/{linked.number}" in page.text
+    assert len(linked.one(person)) == before
+
+
+def test_the_staff_sees_which_scores_wait(linked):
+    hands_in(linked)
+    linked.platform.down = 500
+    linked.lti.state.sender.send_due()
+    told = text_of(linked.browser(ADA).get("/desk/lti"))
+    assert "Ada Byron" in told
+    assert "500" in told
+    linked.platform.down = 0
+
+
+def test_an_exercise_by_a_link_is_practised_with_points_of_its_own(linked):
+    visitor = linked.visitor()
+    page, path = visitor.enter()
+    assert page.status_code == 200
+    assert visitor.hand_in(path, page, {"rA": "1"}).status_code == 303
+    assert linked.sent()[0]["scoreGiven"] == 0
+    assert not linked.one(delivery)
+
+
+def test_who_is_erased_is_forgotten_by_the_service_too(linked):
+    hands_in(linked)
+    visitor, path = hands_in(linked, name="Bob", sub="bob")
+    storage = linked.lti.state.watch._storage
+    ((ada, name),) = [row for row in linked.one(person.c.id, person.c.name) if row.name == "Ada Byron"]
+    done = linked.browser(ADA).fill(f"/desk/people/{ada}/erase", {"name": name})
+    assert done.status_code == 303
+    assert {one.person for one in storage.opened()} == {"bob"}
+    assert {one for _, one in storage.scores()} == {"bob"}
+    assert visitor.browser.get(path).status_code == 200
+    assert storage.forget("bob", "https://elsewhere.example.org") == 0
+
+
+# ------------------------------------------------------------------- headers, cookies
+
+
+def test_frames_and_cookies_are_those_of_each_side(linked):
+    visitor, page, _ = linked.enter()
+    assert f"frame-ancestors {SITE}" in page.headers["content-security-policy"]
+    assert "x-frame-options" not in page.headers
+    (cookie,) = [one for one in visitor.browser.cookies.jar if one.name == "lti-session"]
+    assert cookie.path.startswith("/lti/at/")
+    assert "coursework-session" not in {one.name for one in visitor.browser.cookies.jar}
+    own = linked.browser(ZOE).get("/practice")
+    assert "frame-ancestors 'none'" in own.headers["content-security-policy"]
+    assert own.headers["x-frame-options"] == "DENY"
+
+
+def test_a_folder_for_another_address_is_refused(tmp_path):
+    (tmp_path / "platforms.toml").write_text('[service]\nurl = "https://old.example.org"\n', "utf-8")
+    with pytest.raises(BadInput, match=r"https://old\.example\.org"):
+        settings_of(tmp_path, "https://new.example.org")
+    (tmp_path / "platforms.toml").write_text('[service]\nurl = "https://new.example.org/lti"\n', "utf-8")
+    assert settings_of(tmp_path, "https://new.example.org").url == "https://new.example.org/lti"
+
+
+def test_several_processes_send_a_score_once(linked):
+    hands_in(linked)
+    storage = linked.lti.state.watch._storage
+    assert len(storage.due()) == 1
+    assert storage.due() == []

@@ -1,0 +1,247 @@
+"""The queue: what waits and why, decided for all who wrote the same, once, by whom; what is handed in anew waits anew."""
+
+import re
+
+import pytest
+from desk_class import EXERCISE, OTHER, SEED, DeskClass, Rejected, field, told
+from site_people import TEACHER, ZOE
+
+from coursework.database.decisions import Decisions
+from coursework.database.deliveries import deliver
+from coursework.database.desk import people_of
+from coursework.database.standing import graded
+from coursework.gradebook.rows import Collected, Row
+from coursework.site.desk.class_at_hand import class_now
+
+WRITTEN = {
+    "Ada": {"rA": "je sais pas", "theta4": "?"},
+    "Bo": {"rA": "Je sais  pas", "theta4": "12"},
+    "Cy": {"rA": "voir feuille", "theta4": "?"},
+}
+
+
+@pytest.fixture
+def desk(tmp_path):
+    return DeskClass(f"sqlite:///{tmp_path}/desk.db", WRITTEN)
+
+
+def press(desk, name, page, do, **more):
+    """A button of the page's card."""
+    hidden = {k: field(page, k) or "" for k in ("group", "since", "student")}
+    return desk.browser(name).fill(f"/desk/{desk.number}/queue", {**hidden, "all": "1", "do": do, **more})
+
+
+def marks(desk, part="rA"):
+    with desk.site.store.reading() as connection:
+        return {one.student: one.lines[part] for one in graded(connection, desk.number)}
+
+
+def waiting(desk):
+    """Why, part and students of each card, in order."""
+    now = class_now(desk.site, desk.number)
+    return [(one.why, one.group.part, [w.student for w in one.members]) for one in now.open.values()]
+
+
+def test_what_was_written_the_same_is_one_card_and_questions_follow_the_sheet(desk):
+    assert waiting(desk) == [
+        ("unreadable", "rA", ["Ada", "Bo"]),
+        ("unreadable", "rA", ["Cy"]),
+        ("unreadable", "theta4", ["Ada", "Cy"]),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("times", "why"), [(0.5, None), (0.95, "just"), (1.5, "near"), (1.99, "near"), (2.1, None)]
+)
+def test_what_is_near_the_margin_is_told_by_the_margin(tmp_path, times, why):
+    desk = DeskClass(f"sqlite:///{tmp_path}/desk.db", {})
+    desk.hand_in({"Ada": {"rA": desk.at_margin("rA", times)}})
+    assert [one[0] for one in waiting(desk)] == ([why] if why else [])
+    assert ("Nothing waits." in desk.page(TEACHER, "/queue").text) == (why != "near")
+
+
+def test_a_wrong_answer_that_three_wrote_waits_and_one_that_two_wrote_does_not(tmp_path):
+    desk = DeskClass(f"sqlite:///{tmp_path}/desk.db", {})
+    desk.hand_in({name: {"rA": "777"} for name in ("Ada", "Bo")})
+    assert not waiting(desk)
+    desk.hand_in({"Cy": {"rA": "777.0"}, "Di": {"rA": "777"}})
+    assert [one[0] for one in waiting(desk)] == ["often"]
+
+
+def test_the_card_shows_what_a_person_needs(desk):
+    desk.hand_in({"Di": {"rA": desk.at_margin("rA", 1.5)}})
+    text = desk.page(TEACHER, "/queue", why="near").text
+    for wanted in (
+        "1.1 ·",
+        "1.5 × the accepted margin",
+        "Right answer:",
+        "What the student is told now",
+        ">Di<",
+    ):
+        assert wanted in text
+
+
+def test_accepted_for_all_who_wrote_the_same_and_the_next_card_is_there(desk):
+    page = press(desk, TEACHER, desk.page(TEACHER, "/queue"), "accept", comment="Look at the sheet")
+    assert (told(page), "voir feuille" in page.text) == ("Accepted (2).", True)
+    for name in ("Ada", "Bo"):
+        assert (marks(desk)[name].verdict, marks(desk)[name].points) == ("accepted", 1)
+        assert "Look at the sheet" in marks(desk)[name].feedback
+    assert marks(desk)["Cy"].verdict == "unreadable"
+
+
+def test_one_alone_is_decided_on_where_not_all_are_wanted(desk):
+    press(desk, TEACHER, desk.page(TEACHER, "/queue"), "accept", all="")
+    assert [marks(desk)[name].verdict for name in ("Ada", "Bo")] == ["accepted", "unreadable"]
+
+
+def test_points_are_given_up_to_those_of_the_part(desk):
+    page = desk.page(TEACHER, "/queue")
+    assert "more than the 1" in told(press(desk, TEACHER, page, "give:1.5"))
+    assert marks(desk)["Ada"].verdict == "unreadable"
+    press(desk, TEACHER, page, "give:0.5")
+    assert (marks(desk)["Ada"].verdict, marks(desk)["Ada"].points) == ("partial", 0.5)
+
+
+@pytest.mark.parametrize("do", ["give:-1", "give:", "give:nan", "give:x"])
+def test_points_that_are_none_decide_nothing(desk, do):
+    press(desk, TEACHER, desk.page(TEACHER, "/queue"), do)
+    assert marks(desk)["Ada"].verdict == "unreadable"
+
+
+def test_a_refused_answer_keeps_its_mark_and_leaves_the_queue(desk):
+    desk.hand_in({"Di": {"rA": desk.at_margin("rA", 1.5)}})
+    before = marks(desk)["Di"]
+    press(
+        desk, TEACHER, desk.page(TEACHER, "/queue", why="near"), "refuse", comment="Round less.", why="near"
+    )
+    after = marks(desk)["Di"]
+    assert (after.verdict, after.points) == (before.verdict, before.points)
+    assert after.feedback.endswith("Round less.")
+    assert "near" not in [one[0] for one in waiting(desk)]
+
+
+def test_the_same_that_cannot_be_read_elsewhere_goes_along_where_that_is_wanted(desk):
+    desk.hand_in({"Di": {"rA": "?"}})
+    page = desk.page(TEACHER, "/queue", exercise=EXERCISE, part="theta4")
+    assert "and the 1 of other questions" in page.text
+    assert told(press(desk, TEACHER, page, "refuse", everywhere="1")) == "0 points given (3)."
+
+
+def test_undo_is_a_decision_that_brings_the_card_back(desk):
+    page = desk.page(TEACHER, "/queue")
+    after = press(desk, TEACHER, page, "accept")
+    page = press(desk, TEACHER, after, "undo")
+    assert (told(page), field(page, "group")) == ("Undone (2).", field(desk.page(TEACHER, "/queue"), "group"))
+    assert marks(desk)["Ada"].verdict == "unreadable"
+    with desk.site.store.reading() as connection:
+        kinds = [one.kind for one in Decisions.read(connection, desk.number).on("Ada", EXERCISE, "rA")]
+    assert kinds == ["accepted", "withdrawn"]
+    assert told(press(desk, TEACHER, page, "undo")) == "There is nothing of yours to undo."
+
+
+def test_nobody_undoes_what_somebody_else_decided(desk):
+    press(desk, OTHER, desk.page(OTHER, "/queue"), "accept")
+    press(desk, TEACHER, desk.page(TEACHER, "/queue"), "undo")
+    assert marks(desk)["Ada"].verdict == "accepted"
+
+
+def test_of_two_at_once_the_second_sees_who_decided_and_nothing_counts_twice(desk):
+    first, second = desk.page(TEACHER, "/queue"), desk.page(OTHER, "/queue")
+    press(desk, TEACHER, first, "accept")
+    watched = desk.browser(OTHER).get(
+        f"/desk/{desk.number}/queue/watch", params={"group": field(second, "group")}
+    )
+    assert TEACHER in watched.text
+    assert TEACHER in told(press(desk, OTHER, second, "refuse"))
+    assert marks(desk)["Ada"].points == 1
+    with desk.site.store.reading() as connection:
+        assert len(Decisions.read(connection, desk.number).on("Ada", EXERCISE, "rA")) == 1
+
+
+def test_a_press_that_comes_twice_decides_once(desk):
+    page = desk.page(TEACHER, "/queue")
+    press(desk, TEACHER, page, "accept")
+    press(desk, TEACHER, page, "accept")
+    with desk.site.store.reading() as connection:
+        assert len(Decisions.read(connection, desk.number).on("Bo", EXERCISE, "rA")) == 1
+
+
+def test_an_answer_that_is_handed_in_anew_waits_anew_where_the_decision_was_of_another_text(desk):
+    press(desk, TEACHER, desk.page(TEACHER, "/queue"), "accept")
+    desk.hand_in({"Ada": {"rA": "je sais pas"}, "Bo": {"rA": "no idea"}}, sitting=2)
+    found = [one for one in waiting(desk) if one[1] == "rA"]
+    assert ("unreadable", "rA", ["Bo"]) in found
+    assert not [one for one in found if "Ada" in one[2]]
+
+
+def test_a_rejected_row_is_placed_by_hand_and_the_original_is_kept(desk):
+    row = {"student": "Di", "exercise": EXERCISE, "seed": "7", "part": "rA", "answer": "319.8 mm"}
+    desk.hand_in({}, Rejected("late.csv, line 2", "cells where there are none", row))
+    page = desk.page(TEACHER, "/queue", why="rejected")
+    name = field(page, "row")
+    place = {"row": name, "do": "place", "from": "queue", "question": f"{EXERCISE}/rA"}
+    desk.browser(TEACHER).fill(f"/desk/{desk.number}/rejected", {**place, "student": "Nobody"})
+    assert "Di" not in marks(desk)
+    desk.browser(TEACHER).fill(f"/desk/{desk.number}/rejected", {**place, "student": "Di"})
+    assert marks(desk)["Di"].answer == "319.8 mm"
+    now = class_now(desk.site, desk.number)
+    assert [(one.waits, one.row.row["seed"]) for one in now.rejected] == [(False, "7")]
+
+
+def test_a_row_that_is_placed_by_hand_is_of_the_very_hand_in(desk):
+    with desk.site.store.begin() as connection:
+        person = people_of(connection, desk.number)["Di"]
+        own = [
+            Row("Di", EXERCISE, str(SEED), part, text, "site", origin=Collected(sitting=1))
+            for part, text in (("rA", ""), ("theta4", "9"))
+        ]
+        deliver(connection, desk.number, own, source="site", came=desk.at, person_id=person, number=1)
+    row = {"student": "Di", "exercise": EXERCISE, "seed": "7", "part": "rA", "answer": "319.8 mm"}
+    desk.hand_in({}, Rejected("late.csv, line 2", "cells where there are none", row))
+    name = field(desk.page(TEACHER, "/queue", why="rejected"), "row")
+    place = {"row": name, "do": "place", "from": "queue", "student": "Di", "question": f"{EXERCISE}/rA"}
+    desk.browser(TEACHER).fill(f"/desk/{desk.number}/rejected", place)
+    (one,) = [one for one in class_now(desk.site, desk.number).machine.values() if one.student == "Di"]
+    assert (one.sitting, one.lines["rA"].answer, one.lines["theta4"].answer) == (1, "319.8 mm", "9")
+
+
+def test_a_row_is_not_placed_over_an_answer_that_is_marked(desk):
+    row = {"student": "Ada", "exercise": EXERCISE, "seed": str(SEED), "part": "rA", "answer": "1"}
+    desk.hand_in({}, Rejected("late.csv, line 2", "why not", row))
+    name = field(desk.page(TEACHER, "/queue", why="rejected"), "row")
+    place = {"row": name, "do": "place", "from": "queue", "student": "Ada", "question": f"{EXERCISE}/rA"}
+    reply = desk.browser(TEACHER).fill(f"/desk/{desk.number}/rejected", place)
+    assert "has an answer to question 1.1 already" in reply.text
+    assert marks(desk)["Ada"].answer == "je sais pas"
+
+
+@pytest.mark.parametrize("lang", ["en", "fr"])
+def test_an_empty_queue_says_what_to_do_next(tmp_path, lang):
+    desk = DeskClass(f"sqlite:///{tmp_path}/desk.db", {})
+    assert f"/desk/{desk.number}/files" in desk.page(TEACHER, "/queue", lang).text
+
+
+def test_a_student_sees_nothing_of_it(desk):
+    assert desk.page(ZOE, "/queue").status_code == 403
+
+
+def test_the_number_that_waits_follows_a_decision_without_a_new_page(desk):
+    page = desk.browser(TEACHER).get(f"/desk/{desk.number}/queue")
+    before = re.search(r'id="waits" class="count">(\d+)<', page.text)[1]
+    hidden = {k: field(page, k) or "" for k in ("group", "since", "student")}
+    piece = desk.browser(TEACHER).fill(
+        f"/desk/{desk.number}/queue",
+        {**hidden, "all": "1", "do": "refuse"},
+        headers={"hx-request": "true"},
+    )
+    after = re.search(r'id="waits" class="count" hx-swap-oob="true">(\d+)<', piece.text)[1]
+    assert int(after) == int(before) - 2
+
+
+def test_an_empty_queue_tells_of_rows_that_name_nobody(tmp_path):
+    desk = DeskClass(f"sqlite:///{tmp_path}/desk.db", {"Ada": {"rA": "1"}})
+    place = f"/desk/{desk.number}/queue"
+    assert "files#rejected" not in desk.browser(TEACHER).get(place).text
+    desk.hand_in({"Zacharias": {"rA": "1"}})
+    assert "files#rejected" in desk.browser(TEACHER).get(place).text

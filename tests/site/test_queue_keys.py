@@ -1,0 +1,69 @@
+"""The queue in Chromium: by keys on a desk, by a thumb on a telephone, and without any script."""
+
+import pytest
+from desk_class import DeskClass
+from site_browser import chromium, context_of, serious, served, too_wide
+from site_people import TEACHER
+
+from coursework.site.desk.class_at_hand import class_now
+
+WRITTEN = {"Ada": {"rA": "je sais pas"}, "Bo": {"rA": "je sais pas"}, "Cy": {"rA": "?", "theta4": "??"}}
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as found:
+        yield found
+
+
+@pytest.fixture
+def desk(tmp_path):
+    return DeskClass(f"sqlite:///{tmp_path}/desk.db", WRITTEN)
+
+
+def next_card(page, press):
+    group = page.locator("#card input[name=group]").input_value()
+    press()
+    page.wait_for_function(
+        "g => { const f = document.querySelector('#card input[name=group]'); return !f || f.value !== g }",
+        arg=group,
+    )
+
+
+@pytest.mark.parametrize("lang", ["en", "fr"])
+def test_a_class_is_marked_by_keys_alone(browser, desk, lang):
+    with served(desk) as address:
+        page = context_of(browser, desk, address, TEACHER, lang, "desk").new_page()
+        faults = []
+        page.on("console", lambda said: faults.append(said.text) if said.type == "error" else None)
+        page.goto(f"{address}/desk/{desk.number}/queue")
+        for key in ("a", "u", "1", "r"):
+            next_card(page, lambda key=key: page.keyboard.press(key))
+        page.keyboard.press("c")
+        page.keyboard.type("aru")  # in the comment these are letters
+        page.keyboard.press("Escape")
+        next_card(page, lambda: page.keyboard.press("0"))
+        assert not faults
+    results = class_now(desk.site, desk.number).results
+    assert [results[name].points for name in ("Ada", "Bo", "Cy")] == [1, 1, 0]
+    assert class_now(desk.site, desk.number).waiting == 0
+
+
+@pytest.mark.parametrize("lang", ["en", "fr"])
+def test_a_thumb_does_on_a_telephone(browser, desk, lang):
+    with served(desk) as address:
+        page = context_of(browser, desk, address, TEACHER, lang).new_page()
+        page.goto(f"{address}/desk/{desk.number}/queue")
+        assert (too_wide(page), serious(page)) == (0, [])
+        boxes = [one.bounding_box() for one in page.locator(".acts button").all()]
+        assert all(box["height"] >= 44 and box["y"] + box["height"] <= 844 for box in boxes)
+        next_card(page, lambda: page.locator(".acts button.main").tap())
+    assert class_now(desk.site, desk.number).results["Bo"].points == 1
+
+
+def test_it_works_without_script(browser, desk):
+    with served(desk) as address:
+        page = context_of(browser, desk, address, TEACHER, "en", "desk", script=False).new_page()
+        page.goto(f"{address}/desk/{desk.number}/queue")
+        page.get_by_role("button", name="Accept").click()
+        assert "Accepted (2)." in page.locator("#card .told").inner_text()

@@ -1,0 +1,194 @@
+"""The command that serves: its one line, its end, and what it refuses."""
+
+import re
+import signal
+import socket
+import threading
+import time
+from pathlib import Path
+
+import httpx
+import pytest
+from site_server import Served, kill, lives, until
+
+from coursework import open_course
+from coursework.cli import run
+from coursework.database.pool import Pooled, pools, put_pooled
+from coursework.database.store import Store
+
+needs_processes = pytest.mark.skipif(
+    not Path("/proc/self/stat").exists(), reason="this system does not list processes in /proc"
+)
+
+
+def answers(url):
+    return httpx.get(f"{url}/no-such-page", trust_env=False, timeout=30).status_code
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_it_says_where_it_is_and_ends_cleanly(tmp_path, number):
+    with Served(tmp_path, "serve", "--port", "0") as site:
+        assert (
+            site.said.read_text()
+            == f"coursework: {site.url}/ (kept in {tmp_path / 'coursework.db'}; Ctrl-C ends it)\n"
+        )
+        assert answers(site.url) == 404
+        assert site.end(number) == 0
+        assert "Traceback" not in site.log.read_text()
+
+
+@needs_processes
+@pytest.mark.parametrize("workers", [1, 2])
+def test_halves_of_requests_do_not_fill_it(tmp_path, workers):
+    """It holds as many connections as the machine lets it, and not the usual 1024 that one person can open."""
+    with Served(tmp_path, "serve", "--port", "0", "--workers", workers) as site:
+        asked = (
+            until(lambda: len(site.workers) == workers and site.workers)
+            if workers > 1
+            else [site.process.pid]
+        )
+        for pid in asked:
+            limits = Path(f"/proc/{pid}/limits").read_text()
+            least, most = re.search(r"Max open files +(\d+) +(\d+)", limits).groups()
+            assert int(least) == min(int(most), 65_536)
+
+
+@needs_processes
+def test_processes_are_begun_again_and_end_with_the_first(tmp_path):
+    with Served(tmp_path, "serve", "--port", "0", "--workers", "2") as site:
+        first = until(lambda: len(site.workers) == 2 and site.workers)
+        assert answers(site.url) == 404
+        kill(first[0])
+        until(
+            lambda: first[0] not in site.workers and len(site.workers) == 2, 120
+        )  # it may be taken for one that is slow
+        assert answers(site.url) == 404
+        now = site.workers
+        assert site.end() == 0
+        assert not any(lives(pid) for pid in now)
+
+
+@needs_processes
+def test_no_process_outlives_the_first_that_is_killed(tmp_path):
+    with Served(tmp_path, "serve", "--port", "0", "--workers", "2") as site:
+        workers = until(lambda: len(site.workers) == 2 and site.workers)
+        answers(site.url)
+        site.kill()
+        until(lambda: not any(lives(pid) for pid in workers))
+
+
+@needs_processes
+@pytest.mark.parametrize("workers", [1, 2])
+def test_one_process_finds_variants_ahead_and_ends_with_the_first(tmp_path, workers):
+    with Served(tmp_path, "serve", "--port", "0", "--workers", workers) as site:
+        until(lambda: len(site.workers) == (workers if workers > 1 else 0))
+        (filler,) = until(lambda: site.fillers)
+        until(lambda: len(found_ahead(tmp_path)) > 1)
+        assert site.fillers == [filler]
+        site.kill()
+        until(lambda: not lives(filler))
+
+
+@needs_processes
+def test_what_finds_variants_ahead_ends_with_a_server_that_ends_cleanly(tmp_path):
+    with Served(tmp_path, "serve", "--port", "0") as site:
+        (filler,) = until(lambda: site.fillers)
+        assert site.end() == 0
+        assert not lives(filler)
+        assert not site.log.read_text()
+
+
+@needs_processes
+def test_no_process_is_begun_where_all_was_found(tmp_path):
+    course, store = open_course(), Store(str(tmp_path / "coursework.db"))
+    with store.begin() as connection:
+        for name in course:
+            put_pooled(connection, name, course[name].version, Pooled(tuple(range(60)), name == "grashof"))
+    store.close()
+    with Served(tmp_path, "serve", "--port", "0") as site:
+        assert answers(site.url) == 404
+        assert not site.fillers
+
+
+def found_ahead(folder):
+    course, store = open_course(), Store(str(folder / "coursework.db"))
+    try:
+        with store.reading() as connection:
+            return pools(connection, {name: course[name].version for name in course})
+    finally:
+        store.close()
+
+
+def test_a_request_under_way_is_answered_before_the_end(tmp_path):
+    found = []
+    with Served(tmp_path, "serve", "--port", "0") as site:
+        answers(site.url)
+        host, port = site.url.removeprefix("http://").split(":")
+        with socket.create_connection((host, int(port)), timeout=30) as line:
+            body = b"back=/practice"
+            head = f"POST /language HTTP/1.1\r\nHost: {host}:{port}\r\nContent-Type: application/x-www-form-urlencoded\r\nContent-Length: {len(body)}\r\n\r\n"
+            line.sendall(head.encode() + body[:5])
+            time.sleep(0.5)
+            ending = threading.Thread(target=lambda: found.append(site.end()))
+            ending.start()
+            time.sleep(0.5)
+            line.sendall(body[5:])
+            assert line.recv(100).startswith(b"HTTP/1.1 403")
+        ending.join()
+    assert found == [0]
+
+
+def test_other_machines_are_served_once_an_instructor_can_come_in(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    address = ("--url", "https://mechanics.example.org")
+    assert "no instructor has an account" in refusal(capsys, "--port", "0", *address)
+    assert run(["serve", *address, "--instructor", "ada@example.org"]) == 0
+    link = capsys.readouterr().out.strip()
+    assert link.startswith("https://mechanics.example.org/invitation/")
+    with Served(tmp_path, "serve", "--port", "0", *address, "--no-open") as site:
+        assert site.url == address[1]
+
+
+def test_an_address_that_is_told_asks_for_accounts_on_this_machine_too(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = str(free.getsockname()[1])
+    address = ("--port", port, "--url", f"http://127.0.0.1:{port}")
+    assert "no instructor has an account" in refusal(capsys, *address)
+    assert run(["serve", *address, "--instructor", "ada@example.org"]) == 0
+    with Served(tmp_path, "serve", *address) as site:
+        assert "/sign-in" in httpx.get(f"{site.url}/desk", trust_env=False, timeout=30).headers["location"]
+
+
+def refusal(capsys, *arguments):
+    assert run(["serve", *arguments]) == 2
+    said = capsys.readouterr()
+    assert not said.out
+    assert said.err.startswith("coursework: ")
+    return said.err
+
+
+def test_a_port_that_is_taken_is_told_with_what_to_do(capsys, tmp_path):
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        said = refusal(capsys, "--port", str(port), "--db", str(tmp_path / "x.db"))
+    assert f"port {port} of 127.0.0.1 is taken" in said
+    assert f"--port {port + 1}" in said
+
+
+@pytest.mark.parametrize(
+    ("told", "says"),
+    [
+        (("--port", "70000"), "at most 65,535"),
+        (("--port", "0", "--host", "203.0.113.7"), "127.0.0.1 is this machine alone"),
+        (("--port", "0", "--host", "0.0.0.0"), "--url https://"),
+        (("--port", "0", "--url", "mechanics.example.org"), "found 'mechanics.example.org'"),
+        (("--port", "0", "--url", "https://example.org/mechanics"), "no path"),
+        (("--demo", "x", "--db", "y"), "--demo brings its own database"),
+        (("--port", "0", "--db", "mysql://x/y"), "mysql"),
+        (("--port", "0", "--db", "/no/such/folder/x.db"), "/no/such/folder"),
+    ],
+)
+def test_what_cannot_be_served_is_told(capsys, tmp_path, monkeypatch, told, says):
+    monkeypatch.chdir(tmp_path)
+    assert says in refusal(capsys, *told)

@@ -1,0 +1,212 @@
+"""Every address of the site, asked for by nobody, a student, another student and an instructor: who may, who may not, and what
+no reply holds. Pages are found in the site's own table; a page that ``site_walk.fillings`` does not know fails."""
+
+import re
+
+import pytest
+from site_walk import MAX, TEACHER, ZOE, Filled, Scripts, filled, fillings, text_of
+
+from coursework.site.application import PAGES
+from coursework.site.frame.visits import Who
+
+every_page = pytest.mark.parametrize("page", PAGES, ids=[page.path for page in PAGES])
+posting = pytest.mark.parametrize(
+    "page", [p for p in PAGES if p.posts], ids=[p.path for p in PAGES if p.posts]
+)
+BROKEN = 500
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    return Filled(f"sqlite:///{tmp_path_factory.mktemp('walk')}/site.db")
+
+
+def address_of(site, page, *, others=False):
+    known = fillings(site)
+    assert page.path in known, (
+        f"{page.path} is new: say in tests/site_walk.py how it is filled in, and whose it is"
+    )
+    told = known[page.path]
+    return filled(page.path, told.others if others and told.others is not None else told.own)
+
+
+def test_every_address_is_listed_once():
+    assert len({page.path for page in PAGES}) == len(PAGES)
+
+
+def test_every_page_falls_under_a_limit(site):
+    for page in PAGES:
+        site.site.limits.asked(page.limit, 1, "192.0.2.1")
+        assert 0 < page.largest <= 64 * 1024 * 1024
+
+
+# ----------------------------------------------------------------------- who may
+
+
+@every_page
+def test_nobody_sees_only_what_is_public(site, page):
+    reply = site.browser().get(address_of(site, page))
+    if page.who is Who.NOBODY:
+        assert reply.status_code < BROKEN
+    else:
+        assert (reply.status_code, reply.headers["location"].partition("?")[0]) == (303, "/sign-in")
+        assert site.browser().fill(address_of(site, page)).status_code in (401, 405)
+
+
+@every_page
+def test_a_student_sees_no_page_of_the_staff(site, page):
+    reply = site.browser(ZOE).get(address_of(site, page))
+    if page.who is Who.STAFF:
+        assert reply.status_code == 403
+        assert site.browser(ZOE).fill(address_of(site, page)).status_code in (403, 405)
+    else:
+        assert reply.status_code not in (401, 403), reply.text
+        assert reply.status_code < BROKEN
+
+
+@every_page
+def test_a_student_sees_nothing_of_another(site, page):
+    if page.who is not Who.SOMEBODY or fillings(site)[page.path].others is None:
+        return
+    theirs = address_of(site, page, others=True)
+    assert site.browser(ZOE).get(theirs).status_code in (403, 404, 405)
+    if page.posts:
+        assert site.browser(ZOE).fill(theirs).status_code in (403, 404)
+
+
+@every_page
+def test_an_instructor_may(site, page):
+    reply = site.browser(TEACHER).get(address_of(site, page))
+    assert reply.status_code not in (401, 403), reply.text
+    assert reply.status_code < BROKEN
+
+
+@every_page
+@pytest.mark.parametrize("name", [None, ZOE])
+def test_no_reply_holds_what_is_not_for_them(site, page, name):
+    """Neither an answer before its time, nor anything of another student, wherever they stand; whatever is asked."""
+    for others in (False, True):
+        for ask in ("get", "fill"):
+            text = text_of(getattr(site.browser(name), ask)(address_of(site, page, others=others)))
+            told = [
+                secret
+                for secret in site.secrets(MAX)
+                if re.search(rf"(?<!\w){re.escape(secret)}(?!\w)", text)
+            ]
+            assert not told
+            if "answers" not in fillings(site)[page.path].holds:
+                assert not [
+                    one.pattern for who in (ZOE, MAX) for one in site.answers(who) if one.search(text)
+                ]
+
+
+@every_page
+def test_what_is_practised_is_no_variant_that_was_issued(site, page):
+    """Or the worked solution of a paper could be had before its time."""
+    if "{seed}" not in page.path:
+        return
+    for name in (ZOE, MAX):
+        places = {**fillings(site)[page.path].own, "seed": str(site.variants[name].record["seed"])}
+        for ask in ("get", "fill"):
+            text = text_of(getattr(site.browser(ZOE), ask)(filled(page.path, places)))
+            assert not [one.pattern for one in site.answers(name) if one.search(text)]
+
+
+# ------------------------------------------------------------------------- forms
+
+
+@every_page
+@pytest.mark.parametrize("name", [ZOE, TEACHER])
+def test_no_link_signs_anybody_in_or_out(site, page, name):
+    browser = site.browser(name)
+    reply = browser.get(address_of(site, page))
+    assert "set-cookie" not in reply.headers
+    assert browser.get("/progress").status_code == 200
+
+
+@posting
+@pytest.mark.parametrize("name", [ZOE, TEACHER])
+def test_no_form_is_taken_without_its_seal(site, page, name):
+    if page.who is Who.STAFF and name == ZOE:
+        return
+    address, browser = address_of(site, page), site.browser(name)
+    seal, others = browser.seal, site.browser(MAX).seal
+    again = site.browser(name).seal
+    for told in (
+        {},
+        {"_seal": ""},
+        {"_seal": others},
+        {"_seal": again},
+        {"_seal": seal[:-1] + ("1" if seal[-1] == "0" else "0")},
+        {"_seal": "é" * 64},
+    ):
+        assert browser.post(address, data=told).status_code == 403, told
+        assert (
+            browser.post(
+                address, data={"x": "y"}, headers={"x-seal": told.get("_seal", "").encode("latin-1")}
+            ).status_code
+            == 403
+        )
+
+
+@posting
+def test_no_form_is_taken_from_elsewhere(site, page):
+    browser = site.browser(TEACHER)
+    told = {"_seal": browser.seal}
+    for headers in (
+        {"origin": "https://evil.example"}, {"origin": "null"}, {"origin": "https://127.0.0.1:8000"}, {"origin": "http://["},
+        {"origin": "http://127.0.0.1:8001"}, {"sec-fetch-site": "cross-site"}, {"sec-fetch-site": "same-site"},
+    ):  # fmt: skip
+        assert browser.post(address_of(site, page), data=told, headers=headers).status_code == 403, headers
+
+
+# ------------------------------------------------------------------------ headers
+
+
+def replies(site, page):
+    """A reply of each sort: shown, refused, not there, too large, odd."""
+    address = address_of(site, page)
+    for name in (None, ZOE, TEACHER):
+        browser = site.browser(name, "fr" if name == ZOE else "en")
+        yield browser.get(address)
+        yield browser.get(address + "/no/such/page")
+        yield browser.get(address, headers={"host": "evil.example"})
+        yield browser.get(address, headers={"host": "["})
+        yield browser.put(address)
+        yield browser.post(address, content=b"", headers={"content-length": "99999999999"})
+        yield browser.post(
+            address, content=b"\xff\xfe", headers={"content-type": "multipart/form-data; boundary=x"}
+        )
+
+
+@every_page
+def test_every_reply_says_what_a_browser_may_do_with_it(site, page):
+    for reply in replies(site, page):
+        policy = dict(
+            part.strip().split(" ", 1) for part in reply.headers["content-security-policy"].split(";")
+        )
+        assert policy["default-src"] == policy["frame-ancestors"] == policy["base-uri"] == "'none'"
+        assert policy["script-src"] == policy["form-action"] == "'self'"
+        assert reply.headers["x-content-type-options"] == "nosniff"
+        assert reply.headers["referrer-policy"] == "same-origin"
+        assert reply.headers["x-frame-options"] == "DENY"
+        kept = "immutable" in reply.headers["cache-control"]
+        assert kept or reply.headers["cache-control"] == "no-store"
+        assert not (kept and "set-cookie" in reply.headers)
+        assert reply.status_code != BROKEN, reply.request
+
+
+@every_page
+def test_no_page_runs_what_stands_in_it_or_asks_another_host(site, page):
+    for reply in replies(site, page):
+        if not reply.headers.get("content-type", "").startswith("text/html"):
+            continue
+        found = Scripts(reply.text)
+        assert not found.inline
+        assert not found.handlers
+        for address in found.addresses:
+            assert re.match(r"(/(?!/)|#|\?|data:image/|[\w.-]+$|$)", address), address
+        styles = re.findall(r"url\(\s*(?!['\"]?(?:data:|#))([^)]*)", reply.text)
+        assert not styles
+        beyond = set(re.findall(r"https?://[^\s\"'<>]+", reply.text))
+        assert all(one.startswith(("http://www.w3.org/", "http://127.0.0.1:8000")) for one in beyond), beyond

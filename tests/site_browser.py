@@ -1,0 +1,140 @@
+"""The site in the system's Chromium: a server on the loopback interface, pages of a telephone and of a desk."""
+
+import os
+import shutil
+import threading
+import time
+from contextlib import contextmanager
+from urllib.parse import urlsplit
+
+import pytest
+
+WIDTHS = {"telephone": (390, 844), "desk": (1280, 900)}
+
+
+def chromium_path():
+    """Where Chromium is; the test is skipped where it is not."""
+    named = os.environ.get("COURSEWORK_CHROMIUM")
+    found = named or next(
+        filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None
+    )
+    if not found:
+        pytest.skip("no Chromium here; COURSEWORK_CHROMIUM names one")
+    return found
+
+
+@contextmanager
+def served(class_, port=0):
+    """The site of a class behind a server of its own, in a thread; gives its address."""
+    import uvicorn
+
+    config = uvicorn.Config(class_.app, host="127.0.0.1", port=port, log_level="warning")
+    server = uvicorn.Server(config)
+    thread = threading.Thread(target=server.run, daemon=True)
+    thread.start()
+    until = time.monotonic() + 20
+    while not server.started:
+        assert time.monotonic() < until, "the server did not start"
+        time.sleep(0.02)
+    number = server.servers[0].sockets[0].getsockname()[1]
+    try:
+        yield f"http://127.0.0.1:{number}"
+    finally:
+        server.should_exit = True
+        thread.join(20)
+
+
+@contextmanager
+def chromium():
+    """A browser, for all tests of a process."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(
+            executable_path=chromium_path(), args=["--no-sandbox", "--disable-gpu"]
+        )
+        yield browser
+        browser.close()
+
+
+def context_of(browser, class_, address, name=None, lang="en", size="telephone", script=True, **more):
+    """A browser's window of somebody: their session, language and screen."""
+    from coursework.site.frame.cookies import COOKIE, Cookies
+
+    width, height = WIDTHS[size]
+    context = browser.new_context(
+        locale=lang,
+        viewport={"width": width, "height": height},
+        has_touch=size == "telephone",
+        java_script_enabled=script,
+        **more,
+    )
+    if name is not None:
+        cookie = Cookies(class_.site.secret).made(class_.ids[name])
+        host = urlsplit(address).hostname
+        context.add_cookies([{"name": COOKIE, "value": cookie, "domain": host, "path": "/"}])
+    return context
+
+
+def serious(page):
+    """What axe finds serious or critical on a page: id, and where."""
+    from axe_core_python.sync_playwright import Axe
+
+    found = Axe().run(page)["violations"]
+    return [
+        (one["id"], [node["target"] for node in one["nodes"]][:3])
+        for one in found
+        if one["impact"] in ("serious", "critical")
+    ]
+
+
+def too_wide(page):
+    """By how many pixels a page is wider than its screen."""
+    return page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+
+
+#: Controls that a thumb does not hit; links within a text are none.
+_LOW = """() => {
+  const inText = (one) => one.tagName === "A" && getComputedStyle(one).display === "inline" && one.closest("p, td, dd, li, h2, h3, summary");
+  const room = (one) => (["checkbox", "radio"].includes(one.type) ? one.closest("label") || one : one).getBoundingClientRect();
+  return Array.from(document.querySelectorAll("button, input:not([type=hidden]), select, textarea, summary, a[href]"))
+    .filter((one) => one.checkVisibility({ visibilityProperty: true }) && !one.closest(".visually-hidden, .skip") && !inText(one))
+    .filter((one) => room(one).height > 0 && room(one).height < 43.5)
+    .map((one) => `${one.outerHTML.slice(0, 90)} ${room(one).height.toFixed(0)} px`);
+}"""
+
+
+def low(page):
+    """The controls of a page that are lower than a thumb needs."""
+    return page.evaluate(_LOW)
+
+
+def watched(page):
+    """What goes wrong behind a page, as it happens: its console's errors, requests that fail, scripts that stop."""
+    found = []
+    page.on("console", lambda one: found.append(one.text) if one.type in ("error", "warning") else None)
+    page.on("pageerror", lambda fault: found.append(str(fault)))
+    page.on("requestfailed", lambda one: None if _ended(one) else found.append(f"failed: {one.url}"))
+    page.on("response", lambda one: found.append(f"{one.status}: {one.url}") if one.status >= 400 else None)
+    return found
+
+
+def _ended(request):
+    """A request that the browser itself ended: it became a file to keep, or the page was left."""
+    return "ERR_ABORTED" in (request.failure or "")
+
+
+def cut_in_print(page):
+    """By how many pixels a page is wider than a sheet of A4 when it is printed, and what still sticks to the screen."""
+    page.emulate_media(media="print")
+    size = page.viewport_size
+    page.set_viewport_size({"width": 660, "height": 1000})  # 174 mm at 96 px an inch
+    stuck = page.evaluate(
+        """() => Array.from(document.querySelectorAll("main *"))
+        .filter((one) => ["sticky", "fixed"].includes(getComputedStyle(one).position) && one.checkVisibility() && one.tagName !== "TH")
+        .map((one) => one.className)"""
+    )
+    found = (too_wide(page), stuck)
+    page.emulate_media(media="screen")
+    page.set_viewport_size(size)
+    return found

@@ -1,0 +1,59 @@
+"""A site of the built-in course with an instructor and students, and browsers without a browser, each signed in as somebody."""
+
+import re
+from datetime import UTC, datetime
+
+from starlette.testclient import TestClient
+
+from coursework import open_course
+from coursework.database.people import put_account, put_person
+from coursework.database.store import Store
+from coursework.making.students import folded
+from coursework.site.application import application
+from coursework.site.frame.cookies import COOKIE, Cookies
+from coursework.site.frame.settings import Entrance, Site
+
+HOME = "http://127.0.0.1:8000"
+ZOE, MAX, TEACHER = "Zoé", "Max", "Ada Teacher"
+
+
+class Browser(TestClient):
+    """Follows no address by itself; ``fill`` fills in the seal of the page's forms."""
+
+    def __init__(self, app, lang):
+        super().__init__(app, base_url=HOME, headers={"accept-language": lang}, follow_redirects=False)
+
+    @property
+    def seal(self):
+        return re.search(r'X-Seal": "([0-9a-f]{64})"', self.get("/no-such-page").text)[1]
+
+    def fill(self, address, data=None, **more):
+        return self.post(address, data={"_seal": self.seal, **(data or {})}, **more)
+
+
+class Class:
+    """A site with three people; ``at`` is what its clock says."""
+
+    def __init__(self, url, entrance=Entrance.ACCOUNTS):
+        self.at = datetime(2026, 11, 23, 9, tzinfo=UTC)
+        self.site = Site(open_course(), Store(url), entrance, HOME, lambda: self.at)
+        self.app = application(self.site)
+        self.ids = {}
+        with self.site.store.begin() as connection:
+            for name, role in ((ZOE, "student"), (MAX, "student"), (TEACHER, "instructor")):
+                self.ids[name] = put_person(connection, who=folded(name), name=name, lang="", columns={})
+                put_account(
+                    connection, self.ids[name], login=f"{name.split()[0].lower()}@example.org", role=role
+                )
+
+    def again(self):
+        """The same site, begun once more."""
+        self.app = application(self.site)
+        return self
+
+    def browser(self, name=None, lang="en"):
+        """A browser of somebody; of nobody unless told."""
+        found = Browser(self.app, lang)
+        if name is not None:
+            found.cookies.set(COOKIE, Cookies(self.site.secret).made(self.ids[name]))
+        return found
