@@ -64,13 +64,6 @@ def bars(r1, r2, r3, r4, theta2, mode):
     return A, B - A, B - C
 
 
-def rates(bars):
-    """omega3 and omega4, over omega2."""
-    crank, coupler, rocker = bars
-    area = cross(rocker, coupler)
-    return cross(crank, rocker) / area, cross(crank, coupler) / area
-
-
 def cross(u, v):
     return u.real * v.imag - u.imag * v.real
 
@@ -163,77 +156,29 @@ def all_long(share, *vectors):
     return np.minimum.reduce(lengths) > share * np.maximum.reduce(lengths)
 
 
-# -------------------------------------------------------------------- accelerations
-
-
-def of_four_bar(bars, rates):
-    """The sides of the acceleration polygon over omega2 squared, at a constant rate of the crank: of A, of B about A
-    and of B, each of the two normal then tangential."""
-    crank, coupler, rocker = bars
-    omega3, omega4 = rates
-    along = crank + omega3**2 * coupler - omega4**2 * rocker
-    area = cross(coupler, rocker)
-    alpha3, alpha4 = dot(along, rocker) / area, dot(along, coupler) / area
-    return -crank, -(omega3**2) * coupler, 1j * alpha3 * coupler, -(omega4**2) * rocker, 1j * alpha4 * rocker
-
-
 def dot(u, v):
     return u.real * v.real + u.imag * v.imag
-
-
-def of_slider_crank(rod, r2, theta2):
-    """The same: of A, of B about A normal then tangential, of B."""
-    crank = polar(r2, theta2)
-    omega3 = -crank.real / rod.real
-    alpha3 = (crank.imag + omega3**2 * rod.imag) / rod.real
-    tangential = 1j * alpha3 * rod
-    return -crank, -(omega3**2) * rod, tangential, -crank - omega3**2 * rod + tangential
 
 
 # ------------------------------------------------------------------------ slotted guide
 
 
 class Guided(NamedTuple):
-    """A slotted mechanism at unit rate of the crank: vectors O2A and O4A; the rate of the guide and of the block
-    along it, and the rates of these at a constant rate of the crank."""
+    """A slotted mechanism: vectors O2A and O4A."""
 
     crank: Any
     arm: Any
-    guide_rate: Any
-    sliding: Any
-    guide_gain: Any
-    sliding_gain: Any
 
     @property
     def along(self):
         """Unit vector of the guide, away from O4."""
         return self.arm / abs(self.arm)
 
-    @property
-    def velocities(self):
-        """Of A2, of A4 (the point of the guide), of A2 relative to A4; over omega2."""
-        return 1j * self.crank, 1j * self.guide_rate * self.arm, self.sliding * self.along
-
-    @property
-    def accelerations(self):
-        """Of A2; Coriolis; of A4, normal then tangential; relative, along the guide; over omega2 squared."""
-        return (
-            -self.crank,
-            2j * self.guide_rate * self.sliding * self.along,
-            -(self.guide_rate**2) * self.arm,
-            1j * self.guide_gain * self.arm,
-            self.sliding_gain * self.along,
-        )
-
 
 def guided(r1, r2, theta2):
     """Of O2 at the height r1 above O4, the origin."""
     crank = polar(r2, theta2)
-    arm = 1j * r1 + crank
-    along = arm / abs(arm)
-    guide_rate, sliding = dot(crank, arm) / abs(arm) ** 2, dot(1j * crank, along)
-    left = -crank + guide_rate**2 * arm - 2j * guide_rate * sliding * along
-    return Guided(crank, arm, guide_rate, sliding, dot(left, 1j * along) / abs(arm), dot(left, along))
+    return Guided(crank, 1j * r1 + crank)
 
 
 SLOTTED = {

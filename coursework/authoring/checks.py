@@ -46,7 +46,7 @@ from coursework.rendering.renderer import renderer_of
 from coursework.sheets.answer_sheet import answer_sheet
 from coursework.sheets.handout import handout as handout_of
 from coursework.sheets.handout import prompt
-from coursework.system.processes import processes, workers
+from coursework.system.processes import Lost, processes, workers
 
 RENDERED = 1  #: variants whose sheets are rendered in every format and language
 _SOME = 3  #: variants that show whether a quantity is complex
@@ -82,8 +82,8 @@ def check_all(
     course: Course, names: Sequence[str], variants: int, progress: Callable[[], None] = lambda: None
 ) -> list[Report]:
     """A report an exercise, in this order, made by as many processes as there are processors."""
-    count = workers(len(names))
-    if count < 2 or variants < _WORTH_PROCESSES:
+    count = min(workers(len(names)), workers(variants, _WORTH_PROCESSES))
+    if count < 2:
         return [_told(_check_one(course, name, variants), progress) for name in names]
     with processes(count) as submit:
         # The longest first, so that no process waits for another at the end.
@@ -91,7 +91,11 @@ def check_all(
         tasks = {name: submit(_check_elsewhere, str(course.folder.root), name, variants) for name in longest}
         for task in tasks.values():
             task.add_done_callback(lambda _: progress())
-        return [tasks[name].result() for name in names]
+        try:
+            return [tasks[name].result() for name in names]
+        except Lost as fault:
+            left = [name for name in names if not (tasks[name].done() and tasks[name].exception() is None)]
+            raise Lost(f"{fault}: not checked: {', '.join(left)}") from None
 
 
 _WORTH_PROCESSES = 50  #: variants an exercise; fewer are done before a process has started
@@ -130,7 +134,9 @@ def _check_one(course: Course[Any], name: str, variants: int) -> Report:
 
 
 def _check_variants(exercise: CourseExercise, count: int, report: Report) -> None:
-    report.acceptance = draws.acceptance(exercise.name, exercise.spec)[0]
+    if not exercise.folder.has_solutions:
+        return  # told
+    report.acceptance = draws.acceptance(exercise.name, exercise.drawing)[0]
     lang = exercise.languages[0]
     try:
         drawn = distinct_variants(exercise, 0, count, lang, report.refused, (ALL,))

@@ -9,13 +9,21 @@ from pathlib import Path
 from typing import NamedTuple
 
 from coursework.authoring.scaffold import check_name, course_files
-from coursework.course.builtin import builtin_root
 from coursework.course.folder import Folder, course_folder
-from coursework.errors import BadCourse, BadInput, counted, unknown
+from coursework.course.sources import (
+    KINDS,
+    MADE,
+    imported,
+    included,
+    modules,
+    named,
+    own_files,
+    own_folder,
+    parsed,
+)
+from coursework.errors import BadInput, counted, unknown
 from coursework.system.writing import write_whole
 
-_KINDS = ("exercises", "solutions")
-_NO_COPIES = ("__pycache__", ".pyc")
 _TEXT = re.compile(r".*\.([a-z]{2,3})\.md\.j2")
 _PICTURE = re.compile(r"!\[[^\]]*\]\(([^)\s]+)\)")
 
@@ -77,7 +85,7 @@ class _Copy:
 
     def files(self) -> dict[Path, bytes]:
         """Contents by path from the course's folder."""
-        waiting = [path for kind in _KINDS for path in self._own(kind)]
+        waiting = [path for kind in KINDS for path in self._own(kind)]
         while waiting:
             path = waiting.pop()
             if path not in self._met:
@@ -88,59 +96,37 @@ class _Copy:
     # --------------------------------------------------------------------- found
 
     def _folder(self, kind: str) -> Path | None:
-        """The folder that bears the exercise's name, or would; none where it has no module of the kind."""
-        home = self.source.home(kind, self.name) if kind in _KINDS else None
-        if home is None:
-            return None
-        return home.parent if home.name == "__init__.py" else home.parent / self.name
+        return own_folder(self.source, kind, self.name)
 
     def _own(self, kind: str) -> Iterator[Path]:
-        """What bears the name of the exercise: its module, its texts, data beside them, and a folder of its name."""
-        folder = self._folder(kind)
-        if folder is None:
-            return
-        for path in (*folder.parent.glob(f"{self.name}.*"), *folder.rglob("*")):
+        """What bears the name of the exercise, texts in the languages that are asked for."""
+        for path in own_files(self.source, kind, self.name):
+            if path.suffix == ".draws" and self.renamed != self.name:
+                continue  # another name draws otherwise
             text = _TEXT.fullmatch(path.name)
-            is_copied = not any(part.endswith(_NO_COPIES) for part in path.parts)
-            if path.is_file() and is_copied and (text is None or text[1] in self.langs):
+            if text is None or text[1] in self.langs:
                 yield path
 
     def _needed(self, path: Path) -> list[Path]:
         """What a file names: modules, texts, data and pictures of the course."""
         if path.suffix == ".py":
-            tree = _parsed(path)
-            found = [*_imported(tree, path), *_named(tree, path)]
+            tree = parsed(path)
+            found = [*imported(tree, path), *named(tree, path)]
             return found + [other for each in found for other in self._beside(each)]
         if path.name.endswith(".md.j2"):
-            return [*self._included(path), *self._pictures(path)]
+            return [*included(self.source, path), *self._pictures(path)]
         return []
 
     def _beside(self, path: Path) -> list[Path]:
         """The data that stand beside the module of another exercise; its texts are not asked for."""
         if not self._is_of_another(path):
             return []
-        return [p for p in path.parent.glob(f"{path.stem}.*") if not p.name.endswith((".j2", *_NO_COPIES))]
+        return [p for p in path.parent.glob(f"{path.stem}.*") if not p.name.endswith((".j2", *MADE))]
 
     def _is_of_another(self, path: Path) -> bool:
         name, kind = path.name.partition(".")[0], path.relative_to(self.source.root).parts[0]
-        home = self.source.home(kind, name) if kind in _KINDS and name != self.name else None
+        home = self.source.home(kind, name) if kind in KINDS and name != self.name else None
         return home is not None and home == path.with_name(f"{name}.py")
-
-    def _included(self, path: Path) -> list[Path]:
-        import jinja2
-        from jinja2 import meta
-
-        kind = path.relative_to(self.source.root).parts[0]
-        try:
-            names = list(
-                meta.find_referenced_templates(jinja2.Environment().parse(path.read_text("utf-8-sig")))
-            )
-        except jinja2.TemplateSyntaxError as fault:
-            raise BadCourse(f"{self.source.relative(path)}, line {fault.lineno}: {fault.message}") from fault
-        folders = (path.parent, self.source.root / kind, *self.source.template_folders)
-        found = [next((f / name for f in folders if (f / name).is_file()), None) for name in names if name]
-        brought = builtin_root().resolve() / "templates"  # every course has these
-        return [file for file in found if file is not None and brought not in file.parents]
 
     def _pictures(self, path: Path) -> list[Path]:
         named = _PICTURE.findall(path.read_text("utf-8-sig"))
@@ -151,6 +137,8 @@ class _Copy:
     def _place(self, path: Path) -> Path:
         """Where a file goes: under the new name if it is the exercise's own, as a shared one if it is another's."""
         relative = path.relative_to(self.source.root)
+        if path.name == f"_{self.name}_keep.py":
+            return relative.with_name(f"_{self.renamed}_keep.py")  # the conditions beside its solution
         folder = self._folder(relative.parts[0])
         if folder is not None and folder in path.parents:
             return folder.relative_to(self.source.root).with_name(self.renamed) / path.relative_to(folder)
@@ -174,7 +162,7 @@ class _Copy:
         lines = text.splitlines(keepends=True)
         for node in ast.walk(ast.parse(text)):
             if isinstance(node, ast.ImportFrom) and node.level:
-                for module in _modules(node, path):
+                for module in modules(node, path):
                     old, new = module.stem, self._place(module).stem
                     if module in self._met and old != new:
                         _rename(lines, node, old, new)
@@ -189,34 +177,3 @@ def _rename(lines: list[str], node: ast.ImportFrom, old: str, new: str) -> None:
         return
     for k in range(first, last):
         lines[k] = re.sub(rf"(?<![\w.]){old}(?!\w|\s+as\b)", f"{new} as {old}", lines[k])
-
-
-def _parsed(path: Path) -> ast.Module:
-    try:
-        return ast.parse(path.read_text("utf-8-sig"))
-    except SyntaxError as fault:
-        raise BadCourse(f"{path}, line {fault.lineno}: {fault.msg}") from fault
-
-
-def _imported(tree: ast.Module, path: Path) -> Iterator[Path]:
-    for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node.level:
-            yield from _modules(node, path)
-
-
-def _modules(node: ast.ImportFrom, path: Path) -> Iterator[Path]:
-    """The files of the modules that a relative import names."""
-    folder = path.parents[node.level - 1]
-    place = folder.joinpath(*(node.module or "").split(".")) if node.module else folder
-    names = [place] if node.module else []
-    for name in (*names, *(place / alias.name for alias in node.names)):
-        yield from (p for p in (name.with_name(f"{name.name}.py"), name / "__init__.py") if p.is_file())
-
-
-def _named(tree: ast.Module, path: Path) -> Iterator[Path]:
-    """The files beside a module that it names in a text: ``"loads.csv"``."""
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str):
-            name = node.value
-            if re.fullmatch(r"[\w ./-]{1,120}\.\w{1,8}", name) and (path.parent / name).is_file():
-                yield path.parent / name

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from coursework.errors import BadInput
+from coursework.system.folder_lock import is_bare
 from coursework.system.writing import write_whole
 
 EXAMPLES = Path(__file__).parent / "examples"
@@ -25,7 +26,7 @@ def new_example(folder: Path, name: str) -> list[Path]:
     names = example_names()
     if name not in names:
         raise BadInput(f"no example {name!r}; there is: {', '.join(names)}")
-    if folder.exists() and any(folder.iterdir()):
+    if not is_bare(folder):
         raise BadInput(f"{folder} is not empty; name a new folder for the example")
     return _copied(EXAMPLES / name, folder)
 

@@ -11,6 +11,7 @@ from coursework.course.folder import course_folder
 from coursework.errors import BadInput
 from coursework.language.environment import language_of
 from coursework.language.words import languages
+from coursework.system.folder_lock import is_bare
 from coursework.system.writing import write_whole
 
 SKELETON = Path(__file__).parent / "skeleton"
@@ -31,7 +32,7 @@ def new_course(folder: Path, langs: Collection[str] | None = None) -> list[Path]
     BadInput
         The folder holds something already.
     """
-    if folder.exists() and any(folder.iterdir()):
+    if not is_bare(folder):
         raise BadInput(
             f"{folder} is not empty; name a new folder, or add an exercise: coursework new {folder} NAME"
         )

@@ -59,7 +59,7 @@ class Course(Generic[V]):
         return len(self.names)
 
     def __contains__(self, name: object) -> bool:
-        return name in self.names
+        return isinstance(name, str) and self.folder.home("exercises", name) is not None
 
     def __getitem__(self, name: str) -> CourseExercise[V]:
         if name not in self._exercises:

@@ -165,6 +165,33 @@ def draw(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[dict[str, 
     raise _starved(name, exercise, seeds[pending[0]])
 
 
+def nth_candidate(name: str, exercise: Exercise, seed: int, place: int) -> dict[str, float | str]:
+    """The given values of a candidate of a seed, by its place among them."""
+    words = _words(name, exercise.version, seed, place // BLOCK, len(exercise.given))
+    return {n: v[place % BLOCK].item() for n, v in candidates(exercise, words).items()}
+
+
+def places(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[int]:
+    """For each seed, the place among its candidates of the one that :func:`draw` draws.
+
+    Raises
+    ------
+    Starved
+        As :func:`draw`.
+    """
+    found = []
+    for seed in seeds:
+        for block in range(MAX_BLOCKS):
+            words = _words(name, exercise.version, seed, block, len(exercise.given))
+            good, _ = kept(exercise, candidates(exercise, words))
+            if good.any():
+                found.append(block * BLOCK + int(good.argmax()))
+                break
+        else:
+            raise _starved(name, exercise, seed)
+    return found
+
+
 def _starved(name: str, exercise: Exercise, seed: int) -> Starved:
     """What is said of a seed without a variant: which conditions refuse most of its draws."""
     width = len(exercise.given)

@@ -274,10 +274,50 @@ class CourseExercise(Generic[V]):
             if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
                 raise WrongValue(f"a seed is a whole number from 0 on; found {seed!r}")
         seeds = [int(seed) for seed in seeds]
-        drawn = draws.draw(self.name, self.spec, seeds)
+        drawn = self._drawn(seeds)
         return [
             self._variant(self, seed, given, lang, chosen) for seed, given in zip(seeds, drawn, strict=True)
         ]
+
+    @cached_property
+    def drawing(self) -> Exercise:
+        """The exercise with every condition on its variants: those on answers stand with the solution.
+
+        Raises
+        ------
+        BadCourse
+            Nothing beside the solution states them.
+        """
+        if not self.spec.kept_by_solution:
+            return self.spec
+        module = self.folder.keep_module(self.name)
+        keep = getattr(module, "KEEP", ())
+        if not keep:
+            raise BadCourse(f"_{self.name}_keep.py states no KEEP, which {self.name} says that it is kept by")
+        helpers = (*self.spec.helpers, *getattr(module, "HELPERS", ()))
+        spec = replace(self.spec, keep=(*self.spec.keep, *keep), helpers=helpers)
+        draws.check_conditions(self.name, spec)
+        return spec
+
+    def _drawn(self, seeds: Sequence[int]) -> list[dict[str, float | str]]:
+        """The given values of seeds; without the solution that keeps them, of those that are recorded."""
+        if not self.spec.kept_by_solution or self.folder.home("solutions", self.name) is not None:
+            return draws.draw(self.name, self.drawing, seeds)
+        for seed in seeds:
+            if seed >= len(self._recorded):
+                raise NoSolution(
+                    f"{self.name}: which variant seed {seed} draws hangs on answers, which a students' copy does not "
+                    f"hold; it knows the seeds below {len(self._recorded)}, and any sheet by its record: "
+                    "exercise.from_record(record)"
+                )
+        return [draws.nth_candidate(self.name, self.spec, seed, self._recorded[seed]) for seed in seeds]
+
+    @cached_property
+    def _recorded(self) -> tuple[int, ...]:
+        """For each seed, which of its candidates is the variant, as ``NAME.draws`` records it."""
+        home = self.folder.home("exercises", self.name)
+        path = None if home is None else home.with_name(f"{self.name}.draws")
+        return tuple(map(int, path.read_text("ascii").split())) if path and path.is_file() else ()
 
     def chosen_parts(self, parts: Sequence[str] | None) -> tuple[Part, ...] | None:
         """Parts by id, in the order of the exercise; None for the usual ones.

@@ -59,7 +59,7 @@ def _known(folder: Folder) -> _Kept:
     # Which Python loads the exercises, and where it looks for what they import.
     python = [sys.version, *sys.path]
     files = states(folder.root / "exercises", folder.root / "templates", _ENGINE)
-    with suppress(TypeError):
+    with suppress(TypeError, AttributeError):
         found = _Kept(**kept(_name(folder)))
         if (found.python, found.files) == (python, files) and all(
             state(path) == was for path, was in found.loaded.items()

@@ -3,27 +3,7 @@
 from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part
 
-from ._solids import IN_CHAINS, coordinate, direction, joint_kind, mobility_of_loop, table
-
-
-def mobility(
-    joint_1, direction_1, joint_2, direction_2, joint_3, direction_3, joint_4, direction_4,
-    x2, y2, z2, x3, y3, z3, x4, y4, z4,
-):  # fmt: skip
-    """Of the whole chain, at the given position."""
-    return mobility_of_loop(
-        (joint_1, joint_2, joint_3, joint_4),
-        (direction_1, direction_2, direction_3, direction_4),
-        ((0, 0, 0), (x2, y2, z2), (x3, y3, z3), (x4, y4, z4)),
-    )
-
-
-def moves(mobility):
-    return mobility >= 1
-
-
-def mobility_is_small(mobility):
-    return mobility <= 3
+from ._solids import IN_CHAINS, coordinate, direction, joint_kind, table
 
 
 def tells(
@@ -63,8 +43,8 @@ EXERCISE = Exercise(
         "direction_4": direction(),
         **{f"{axis}{k}": coordinate() for k in (2, 3, 4) for axis in "xyz"},
     },
-    helpers=(mobility,),
-    keep=(moves, mobility_is_small),
+    helpers=(),
+    keep=(),
     parts=(
         Part("gamma", kind="integer", points=1),
         Part("Nc", kind="integer", points=1),
@@ -90,4 +70,5 @@ EXERCISE = Exercise(
         "m_internal": "m_i",
         "m_useful": "m_u",
     },
+    kept_by_solution=True,
 )

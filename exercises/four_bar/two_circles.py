@@ -1,37 +1,11 @@
 """Four-bar linkage drawn to scale: where two circles meet, and the angles measured there (Figure 12)."""
 
-import numpy as np
-
 from coursework.degrees import polar
 from coursework.figures import Figure, angle_mark, ground_pivot, line, link, pin
-from coursework.kinematics.dyads import rrr
-from coursework.marking.drawn_polygons import scale_for
 from coursework.model import Exercise, drawn
 
-from .._drawn import PAPER_MM, all_long, of_drawing
-from .four_bar_positions import cos_mu, crank_off_the_axes, diagonal
-
-
-def circles_cut_clearly(cos_mu):
-    """At 40 degrees at least."""
-    return abs(cos_mu) < 0.766
-
-
-def pins_B_far_apart(diagonal, cos_mu, r3, r4):
-    """Their distance is at least that of the shorter bar."""
-    height = r3 * r4 * (1 - cos_mu**2) ** 0.5 / diagonal
-    return (2 * height > r3) | (2 * height > r4)
-
-
-def on_paper(r1, r2, r3, r4, theta2):
-    """mm on paper for a mm of the mechanism, at the round scale at which both assemblies fit the box."""
-    A = polar(r2, theta2)
-    return 1 / scale_for(A, r1 + 0 * A, *(rrr(A, r1 + 0 * A, r3, r4, side) for side in (1, -1)))
-
-
-def bars_are_long_enough_to_draw(r1, r2, r3, r4, on_paper):
-    """15 mm at least, and that from which the scale is told twice as long."""
-    return all_long(0.4, r1, r2, r3, r4) & (on_paper * r2 > 15) & (on_paper * np.maximum(r1, r2) > 30)
+from .._drawn import PAPER_MM, of_drawing
+from .four_bar_positions import crank_off_the_axes
 
 
 def figure(r1, r2, theta2):
@@ -60,8 +34,7 @@ EXERCISE = Exercise(
         "r4": drawn(50, 220, step=5, unit="mm"),
         "theta2": drawn(-175, 180, step=5, unit="deg"),
     },
-    helpers=(diagonal, cos_mu, on_paper),
-    keep=(circles_cut_clearly, pins_B_far_apart, bars_are_long_enough_to_draw, crank_off_the_axes),
+    keep=(crank_off_the_axes,),
     parts=(
         of_drawing("kl", "mm/mm"),
         of_drawing("p", kind="point"),
@@ -88,4 +61,5 @@ EXERCISE = Exercise(
         "theta3_crossed": r"\theta_3^{(2)}",
         "theta4_crossed": r"\theta_4^{(2)}",
     },
+    kept_by_solution=True,
 )

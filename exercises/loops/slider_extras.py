@@ -25,31 +25,6 @@ def pin_P(pin_B, r5):
     return rrp(pin_B, r5, 0.0)
 
 
-def rates(pin_A, pin_B, pin_P, r1):
-    """omega3, omega4, omega5 over omega2, and r6_dot over omega2."""
-    crank, coupler, rocker, rod = pin_A - 1j * r1, pin_B - pin_A, pin_B, pin_B - pin_P
-    coupler_rate = -_cross(crank, rocker) / _cross(coupler, rocker)
-    rocker_rate = _cross(crank, coupler) / _cross(rocker, coupler)
-    rod_rate = rocker_rate * rocker.real / rod.real
-    return coupler_rate, rocker_rate, rod_rate, (rod_rate - rocker_rate) * rocker.imag
-
-
-def accelerations(rates, pin_A, pin_B, pin_P, r1):
-    """alpha3, alpha4, alpha5 over omega2 squared, and r6_ddot over it."""
-    crank, coupler, rocker, rod = pin_A - 1j * r1, pin_B - pin_A, pin_B, pin_B - pin_P
-    w3, w4, w5, _ = rates
-    normal = crank + w3**2 * coupler - w4**2 * rocker
-    a3 = (normal * rocker.conjugate()).real / _cross(coupler, rocker)
-    a4 = -(normal * coupler.conjugate()).real / _cross(rocker, coupler)
-    pin_B_acceleration = (1j * a4 - w4**2) * rocker
-    a5 = (pin_B_acceleration.imag + w5**2 * rod.imag) / rod.real
-    return a3, a4, a5, (pin_B_acceleration - (1j * a5 - w5**2) * rod).real
-
-
-def _cross(u, v):
-    return (u.conjugate() * v).imag
-
-
 # Over the turn, the angle at B stays between 30 and 150 degrees: by the law of cosines, it does when
 # r4^2 - 2 r3 r4 cos 30 + r3^2 < (r1 - r2)^2 and (r1 + r2)^2 < r4^2 + 2 r3 r4 cos 30 + r3^2.
 
@@ -85,35 +60,6 @@ def crank_across_the_frame(theta2):
 
 def coefficient_c_not_small(r1, r2, r3, r4, pin_A):
     return abs(r4**2 - abs(pin_A) ** 2 - r3**2) > 0.1 * r1**2
-
-
-def coupler_turns_visibly(rates):
-    return abs(rates[0]) > 0.06
-
-
-def rocker_turns_visibly(rates):
-    return abs(rates[1]) > 0.06
-
-
-def rod_turns_visibly(rates):
-    return abs(rates[2]) > 0.03
-
-
-def slider_moves_visibly(rates, r2):
-    return abs(rates[3]) > 0.15 * r2
-
-
-def links_accelerate_visibly(accelerations):
-    a3, a4, a5, _ = accelerations
-    return (abs(a3) > 0.08) & (abs(a4) > 0.08) & (abs(a5) > 0.03)
-
-
-def slider_accelerates_visibly(accelerations, r2):
-    return abs(accelerations[3]) > 0.2 * r2
-
-
-def rod_normal_acceleration_counts(rates, accelerations, pin_B, pin_P):
-    return abs(rates[2] ** 2 * (pin_B - pin_P).real) > 0.022 * abs(accelerations[3])
 
 
 def figure(pin_A, pin_B, pin_P, r1, theta2):
@@ -161,18 +107,8 @@ EXERCISE = Exercise(
         "omega2": drawn(2, 20, unit="rad/s", positive=False, nonzero=True),
         "mode": chosen("open", "crossed"),
     },
-    helpers=(pin_A, pin_B, pin_P, rates, accelerations),
-    keep=(
-        crank_across_the_frame,
-        coefficient_c_not_small,
-        coupler_turns_visibly,
-        rocker_turns_visibly,
-        rod_turns_visibly,
-        slider_moves_visibly,
-        links_accelerate_visibly,
-        slider_accelerates_visibly,
-        rod_normal_acceleration_counts,
-    ),
+    helpers=(pin_A, pin_B, pin_P),
+    keep=(crank_across_the_frame, coefficient_c_not_small),
     parts=(
         Part("mobility", kind="integer", points=1),
         Part("cycles", kind="integer", points=1),
@@ -199,4 +135,5 @@ EXERCISE = Exercise(
     figure=figure,
     symbols={"mobility": "w", "cycles": r"\gamma"},
     driver=Driver("theta2", "omega2", output="r6_dot"),
+    kept_by_solution=True,
 )

@@ -5,7 +5,7 @@ from coursework.model import drawn
 
 from .._drawn import told_angle
 from ..loops.slider_extras import EXERCISE as SIX_LINKS
-from ..loops.slider_extras import accelerations, pin_A, pin_B, pin_P, rates
+from ..loops.slider_extras import pin_A, pin_B, pin_P
 
 #: With a shorter rod, which turns faster: its accelerations can be drawn.
 GIVEN = {
@@ -13,7 +13,7 @@ GIVEN = {
     "omega2": drawn(-20, 20, unit="rad/s"),
     "r5": drawn(lambda r4: 1.15 * r4, lambda r4: 1.8 * r4, step=5, unit="mm", positive=True),
 }
-HELPERS = (pin_A, pin_B, pin_P, rates, accelerations)
+HELPERS = (pin_A, pin_B, pin_P)
 
 
 def bars(r1, r2, r3, r4, r5, theta2, mode):

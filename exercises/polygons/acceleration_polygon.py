@@ -5,27 +5,16 @@ from coursework.model import Exercise
 from .._drawn import (
     FOUR_BAR,
     PAPER_MM,
-    all_long,
     bars,
     crank_turns_visibly,
     four_bar_figure,
     known,
     lines_cross_clearly,
     of_drawing,
-    of_four_bar,
-    rates,
     told_angle,
     told_number,
 )
-
-
-def vectors_are_long_enough_to_draw(of_four_bar):
-    """The normal ones a ninth of the longest at least, the tangential ones and that of B two ninths."""
-    of_A, normal_BA, tangential_BA, normal_B, tangential_B = of_four_bar
-    of_B = normal_B + tangential_B
-    normal = all_long(1 / 9, of_A, normal_BA, normal_B, tangential_BA, tangential_B, of_B)
-    longest = (2 * normal_BA, 2 * normal_B)  # two ninths of the others are asked, one of these
-    return normal & all_long(2 / 9, of_A, *longest, tangential_BA, tangential_B, of_B)
+from .._told_speeds import rates
 
 
 def tells(r1, r2, r3, r4, theta2, omega2, mode):
@@ -42,8 +31,8 @@ def tells(r1, r2, r3, r4, theta2, omega2, mode):
 
 EXERCISE = Exercise(
     given=FOUR_BAR,
-    helpers=(bars, rates, of_four_bar),
-    keep=(crank_turns_visibly, lines_cross_clearly, vectors_are_long_enough_to_draw),
+    helpers=(bars, rates),
+    keep=(crank_turns_visibly, lines_cross_clearly),
     parts=(
         known("known_BA_n"),
         known("known_BA_t"),
@@ -65,4 +54,5 @@ EXERCISE = Exercise(
     tells=tells,
     drawing_mm=PAPER_MM,
     symbols={"ka": "k_a", "p": "p_a", "n": "b'", "m": "b''", "bb_t": "b' b", "pa_b": "p_a b", "a_B": "a_B"},
+    kept_by_solution=True,
 )

@@ -1,15 +1,14 @@
 """Acceleration polygon of a slider-crank whose velocities are known (equations 14 and 15, Figure 22)."""
 
+from coursework.degrees import polar
 from coursework.model import Exercise
 
 from .._drawn import (
     PAPER_MM,
     SLIDER_CRANK,
-    all_long,
     crank_turns_visibly,
     known,
     of_drawing,
-    of_slider_crank,
     offset_is_none_or_visible,
     rod,
     rod_reaches_all_turn,
@@ -17,17 +16,12 @@ from .._drawn import (
     told_angle,
     told_number,
 )
-
-
-def vectors_are_long_enough_to_draw(of_slider_crank):
-    """The normal one an eighth of the longest at least, the others a quarter."""
-    of_A, normal, tangential, of_B = of_slider_crank
-    return all_long(1 / 8, of_A, normal, tangential, of_B) & all_long(1 / 4, of_A, tangential, of_B)
+from .._told_speeds import rod_rate
 
 
 def tells(r2, r3, e, theta2, omega2):
     vector = rod(r2, r3, e, theta2)
-    normal = of_slider_crank(vector, r2, theta2)[1]
+    normal = rod_rate(vector, polar(r2, theta2)) ** 2 * vector
     return {
         "theta3": told_angle(vector),
         "V_BA": told_number((abs(normal) * r3) ** 0.5 * abs(omega2)),
@@ -37,13 +31,8 @@ def tells(r2, r3, e, theta2, omega2):
 EXERCISE = Exercise(
     version=2,
     given=SLIDER_CRANK,
-    helpers=(rod, of_slider_crank),
-    keep=(
-        crank_turns_visibly,
-        offset_is_none_or_visible,
-        rod_reaches_all_turn,
-        vectors_are_long_enough_to_draw,
-    ),
+    helpers=(rod,),
+    keep=(crank_turns_visibly, offset_is_none_or_visible, rod_reaches_all_turn),
     parts=(
         known("known_A"),
         known("known_BA_n"),
@@ -63,4 +52,5 @@ EXERCISE = Exercise(
     tells=tells,
     drawing_mm=PAPER_MM,
     symbols={"ka": "k_a", "p": "p_a", "n": "b'", "bb_t": "b' b", "pa_b": "p_a b", "r1_ddot": "a_B"},
+    kept_by_solution=True,
 )

@@ -5,7 +5,6 @@ from coursework.model import Exercise
 from .._drawn import (
     PAPER_MM,
     SLOTTED,
-    all_long,
     crank_turns_visibly,
     guided,
     known,
@@ -14,29 +13,24 @@ from .._drawn import (
     told_angle,
     told_number,
 )
-
-
-def vectors_are_long_enough_to_draw(guided):
-    """The normal one a ninth of the longest at least, the others two ninths."""
-    of_A2, coriolis, normal, tangential, sliding = guided.accelerations
-    others = (of_A2, coriolis, tangential, sliding)
-    return all_long(1 / 9, normal, *others) & all_long(2 / 9, *others)
+from .._told_speeds import guide_rates
 
 
 def tells(r1, r2, theta2, omega2):
     pose = guided(r1, r2, theta2)
+    guide_rate, sliding = guide_rates(pose)
     return {
         "theta4": told_angle(pose.arm),
         "rA": told_number(abs(pose.arm)),
-        "omega4": told_number(omega2 * pose.guide_rate),
-        "rA_dot": told_number(omega2 * pose.sliding),
+        "omega4": told_number(omega2 * guide_rate),
+        "rA_dot": told_number(omega2 * sliding),
     }
 
 
 EXERCISE = Exercise(
     given=SLOTTED,
     helpers=(guided,),
-    keep=(crank_turns_visibly, vectors_are_long_enough_to_draw),
+    keep=(crank_turns_visibly,),
     parts=(
         known("known_c"),
         known("known_s"),
@@ -66,4 +60,5 @@ EXERCISE = Exercise(
         "nb_t": "a_4' a_4",
         "rA_ddot": r"\ddot r_A",
     },
+    kept_by_solution=True,
 )

@@ -5,22 +5,14 @@ from coursework.model import Exercise
 from .._drawn import (
     FOUR_BAR,
     PAPER_MM,
-    all_long,
     bars,
     crank_turns_visibly,
     four_bar_figure,
     known,
     lines_cross_clearly,
     of_drawing,
-    rates,
     told_angle,
 )
-
-
-def vectors_are_long_enough_to_draw(bars, rates):
-    """The shortest is a third of the longest at least."""
-    crank, coupler, rocker = bars
-    return all_long(1 / 3, crank, rates[0] * coupler, rates[1] * rocker)
 
 
 def tells(r1, r2, r3, r4, theta2, mode):
@@ -30,8 +22,8 @@ def tells(r1, r2, r3, r4, theta2, mode):
 
 EXERCISE = Exercise(
     given=FOUR_BAR,
-    helpers=(bars, rates),
-    keep=(crank_turns_visibly, lines_cross_clearly, vectors_are_long_enough_to_draw),
+    helpers=(bars,),
+    keep=(crank_turns_visibly, lines_cross_clearly),
     parts=(
         known("known_A"),
         known("known_BA"),
@@ -50,4 +42,5 @@ EXERCISE = Exercise(
     tells=tells,
     drawing_mm=PAPER_MM,
     symbols={"kv": "k_v", "p": "p_v", "ab": "a b", "pv_b": "p_v b", "v_B": "V_B"},
+    kept_by_solution=True,
 )

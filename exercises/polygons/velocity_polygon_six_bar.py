@@ -2,15 +2,8 @@
 
 from coursework.model import Exercise
 
-from .._drawn import PAPER_MM, all_long, crank_turns_visibly, dot, known, of_drawing
+from .._drawn import PAPER_MM, crank_turns_visibly, dot, known, of_drawing
 from ._six_bar import GIVEN, HELPERS, bars, crank_off_the_axes, figure, told_directions
-
-
-def vectors_are_long_enough_to_draw(rates, pin_A, pin_B, pin_P, r1):
-    """A quarter of the longest at least, that of the slider about B an eighth."""
-    w3, w4, w5, slide = rates
-    others = pin_A - 1j * r1, w3 * (pin_B - pin_A), w4 * pin_B, slide
-    return all_long(1 / 4, *others) & all_long(1 / 8, w5 * (pin_P - pin_B), *others)
 
 
 def crank_not_square_to_the_coupler(pin_A, pin_B, r1):
@@ -26,12 +19,7 @@ def tells(r1, r2, r3, r4, r5, theta2, mode):
 EXERCISE = Exercise(
     given=GIVEN,
     helpers=HELPERS,
-    keep=(
-        crank_turns_visibly,
-        crank_off_the_axes,
-        crank_not_square_to_the_coupler,
-        vectors_are_long_enough_to_draw,
-    ),
+    keep=(crank_turns_visibly, crank_off_the_axes, crank_not_square_to_the_coupler),
     parts=(
         known("known_BA"),
         known("known_B"),
@@ -63,4 +51,5 @@ EXERCISE = Exercise(
         "pv_c": "p_v c",
         "r6_dot": "V_C",
     },
+    kept_by_solution=True,
 )

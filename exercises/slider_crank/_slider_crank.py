@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from coursework.degrees import cos, polar, sin
+from coursework.degrees import polar
 from coursework.kinematics.dyads import rrp
 
 
@@ -12,12 +12,6 @@ def rod(r2, r3, e, theta2):
     return rrp(crank, r3, e) - crank
 
 
-def rates(rod, r2, theta2):
-    """omega3 and r1_dot, over omega2."""
-    omega3 = -r2 * cos(theta2) / rod.real
-    return omega3, -r2 * sin(theta2) - omega3 * rod.imag
-
-
 def largest_offset(r2):
     """Half of the cranks, those of whole centimetres, are in line with their piston."""
     return np.where(r2 % 10 == 0, 0.0, 0.5 * r2)
@@ -25,7 +19,3 @@ def largest_offset(r2):
 
 def offset_is_none_or_visible(e, r2):
     return (e == 0) | (abs(e) >= 0.1 * r2)
-
-
-def rod_turns_visibly(rates, r2, r3):
-    return abs(rates[0]) * r3 > 0.1 * r2

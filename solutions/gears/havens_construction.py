@@ -8,6 +8,8 @@ from coursework.marking.drawn_polygons import scale_for, to_paper
 from coursework.polygons.hand_drawn import LEAST_MM, MOST_MM, TOLERANCE_MM, on_paper, vector_fault
 from coursework.solution import Judged, given, judge, mistake
 
+from ._havens_construction_keep import *
+
 VECTORS = ("v10", "v40", "v14", "v24", "v20", "v30")
 _WIDTH = 2 * TOLERANCE_MM
 

@@ -16,6 +16,8 @@ from coursework.mechanics import Body, Gear, Mechanism, Slide
 from coursework.polygons import Side, crank_v, guide_v, polygon_of_velocities, turning
 from coursework.solution import Moving, given, mistake, stable
 
+from ._havens_planetary_keep import *
+
 UNITS = {"e": "mm"}
 LOOPS = {
     "loop_1": (
