@@ -11,12 +11,15 @@ import click
 from coursework.cli.commands import commands, named_command
 from coursework.cli.options import BAD, DONE, complain
 from coursework.errors import CourseworkError
+from coursework.system.ending import Ended, end_cleanly
+from coursework.system.visible import visible_streams
 
 
 def main() -> None:
     """Run the command line; a user's mistake is one line on standard error, never a traceback."""
     # Matrices here are small: threads of the linear algebra would only wait, and use a processor for it.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    end_cleanly()
     sys.exit(run(sys.argv[1:]))
 
 
@@ -25,6 +28,11 @@ def run(arguments: Sequence[str]) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(encoding="utf-8", errors="replace")
+    with visible_streams():
+        return _run(arguments)
+
+
+def _run(arguments: Sequence[str]) -> int:
     try:
         return commands.main(list(arguments), prog_name="coursework", standalone_mode=False) or DONE
     except click.exceptions.NoArgsIsHelpError as fault:
@@ -39,6 +47,9 @@ def run(arguments: Sequence[str]) -> int:
         return complain(fault.format_message().rstrip(".") + hint)
     except click.exceptions.Exit as stop:
         return stop.exit_code
+    except Ended as end:
+        complain(str(end))
+        return int(str(end.code))
     except click.Abort:
         return complain("interrupted")
     except CourseworkError as fault:

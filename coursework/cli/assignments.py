@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.options import opened, tell
+from coursework.cli.database import keeping
+from coursework.cli.options import opened, shared_by_cluster, tell, writes
 from coursework.cli.printing import progress_bar
 from coursework.errors import BadInput, counted, nearest
 
@@ -54,6 +54,17 @@ class _Settings:
         return Path(found) if told else self.base / found
 
 
+def check_scan(formats: Sequence[str], *, booklet: bool) -> None:
+    """Refuse answer pages where nothing is printed, or what draws their codes is not at hand."""
+    from coursework.system.extras import library
+
+    if "pdf" not in formats and not booklet:
+        raise BadInput(
+            f"--scan adds answer pages to PDFs, and none is asked (--formats {','.join(formats)}): add pdf, or --booklet"
+        )
+    library("zxingcpp", "--scan draws codes with", "scan")
+
+
 def build_assignment(
     context: click.Context, path: Path, *, again: Sequence[str], make_up: Sequence[str], overwrite: bool
 ) -> None:
@@ -78,6 +89,9 @@ def build_assignment(
         raise BadInput(
             "self-study notebooks are built by naming exercises: coursework build EXERCISE … --practice"
         )
+    if settings.of("scan"):
+        check_scan(settings.of("formats"), booklet=settings.of("booklet"))
+    writes(context, out)
     before = None if overwrite else _issued_before(out / "issued.json")
     if before is None and (again or make_up):
         which = "--again" if again else "--make-up"
@@ -106,6 +120,7 @@ def build_assignment(
             settings.of("formats"),
             paper=settings.of("paper"),
             booklet=settings.of("booklet"),
+            scan=settings.of("scan"),
             polygons=settings.of("polygons"),
             spreadsheet=SPREADSHEETS[settings.of("decimal")],
             only=only,
@@ -119,8 +134,11 @@ def build_assignment(
     if not again and not make_up:
         notes += dealt.notes
     tell(notes)
-    same = json_text(issued_content(dealt.issues, assignment)).encode("utf-8")
+    content = issued_content(dealt.issues, assignment)
+    keeping(context, settings.of("db"), settings.of("name"), course.folder.root.name)(content)
+    same = json_text(content).encode("utf-8")
     kept = before is not None and (out / "issued.json").read_bytes() == same
+    shared_by_cluster(context, context.params["cluster"])
     with progress_bar("building", len(wanted)) as advance:
         notes = list(write_tree(out, wanted, advance, anew=overwrite))
     if settings.of("booklet") or "pdf" in settings.of("formats"):
@@ -138,15 +156,9 @@ def build_assignment(
 
 
 def _issued_before(path: Path) -> Mapping[str, Any] | None:
-    if not path.is_file():
-        return None
-    try:
-        content = json.loads(path.read_text("utf-8"))
-    except (ValueError, UnicodeDecodeError) as fault:
-        raise BadInput(f"{path} is not JSON: {str(fault)[:100]}") from fault
-    if not isinstance(content, dict) or not isinstance(content.get("issued"), list):
-        raise BadInput(f"{path} is no list of issued records; choose another --out, or --overwrite")
-    return content
+    from coursework.making.issued import Issued
+
+    return Issued.stood(path) if path.is_file() else None
 
 
 def _known(name: str, names: set[str]) -> str:

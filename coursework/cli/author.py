@@ -12,32 +12,41 @@ from coursework.cli import completion
 from coursework.cli.options import (
     DONE,
     FOUND,
+    FilePath,
     Lists,
     Whole,
+    cluster_option,
     exercise_names,
     exercises_argument,
     json_option,
     known_languages,
     opened,
+    shared_by_cluster,
     unknown_language,
+    writes,
 )
 from coursework.cli.printing import print_json, print_note, print_table, progress_bar
 from coursework.errors import BadInput
+from coursework.system.limits import MOST_VARIANTS
 
 # ------------------------------------------------------------------------ check
 
 
 @click.command()
 @exercises_argument
-@click.option("--variants", "count", type=Whole(1), default=200, show_default=True)
+@click.option("--variants", "count", type=Whole(1, MOST_VARIANTS), default=200, show_default=True)
+@cluster_option
 @json_option
 @click.pass_context
-def check(context: click.Context, exercises: Sequence[str], count: int, as_json: bool) -> int:
+def check(
+    context: click.Context, exercises: Sequence[str], count: int, cluster: str | None, as_json: bool
+) -> int:
     """Prove the promises of every exercise of the course; status 1 when one is broken."""
     from coursework.authoring import check_report, checks
 
     course = opened(context)
     names = exercise_names(course, exercises)
+    shared_by_cluster(context, cluster)
     with progress_bar("checking", len(names)) as advance:
         reports = checks.check_all(course, names, count, advance)
     if as_json:
@@ -59,7 +68,7 @@ def check(context: click.Context, exercises: Sequence[str], count: int, as_json:
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path, file_okay=False))
+@click.argument("folder", type=FilePath(path_type=Path, file_okay=False))
 @click.argument("exercise", required=False)
 @click.argument("asked", nargs=-1)
 @click.option(
@@ -96,6 +105,8 @@ def new(
     assignment of exercises: new assignment FILE.toml EXERCISE…"""
     from coursework.authoring.scaffold import languages_around, new_course, new_exercise
 
+    if str(folder) != "assignment":
+        writes(context, folder)
     if example is not None:
         _new_example(folder, example, exercise or source or renamed or langs)
         return

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from coursework.cli.options import FilePath
 from coursework.system.distribution import VERSION
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ COMMANDS = {
     "animate": ("move", "animate"),
     "build": ("make", "build"),
     "check": ("author", "check"),
+    "database": ("database", "database"),
     "demo": ("make", "demo"),
     "export": ("platforms", "export"),
     "grade": ("mark", "grade"),
@@ -28,8 +30,11 @@ COMMANDS = {
     "lti": ("lti", "lti"),
     "new": ("author", "new"),
     "notebook": ("teach", "notebook"),
+    "preview": ("site", "preview"),
     "progress": ("study", "progress"),
     "report": ("mark", "report"),
+    "scan": ("scan", "scan"),
+    "serve": ("site", "serve"),
     "show": ("look", "show"),
     "simulate": ("move", "simulate"),
     "solve": ("look", "solve"),
@@ -60,9 +65,7 @@ class _Commands(click.Group):
 
 
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"]})
-@click.option(
-    "--course", "folder", type=click.Path(), help="Course folder; the built-in course unless given."
-)
+@click.option("--course", "folder", type=FilePath(), help="Course folder; the built-in course unless given.")
 @click.version_option(VERSION, prog_name="coursework")
 @click.pass_context
 def commands(context: click.Context, folder: str | None) -> None:

@@ -8,7 +8,11 @@ from typing import TYPE_CHECKING
 
 import click
 
-from coursework.cli.options import DONE, FOUND
+from coursework.cli.options import (
+    DONE,
+    FOUND,
+    FilePath,
+)
 from coursework.errors import BadInput, counted
 
 if TYPE_CHECKING:
@@ -20,14 +24,14 @@ _SIGNS = {"point": ".", "comma": ",", None: ""}
 
 @click.command()
 @click.argument("platform", metavar="moodle|canvas|blackboard|sakai")
-@click.argument("marks", type=click.Path(path_type=Path))
+@click.argument("marks", type=FilePath(path_type=Path))
 @click.option(
     "--template",
-    type=click.Path(path_type=Path, dir_okay=False),
+    type=FilePath(path_type=Path, dir_okay=False),
     help="The gradebook as the platform exports it. Without one, XML for Moodle, which names students by their ID numbers.",
 )
 @click.option("--item", required=True, help="The item to fill, by its name; for XML its ID number.")
-@click.option("--out", type=click.Path(path_type=Path, dir_okay=False), required=True, help="File to write.")
+@click.option("--out", type=FilePath(path_type=Path, dir_okay=False), required=True, help="File to write.")
 @click.option(
     "--score",
     type=click.Choice(("points", "mark", "percent")),

@@ -23,6 +23,7 @@ from coursework.cli.options import (
 )
 from coursework.cli.printing import print_json, print_table
 from coursework.errors import BadInput, MissingQuantity, WrongValue
+from coursework.system.limits import MOST_VARIANTS
 
 # ------------------------------------------------------------------------- look
 
@@ -114,7 +115,9 @@ def _drawn(exercise: Any, seeds: Sequence[int], lang: str, parts: str) -> list[A
 @click.command()
 @exercise_argument
 @seed_option
-@click.option("--count", type=Whole(1), default=1, show_default=True, help="How many, seed after seed.")
+@click.option(
+    "--count", type=Whole(1, MOST_VARIANTS), default=1, show_default=True, help="How many, seed after seed."
+)
 @click.option("--solution", is_flag=True, help="With the reference answers.")
 @lang_option
 @parts_option

@@ -9,9 +9,18 @@ from urllib.parse import urlsplit
 
 import click
 
-from coursework.cli.options import DONE, FOUND, Whole, json_option, opened, tell
+from coursework.cli.options import (
+    DONE,
+    FOUND,
+    FilePath,
+    Whole,
+    json_option,
+    opened,
+    tell,
+)
 from coursework.cli.printing import print_json, print_table
 from coursework.errors import BadInput, counted, nearest
+from coursework.system.limits import MOST_PORT
 
 if TYPE_CHECKING:
     from coursework.lti.settings import Platform, Settings
@@ -22,7 +31,7 @@ KINDS = ("moodle", "canvas", "other")
 folder_option = click.option(
     "--in",
     "folder",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FilePath(path_type=Path, file_okay=False),
     default="lti",
     show_default=True,
     help="Folder of the platforms, the keys and the data.",
@@ -66,7 +75,7 @@ def lti() -> None:
     "--assignment",
     "assignments",
     multiple=True,
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    type=FilePath(path_type=Path, exists=True, dir_okay=False),
     help="An assignment's file that links may open.",
 )
 @click.option("--check", is_flag=True, help="Ask the platforms for their keys, and for a token.")
@@ -278,7 +287,7 @@ def keys(what: str, kid: str | None, folder: Path, as_json: bool) -> None:
 @lti.command()
 @folder_option
 @click.option("--host", default="127.0.0.1", show_default=True, help="Where to listen.")
-@click.option("--port", type=Whole(1), default=8700, show_default=True)
+@click.option("--port", type=Whole(1, MOST_PORT), default=8700, show_default=True)
 @click.option("--url", help="Where browsers find it, where platforms.toml does not say it.")
 @click.option(
     "--behind-proxy",
@@ -309,7 +318,12 @@ def serve(
 _LOGS: dict[str, Any] = {
     "version": 1,
     "disable_existing_loggers": False,
-    "formatters": {"line": {"format": "%(asctime)s %(levelname)s %(message)s"}},
+    "formatters": {
+        "line": {
+            "class": "coursework.system.visible.VisibleLines",
+            "format": "%(asctime)s %(levelname)s %(message)s",
+        }
+    },
     "handlers": {"out": {"class": "logging.StreamHandler", "formatter": "line"}},
     "loggers": {
         "coursework.lti": {"handlers": ["out"], "level": "INFO"},
@@ -407,7 +421,7 @@ def _send(folder: Path, storage: Any) -> None:
 @click.argument("course_title", required=False, metavar="[COURSE]")
 @folder_option
 @click.option(
-    "--out", type=click.Path(path_type=Path, dir_okay=False), help="The CSV to write; printed unless told."
+    "--out", type=FilePath(path_type=Path, dir_okay=False), help="The CSV to write; printed unless told."
 )
 def roster(course_title: str | None, folder: Path, out: Path | None) -> None:
     """Write the class list that a platform gives as the CSV that 'build --roster' reads.

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.assignments import build_assignment, is_assignment
+from coursework.cli.assignments import build_assignment, check_scan, is_assignment
+from coursework.cli.database import keeping
 from coursework.cli.options import (
     UNLESS_TOLD,
+    FilePath,
     Lists,
     Whole,
+    cluster_option,
+    db_option,
     decimal_option,
     exercise_names,
     exercises_argument,
@@ -22,16 +26,20 @@ from coursework.cli.options import (
     opened,
     parts_option,
     seed_option,
+    shared_by_cluster,
     split_list,
     spoken,
     tell,
     unknown_language,
+    writes,
 )
 from coursework.cli.printing import print_table, progress_bar
 from coursework.errors import BadInput, counted
+from coursework.system.limits import MOST_VARIANTS
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
+    from coursework.making.issued import Issued
     from coursework.making.roster import Student
 
 
@@ -40,11 +48,16 @@ if TYPE_CHECKING:
 
 @click.command()
 @exercises_argument
-@click.option("--variants", "count", type=Whole(1), help="How many variants; with a roster, one a student.")
+@click.option(
+    "--variants",
+    "count",
+    type=Whole(1, MOST_VARIANTS),
+    help="How many variants; with a roster, one a student.",
+)
 @seed_option
 @click.option(
     "--roster",
-    type=click.Path(path_type=Path),
+    type=FilePath(path_type=Path),
     help="CSV with a column student, or surname and first name, and, if wanted, lang.",
 )
 @click.option("--formats", type=Lists(known_formats), default="pdf,ipynb,html", show_default=True)
@@ -57,6 +70,13 @@ if TYPE_CHECKING:
     f"Unless told, {UNLESS_TOLD}.",
 )
 @parts_option
+@click.option(
+    "--issued",
+    "again_of",
+    type=FilePath(path_type=Path, dir_okay=False, exists=True),
+    help="Write the sheets of an issued.json once more, as they were issued; no exercises, variants or roster then. "
+    "A students' copy of a course writes no others.",
+)
 @click.option("--practice", is_flag=True, help="Self-study notebooks, which check answers.")
 @click.option(
     "--paper",
@@ -67,11 +87,16 @@ if TYPE_CHECKING:
 )
 @click.option("--booklet", is_flag=True, help="Also all students' sheets in one PDF, to print at once.")
 @click.option(
+    "--scan",
+    is_flag=True,
+    help="Answer pages behind the statements, which coursework scan reads; in the PDFs. Print at 100 %, not fitted to the page.",
+)
+@click.option(
     "--polygons/--no-polygons",
     default=True,
     help="Velocity and acceleration polygons in the worked solutions; without them a build takes half to two thirds of the time.",
 )
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder to write.")
+@click.option("--out", type=FilePath(path_type=Path, file_okay=False), help="Folder to write.")
 @decimal_option
 @click.option(
     "--overwrite",
@@ -87,6 +112,13 @@ if TYPE_CHECKING:
 @click.option(
     "--make-up", multiple=True, metavar="STUDENT", help="Of an assignment: another paper for who makes up."
 )
+@db_option
+@click.option(
+    "--name",
+    default="",
+    help="What it is called in the database; the assignment's name, or that of the folder, unless told.",
+)
+@cluster_option
 @click.pass_context
 def build(
     context: click.Context,
@@ -97,20 +129,27 @@ def build(
     formats: Sequence[str],
     langs: Sequence[str],
     parts: str,
+    again_of: Path | None,
     practice: bool,
     paper: str,
     booklet: bool,
+    scan: bool,
     polygons: bool,
     out: Path | None,
     decimal: str,
     overwrite: bool,
     again: Sequence[str],
     make_up: Sequence[str],
+    db: str | None,
+    name: str,
+    cluster: str | None,
 ) -> None:
     """Make sheets, notebooks and pages for a class, with the staff's half beside them.
 
     Of exercises, or of an assignment: a file such as midterm.toml, which makes one paper of several exercises.
     """
+    if name and db is None:
+        raise BadInput("--name is what it is called in a database: --db URL")
     if is_assignment(exercises):
         build_assignment(context, Path(exercises[0]), again=again, make_up=make_up, overwrite=overwrite)
         return
@@ -122,17 +161,26 @@ def build(
 
     if roster and count:
         raise BadInput("--variants and --roster exclude each other: a roster has one variant a student")
+    if again_of and (exercises or roster or count or parts or context.params["seed"]):
+        raise BadInput(
+            f"--issued {again_of} says what was issued: name no exercises, seed, parts, variants or roster beside it"
+        )
+    if scan:
+        check_scan(formats, booklet=booklet)
     course = opened(context)
-    names = exercise_names(course, exercises)
+    issued = None if again_of is None else _issued(again_of)
+    names = exercise_names(course, exercises if issued is None else issued.exercises)
+    writes(context, out)
     notes: list[str] = []
     students = read_roster(roster, notes.append) if roster else []
     own = sum(bool(student.lang) for student in students)
-    if own and context.get_parameter_source("langs") is not click.core.ParameterSource.DEFAULT:
+    if own and not _is_untold(context, "langs"):
         notes.append(
             f"the roster says the language of {own} of its {counted(len(students), 'student')}, which counts; "
             f"--lang {','.join(langs)} is for those of whom it says none"
         )
     tell(notes)
+    shared_by_cluster(context, cluster)
     written = build_files(
         course,
         names,
@@ -146,9 +194,13 @@ def build(
         practice=practice,
         paper=paper,
         booklet=booklet,
+        scan=scan,
         polygons=polygons,
         decimal=decimal,
         overwrite=overwrite,
+        issued=issued,
+        issued_langs=() if _is_untold(context, "langs") else langs,
+        keep=keeping(context, db, name or out.resolve().name, course.folder.root.name),
     )
     away = "handouts/ to give away, " if set(formats) - {"nbgrader"} else ""
     click.echo(f"{counted(written, 'file')} in {out}: {away}issued.json and answers.csv to keep")
@@ -156,6 +208,16 @@ def build(
         click.echo(f"worked solutions and the key, for the staff alone: {out / 'instructor'}")
     if "nbgrader" in formats:
         click.echo(f"a course of nbgrader: {out / 'nbgrader'}; how to go on stands there, in {names[0]}.md")
+
+
+def _issued(path: Path) -> Issued:
+    from coursework.making.issued import Issued
+
+    return Issued.read(path)
+
+
+def _is_untold(context: click.Context, option: str) -> bool:
+    return context.get_parameter_source(option) is click.core.ParameterSource.DEFAULT
 
 
 def build_files(
@@ -172,23 +234,33 @@ def build_files(
     practice: bool = False,
     paper: str = "a4",
     booklet: bool = False,
+    scan: bool = False,
     polygons: bool = True,
     decimal: str = "point",
     overwrite: bool = False,
+    issued: Issued | None = None,
+    issued_langs: Sequence[str] = (),
+    keep: Callable[[Mapping[str, Any]], None] = lambda content: None,
 ) -> int:
-    """Issue and write a build; gives how many files were written."""
+    """Issue and write a build, or one of what was ``issued``; gives how many files were written. ``keep`` is handed what ``issued.json`` says, before
+    anything is written."""
     from coursework.making import build as building
     from coursework.making.issued import issued_content
+    from coursework.making.issued_again import issued_again
     from coursework.making.issuing import issue
     from coursework.making.letters import unprinted_names
     from coursework.rendering.renderer import renderer_of
     from coursework.system.tables import SPREADSHEETS, json_text
     from coursework.system.writing import write_tree
 
-    issues = issue(course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts)
-    issued = json_text(issued_content(issues))
+    if issued is None:
+        issues = issue(course, names, first_seed=seed, count=count, langs=langs, roster=students, parts=parts)
+    else:
+        issues = issued_again(course, issued, issued_langs)
+    content = issued_content(issues)
+    text = json_text(content)
     before = out / "issued.json"
-    if not overwrite and before.is_file() and not _goes_on(before, issued):
+    if not overwrite and before.is_file() and not _goes_on(before, text):
         raise BadInput(
             f"{before} holds other variants, issued before; choose another --out, or --overwrite to replace them "
             "(files that were filled in or changed are set aside, not lost)"
@@ -201,6 +273,7 @@ def build_files(
             practice=practice,
             paper=paper,
             booklet=booklet,
+            scan=scan,
             polygons=polygons,
             spreadsheet=SPREADSHEETS[decimal],
         )
@@ -209,36 +282,41 @@ def build_files(
         from coursework.nbgrader import tree as nbgrader
 
         wanted[:0] = nbgrader.files(course, issues, None, out)
+    keep(content)
     with progress_bar("building", len(wanted)) as advance:
         notes = write_tree(out, wanted, advance, anew=overwrite)
     if booklet or "pdf" in formats:
-        notes += unprinted_names(renderer_of(course.folder), (student.name for student in students))
+        notes += unprinted_names(renderer_of(course.folder), (one.student for one in issues))
     tell(notes)
     return len(wanted)
 
 
 def _goes_on(before: Path, issued: str) -> bool:
     """Whether all that was issued before is issued as it was: to a longer roster, say."""
-    try:
-        items = json.loads(before.read_bytes())["issued"]
-        known = {(i["student"], i["record"]["exercise"], i["record"]["seed"]): i["record"] for i in items}
-        now = json.loads(issued)["issued"]
-    except (ValueError, KeyError, TypeError):
-        return False
-    found = {(i["student"], i["record"]["exercise"], i["record"]["seed"]): i["record"] for i in now}
+    from coursework.making.issued import Issued
+
+    known, found = _by_place(Issued.stood(before)), _by_place(json.loads(issued))
     return all(found.get(place) == record for place, record in known.items())
+
+
+def _by_place(content: Mapping[str, Any]) -> dict[tuple[Any, ...], Any]:
+    """The records by student, exercise and seed."""
+    records = ((item.get("student", ""), item["record"]) for item in content["issued"])
+    return {(student, record["exercise"], record["seed"]): record for student, record in records}
 
 
 # ------------------------------------------------------------------------- demo
 
 
 @click.command()
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default="demo", show_default=True)
-def demo(out: Path) -> None:
+@click.option("--out", type=FilePath(path_type=Path, file_okay=False), default="demo", show_default=True)
+@click.pass_context
+def demo(context: click.Context, out: Path) -> None:
     """Do the whole job on a small class: sheets, answers of all kinds, marks."""
     from coursework.cli.demo import class_of_twelve
     from coursework.cli.mark import grade_with_bar
 
+    writes(context, out)
     rows, told = class_of_twelve(out, build_files, grade_with_bar)
     print_table(rows, title="What became of the answers")
     for line in told:

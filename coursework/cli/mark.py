@@ -12,16 +12,23 @@ import click
 from coursework.cli.options import (
     DONE,
     FOUND,
+    FilePath,
     Lists,
+    assignment_option,
+    cluster_option,
+    db_option,
     decimal_option,
     json_option,
     lang_option,
     opened,
+    shared_by_cluster,
     tell,
     tell_lack_of_charts,
+    writes,
 )
 from coursework.cli.printing import print_json, progress_bar
 from coursework.errors import BadInput, counted
+from coursework.system.visible import one_line
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
@@ -33,12 +40,23 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("submissions", nargs=-1, type=click.Path(path_type=Path))
+@click.argument("submissions", nargs=-1, type=FilePath(path_type=Path))
 @click.option(
-    "--issued", type=click.Path(path_type=Path), required=True, help="The issued.json of the build."
+    "--issued",
+    type=FilePath(path_type=Path),
+    help="The issued.json of the build; with --db only where the database has it not yet.",
+)
+@db_option
+@assignment_option
+@click.option(
+    "--replace",
+    is_flag=True,
+    help="With --db: a file takes the place of what came from it before, where it was mended or exported anew.",
 )
 @click.option(
-    "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder to write; marks/ beside it."
+    "--out",
+    type=FilePath(path_type=Path, file_okay=False),
+    help="Folder to write; marks/ beside issued.json unless told, and none with --db.",
 )
 @click.option(
     "--feedback/--no-feedback",
@@ -66,21 +84,25 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--accepted",
-    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    type=FilePath(path_type=Path, dir_okay=False, exists=True),
     help="CSV of answers accepted by hand: student,exercise,seed,part and, if wanted, points,reason.",
 )
 @decimal_option
 @click.option(
     "--from",
     "marks",
-    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    type=FilePath(path_type=Path, dir_okay=False, exists=True),
     help="Marks as they stand in a marks.csv, changed by hand; no SUBMISSIONS then. Summary and feedback are made of them.",
 )
+@cluster_option
 @click.pass_context
 def grade(
     context: click.Context,
     submissions: Sequence[Path],
-    issued: Path,
+    issued: Path | None,
+    db: str | None,
+    assignment: str,
+    replace: bool,
     out: Path | None,
     feedback: bool | None,
     formats: Sequence[str],
@@ -89,26 +111,60 @@ def grade(
     accepted: Path | None,
     decimal: str,
     marks: Path | None,
+    cluster: str | None,
 ) -> int:
     """Mark CSV, JSON, Parquet and notebooks of answers, files or folders of them.
 
     What platforms export is read as it comes: the Responses report of Moodle's quiz, Canvas's Student Analysis, results of QTI,
     the folders of nbgrader, Moodle and Canvas. Marked again, it says what changed and for whom.
+
+    With --db what comes is kept in a database, with all that came before; only sheets that are new or changed are marked,
+    and no files are written unless --out names a folder.
     """
-    if issued.is_dir():
+    if issued is not None and issued.is_dir():
         inside = issued / "issued.json"
         would_do = f"did you mean {inside}?" if inside.exists() else "name the issued.json that build wrote"
         raise BadInput(f"--issued takes a file; {issued} is a folder: {would_do}")
-    _check_source(submissions, marks, accepted)
+    if db is None and issued is None:
+        raise BadInput(
+            "Missing option '--issued': the issued.json of the build, or --db with a database that has it"
+        )
+    if db is None and (assignment or replace):
+        raise BadInput(f"{'--assignment' if assignment else '--replace'} is of a database: --db URL")
+    _check_source(submissions, marks, accepted, in_database=db is not None)
     from coursework.gradebook.feedback_form import Form
 
     form = Form(formats, with_solutions, today.date() if today else None)
+    shared_by_cluster(context, cluster)
+    if db is not None:
+        from coursework.cli.database import grade_stored
+
+        if out is not None:
+            writes(context, out)
+
+        return grade_stored(
+            context,
+            db,
+            submissions,
+            issued,
+            assignment,
+            out,
+            feedback=feedback,
+            accepted=accepted,
+            decimal=decimal,
+            form=form,
+            replaces=replace,
+            told=_told,
+        )
+    assert issued is not None
     if marks is not None:
         out = out or marks.parent
+        writes(context, out)
         return _told_standing(
             _grade_standing(opened(context), marks, issued, out, feedback, decimal, form), marks, out
         )
     out = out or issued.parent / "marks"
+    writes(context, out)
     book = grade_with_bar(
         opened(context),
         submissions,
@@ -119,8 +175,13 @@ def grade(
         decimal=decimal,
         form=form,
     )
+    return _told(book, out)
+
+
+def _told(book: Gradebook, out: Path) -> int:
+    """Say what a folder of marks holds."""
     for line in book.seen:
-        click.echo(line)
+        click.echo(one_line(line))
     told = f"{counted(book.rows_in, 'row')}: {book.marked} marked, {len(book.rejected)} rejected"
     told += f", {book.blanks} blank beside another" if book.blanks else ""
     click.echo(f"{told}; see {out}")
@@ -138,20 +199,27 @@ def grade(
         )
         click.echo(f"{what} before; see {out / 'changes.csv'}")
     for warning in book.warnings:
-        click.echo(f"coursework: note: {warning}", err=True)
+        click.echo(f"coursework: note: {one_line(warning)}", err=True)
     for fault in book.faults:
-        click.echo(f"coursework: {fault}", err=True)
+        click.echo(f"coursework: {one_line(fault)}", err=True)
     for rejected in book.rejected[:10]:
-        click.echo(f"coursework: {rejected.source}: {rejected.reason}", err=True)
+        click.echo(f"coursework: {one_line(f'{rejected.source}: {rejected.reason}')}", err=True)
     if len(book.rejected) > 10:
         more = len(book.rejected) - 10
         click.echo(f"coursework: and {more} more in {out / 'rejected.csv'}", err=True)
     return FOUND if book.needs_a_look else DONE
 
 
-def _check_source(submissions: Sequence[Path], marks: Path | None, accepted: Path | None) -> None:
-    """What is marked: submissions, or marks as they stand."""
-    if marks is None and not submissions:
+def _check_source(
+    submissions: Sequence[Path], marks: Path | None, accepted: Path | None, *, in_database: bool
+) -> None:
+    """What is marked: submissions, marks as they stand, or what a database has."""
+    if marks is not None and in_database:
+        raise BadInput(
+            f"--from takes the marks as they stand in {marks}, and --db those of the database: what is to count there is named "
+            "in accepted.csv"
+        )
+    if marks is None and not submissions and not in_database:
         raise BadInput("nothing to mark; name SUBMISSIONS, files or folders of answers, or --from marks.csv")
     if marks is not None and submissions:
         raise BadInput(
@@ -188,7 +256,7 @@ def _told_standing(book: Gradebook, marks: Path, out: Path) -> int:
         what = "1 mark was" if book.changes == 1 else f"{book.changes} marks were"
         click.echo(f"{what} changed by hand; see {out / 'changes.csv'}")
     for warning in book.warnings:
-        click.echo(f"coursework: note: {warning}", err=True)
+        click.echo(f"coursework: note: {one_line(warning)}", err=True)
     return FOUND if book.needs_a_look else DONE
 
 
@@ -226,21 +294,54 @@ def grade_with_bar(
 
 
 @click.command()
-@click.argument("folder", metavar="DIR", type=click.Path(path_type=Path))
+@click.argument("folder", metavar="DIR", type=FilePath(path_type=Path), required=False)
+@db_option
+@assignment_option
 @lang_option
 @click.option(
-    "--out", type=click.Path(path_type=Path, file_okay=False), help="Folder to write; DIR/report unless told."
+    "--out", type=FilePath(path_type=Path, file_okay=False), help="Folder to write; DIR/report unless told."
 )
 @decimal_option
+@cluster_option
 @json_option
 @click.pass_context
 def report(
-    context: click.Context, folder: Path, lang: str, out: Path | None, decimal: str, as_json: bool
+    context: click.Context,
+    folder: Path | None,
+    db: str | None,
+    assignment: str,
+    lang: str,
+    out: Path | None,
+    decimal: str,
+    cluster: str | None,
+    as_json: bool,
 ) -> None:
-    """Say how a class did, from the folder DIR that grade wrote: a page (HTML, PDF) and tables.
+    """Say how a class did, from the folder DIR that grade wrote, or from a database: a page (HTML, PDF) and tables.
 
     With --json and no --out nothing is written.
     """
+    shared_by_cluster(context, cluster)
+    if db is None and folder is not None:
+        _report(context, folder, lang, out, decimal, as_json)
+        return
+    if db is None or folder is not None:
+        raise BadInput(
+            "a report is of a folder DIR that grade wrote, or of a database, --db URL: name one of them"
+        )
+    if out is None and not as_json:
+        raise BadInput("no folder to write: --out DIR")
+    from tempfile import TemporaryDirectory
+
+    from coursework.cli.database import written_marks
+
+    with TemporaryDirectory() as place:
+        written_marks(context, db, assignment, Path(place), decimal)
+        _report(context, Path(place), lang, out, decimal, as_json)
+
+
+def _report(
+    context: click.Context, folder: Path, lang: str, out: Path | None, decimal: str, as_json: bool
+) -> None:
     from coursework.language.words import words
     from coursework.statistics import measures as statistics
     from coursework.statistics import page as statistics_page
@@ -263,6 +364,7 @@ def report(
         print_json(told.as_json())
     place = out or folder / "report"
     if out is not None or not as_json:
+        writes(context, place)
         _write_report(course, told, lang, place, decimal)
         _tell_alike(folder, place, decimal)
         tell_lack_of_charts()
@@ -296,15 +398,21 @@ def _write_report(course: Course, told: Any, lang: str, out: Path, decimal: str)
     from coursework.rendering.renderer import renderer_of
     from coursework.statistics import measures as statistics
     from coursework.statistics import page as statistics_page
+    from coursework.system.processes import Task, in_turn, is_shared
     from coursework.system.tables import SPREADSHEETS, csv_file
     from coursework.system.writing import write_whole
 
-    page = statistics_page.report(course, told, lang)
+    page, renderer = statistics_page.report(course, told, lang), renderer_of(course.folder)
     spreadsheet = SPREADSHEETS[decimal]
     mistakes = statistics_page.mistake_rows(course, told, lang)
+    pages = [
+        Task("report.html", renderer.report_html, (page,)),
+        Task("report.pdf", renderer.report_pdf, (page,)),
+    ]
+    html, pdf = in_turn(pages, 2) if is_shared() else (task.function(*task.told) for task in pages)
     files = {
-        "report.html": renderer_of(course.folder).report_html(page).encode("utf-8"),
-        "report.pdf": renderer_of(course.folder).report_pdf(page),
+        "report.html": html.encode("utf-8"),
+        "report.pdf": pdf,
         "parts.csv": csv_file((p.row() for p in told.parts), statistics.PART_COLUMNS, spreadsheet),
         "mistakes.csv": csv_file(mistakes, statistics.MISTAKE_COLUMNS, spreadsheet),
     }

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.options import exercises_argument, json_option, lang_option, opened, tell_lack_of_charts
+from coursework.cli.options import (
+    FilePath,
+    exercises_argument,
+    json_option,
+    lang_option,
+    opened,
+    tell_lack_of_charts,
+    writes,
+)
 from coursework.cli.printing import print_json
 
 if TYPE_CHECKING:
@@ -25,7 +33,7 @@ if TYPE_CHECKING:
 @lang_option
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FilePath(path_type=Path, file_okay=False),
     help="Folder for the page (HTML, PDF) and JSON.",
 )
 @json_option
@@ -46,6 +54,8 @@ def accuracy(
     largest error against fifty digits.
     """
     course = opened(context)
+    if out is not None:
+        writes(context, out)
     if paper:
         rows, page = _on_paper(course, exercises or course.names, quick, lang, as_json)
     elif exercises:

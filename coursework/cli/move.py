@@ -11,6 +11,7 @@ import click
 
 from coursework.cli import completion
 from coursework.cli.options import (
+    FilePath,
     Whole,
     decimal_option,
     exercise_argument,
@@ -21,9 +22,11 @@ from coursework.cli.options import (
     settings_given,
     split_list,
     tell_lack_of_charts,
+    writes,
 )
 from coursework.cli.printing import print_json, print_table
 from coursework.errors import WrongValue
+from coursework.system.limits import MOST_STEPS
 
 if TYPE_CHECKING:
     from coursework.motion.added import Motor
@@ -50,7 +53,7 @@ if TYPE_CHECKING:
 @click.option(
     "--over", type=click.Choice(["cycle"]), default="cycle", show_default=True, help="One turn of the driver."
 )
-@click.option("--steps", type=Whole(1), help="Steps of a cycle; 360 unless told.")
+@click.option("--steps", type=Whole(1, MOST_STEPS), help="Steps of a cycle; 360 unless told.")
 @click.option(
     "--drive", metavar="torque=VALUE", help="Integrate the motion under this constant torque instead."
 )
@@ -65,7 +68,7 @@ if TYPE_CHECKING:
     show_default=True,
     help="With --budget: a part that may be left out of an output.",
 )
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for table and plot.")
+@click.option("--out", type=FilePath(path_type=Path, file_okay=False), help="Folder for table and plot.")
 @decimal_option
 @json_option
 @click.pass_context
@@ -90,6 +93,8 @@ def simulate(
         raise WrongValue("--plan says what would be done, --budget does it; give one of them")
     if "tolerance" in typed and not budget:
         raise WrongValue("--tolerance is of --budget")
+    if out is not None:
+        writes(context, out)
     told_file = _scene_file(opened(context), exercise, told, typed)
     if plan:
         _tell_plan(told_file.scene, as_json)
@@ -310,7 +315,7 @@ def _drive(exercise: Any, text: str) -> Motor:
     help="What is seen: position (paths), velocity, acceleration, coriolis; paths alone unless told.",
 )
 @lang_option
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=".", help="Folder to write.")
+@click.option("--out", type=FilePath(path_type=Path, file_okay=False), default=".", help="Folder to write.")
 @click.pass_context
 def animate(context: click.Context, exercise: str, seed: int, effects: str, lang: str, out: Path) -> None:
     """Show a mechanism in motion: over the cycle of its driver, or over the turns of its film.
@@ -320,6 +325,7 @@ def animate(context: click.Context, exercise: str, seed: int, effects: str, lang
     from coursework.system.writing import write_whole
 
     animation = opened(context)[exercise].variant(seed, lang).animation(split_list(effects))
+    writes(context, out)
     pages = {"svg": animation.svg(), "html": animation.html()}
     for ending, text in pages.items():
         write_whole(out / f"{exercise}.{ending}", text.encode("utf-8"))

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from coursework.cli import completion
 from coursework.errors import BadInput, WrongValue
+from coursework.system.limits import MOST_SEED
+from coursework.system.visible import one_line
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -23,7 +26,7 @@ DONE, FOUND, BAD = 0, 1, 2  #: exit statuses
 def tell(notes: Sequence[str]) -> None:
     """Say what is to be known and is no error."""
     for note in notes[:10]:
-        click.echo(f"coursework: note: {note}", err=True)
+        click.echo(f"coursework: note: {one_line(note)}", err=True)
     if len(notes) > 10:
         click.echo(f"coursework: note: and {len(notes) - 10} more such", err=True)
 
@@ -43,21 +46,34 @@ def complain(message: str) -> int:
 
 
 class Whole(click.ParamType):
-    """A whole number that is not less than the least."""
+    """A whole number that is not less than the least, nor more than the most."""
 
     name = "whole number"
 
-    def __init__(self, least: int):
-        self.least = least
+    def __init__(self, least: int, most: int):
+        self.least, self.most = least, most
 
     def convert(self, value: Any, param: Any, ctx: Any) -> int:
         try:
             number = int(value)
         except ValueError:
             number = self.least - 1
-        if number < self.least:
-            self.fail(f"takes a whole number, {self.least} or more; found {value!r}", param, ctx)
+        if not self.least <= number <= self.most:
+            bound = f"{self.least} or more" if number < self.least else f"at most {self.most:,}"
+            self.fail(f"takes a whole number, {bound}; found {str(value)[:40]!r}", param, ctx)
         return number
+
+
+class FilePath(click.Path):
+    """The path of a file or folder: a text that names one."""
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> Any:
+        text = os.fspath(value)
+        if not text.strip():
+            self.fail("names no file or folder; the one that you are in is called ./", param, ctx)
+        if "\0" in text:
+            self.fail("no file's name holds a NUL", param, ctx)
+        return super().convert(value, param, ctx)
 
 
 class Lists(click.ParamType):
@@ -114,6 +130,23 @@ def known_formats() -> tuple[str, ...]:
     return FORMATS
 
 
+db_option = click.option(
+    "--db",
+    metavar="URL",
+    help="A database: sqlite:///marks.db or its file's name, postgresql+psycopg://user@host/name.",
+)
+assignment_option = click.option(
+    "--assignment",
+    default="",
+    metavar="NAME",
+    help="What it is called in the database; needed where there are several.",
+)
+cluster_option = click.option(
+    "--cluster",
+    metavar="ADDRESS",
+    help="Share the work: tcp://HOST:8786 of a Dask scheduler, whose workers have this package; or local:N, N workers of this "
+    "machine. A scheduler runs what it is sent: only on a network of your own.",
+)
 json_option = click.option("--json", "as_json", is_flag=True, help="Print JSON.")
 
 
@@ -160,14 +193,37 @@ replace_option = click.option(
     "--overwrite", is_flag=True, help="Replace notebooks that are there, and what was written in them."
 )
 seed_option = click.option(
-    "--seed", type=Whole(0), default=0, show_default=True, help="Which variant (the first one)."
+    "--seed", type=Whole(0, MOST_SEED), default=0, show_default=True, help="Which variant (the first one)."
 )
+
+
+def writes(context: click.Context, folder: Path) -> None:
+    """This command alone writes into a folder, until it ends.
+
+    Raises
+    ------
+    BadInput
+        Another one does already.
+    """
+    from coursework.system.folder_lock import only_writer
+
+    context.with_resource(only_writer(folder, context.info_name or ""))
 
 
 def opened(context: click.Context) -> Course:
     from coursework.api import open_course
 
     return open_course(context.obj)
+
+
+def shared_by_cluster(context: click.Context, address: str | None) -> None:
+    """From here to the end of the command, large jobs are shared by the cluster that is named, if one is."""
+    if address is None:
+        return
+    from coursework.course.carrying import Carried
+    from coursework.system.cluster import cluster
+
+    context.with_resource(cluster(address, Carried(opened(context).folder)))
 
 
 def exercise_names(course: Course, names: Sequence[str]) -> tuple[str, ...]:

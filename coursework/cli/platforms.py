@@ -11,6 +11,7 @@ import click
 from coursework.cli.assignments import is_assignment
 from coursework.cli.options import (
     UNLESS_TOLD,
+    FilePath,
     Lists,
     Whole,
     decimal_option,
@@ -24,9 +25,11 @@ from coursework.cli.options import (
     spoken,
     tell,
     unknown_language,
+    writes,
 )
 from coursework.cli.printing import progress_bar
 from coursework.errors import BadInput, counted
+from coursework.system.limits import MOST_VARIANTS
 
 if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
@@ -71,12 +74,12 @@ class _PlatformName(click.ParamType):
 @click.option(
     "--variants",
     "count",
-    type=Whole(1),
+    type=Whole(1, MOST_VARIANTS),
     help=f"How many variants of each exercise; unless told, as many as the roster has students, else {_VARIANTS}.",
 )
 @click.option(
     "--roster",
-    type=click.Path(path_type=Path),
+    type=FilePath(path_type=Path),
     help="CSV of the students, as the platform exports it: answers that come back are told apart by it.",
 )
 @seed_option
@@ -90,14 +93,12 @@ class _PlatformName(click.ParamType):
 @parts_option
 @click.option(
     "--issued",
-    type=click.Path(path_type=Path, dir_okay=False, exists=True),
+    type=FilePath(path_type=Path, dir_okay=False, exists=True),
     help="Of gradescope: the issued.json of the build whose sheets were handed out; no exercises then. With exercises and a roster instead, it is that of the build with the same.",
 )
 @click.option("--strict", is_flag=True, help="Stop where anything is lost, and write nothing.")
 @decimal_option
-@click.option(
-    "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."
-)
+@click.option("--out", type=FilePath(path_type=Path, file_okay=False), required=True, help="Folder to write.")
 @click.option("--overwrite", is_flag=True, help="Replace another pool that was exported there before.")
 @click.pass_context
 def export(
@@ -129,6 +130,7 @@ def export(
 
     chosen = platform_of(platform)
     course = opened(context)
+    writes(context, out)
     notes: list[str] = []
     students = read_roster(roster, notes.append) if roster else []
     if issued is not None and (exercises or roster):
@@ -262,15 +264,12 @@ def _langs(context: click.Context, assignment: Assignment, langs: Sequence[str])
 
 def _check_folder(out: Path, drawn: Drawn) -> None:
     """An export takes the place of one of the same pool, or of a smaller one; not of another."""
-    import json
+    from coursework.making.issued import Issued
 
     path = out / "issued.json"
     if not path.is_file():
         return
-    try:
-        before = {_place(item["record"]) for item in json.loads(path.read_bytes())["issued"]}
-    except (ValueError, KeyError, TypeError):
-        before = {("", 0)}
+    before = {_place(item["record"]) for item in Issued.stood(path)["issued"]}
     if not before <= {_place(issue.variant.record) for issue in drawn.issues}:
         raise BadInput(
             f"{path} holds other variants, exported before; choose another --out, or --overwrite to replace them "

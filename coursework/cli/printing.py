@@ -12,6 +12,8 @@ from typing import Any
 
 import click
 
+from coursework.system.visible import plain, visible, visible_streams
+
 
 def print_json(content: Any) -> None:
     """One line of JSON."""
@@ -24,7 +26,7 @@ def print_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
     """A table, a column a key of the first row; nothing where there is no row."""
     if not rows:
         return
-    cells = [[str(column) for column in rows[0]], *([str(v) for v in row.values()] for row in rows)]
+    cells = [[visible(str(v)) for v in row] for row in (rows[0], *(row.values() for row in rows))]
     right = [all(isinstance(r[column], (int, float)) for r in rows) for column in rows[0]]
     if not _fits_a_terminal() and (lines := _ruled(cells, right, title)):
         click.echo("\n".join(lines))
@@ -33,14 +35,14 @@ def print_table(rows: Sequence[Mapping[str, Any]], title: str = "") -> None:
     from rich.table import Table
     from rich.text import Text  # as it is: brackets are not markup
 
-    table = Table(title=title or None, title_justify="left")
+    table = Table(title=visible(title) or None, title_justify="left")
     for column, is_right in zip(cells[0], right, strict=True):
         table.add_column(Text(column), justify="right" if is_right else "left", overflow="fold")
     for row in cells[1:]:
         table.add_row(*map(Text, row))
-    console = Console()
+    console = Console(file=plain(sys.stdout))
     # Piped into a file there is no width to fit: nothing is cut.
-    Console(width=None if console.is_terminal else _PIPED).print(table)
+    Console(file=console.file, width=None if console.is_terminal else _PIPED).print(table)
 
 
 _PIPED = 200  #: width of a table that no terminal shows
@@ -116,7 +118,8 @@ def progress_bar(what: str, total: int | None) -> Iterator[Callable[..., None]]:
     from rich.console import Console
     from rich.progress import Progress
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
+    # What is said meanwhile goes through the bar, and from there to the terminal.
+    with Progress(console=Console(file=plain(sys.stderr)), transient=True) as bar, visible_streams():
         task = bar.add_task(what, total=total)
 
         def advance(*progress: Any) -> None:

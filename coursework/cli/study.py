@@ -7,13 +7,19 @@ from pathlib import Path
 
 import click
 
-from coursework.cli.options import json_option, lang_option, opened, tell
+from coursework.cli.options import (
+    FilePath,
+    json_option,
+    lang_option,
+    opened,
+    tell,
+)
 from coursework.cli.printing import print_json
 from coursework.errors import BadInput
 
 
 @click.command()
-@click.argument("folder", type=click.Path(path_type=Path, file_okay=False), default=".")
+@click.argument("folder", type=FilePath(path_type=Path, file_okay=False), default=".")
 @click.option(
     "--on", "day", type=click.DateTime(["%Y-%m-%d"]), help="What is due on a day; today unless told."
 )

@@ -12,6 +12,7 @@ from coursework.cli.options import (
     DONE,
     FOUND,
     UNLESS_TOLD,
+    FilePath,
     Lists,
     Whole,
     exercise_names,
@@ -24,9 +25,11 @@ from coursework.cli.options import (
     spoken,
     tell,
     unknown_language,
+    writes,
 )
 from coursework.cli.printing import progress_bar
 from coursework.errors import BadInput, counted, unknown
+from coursework.system.limits import MOST_SEED
 
 if TYPE_CHECKING:
     from coursework.course.course import Course
@@ -37,7 +40,7 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("lessons", nargs=-1)
 @lang_option
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Folder for the notebooks.")
+@click.option("--out", type=FilePath(path_type=Path, file_okay=False), help="Folder for the notebooks.")
 @click.option(
     "--check", is_flag=True, help="Read, draw and run them in every language; status 1 when one fails."
 )
@@ -63,6 +66,7 @@ def lesson(
     from coursework.system.writing import write_whole
     from coursework.workbook.notebooks import lesson_notebook, notebook_name
 
+    writes(context, out)
     paths = {name: out / notebook_name(name, lang) for name in asked}
     _spare(list(paths.values()), overwrite)
     for name, path in paths.items():
@@ -125,7 +129,7 @@ def _spare(paths: Sequence[Path], overwrite: bool) -> None:
 )
 @click.option(
     "--out",
-    type=click.Path(path_type=Path, file_okay=False),
+    type=FilePath(path_type=Path, file_okay=False),
     default="notebooks",
     show_default=True,
     help="Folder for the notebooks.",
@@ -151,6 +155,7 @@ def notebook(
 
     course = opened(context)
     wheel = course.folder.wheel
+    writes(context, out)
     paths = {
         (name, lang): out / notebook_name(name, lang)
         for name in exercise_names(course, exercises)
@@ -178,7 +183,11 @@ def _formats() -> tuple[str, ...]:
 @click.command()
 @lang_option
 @click.option(
-    "--seed", type=Whole(0), default=0, show_default=True, help="Which book: each has its own variants."
+    "--seed",
+    type=Whole(0, MOST_SEED),
+    default=0,
+    show_default=True,
+    help="Which book: each has its own variants.",
 )
 @click.option("--chapters", default="", help="Numbers of the chapters wanted, as 1,2; all unless told.")
 @click.option("--formats", type=Lists(_formats), default="pdf,html,ipynb", show_default=True)
@@ -190,9 +199,7 @@ def _formats() -> tuple[str, ...]:
     help="Where the solutions stand: at the end, in a PDF and pages of their own, or nowhere.",
 )
 @click.option("--paper", type=click.Choice(["a4", "letter"]), default="a4", show_default=True)
-@click.option(
-    "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write."
-)
+@click.option("--out", type=FilePath(path_type=Path, file_okay=False), required=True, help="Folder to write.")
 @click.option(
     "--overwrite",
     is_flag=True,
@@ -219,11 +226,13 @@ def workbook(
     course = opened(context)
     _check_language(lang)
     wanted = _numbers(chapters)
+    writes(context, out)
     if not course.folder.has_solutions:
         solutions = "none"
         tell(
             [
-                f"{course.folder.label} has no solutions/: the book has no solutions, and no self-study notebooks"
+                f"{course.folder.label} has no solutions/: the book has no solutions, no self-study notebooks, and other "
+                "variants than that of the full course"
             ]
         )
     with progress_bar("reading", pieces_of(course)) as advance:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
@@ -51,6 +51,14 @@ class Element:
             raise WrongValue(f"{type(self).__name__}: {name} is {value!r}, not finite")
         return value
 
+    def settled(self, decimals: int) -> Element:
+        """The element with its points and numbers rounded to so many decimals."""
+        told = {name: getattr(self, name) for name, _ in self._told()}
+        changed = {
+            name: new for name, old in told.items() if repr(new := _rounded(old, decimals)) != repr(old)
+        }
+        return replace(self, **changed) if changed else self
+
     def reach(self) -> tuple[complex, ...]:
         """Points that bound the element."""
         return tuple(z for name, _ in self._told() for z in _points(getattr(self, name)))
@@ -61,6 +69,14 @@ class Element:
 
     def draw(self, paper: Paper) -> None:
         raise NotImplementedError
+
+
+def _rounded(value: Any, decimals: int) -> Any:
+    if isinstance(value, complex):
+        return complex(round(value.real, decimals) + 0.0, round(value.imag, decimals) + 0.0)
+    if isinstance(value, float):
+        return (round(value, decimals) or value) + 0.0  # what is positive stays so
+    return tuple(_rounded(one, decimals) for one in value) if isinstance(value, tuple) else value
 
 
 def _points(value: object) -> tuple[complex, ...]:

@@ -32,6 +32,7 @@ from coursework.figures.ink import (
     added,
     turn,
 )
+from coursework.language.numbers import rounded
 
 if TYPE_CHECKING:
     from coursework.figures.paper import Paper
@@ -252,7 +253,7 @@ def _hole(points: tuple[complex, ...], box: tuple[float, float]) -> tuple[comple
 
     fitting = [center for center in grid if all(within(center + z, closed) for z in rim)]
     middle = added(grid) / len(grid)
-    best = max(fitting, key=lambda z: (round(room(z), 1), -round(abs(z - middle), 3)), default=None)
+    best = max(fitting, key=lambda z: (rounded(room(z), 1), -rounded(abs(z - middle), 3)), default=None)
     return () if best is None else tuple(best + z for z in corners)
 
 

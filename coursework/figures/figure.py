@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,6 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from coursework.errors import WrongValue
 from coursework.figures.base import Element
 from coursework.figures.ink import MARKS, THIN, Ink, Path
+from coursework.language.numbers import rounded, settled
 
 if TYPE_CHECKING:
     from coursework.figures.paper import Paper
@@ -18,6 +20,7 @@ if TYPE_CHECKING:
 
 _PAPER_MM = (110.0, 75.0)  #: what a drawing takes at most unless told
 _MARGIN = 1.0  #: white round the drawing, mm
+_DIGITS = 10  #: of the coordinates of what is drawn
 _TRIES = 40
 _GROWTHS, _WORTH_GROWING = 4, 1.05  #: so often a drawing is laid out once more that could be so much larger
 
@@ -47,7 +50,7 @@ class _Layout:
     @property
     def size_mm(self) -> tuple[float, float]:
         size = self.high - self.low
-        return round(size.real, 1), round(size.imag, 1)
+        return rounded(size.real, 1), rounded(size.imag, 1)
 
     @property
     def corner(self) -> complex:
@@ -123,9 +126,20 @@ class Figure:
         self._extent  # noqa: B018  a figure without extent is refused where it is written
 
     @cached_property
+    def _settled(self) -> tuple[Element, ...]:
+        """The elements to ten digits of the drawing's extent: what is drawn, and every choice on the way, hangs on no
+        last bit."""
+        points = [z for element in self.elements for z in element.reach()]
+        size = max((max(abs(z.real), abs(z.imag)) for z in points), default=0.0)
+        if not size > 0:
+            return self.elements
+        decimals = _DIGITS - 1 - math.floor(math.log10(size))
+        return tuple(element.settled(decimals) for element in self.elements)
+
+    @cached_property
     def _extent(self) -> tuple[complex, complex]:
         """Corners of the mechanism, without symbols and labels."""
-        points = [z for element in self.elements for z in element.reach()]
+        points = [z for element in self._settled for z in element.reach()]
         low, high = _corners(points) if points else (0j, 0j)
         if not abs(high - low) > 0:
             names = ", ".join(type(element).__name__ for element in self.elements) or "no element"
@@ -183,18 +197,18 @@ class Figure:
         scales = [r / s for r, s in ((room.real, size.real), (room.imag, size.imag)) if s > 0]
         if min(scales) <= 0:
             raise WrongValue(f"a paper box of {self.paper_mm} mm is too small for this figure's labels")
-        return min(scales)
+        return settled(min(scales))
 
     def _drawn(self, scale: float) -> tuple[Paper, list[int], list[int]]:
         """Ink and wishes for labels at a scale; and the element, by its place, that each comes from."""
         from coursework.figures.paper import Paper
 
         low, high = self._extent
-        bars = [bar for element in self.elements for bar in element.bars()]
+        bars = [bar for element in self._settled for bar in element.bars()]
         paper = Paper(scale, bars, (low + high) / 2)
         drew: list[int] = []
         wished: list[int] = []
-        for number, element in enumerate(self.elements):
+        for number, element in enumerate(self._settled):
             element.draw(paper)
             drew += [number] * (len(paper.ink) - len(drew))
             wished += [number] * (len(paper.wishes) - len(wished))
@@ -366,4 +380,4 @@ def _corners(points: Sequence[complex]) -> tuple[complex, complex]:
 
 
 def _tenths(z: complex) -> complex:
-    return complex(round(z.real, 1), round(z.imag, 1))
+    return complex(rounded(z.real, 1), rounded(z.imag, 1))

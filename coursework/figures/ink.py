@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from functools import lru_cache, reduce
 from typing import TypeVar
 
+from coursework.language.numbers import rounded
+
 BAR, EDGE, THIN = 0.6, 0.35, 0.2  #: line widths, mm
 DASHED, CHAIN, DOTTED = "1.6 1", "4 1 0.6 1", "0.8 0.8"
 HEAD = 2.2  #: length of an arrow head, mm
@@ -27,8 +29,8 @@ Number = TypeVar("Number", float, complex)
 
 def number(x: float) -> str:
     """A length in mm, to the hundredth at most, without idle zeros."""
-    text = f"{x:.2f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
+    text = f"{rounded(x, 2):.2f}".rstrip("0").rstrip(".")
+    return text
 
 
 def pair(z: complex) -> str:

@@ -42,6 +42,7 @@ from coursework.figures.placing import Wish
 from coursework.figures.riding import ride
 from coursework.figures.text import read
 from coursework.figures.writing import accents, as_outlines, baseline
+from coursework.language.numbers import rounded
 
 COLOURS = {"position": "#1b7a4b", "velocity": "#0a58a8", "acceleration": "#b3261e", "coriolis": "#7a2f9e"}
 ARROW, TIP = 0.5, 2.6  #: width of a vector's shaft and length of its head, mm
@@ -278,7 +279,7 @@ def _stages(frames: list[list[Element]], scale: float, middle: complex) -> list[
     sides: dict[tuple[float, float], complex] = {}
 
     def ground(p: complex) -> complex:
-        key = (round(p.real, 3), round(p.imag, 3))
+        key = (rounded(p.real, 3), rounded(p.imag, 3))
         if key not in sides:
             sides[key] = _free_side([stage.directions(p) for stage in stages])
         return sides[key]
@@ -430,17 +431,17 @@ def _framed(tracks: Sequence[Track], keys: Sequence[Key], scale: float) -> Drawi
     xs = np.concatenate([t.numbers[:, 0::2].ravel() for t in tracks])
     ys = np.concatenate([t.numbers[:, 1::2].ravel() for t in tracks])
     around = 4.0  # symbols and letters reach this far from their origin
-    left, top = round(xs.min() - around - _MARGIN, 1), round(ys.max() + around + _MARGIN, 1)
+    left, top = rounded(xs.min() - around - _MARGIN, 1), rounded(ys.max() + around + _MARGIN, 1)
     bottom = ys.min() - around - _MARGIN
-    width = round(xs.max() + around + _MARGIN - left, 1)
+    width = rounded(xs.max() + around + _MARGIN - left, 1)
     indent = 2.0 + max((key.length * scale for key in keys), default=0.0)
     widest = max((read(key.words).box[0] for key in keys), default=-indent)
-    width = max(width, round(indent + widest + 4 * _MARGIN, 1))
+    width = max(width, rounded(indent + widest + 4 * _MARGIN, 1))
     legend, count = [], len(tracks[0].numbers)
     for row, key in enumerate(keys):
         corner = complex(left + 2 * _MARGIN, bottom - _ROW * (row + 0.4))
         legend += _key_tracks(key, count, corner, indent, scale)
-    height = round(top - bottom + _ROW * len(keys), 1)
+    height = rounded(top - bottom + _ROW * len(keys), 1)
     flip = [replace(t, numbers=_downwards(t.numbers, left, top)) for t in [*tracks, *legend]]
     return Drawing(tuple(sorted(flip, key=lambda t: t.layer)), (width, height), scale)
 

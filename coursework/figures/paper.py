@@ -23,6 +23,7 @@ from coursework.figures.ink import (
     turn,
 )
 from coursework.figures.placing import Wish, distance
+from coursework.language.numbers import rounded
 
 
 class Paper:
@@ -41,13 +42,13 @@ class Paper:
         self._bars = [(self.at(p), self.at(q)) for p, q in bars]
 
     def at(self, z: complex) -> complex:
-        return complex(round(z.real * self.scale, 1), round(z.imag * self.scale, 1))
+        return complex(rounded(z.real * self.scale, 1), rounded(z.imag * self.scale, 1))
 
     def length(self, mm: float) -> float:
-        return max(0.1, round(mm * self.scale, 1))
+        return max(0.1, rounded(mm * self.scale, 1))
 
     def degrees(self, angle: float) -> float:
-        return float(round(angle))
+        return rounded(angle, 0)
 
     def draw(self, *ink: Ink) -> None:
         self.ink += ink

@@ -13,6 +13,7 @@ from coursework.figures import Element, Figure, line, point, vector
 from coursework.figures.base import Positive
 from coursework.figures.ink import BLOCKS, EDGE, TINT, WHITE, Disc, Path, added
 from coursework.figures.placing import distance
+from coursework.language.numbers import rounded
 
 if TYPE_CHECKING:
     from coursework.figures.paper import Paper
@@ -50,7 +51,7 @@ class _face(Element):
 
     def draw(self, paper: Paper) -> None:
         points = tuple(
-            complex(round(z.real, 2), round(z.imag, 2)) for z in (p * paper.scale for p in self.points)
+            complex(rounded(z.real, 2), rounded(z.imag, 2)) for z in (p * paper.scale for p in self.points)
         )
         paper.draw(Path(points, EDGE, WHITE, closed=len(points) > 2, layer=BLOCKS))
 

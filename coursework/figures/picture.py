@@ -19,13 +19,36 @@ if TYPE_CHECKING:
     from coursework.figures.writing import Letters
 
 _SVG, _XLINK = "http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"
+_XHTML = "http://www.w3.org/1999/xhtml"
 _PNG = b"\x89PNG\r\n\x1a\n"
 _MM = {"": 25.4 / 96, "px": 25.4 / 96, "mm": 1.0, "cm": 10.0, "in": 25.4, "pt": 25.4 / 72, "pc": 25.4 / 6}
 _PPI = 150  #: of a PNG whose width is not told
 _LENGTH = re.compile(r"\s*([0-9.]+(?:e[+-]?\d+)?)\s*([a-z]*)\s*", re.I)
 _DOCTYPE = re.compile(rb"<!DOCTYPE[^>\[]*>", re.I)
-_RUNS = ("script", "foreignObject", "handler", "listener", "iframe", "embed", "object", "set", "animate")
-_FETCHES = re.compile(r"url\s*\(\s*['\"]?(?!['\"]?\s*(?:#|data:image/))|@import", re.I)
+#: All that draws. What else there is runs, moves, leads elsewhere, or is HTML as soon as it stands in a page.
+_DRAWS = frozenset(
+    (
+        "svg", "g", "defs", "symbol", "use", "switch", "title", "desc", "metadata", "style", "path", "rect", "circle", "ellipse", "line",
+        "polyline", "polygon", "text", "tspan", "textPath", "image", "a", "marker", "pattern", "clipPath", "mask", "linearGradient",
+        "radialGradient", "stop", "filter", "view", "flowRoot", "flowRegion", "flowPara", "flowSpan", "solidColor",
+    )
+)  # fmt: skip
+_FETCHES = re.compile(
+    r"url\s*\(\s*['\"]?(?!['\"]?\s*(?:#|data:image/))|@import|image-set|\bsrc\s*\(|\\", re.I
+)  #: a backslash writes any letter otherwise
+_LINKS = (
+    "href",
+    "src",
+    "srcset",
+    "action",
+    "formaction",
+    "poster",
+    "background",
+    "data",
+    "ping",
+    "base",
+    "content",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,16 +191,19 @@ def _length(text: str) -> float:
 def _dangers(root: ElementTree.Element) -> Iterator[str]:
     """What of an SVG would run or fetch something."""
     for element in root.iter():
-        name = str(element.tag).rpartition("}")[2]
-        if name in _RUNS or name.startswith("animate"):
+        space, _, name = str(element.tag).rpartition("}")
+        is_drawn = name in _DRAWS or name.startswith("fe")
+        if space == f"{{{_XHTML}" or (
+            space in ("", f"{{{_SVG}") and not is_drawn
+        ):  # those of drawing programs are inert
             yield f"<{name}>"
         for attribute, value in element.attrib.items():
             own = attribute.rpartition("}")[2].lower()
             if own.startswith("on"):
                 yield f"{own}=…"
-            if own in ("href", "src") and not re.match(r"\s*(?:#|data:image/(?:png|jpe?g|gif);)", value):
+            if own in _LINKS and not re.match(r"\s*(?:#|data:image/(?:png|jpe?g|gif);)", value):
                 yield f"a link to {value[:40]!r}"
-            if _FETCHES.search(value):
+            if "}" not in attribute and _FETCHES.search(value):
                 yield f"{own}={value[:40]!r}"
         if name == "style" and _FETCHES.search(element.text or ""):
             yield "a style that fetches"

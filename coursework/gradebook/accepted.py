@@ -6,7 +6,6 @@ import difflib
 import math
 import re
 from collections.abc import Iterable, Iterator, Sequence
-from itertools import combinations
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,6 +19,7 @@ from coursework.making.issued import Issued
 from coursework.making.students import folded
 from coursework.marking.feedback import Told
 from coursework.marking.mark import Mark
+from coursework.system.limits import MOST_TABLE_BYTES
 
 ACCEPTED = "accepted"
 
@@ -39,15 +39,18 @@ class Accepted:
     """
 
     def __init__(self, path: Path | None) -> None:
-        self._lines: list[_Acceptance] = []
-        self._by_place: dict[tuple[str, str, str, str], list[_Acceptance]] = {}
+        self.path = path
+        self.lines: list[Acceptance] = []  #: of the file
+        self._by_place: dict[tuple[str, str, str, str], list[Acceptance]] = {}
         self._headings: list[str] = []  #: what is wrong with them
-        self._used: set[_Acceptance] = set()
-        for number, row, more in () if path is None else lines_of(path):
-            if not self._lines:
+        self._used: set[Acceptance] = set()
+        for number, row, more in (
+            () if path is None else lines_of(path, MOST_TABLE_BYTES, (*_NEEDED, *_OPTIONAL))
+        ):
+            if not self.lines:
                 self._headings = [f"{path}, line 1: {wrong}" for wrong in _misspelt(row)]
             one = _acceptance(f"{path}, line {number}", number, row, more)
-            self._lines.append(one)
+            self.lines.append(one)
             self._by_place.setdefault(_key(*one.named), []).append(one)
 
     def apply(self, graded: Graded, lang: str) -> Graded:
@@ -65,12 +68,12 @@ class Accepted:
         for part, line in graded.lines.items():
             for found in self._named(graded, part):
                 self._used.add(found)
-                lines[part] = _accepted(line, found, lang)
+                lines[part] = accepted_mark(line, found.points, found.reason, lang, found.place)
                 if part not in (*graded.answered, *unanswered):
                     unanswered.append(part)
         return graded._replace(lines=lines, unanswered=tuple(unanswered))
 
-    def _named(self, graded: Graded, part: str) -> list[_Acceptance]:
+    def _named(self, graded: Graded, part: str) -> list[Acceptance]:
         """The lines on an answer, in the order of the file."""
         keys = (_key(graded.student, graded.exercise, seed, part) for seed in (graded.seed, ""))
         return sorted((one for key in keys for one in self._by_place.get(key, ())), key=lambda one: one.line)
@@ -80,8 +83,8 @@ class Accepted:
         and the answers named that were issued and that nobody gave. ``students`` are those who answered.
         """
         faults, notes = list(self._headings), []
-        asked = _Asked(issued, tuple(students)) if self._lines else None
-        for one in self._lines:
+        asked = _Asked(issued, tuple(students)) if self.lines else None
+        for one in self.lines:
             if asked is not None and one not in self._used:
                 told = f"accepted by hand, but never answered: {one.says}"
                 why = asked.why_not(one)
@@ -91,21 +94,20 @@ class Accepted:
         return faults, notes
 
     def _contradictions(self, asked: _Asked) -> Iterator[str]:
-        """The lines on one answer that give other points than one before."""
-        groups: dict[tuple[str, ...], list[_Acceptance]] = {}
-        for one in self._lines:
+        """The lines on one answer that give other points than the last one before."""
+        groups: dict[tuple[str, ...], list[Acceptance]] = {}
+        for one in self.lines:
             groups.setdefault((folded(one.student), one.exercise, one.part), []).append(one)
         for group in groups.values():
-            for before, one in combinations(group, 2):
-                same = not (before.seed and one.seed) or before.seed == one.seed
-                if same and asked.points(before) != asked.points(one):
+            for before, one in _in_turn(group):
+                if asked.points(before) != asked.points(one):
                     yield (
                         f"{one.place}: {one.gives} for {one.says}, and line {before.line} says {before.gives}; "
                         f"line {one.line} counts: take one of them away"
                     )
 
 
-class _Acceptance(NamedTuple):
+class Acceptance(NamedTuple):
     """A line of the file."""
 
     place: str
@@ -130,6 +132,18 @@ class _Acceptance(NamedTuple):
         return "full points" if self.points is None else f"points {self.points:g}"
 
 
+def _in_turn(lines: Iterable[Acceptance]) -> Iterator[tuple[Acceptance, Acceptance]]:
+    """The lines on one part of a student, each with the last one before it that names the same variant, or one of the two none."""
+    last: dict[str, Acceptance] = {}  #: by seed
+    latest: Acceptance | None = None
+    for one in lines:
+        before = [last[seed] for seed in {one.seed, ""} if seed in last] if one.seed else [latest]
+        found = max(filter(None, before), key=lambda other: other.line, default=None)
+        if found is not None:
+            yield found, one
+        last[one.seed] = latest = one
+
+
 def _key(student: str, exercise: str, seed: Any, part: str) -> tuple[str, str, str, str]:
     return folded(student), exercise, str(seed), part
 
@@ -137,7 +151,7 @@ def _key(student: str, exercise: str, seed: Any, part: str) -> tuple[str, str, s
 # ---------------------------------------------------------------------- reading
 
 
-def _acceptance(place: str, number: int, row: dict[str, str], more: Sequence[str]) -> _Acceptance:
+def _acceptance(place: str, number: int, row: dict[str, str], more: Sequence[str]) -> Acceptance:
     missing = [c for c in _NEEDED if not row.get(c)]
     if missing:
         raise BadInput(f"{place}: {', '.join(missing)} missing; name the answer to accept")
@@ -149,7 +163,7 @@ def _acceptance(place: str, number: int, row: dict[str, str], more: Sequence[str
     seed = re.sub(r"[.,]0+$", "", row.get("seed", ""))  # as spreadsheets write whole numbers
     points = points_of(row.get("points", ""), place)
     named = (row["student"], row["exercise"], seed, row["part"])
-    return _Acceptance(place, number, *named, points, row.get("reason", ""))
+    return Acceptance(place, number, *named, points, row.get("reason", ""))
 
 
 def _misspelt(columns: Iterable[str]) -> Iterator[str]:
@@ -179,14 +193,24 @@ def points_of(text: str, place: str) -> float | None:
 # -------------------------------------------------------------------- following
 
 
-def _accepted(line: Mark, found: _Acceptance, lang: str) -> Mark:
-    points = line.out_of if found.points is None else found.points
-    if points > line.out_of:
-        raise BadInput(
-            f"{found.place}: {points:g} points for {line.part}, which has {line.out_of:g}; give that or fewer"
-        )
-    says = f"{words(lang)['marking']['accepted']} {found.reason}".strip()
+def accepted_mark(line: Mark, points: float | None, reason: str, lang: str, place: str) -> Mark:
+    """The mark of an answer that a person accepts, with all its points where none are said; ``place`` is where it is said.
+
+    Raises
+    ------
+    BadInput
+        The part has fewer points.
+    """
+    points = line.out_of if points is None else points
+    check_points(points, line.part, line.out_of, place)
+    says = f"{words(lang)['marking']['accepted']} {reason}".strip()
     return line._replace(verdict=ACCEPTED, points=points, told=(Told(says, says),))
+
+
+def check_points(points: float, part: str, out_of: float, place: str) -> None:
+    """Refuse more points than a part has."""
+    if points > out_of:
+        raise BadInput(f"{place}: {points:g} points for {part}, which has {out_of:g}; give that or fewer")
 
 
 class _Asked:
@@ -203,7 +227,7 @@ class _Asked:
             self._parts[exercise, str(seed)] = own
             self._parts.setdefault((exercise, ""), {}).update(own)
 
-    def why_not(self, one: _Acceptance) -> str:
+    def why_not(self, one: Acceptance) -> str:
         """Why a line names no answer that was issued; nothing where it does."""
         issued, parts = self._issued, self._parts.get((one.exercise, one.seed))
         if not issued.has_roster and folded(one.student) not in self._answered:
@@ -218,7 +242,7 @@ class _Asked:
             "" if one.part in parts else f"{one.exercise} has no part {one.part!r}{nearest(one.part, parts)}"
         )
 
-    def points(self, one: _Acceptance) -> float | None:
+    def points(self, one: Acceptance) -> float | None:
         """The points that a line gives; None for all of a part that is not there."""
         parts = self._parts.get((one.exercise, one.seed), {})
         return parts.get(one.part) if one.points is None else one.points

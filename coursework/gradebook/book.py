@@ -9,12 +9,13 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
 from coursework.gradebook.columns import (
+    LATE,
     MARK,
     SITTING,
     SUBMITTED,
@@ -63,7 +64,7 @@ def rejected_rows(rejected: Iterable[Rejected]) -> Iterator[dict[str, Any]]:
         yield {**dict.fromkeys(REJECTED_COLUMNS, ""), **one.row, "source": one.source, "reason": one.reason}
 
 
-@dataclass
+@dataclass(slots=True)
 class Total:
     """Points and verdicts of one student, or of one exercise."""
 
@@ -94,7 +95,6 @@ class Gradebook:
     faults: list[str] = field(default_factory=list)  #: of what was accepted by hand, for somebody to mend
     students: dict[Sitting, Total] = field(default_factory=dict)  #: of sheets that were handed in
     exercises: dict[str, Total] = field(default_factory=dict)  #: of the answers that came
-    handed_in: dict[Sitting, set[str]] = field(default_factory=dict)  #: exercises
     blank: dict[tuple[Sitting, str], set[str]] = field(
         default_factory=dict
     )  #: parts by sheet; see ``unread``
@@ -106,6 +106,9 @@ class Gradebook:
     asked: dict[tuple[Sitting, str], set[str]] = field(default_factory=dict)  #: the same of somebody
     whole: set[str] = field(default_factory=set)  #: exercises of which a variant came whole
     seen: tuple[str, ...] = ()  #: what platforms wrote of what was read
+    charged: Mapping[Sitting, float] = field(
+        default_factory=dict
+    )  #: shares that are taken off of what came late
 
     @property
     def marked(self) -> int:
@@ -116,7 +119,6 @@ class Gradebook:
         sitting = graded.student, graded.sitting
         student = self.students.setdefault(sitting, Total())
         exercise = self.exercises.setdefault(graded.exercise, Total())
-        self.handed_in.setdefault(sitting, set()).add(graded.exercise)
         for line in graded.lines.values():
             student.add(line)
         if graded.apart:
@@ -134,6 +136,10 @@ class Gradebook:
             exercise.answers += 1
         for part in graded.unanswered:
             exercise.add(graded.lines[part])
+
+    def handed_in(self, sitting: Sitting) -> Collection[str]:
+        """The exercises of which a sheet came."""
+        return self.students[sitting].by_exercise.keys() if sitting in self.students else ()
 
     @cached_property
     def _rejected_of(self) -> frozenset[str]:
@@ -155,7 +161,7 @@ class Gradebook:
             parts = {str(part["id"]) for part in issued.records[sheet]["parts"]}
             if row.get("part"):
                 parts &= {row["part"]}
-            if exercise in self.handed_in.get(sitting, ()):
+            if exercise in self.handed_in(sitting):
                 parts &= self.blank.get((sitting, exercise), set())
             if parts:
                 found.setdefault(sitting, {}).setdefault(sheet, set()).update(parts)
@@ -197,6 +203,14 @@ class Result:
     out_of: float
     by_exercise: Mapping[str, float]
     verdicts: Mapping[str, int]
+    late: float = (
+        0.0  #: points that are taken off since it came late; those of the answers stay what they are
+    )
+
+    @property
+    def counts(self) -> float:
+        """The points that the mark is made of."""
+        return self.points - self.late
 
 
 def results(book: Gradebook) -> Iterator[tuple[str, Result]]:
@@ -219,7 +233,7 @@ def counted_one(issued: Issued, found: Sequence[Result]) -> Result:
     """Which of the sittings counts: the best, or as the assignment says the last; of two as good the later."""
     if (issued.assignment or {}).get("sittings", BEST) != BEST:
         return found[-1]
-    return max(found, key=lambda r: (exact(r.points) / exact(r.out_of) if r.out_of else 0, r.sitting))
+    return max(found, key=lambda r: (exact(r.counts) / exact(r.out_of) if r.out_of else 0, r.sitting))
 
 
 def _result(book: Gradebook, place: Sitting, own: Mapping[tuple[str, int], set[str]]) -> Result:
@@ -230,7 +244,8 @@ def _result(book: Gradebook, place: Sitting, own: Mapping[tuple[str, int], set[s
     verdicts["unreadable"] += waiting
     verdicts["missing"] += len(lost) - waiting
     out_of = total.out_of + sum(part["points"] for part in lost)
-    return Result(place[1], total.points, out_of, total.by_exercise, verdicts)
+    late = float(exact(total.points * book.charged.get(place, 0.0)))
+    return Result(place[1], total.points, out_of, total.by_exercise, verdicts, late)
 
 
 def _lost(book: Gradebook, place: Sitting, key: tuple[str, int]) -> list[Mapping[str, Any]]:
@@ -244,7 +259,7 @@ def _lost(book: Gradebook, place: Sitting, key: tuple[str, int]) -> list[Mapping
 
 def _owed(book: Gradebook, place: Sitting, own: Iterable[tuple[str, int]]) -> set[tuple[str, int]]:
     """The variants of which nothing could be marked."""
-    issued, done = book.issued, book.handed_in.get(place, set())
+    issued, done = book.issued, set(book.handed_in(place))
     owed = {(e, seed) for e, seed in (*issued.issued_to(*place).items(), *own) if e not in done}
     met = {e for e, _ in owed} | (done - (book.apart.keys() - book.whole))
     # Nobody's paper asks all the exercises too; which variant was theirs bears on no points.
@@ -281,7 +296,8 @@ def summary_rows(book: Gradebook) -> Iterator[dict[str, Any]]:
             SITTING: result.sitting,
             "points": f"{points:g}",
             "out_of": f"{out_of:g}",
-            MARK: mark_of(issued, points, out_of),
-            "percent": f"{100 * points / out_of:.1f}" if out_of else "",
+            LATE: f"{result.late:g}",
+            MARK: mark_of(issued, result.counts, out_of),
+            "percent": f"{100 * result.counts / out_of:.1f}" if out_of else "",
             **{verdict: result.verdicts[verdict] for verdict in VERDICTS},
         }

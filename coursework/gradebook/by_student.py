@@ -38,7 +38,7 @@ def marks_of_student(
         The course cannot mark: no solutions, an exercise that the records do not fit.
     """
     notes: list[str] = []
-    sheets = placed(course, issued, _of(issued, student, rows, notes))
+    sheets = placed(course, issued, as_students(issued, student, rows, notes))
     found: dict[str, Graded] = {}
     for graded in marked(course, issued, sheets):
         found.setdefault(graded.exercise, graded)
@@ -46,7 +46,7 @@ def marks_of_student(
     return OwnMarks(tuple(whole), tuple(sheets.rejected), (*notes, *sheets.warnings))
 
 
-def _of(
+def as_students(
     issued: Issued, student: str, rows: Iterable[Row | Rejected | Seen], notes: list[str]
 ) -> Iterator[Row | Rejected]:
     """The rows as the student's own; another name in them is told once."""

@@ -14,6 +14,7 @@ from coursework.system.tables import as_written
 
 WHAT = "Canvas's Student Analysis"
 _QUESTION = re.compile(r"\s*[0-9]+\s*:\s")
+_ATTEMPT = re.compile("[0-9]{1,9}")
 _IDS = ("sis_id", "id")
 
 
@@ -83,7 +84,7 @@ def _origin(header: Sequence[str], columns: AnalysisColumns, cells: Sequence[str
     ids = tuple(
         (_TITLES[header[k].strip().casefold()], cells[k].strip()) for k in columns.ids if cells[k].strip()
     )
-    return Collected(ids, (), int(attempt) if attempt.isdecimal() else 0, submitted)
+    return Collected(ids, (), int(attempt) if _ATTEMPT.fullmatch(attempt) else 0, submitted)
 
 
 _TITLES = {"sis_id": "SIS User ID", "id": "ID"}  #: as Canvas's gradebook calls them

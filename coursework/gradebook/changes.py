@@ -5,14 +5,15 @@ from __future__ import annotations
 import csv
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from coursework.errors import BadInput
 from coursework.gradebook.columns import VERDICTS
 from coursework.making.students import folded
-from coursework.system.tables import as_written, delimiter_of, open_csv
+from coursework.system.limits import check_size
+from coursework.system.tables import as_written, delimiter_of, open_csv, said_twice
 
 CHANGES_COLUMNS = (
     "student", "exercise", "seed", "part", "answer",
@@ -32,6 +33,11 @@ def _number(text: str) -> float:
 _ROUNDING = 1e-4  #: of points, as both tables print them
 #: Verdicts that have a line in the marks for each in the summary.
 _IN_BOTH = tuple(v for v in VERDICTS if v not in ("unreadable", "to_mark", "missing"))
+
+
+def _count(digits: str) -> int:
+    """How many, or what no count is where nobody has so many."""
+    return int(digits) if len(digits) < 10 else -1
 
 
 class Before:
@@ -73,7 +79,7 @@ class Before:
             found.update(self._verdicts.get(sitting, ()))
             if not abs(_number(row.get("points", "")) - points) < _ROUNDING * max(1.0, points):
                 return True
-            told.update({v: int(row[v]) for v in _IN_BOTH if row.get(v, "").isdecimal()})
+            told.update({v: _count(row[v]) for v in _IN_BOTH if row.get(v, "").isdecimal()})
         return bool(others) or any(told[verdict] != found[verdict] for verdict in _IN_BOTH)
 
     def changed(self, row: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -111,24 +117,31 @@ def rows_of(path: Path) -> Iterator[dict[str, str]]:
     return (row for _, row, _ in lines_of(path))
 
 
-def lines_of(path: Path) -> Iterator[tuple[int, dict[str, str], list[str]]]:
-    """The rows of a table, each with the number of its line and the cells that have no heading.
+def lines_of(
+    path: Path, most: int | None = None, once: Sequence[str] = ()
+) -> Iterator[tuple[int, dict[str, str], list[str]]]:
+    """The rows of a table of ``most`` bytes where that is told, each with the number of its line and the cells that have no heading.
 
     Raises
     ------
     BadInput
-        The file cannot be read.
+        The file cannot be read, or is larger, or names one of the columns ``once`` twice.
     """
     try:
+        if most is not None:
+            check_size(str(path), path.stat().st_size, most)
         with open_csv(path) as file:
-            delimiter = delimiter_of(file.readline())
+            delimiter = delimiter_of(next(filter(str.strip, file), ""))
             file.seek(0)
             reader = csv.DictReader(file, delimiter=delimiter)
+            reader.fieldnames = next((row for row in reader.reader if any(map(str.strip, row))), [])
+            if twice := said_twice(reader.fieldnames, once):
+                raise BadInput(f"{path}: {twice}")
             cells: dict[Any, Any]
             for cells in reader:
                 more = cells.pop(None, [])
                 row = {
-                    (k or "").strip().casefold(): as_written(v.strip())
+                    as_written((k or "").strip()).casefold(): as_written(v.strip())
                     for k, v in cells.items()
                     if isinstance(v, str)
                 }

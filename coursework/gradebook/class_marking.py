@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+import itertools
+from collections import Counter, deque
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from coursework.course.course import Course, opened
@@ -16,12 +17,12 @@ from coursework.gradebook.placing import SheetPlace, Sheets, as_texts
 from coursework.gradebook.rows import Rejected
 from coursework.language.words import words
 from coursework.making.issued import Issued
-from coursework.marking.feedback import Said, right_feedback
+from coursework.marking.feedback import Said, right_feedback, right_says
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
 from coursework.marking.plain_answers import plainly_right
 from coursework.model import Part
-from coursework.system.processes import processes, workers
+from coursework.system.processes import Task, in_turn, workers
 
 CHUNK = 500  #: sheets marked together
 WORTH_PROCESSES = 20_000  #: answers; fewer are marked before a process has started
@@ -71,60 +72,98 @@ def marked(course: Course, issued: Issued, sheets: Sheets, *, printed: bool = Tr
     NoSolution
         The course cannot mark.
     """
+    return _rejecting(sheets, _judged(course, issued, sheets, printed))
+
+
+def rejecting(sheets: Sheets, results: Iterable[tuple[SheetPlace, Graded | str]]) -> Iterator[Graded]:
+    """The sheets that could be marked; the rows of the others are rejected with what is said of them."""
+    return _rejecting(sheets, ((sheets, *told) for told in results))
+
+
+_Told = tuple[Sheets, SheetPlace, Graded | str]  #: a sheet, among which it is, and what became of it
+
+
+def _rejecting(sheets: Sheets, results: Iterable[_Told]) -> Iterator[Graded]:
     unmarked: Counter[tuple[str, str]] = Counter()
-    places = list(sheets.sheets)
-    chunks = [places[i : i + CHUNK] for i in range(0, len(places), CHUNK)]
-
-    def record(place: SheetPlace) -> Mapping[str, Any]:
-        issued_as = issued.record_of(*place[:3])
-        if place in sheets.apart:
-            issued_as = {
-                **issued_as,
-                "parts": [p for p in issued_as["parts"] if p["id"] in sheets.sheets[place]],
-            }
-        return {**issued_as, "lang": sheets.langs[place]} if place in sheets.langs else issued_as
-
-    def jobs(chunk: Sequence[SheetPlace]) -> list[_Job]:
-        return [
-            _Job(record(place), {p: row.answer for p, row in sheets.sheets[place].items()}) for place in chunk
-        ]
-
-    how = _How(printed, rules_of(course, issued))
-    marking = _marked_chunks(course, map(jobs, chunks), sheets.answers, how)
-    for chunk, results in zip(chunks, marking, strict=True):
-        for place, result in zip(chunk, results, strict=True):
-            rows = sheets.sheets[place]
-            if isinstance(result, str):
-                unmarked[place[1], result] += 1
-                reason = f"cannot be marked, somebody must look at it ({result})"
-                sheets.rejected += [Rejected(row.source, reason, as_texts(row)) for row in rows.values()]
-            else:
-                lines = {line.part: line for line in map(Mark.received, result)}
-                sitting = place[3] or issued.sitting_of(*place[:3])
-                graded = Graded(*place[:3], lines, tuple(rows), record(place), sitting=sitting)
-                yield graded._replace(submitted=sheets.submitted.get(place, ""), apart=place in sheets.apart)
+    for among, place, result in results:
+        if not isinstance(result, str):
+            yield result
+            continue
+        unmarked[place[1], result] += 1
+        reason = f"cannot be marked, somebody must look at it ({result})"
+        rows = among.sheets[place].values()
+        sheets.rejected += [Rejected(row.source, reason, as_texts(row)) for row in rows]
     for (exercise, why), count in unmarked.items():
         what = "1 sheet" if count == 1 else f"{count} sheets"
         sheets.warnings.append(f"{what} of {exercise} cannot be marked, see the rejected rows: {why}")
+
+
+def judged(
+    course: Course, issued: Issued, sheets: Sheets, *, printed: bool = True
+) -> Iterator[tuple[SheetPlace, Graded | str]]:
+    """Every sheet with its marks, or why it cannot be marked, in their order.
+
+    Raises
+    ------
+    NoSolution
+        The course cannot mark.
+    """
+    return ((place, result) for _, place, result in _judged(course, issued, sheets, printed))
+
+
+def _judged(course: Course, issued: Issued, sheets: Sheets, printed: bool) -> Iterator[_Told]:
+    sent: deque[tuple[Sheets, list[SheetPlace]]] = deque()  #: chunks that are being marked
+
+    def chunks() -> Iterator[list[_Job]]:
+        for among in sheets.parts(CHUNK):
+            places = list(among.sheets)
+            for start in range(0, len(places), CHUNK):
+                chunk = places[start : start + CHUNK]
+                sent.append((among, chunk))
+                yield [_job(issued, among, place) for place in chunk]
+
+    how = _How(printed, rules_of(course, issued))
+    for results in _marked_chunks(course, chunks(), sheets.answers, how):
+        among, chunk = sent.popleft()
+        for place, result in zip(chunk, results, strict=True):
+            yield among, place, result if isinstance(result, str) else _graded(issued, among, place, result)
+
+
+def _job(issued: Issued, sheets: Sheets, place: SheetPlace) -> _Job:
+    answers = {part: row.answer for part, row in sheets.sheets[place].items()}
+    return _Job(record_of(issued, sheets, place), answers)
+
+
+def record_of(issued: Issued, sheets: Sheets, place: SheetPlace) -> Mapping[str, Any]:
+    """The record that a sheet is marked against: in the language that it came back in; of the parts that a platform asked,
+    where it asks them apart."""
+    record = issued.record_of(*place[:3])
+    if place in sheets.apart:
+        record = {**record, "parts": [p for p in record["parts"] if p["id"] in sheets.sheets[place]]}
+    return {**record, "lang": sheets.langs[place]} if place in sheets.langs else record
+
+
+def _graded(issued: Issued, sheets: Sheets, place: SheetPlace, sent: Sequence[tuple[Any, ...]]) -> Graded:
+    lines = {line.part: line for line in map(Mark.received, sent)}
+    sitting = place[3] or issued.sitting_of(*place[:3])
+    record = record_of(issued, sheets, place)
+    graded = Graded(*place[:3], lines, tuple(sheets.sheets[place]), record, sitting=sitting)
+    return graded._replace(submitted=sheets.submitted.get(place, ""), apart=place in sheets.apart)
 
 
 def _marked_chunks(
     course: Course, chunks: Iterator[list[_Job]], answers: int, how: _How
 ) -> Iterator[list[list[tuple] | str]]:
     """Each chunk marked, in order; by processes where there is much to do."""
-    count = workers(answers)
-    if answers < WORTH_PROCESSES or count < 2:
+    count = workers(answers, WORTH_PROCESSES)
+    if count < 2:
         for chunk in chunks:
             yield _mark_chunk(course, chunk, how)
         return
-    with processes(count) as submit:
-        waiting: list[Any] = []
-        for chunk in chunks:
-            waiting.append(submit(_mark_elsewhere, str(course.folder.root), chunk, how))
-            if len(waiting) >= 3 * count:
-                yield waiting.pop(0).result()
-        for task in waiting:
-            yield task.result()
+    root, first = str(course.folder.root), itertools.count(1, CHUNK)
+    yield from in_turn(
+        (Task(f"sheet {next(first)} on", _mark_elsewhere, (root, chunk, how)) for chunk in chunks), count
+    )
 
 
 def _mark_elsewhere(root: str, chunk: list[_Job], how: _How) -> list[list[tuple] | str]:
@@ -140,10 +179,9 @@ def _mark_chunk(course: Course, chunk: Sequence[_Job], how: _How) -> list[list[t
     right: list[dict[str, str]] = [{} for _ in chunk]
     for name, places in by_exercise.items():
         batch = keys_of(course[name], [variants[i] for i in places], how.rules)
-        if not how.printed:
-            found = plainly_right(course[name], batch, [chunk[i].answers for i in places])
-            for i, digits in zip(places, found, strict=True):
-                right[i] = digits
+        found = plainly_right(course[name], batch, [chunk[i].answers for i in places])
+        for i, digits in zip(places, found, strict=True):
+            right[i] = digits
     return [
         _mark_sheet(variant, job.answers, own, how.printed)
         for variant, job, own in zip(variants, chunk, right, strict=True)
@@ -158,7 +196,7 @@ def _mark_sheet(
     try:
         marking = mark(variant, answers, right) if len(right) < len(variant.parts) else {}
         return [
-            _right(variant, part, answers[part.id], right[part.id])
+            _right(variant, part, answers[part.id], right[part.id], printed=printed)
             if part.id in right
             else _waiting(marking[part.id]).sent(printed=printed)
             for part in variant.parts
@@ -171,11 +209,12 @@ def _mark_sheet(
         return f"{type(fault).__name__}: {' '.join(str(fault).split())[:80]}"
 
 
-def _right(variant: Variant, part: Part, answer: str, read_as: str) -> tuple[Any, ...]:
+def _right(variant: Variant, part: Part, answer: str, read_as: str, *, printed: bool) -> tuple[Any, ...]:
     """The mark of an answer that is plainly right, as it is sent."""
     points = float(part.points)
-    says = right_feedback(variant, part, read_as)
-    return (part.id, answer, read_as, "correct", points, points, variant.lang, (), False, "", says)
+    says = right_says(variant, part, read_as) if printed else ""
+    told = says, right_feedback(variant, part, read_as)
+    return (part.id, answer, read_as, "correct", points, points, variant.lang, (), False, *told)
 
 
 def _waiting(mark: Mark) -> Mark:

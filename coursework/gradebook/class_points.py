@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from coursework.errors import BadInput, nearest
 from coursework.gradebook.changes import rows_of
-from coursework.gradebook.columns import VERDICTS
+from coursework.gradebook.columns import LATE, VERDICTS
 from coursework.gradebook.scale import exact
 from coursework.making.identity import Ids, identifies
 
@@ -63,7 +63,14 @@ def _scored(path: Path, score: str) -> Iterator[Scored]:
             raise BadInput(
                 f"{path} has no column {score!r}{nearest(score, told)}; 'coursework grade' writes it"
             )
-        points, out_of = (row[c].replace(",", ".") for c in (score, "out_of"))
+        points, out_of, taken = (row.get(c, "").replace(",", ".") for c in (score, "out_of", LATE))
+        for column, text in ((score, points), ("out_of", out_of), (LATE, taken)):
+            if text and not math.isfinite(_number(text)):
+                raise BadInput(
+                    f"{path}, line {number}: {column} of {row['student']} are a number; found {text[:40]!r}"
+                )
+        if score == "points" and (late := _number(taken or "0")):
+            points = f"{float(exact(_number(points)) - exact(late)):.10g}"
         if not points and score != "points":
             points = "0"
         if math.isnan(_number(points)):

@@ -18,6 +18,7 @@ SITTING = "sitting"  #: a column of the marks and of the summary where somebody 
 SUBMITTED = "submitted"  #: a column of the marks where a platform tells it
 REJECTED_COLUMNS = ("student", "exercise", "seed", "part", "answer", "source", "reason")
 MARK = "mark"
+LATE = "late"  #: a column of the summary where points are taken off of what came late
 
 
 def marks_columns(issued: Issued, *, submitted: bool = False) -> tuple[str, ...]:
@@ -27,13 +28,14 @@ def marks_columns(issued: Issued, *, submitted: bool = False) -> tuple[str, ...]
     return (*MARKS_COLUMNS, *(column for column, there in more if there))
 
 
-def summary_columns(issued: Issued) -> tuple[str, ...]:
+def summary_columns(issued: Issued, *, late: bool = False) -> tuple[str, ...]:
     """The columns: identity, exercises and the mark of an assignment stand among the usual ones; what else the roster
-    holds follows."""
+    holds follows. ``late`` where points are taken off of what came late: percent and mark are of what is left."""
     sitting = (SITTING,) if issued.has_sittings else ()
-    if issued.assignment is None:
-        return (*SUMMARY_COLUMNS, *sitting, *carried_columns(issued).values())
     student, points, out_of, *others = SUMMARY_COLUMNS
+    others = [LATE, *others] if late else others
+    if issued.assignment is None:
+        return (student, points, out_of, *others, *sitting, *carried_columns(issued).values())
     mark = (MARK,) if issued.assignment.get("mark") else ()
     own = identity(issued)
     rest = (c for title, c in carried_columns(issued).items() if title not in map(folded, own))
@@ -50,7 +52,7 @@ def identity(issued: Issued) -> dict[str, str]:
 def exercise_columns(issued: Issued) -> dict[str, str]:
     """The column of each exercise of an assignment."""
     asked = map(str, (issued.assignment or {}).get("exercises", ()))
-    return {e: f"{e} points" if e in (*SUMMARY_COLUMNS, MARK, SITTING) else e for e in asked}
+    return {e: f"{e} points" if e in (*SUMMARY_COLUMNS, MARK, LATE, SITTING) else e for e in asked}
 
 
 def carried_columns(issued: Issued) -> dict[str, str]:
@@ -60,7 +62,7 @@ def carried_columns(issued: Issued) -> dict[str, str]:
 
 
 def _taken(issued: Issued) -> frozenset[str]:
-    return frozenset(map(folded, (*SUMMARY_COLUMNS, MARK, SITTING, *exercise_columns(issued).values())))
+    return frozenset(map(folded, (*SUMMARY_COLUMNS, MARK, LATE, SITTING, *exercise_columns(issued).values())))
 
 
 def _apart(title: str, taken: frozenset[str]) -> str:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import datetime
+import shutil
 from collections.abc import Callable, Collection, Iterator, Sequence
-from dataclasses import replace
-from functools import cache, partial
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,7 +15,7 @@ from coursework.course.variant import Variant
 from coursework.errors import CourseworkError
 from coursework.gradebook.book import Gradebook
 from coursework.gradebook.columns import own_columns
-from coursework.gradebook.feedback_form import FORMATS, USUAL, Form, shows_solutions
+from coursework.gradebook.feedback_form import USUAL, Form, shows_solutions
 from coursework.gradebook.graded import Graded
 from coursework.gradebook.scale import mark_of
 from coursework.language.numbers import localise, plain
@@ -34,7 +35,8 @@ from coursework.sheets.following import follows_from
 from coursework.sheets.handout import handout as handout_of
 from coursework.sheets.paper import FeedbackPaper, Heading
 from coursework.sheets.sheet import FeedbackLine, FeedbackSheet, Question
-from coursework.system.writing import File, Progress, write
+from coursework.system.build_folder import renew
+from coursework.system.writing import File, Progress, write, writing
 
 
 class Telling(NamedTuple):
@@ -138,7 +140,7 @@ def feedback_paper(
             sheets.append(feedback_sheet(course, own, answers=shown, telling=telling))
     points, out_of = sum(s.points for s in sheets), sum(s.out_of for s in sheets) + left_out
     return FeedbackPaper(
-        _heading(course, issued, student, sitting, lang),
+        heading_of(course, issued, student, sitting, lang),
         tuple(sheets),
         points,
         out_of,
@@ -186,7 +188,8 @@ def _worth(issued: Issued, exercise: str) -> float:
     return float(sum(part["points"] for part in record["parts"]))
 
 
-def _heading(course: Course, issued: Issued, student: str, sitting: int, lang: str) -> Heading:
+def heading_of(course: Course, issued: Issued, student: str, sitting: int, lang: str) -> Heading:
+    """What stands above a student's paper, from what was issued."""
     stated = issued.assignment or {}
     own = own_columns(issued, student)
     versions = (issued.versions.get(key) for key in issued.issued_to(student, sitting).items())
@@ -234,20 +237,18 @@ def write_feedback(
     book: Gradebook,
     shown: Sequence[Graded],
     folder: Path,
-    before: Sequence[str],
     progress: Progress,
     form: Form = USUAL,
 ) -> None:
     """A file a student and format, called as the student's handouts are; of an assignment one a sitting.
 
-    Those of an earlier marking, whose
-    stems are ``before``, make way; any other file stays. A sheet that cannot be printed is a warning, and costs no other.
+    A sheet that cannot be printed is a warning, and costs no other.
     """
     by_student: dict[str, dict[int, list[Graded]]] = {student: {} for student in book.issued.students}
     for graded in shown:
         by_student.setdefault(graded.student, {}).setdefault(graded.sitting, []).append(graded)
     unread = {place: {e for e, _ in own} for place, own in book.unread().items()}
-    telling = Telling(PracticeOf(course, book.issued), shows_solutions(book.issued, form))
+    practice, solutions = PracticeOf(course, book.issued), shows_solutions(book.issued, form)
     stems = file_stems(by_student)
     places = [
         (student, mine, f"{stem}" if n == 1 else f"{stem}.sitting-{n}", unread.get((student, n), ()))
@@ -255,45 +256,78 @@ def write_feedback(
         for n, mine in sorted(sittings.items())
     ]
 
-    def told(student: str, mine: Sequence[Graded], waiting: Collection[str]) -> FeedbackSheet | FeedbackPaper:
-        if book.issued.assignment is not None:
-            lang = str(mine[0].record.get("lang", "fr"))
-            return feedback_paper(course, book.issued, student, mine, lang, waiting, telling)
-        if len(mine) == 1:
-            return feedback_sheet(course, mine[0], telling=telling)
-        return feedback_collection(course, student, mine, telling)
-
-    def maker(student: str, make: Callable[[], bytes]) -> Callable[[], bytes | None]:
-        def made() -> bytes | None:
-            try:
-                return make()
-            except CourseworkError as fault:
-                book.warnings.append(f"no feedback sheet for {student}: {fault}")
-                return None
-
-        return made
-
-    for stem in before:
-        for end in FORMATS:
-            for path in (folder / f"{stem}.{end}", *folder.glob(f"{stem}.sitting-*.{end}")):
-                path.unlink(missing_ok=True)
     renderer = renderer_of(course.folder)
     files = []
     for student, mine, name, waiting in places:
-        content: Callable[[], FeedbackSheet | FeedbackPaper] = partial(told, student, mine, waiting)
-        if len(form.formats) > 1:
-            content = cache(content)
+        issued = book.issued.of_student(student)
+        telling = Telling(practice.of_student(issued), solutions)
+        told = _Told(course, issued, student, tuple(mine), waiting, telling)
         for end in form.formats:
-            files.append(
-                File(Path(f"{name}.{end}"), maker(student, partial(_printed, renderer, content, end)))
-            )
+            make = partial(_printed, renderer, told, end)
+            failed = partial(_warn, book, student)
+            files.append(File(Path(f"{name}.{end}"), make, anywhere=True, failed=failed))
     done = iter(range(1, len(files) + 1))
     write(folder, files, lambda _: progress(next(done), len(files)))
 
 
-def _printed(renderer: Renderer, content: Callable[[], FeedbackSheet | FeedbackPaper], end: str) -> bytes:
+def _warn(book: Gradebook, student: str, fault: CourseworkError) -> None:
+    book.warnings.append(f"no feedback sheet for {student}: {fault}")
+
+
+@dataclass(frozen=True, eq=False)
+class _Told:
+    """What a student is told of one sitting, to be made wherever it is printed."""
+
+    course: Course
+    issued: Issued
+    student: str
+    graded: tuple[Graded, ...]
+    waiting: Collection[str]
+    telling: Telling
+
+    @cached_property
+    def sheet(self) -> FeedbackSheet | FeedbackPaper:
+        mine = self.graded
+        if self.issued.assignment is not None:
+            lang = str(mine[0].record.get("lang", "fr"))
+            return feedback_paper(
+                self.course, self.issued, self.student, mine, lang, self.waiting, self.telling
+            )
+        if len(mine) == 1:
+            return feedback_sheet(self.course, mine[0], telling=self.telling)
+        return feedback_collection(self.course, self.student, mine, self.telling)
+
+
+def renew_feedback(
+    course: Course,
+    book: Gradebook,
+    shown: Sequence[Graded],
+    out: Path,
+    progress: Progress,
+    form: Form = USUAL,
+    ready: Callable[[], None] = lambda: None,
+) -> None:
+    """Print feedback, then put it into ``out / "feedback"``: sheets of an earlier marking make way, one that somebody wrote
+    on is kept aside and told, and any other file stays.
+
+    Nothing of before is touched while it is printed. ``ready`` is called before it is put there, and may refuse.
+    """
+    printing = out / ".printing"
+    shutil.rmtree(printing, ignore_errors=True)
+    try:
+        with writing(out):
+            printing.mkdir(parents=True)
+        write_feedback(course, book, shown, printing, progress, form)
+        ready()
+        with writing(out / "feedback"):
+            book.warnings += renew(printing, out / "feedback", out / ".feedback.json")
+    finally:
+        shutil.rmtree(printing, ignore_errors=True)
+
+
+def _printed(renderer: Renderer, content: _Told, end: str) -> bytes:
     """What a student is told, in a format."""
-    told = content()
+    told = content.sheet
     if end == "ipynb":
         return renderer.feedback_notebook(told).encode("utf-8")
     if isinstance(told, FeedbackPaper):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -53,7 +54,12 @@ def fill(
     BadInput
         The file is none of the platform's, has no such column or several, or somebody has more than the maximum.
     """
-    table = CellTable(_bytes_of(template))
+    try:
+        table = CellTable(_bytes_of(template))
+    except UnicodeDecodeError as fault:
+        raise BadInput(
+            f"{template} is damaged: it begins as {fault.encoding} and does not go on as such"
+        ) from fault
     sheet = _sheet(platform, table, item, template)
     result = Filled(column=sheet.title, most=_most(platform, sheet, most, template))
     if result.most is None:
@@ -90,9 +96,8 @@ class _Sheet(NamedTuple):
         """The names as they are told, each of its own."""
         names = [first_name_first(_name(row, self.people)) for row in self.rows]
         ids = [_first_of(row, self.people.ids) for row in self.rows]
-        return [
-            f"{n} ({own})" if names.count(n) > 1 and own else n for n, own in zip(names, ids, strict=True)
-        ]
+        often = Counter(names)
+        return [f"{n} ({own})" if often[n] > 1 and own else n for n, own in zip(names, ids, strict=True)]
 
 
 def _sheet(platform: PlatformGradebook, table: CellTable, item: str, source: Path) -> _Sheet:

@@ -6,33 +6,34 @@ and each is seen to be replaceable.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from coursework.course.course import Course
 from coursework.errors import BadInput
 from coursework.gradebook import book as gradebook
 from coursework.gradebook.accepted import Accepted
-from coursework.gradebook.book import Gradebook
+from coursework.gradebook.book import Gradebook, Sitting
 from coursework.gradebook.changes import CHANGES_COLUMNS, Before
 from coursework.gradebook.class_marking import marked
 from coursework.gradebook.columns import REJECTED_COLUMNS, marks_columns, summary_columns
 from coursework.gradebook.feedback_form import USUAL, Form, shows_solutions
-from coursework.gradebook.feedback_sheets import write_feedback
+from coursework.gradebook.feedback_sheets import renew_feedback
 from coursework.gradebook.graded import Graded
-from coursework.gradebook.placing import placed
+from coursework.gradebook.placing import Sheets
 from coursework.gradebook.platform_files import told_seen
 from coursework.gradebook.rows import Rejected, Row, Seen
+from coursework.gradebook.sheets_on_disk import placed_beside
 from coursework.gradebook.standing import Standing, differs
 from coursework.gradebook.submissions import find, read_file
 from coursework.gradebook.to_mark import TO_MARK, TO_MARK_COLUMNS, ToMark, sorted_rows
 from coursework.making.issued import Issued
-from coursework.making.students import file_stems
-from coursework.system.build_folder import free_name
+from coursework.system.build_folder import free_name, is_as_written, write_down
 from coursework.system.tables import SPREADSHEETS, Spreadsheet
 from coursework.system.writing import Progress, Table, Tables, write_whole
 
 BY_HAND = "by_hand.csv"  #: marks of the folder that a hand changed
+_WRITTEN = ".marks.json"  #: what was written as marks.csv
 #: For so many students at most, feedback sheets are printed unless told.
 FEEDBACK_STUDENTS = 1000
 
@@ -63,29 +64,63 @@ def grade_files(
     """
     issued = Issued.read(issued_path)
     shows_solutions(issued, form)
-    if feedback is None:
-        feedback = max(len(issued.students), len(issued.records)) <= FEEDBACK_STUDENTS
     kept = out / "accepted.csv"
     by_hand = Accepted(accepted if accepted is not None else kept if kept.exists() else None)
     by_person = ToMark(out / "to_mark.csv")
-    before = Before(out / "marks.csv")
 
     def rows() -> Iterator[Row | Rejected | Seen]:
         for found in find(submissions):
             yield from [found] if isinstance(found, (Rejected, Seen)) else read_file(found)
 
-    sheets = placed(course, issued, rows())
-    if not sheets.sheets:
-        raise BadInput(_nothing(submissions, sheets.rejected))
+    with placed_beside(course, issued, rows(), out) as sheets:
+        if not sheets.count:
+            raise BadInput(nothing_in(submissions, sheets.rejected))
+        feedback = usual_feedback(sheets) if feedback is None else feedback
+        results = marked(course, issued, sheets, printed=feedback)
+        return write_marks(
+            course, issued, sheets, results, out, by_person=by_person, by_hand=by_hand, feedback=feedback,
+            spreadsheet=spreadsheet, progress=progress, form=form,
+        )  # fmt: skip
+
+
+def usual_feedback(sheets: Sheets) -> bool:
+    """Whether feedback sheets are printed unless told; that they are not is told among the warnings."""
+    count = sheets.students
+    if count > FEEDBACK_STUDENTS:
+        sheets.warnings.append(
+            f"no feedback sheets are printed for {count:,} students who answered, more than {FEEDBACK_STUDENTS:,}: "
+            "ask for them, --feedback"
+        )
+    return count <= FEEDBACK_STUDENTS
+
+
+def write_marks(
+    course: Course,
+    issued: Issued,
+    sheets: Sheets,
+    results: Iterable[Graded],
+    out: Path,
+    *,
+    by_person: ToMark,
+    by_hand: Accepted,
+    feedback: bool,
+    charged: Mapping[Sitting, float] | None = None,
+    spreadsheet: Spreadsheet = SPREADSHEETS["point"],
+    progress: Progress = lambda done, of: None,
+    form: Form = USUAL,
+) -> Gradebook:
+    """Write the files of :func:`grade_files` of sheets that are marked as they are asked for; ``charged`` are the shares that
+    are taken off of what came late."""
+    before = Before(out / "marks.csv")
     book = Gradebook(issued, sheets.rows_in, sheets.blanks, sheets.rejected, sheets.warnings)
-    book.seen = told_seen(sheets.seen)
+    book.seen, book.charged = told_seen(sheets.seen), charged or {}
     shown: list[Graded] = []
     with Tables(out, spreadsheet) as tables:
-        marks = tables.open("marks.csv", marks_columns(issued, submitted=bool(sheets.submitted)))
-        summary = tables.open("summary.csv", summary_columns(issued))
+        marks = tables.open("marks.csv", marks_columns(issued, submitted=sheets.is_dated))
+        summary = tables.open("summary.csv", summary_columns(issued, late=bool(charged)))
         rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
         changes = tables.open("changes.csv", CHANGES_COLUMNS) if before.exists else None
-        for done, graded in enumerate(marked(course, issued, sheets, printed=feedback), start=1):
+        for done, graded in enumerate(results, start=1):
             lang = str(graded.record.get("lang", "fr"))
             graded = by_hand.apply(by_person.apply(graded, lang), lang)
             book.add(graded)
@@ -95,7 +130,7 @@ def grade_files(
                     changes.write(change)
             if feedback:
                 shown.append(graded)
-            progress(done, len(sheets.sheets))
+            progress(done, sheets.count)
         if changes is not None:
             for change in before.gone():
                 changes.write(change)
@@ -106,13 +141,16 @@ def grade_files(
         _list_to_mark(by_person, tables, book)
         _write_counts(book, summary, rejected)
         stood = (out / BY_HAND).exists()
-        if book.changes and (stood or before.edited(out / "summary.csv")):
+        edited = not is_as_written(out / _WRITTEN, marks.path) and before.edited(out / "summary.csv")
+        if book.changes and (stood or edited):
             book.warnings.insert(0, _kept(out / "marks.csv"))
+        if feedback:
+            renew_feedback(course, book, shown, out, progress, form, tables.ready)
+        tables.ready()
+        # Stopped halfway, these are no marks that a hand changed.
+        write_down(out / _WRITTEN, marks.path, marks.part, *([] if edited else [marks.path]))
         tables.keep()
     (out / BY_HAND).unlink(missing_ok=True)
-    if feedback:
-        made = file_stems(dict.fromkeys((*issued.students, *before.students)))
-        write_feedback(course, book, shown, out / "feedback", made, progress, form)
     return book
 
 
@@ -146,18 +184,16 @@ def grade_standing(
     """
     issued = Issued.read(issued_path)
     shows_solutions(issued, form)
-    if feedback is None:
-        feedback = max(len(issued.students), len(issued.records)) <= FEEDBACK_STUDENTS
     kept = marks.with_name("accepted.csv")
     accepted, by_person = Accepted(kept if kept.exists() else None), ToMark(marks.with_name("to_mark.csv"))
     standing = Standing(course, issued, marks)
     sheets = standing.sheets
+    feedback = usual_feedback(sheets) if feedback is None else feedback
     earlier = len(sheets.rejected)
     machine = list(marked(course, issued, sheets, printed=feedback))
     standing.refuse(sheets.rejected[earlier:])
     book = Gradebook(issued, sheets.rows_in, 0, sheets.rejected, sheets.warnings)
     shown = []
-    before = Before(out / "marks.csv").students
     with Tables(out, spreadsheet) as tables:
         summary = tables.open("summary.csv", summary_columns(issued))
         rejected = tables.open("rejected.csv", REJECTED_COLUMNS)
@@ -172,14 +208,13 @@ def grade_standing(
         book.changes = changes.rows
         book.waiting = sum(line.verdict == TO_MARK for one in shown for line in one.lines.values())
         _write_counts(book, summary, rejected)
+        if feedback:
+            renew_feedback(course, book, shown, out, progress, form, tables.ready)
         tables.keep()
     if not book.changes:
         (out / BY_HAND).unlink()
     if marks.resolve() != (out / "marks.csv").resolve():
         write_whole(out / "marks.csv", marks.read_bytes())
-    if feedback:
-        made = file_stems(dict.fromkeys((*issued.students, *before)))
-        write_feedback(course, book, shown, out / "feedback", made, progress, form)
     return book
 
 
@@ -208,7 +243,7 @@ def _kept(marks: Path) -> str:
     )
 
 
-def _nothing(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str:
+def nothing_in(submissions: Sequence[Path], rejected: Sequence[Rejected]) -> str:
     """That nothing can be marked, and why."""
     where = ", ".join(map(str, submissions[:3])) + (", …" if len(submissions) > 3 else "")
     told = f"nothing in {where} can be marked, so nothing is written"

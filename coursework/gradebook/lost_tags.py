@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from coursework.language.words import languages, words
+from coursework.system import python_code
 
 BEGINS = re.compile(r"^answers[ \t]*=[ \t]*\{", re.MULTILINE)
 _VARIANT = re.compile(r"(?<!\w)([A-Za-z]\w*) · ([0-9]{1,30}) · v[0-9]{1,6}(?!\w)")
@@ -83,7 +84,7 @@ def alone(code: str) -> str:
     try:
         found = [
             one
-            for one in ast.parse(code).body
+            for one in python_code.parse(code).body
             if isinstance(one, ast.Assign) and isinstance(one.value, ast.Dict) and _is_answers(one.targets)
         ]
     except (SyntaxError, ValueError, RecursionError, MemoryError):

@@ -18,10 +18,12 @@ from coursework.gradebook.rows import (
     load_json,
     name_in,
     object_once,
+    quoted,
     sheet_rows,
     short_fault,
     with_unread,
 )
+from coursework.system import python_code
 
 # --------------------------------------------------------------------- notebook
 
@@ -66,18 +68,19 @@ def _read(data: bytes, source: str, by: str) -> Iterator[Row | Rejected]:
     code, note = _answers_code(cells)
     if code is None:
         found = "\n".join(source_of(c) for c in cells if c.get("cell_type") == "code")
-        row = _about(about, source) | {"answer": found.strip()[:200]}
+        row = _about(about, source) | {"answer": quoted(found)}
         yield Rejected(source, note, row)
         return
     answers, more = _answers_in(code)
     if isinstance(answers, str):
-        yield Rejected(source, answers, _about(about, source) | {"answer": code[:200]})
+        yield Rejected(source, answers, _about(about, source) | {"answer": quoted(code)})
         return
     notes += [f"{source}: {told}" for told in (note, more) if told]
     about, warning = _with_name(about, answers, source, "; ".join(notes))
     yield from sheet_rows(about, answers, source, warning)
 
 
+_LONGEST = 200_000  #: characters of a cell of answers
 NO_NAME = "a notebook holds no name; its file's name stands for it"
 _NO_TAG = "no cell is tagged 'answers'; the one that says answers = { is read"
 _OTHER = "the cell tagged 'answers' is blank; the answers of another that says answers = { are read"
@@ -116,7 +119,7 @@ def _has_answer(code: str) -> bool:
 def _answers_in(code: str) -> tuple[dict[Any, Any] | str, str]:
     """The dict of an answers cell, or what is wrong with it; and what is to be told where the cell holds more."""
     answers = literal_answers(code)
-    if isinstance(answers, str) and (own := alone(code)) != code:
+    if isinstance(answers, str) and len(code) <= _LONGEST and (own := alone(code)) != code:
         found = literal_answers(own)
         if not isinstance(found, str):
             return found, "the answers cell holds more than the answers; that is neither read nor run"
@@ -133,13 +136,11 @@ def _read_paper(
     sheets = [
         (name_in(s.get("exercise")), name_in(s.get("seed"))) for s in about["sheets"] if isinstance(s, dict)
     ]
-    tagged = [cell for cell in cells if "answers" in _tags(cell)]
-    taken = {_sheet_of(cell, sheets) for cell in tagged}
-    codes = [(_sheet_of(cell, sheets), joined(cells, cells.index(cell))) for cell in tagged]
+    tagged = {place: _sheet_of(cell, sheets) for place, cell in enumerate(cells) if "answers" in _tags(cell)}
+    taken = {*tagged.values()}
+    codes = [(sheet, joined(cells, place)) for place, sheet in tagged.items()]
     lost = [
-        (_sheet_of(cells[place], sheets), text)
-        for place, text in answers_texts(cells)
-        if cells[place] not in tagged
+        (_sheet_of(cells[place], sheets), text) for place, text in answers_texts(cells) if place not in tagged
     ]
     lost = [(sheet, text) for sheet, text in lost if sheet[0] and sheet not in taken]
     notes += [f"{source}, {exercise}: {_NO_TAG}" for (exercise, _), _ in lost]
@@ -155,23 +156,22 @@ def _read_paper(
         }
         place = f"{source}, {exercise}" if exercise else source
         if isinstance(found, str):
-            yield Rejected(place, found, _about(own, source) | {"answer": code[:200]})
+            yield Rejected(place, found, _about(own, source) | {"answer": quoted(code)})
         elif not exercise:
             which = (
                 f"which exercise an answers cell is of cannot be told: write {_example(sheets)} after its {{"
             )
-            yield Rejected(place, which, _about(own, source) | {"answer": code[:200]})
+            yield Rejected(place, which, _about(own, source) | {"answer": quoted(code)})
         else:
             yield from sheet_rows(own, found, place, warning)
     there = {sheet for sheet, _, _ in read}
+    others = (c for place, c in enumerate(cells) if place not in tagged)
+    code = quoted("\n".join(source_of(c) for c in others if c.get("cell_type") == "code"))
     for exercise, seed in sheets:
         if (exercise, seed) not in there:
             own = {"student": name, "exercise": exercise, "seed": seed}
-            code = "\n".join(source_of(c) for c in cells if c.get("cell_type") == "code" and c not in tagged)
             reason = f"no cell tagged 'answers' is of {exercise}, seed {seed}"
-            yield Rejected(
-                f"{source}, {exercise}", reason, _about(own, source) | {"answer": code.strip()[:200]}
-            )
+            yield Rejected(f"{source}, {exercise}", reason, _about(own, source) | {"answer": code})
     if not sheets and not tagged:
         yield Rejected(source, "the notebook holds no answers", _about({"student": name}, source))
 
@@ -237,7 +237,7 @@ def literal_answers(code: str) -> dict[Any, Any] | str:
     ``answers = {…}`` or a bare ``{…}`` of texts, numbers, None, and lists or tuples of these. A value that is none of
     them is the text that stands there; a cell that is no Python is read line by line.
     """
-    if len(code) > 200_000:
+    if len(code) > _LONGEST:
         return "the answers cell is too long to be read"
     code = re.sub(r"\r\n?", "\n", code)
     found = _literal_answers(code)
@@ -246,7 +246,7 @@ def literal_answers(code: str) -> dict[Any, Any] | str:
 
 def _literal_answers(code: str) -> dict[Any, Any] | str:
     try:
-        statements = ast.parse(code).body
+        statements = python_code.parse(code).body
     except _NO_PYTHON:
         return _answers_by_line(code)
     if len(statements) != 1:
@@ -287,6 +287,8 @@ def _pairs(found: ast.Dict, code: str) -> list[tuple[Any, Any]]:
 _HIDDEN = "an answer stands behind a #, where nothing is read"
 _QUOTED_NUMBER = re.compile(r'"[^"]*[0-9][^"]*"')
 _NUMBER_OF = re.compile(r"""[0-9]\s*["']?\s*,""")  #: as a line of the cell ends
+_NUMBER_LAST = re.compile(r"""[0-9]\s*["']?\s*,\s*$""")  #: as the line of an answer ends
+_NUMBER_ALONE = re.compile(r"""\s*["']?[-+]?[0-9][^,]*,\s*""")
 _ENDS_IN_TEXT = re.compile(r"""(?:^|[{,])\s*(["'])([^"']+)\1\s*$""")
 _ENDS_IN_KEY = re.compile(r"""(["'])([^"']+)\1\s*:\s*([^"'\s,{}][^"'{}]*)?$""")
 
@@ -315,14 +317,15 @@ def _behind(read: str, comment: str) -> Iterator[tuple[str, str, bool]]:
     if open_key and open_key[3] and not read[-1:].isspace() and comment:
         yield open_key[2], f"{open_key[3]}#{comment}", True
     elif open_key and not open_key[3] and re.search("[0-9\"']", comment):
-        yield open_key[2], comment.strip(), False
+        yield open_key[2], comment.strip(), bool(_NUMBER_ALONE.fullmatch(comment))
     else:
         keys = list(_KEY.finditer(comment))
         ends = [*(key.start() for key in keys[1:]), len(comment)]
         for key, end in zip(keys, ends, strict=False):
             if (text := comment[key.end() : end].strip(" ,}")).strip("\"'"):
                 yield key[2], text, False
-        if not keys and (_QUOTED_NUMBER.search(comment) or (not read.strip() and _NUMBER_OF.search(comment))):
+        number = _NUMBER_LAST if read.strip() else _NUMBER_OF
+        if not keys and (_QUOTED_NUMBER.search(comment) or number.search(comment)):
             yield "", f"{read}#{comment}".strip(), True  # whose it is cannot be told
 
 
@@ -373,7 +376,7 @@ def _pairs_of_line(line: str) -> list[tuple[Any, Any]] | None:
     """The answers of a line; None where they cannot be told apart."""
     code = f"{{{line}\n}}"
     with suppress(*_NO_PYTHON):
-        found = ast.parse(code, mode="eval").body
+        found = python_code.parse(code, mode="eval").body
         return _pairs(found, code) if isinstance(found, ast.Dict) else None
     key = _KEY.match(line)
     if key is None:

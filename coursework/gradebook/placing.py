@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from coursework.course.answer_keys import part_called
 from coursework.course.course import Course
 from coursework.errors import UnknownName, nearest
+from coursework.gradebook.doubtful import Doubts, doubts, file_of
 from coursework.gradebook.rows import Collected, Rejected, Row, Seen
 from coursework.making.issued import Issued
+from coursework.making.students import namesakes
 
 _LISTED = 8  #: names that a message lists
+_REMEMBERED = 10_000  #: places of rows, while the next rows are read
 SheetPlace = tuple[
     str, str, int, int
 ]  #: student, exercise, seed, and the attempt where a platform tells it, else 0
@@ -37,8 +42,30 @@ class Sheets:
     )  #: of which the platform asked those parts alone that came
 
     @property
+    def count(self) -> int:
+        return len(self.sheets)
+
+    @property
+    def students(self) -> int:
+        """How many students they are of."""
+        return len({place[0] for place in self.sheets})
+
+    @property
     def answers(self) -> int:
         return sum(map(len, self.sheets.values()))
+
+    @property
+    def is_dated(self) -> bool:
+        """Whether a platform told when any of them came."""
+        return bool(self.submitted)
+
+    def parts(self, size: int) -> Iterator[Sheets]:
+        """The sheets in their order: all of them, or so many at a time where they are not all at hand."""
+        yield self
+
+    def drop_empty(self) -> None:
+        """Forget sheets of which nothing came that could be put there."""
+        self.sheets = {place: sheet for place, sheet in self.sheets.items() if sheet}
 
 
 # ------------------------------------------------------------------------ placing
@@ -56,13 +83,13 @@ def place_of(issued: Issued, row: Row) -> tuple[str, str, int]:
     Refused
         It has none.
     """
-    student = (
-        issued.student(row.student) if row.origin is None else _told_student(issued, row.student, row.origin)
-    )
+    student = student_of(issued, row)
     if not row.student:
         raise Refused("no student's name")
     if student is None:
-        raise Refused(f"no student {row.student!r} on the roster{near(row.student, issued.students)}")
+        raise Refused(
+            f"no student {row.student!r} on the roster{_who_is_meant(row.student, issued.students)}"
+        )
     if row.exercise not in issued.exercises:
         raise Refused(
             f"no exercise {row.exercise!r} was issued{_near_or_all(row.exercise, issued.exercises)}"
@@ -83,6 +110,19 @@ def place_of(issued: Issued, row: Row) -> tuple[str, str, int]:
     if issued.has_roster and seed not in mine and not issued.is_pool:
         raise Refused(f"seed {seed} of {row.exercise} is {_whose(issued, row.exercise, seed)}{theirs}")
     return student, row.exercise, seed
+
+
+def student_of(issued: Issued, row: Row) -> str | None:
+    """Whose a row is, by the name as issued; None for a stranger.
+
+    Raises
+    ------
+    Refused
+        It names another than who handed it in.
+    """
+    return (
+        issued.student(row.student) if row.origin is None else _told_student(issued, row.student, row.origin)
+    )
 
 
 def _told_student(issued: Issued, name: str, origin: Collected) -> str | None:
@@ -120,6 +160,12 @@ def _theirs(issued: Issued, student: str, exercise: str, mine: Sequence[int]) ->
     return f"; {student} has {letter}seed {' and '.join(map(str, mine))}"
 
 
+def _who_is_meant(name: str, students: Sequence[str]) -> str:
+    """Of namesakes, none before the others."""
+    several = namesakes(name, students)
+    return f"; which of {', '.join(map(repr, several))}?" if len(several) > 1 else near(name, students)
+
+
 def near(name: str, known: Iterable[str]) -> str:
     """``"; did you mean 'x'?"``, or nothing: a class is not listed."""
     hint = nearest(name[:60], known)
@@ -141,16 +187,33 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen]
         The course cannot mark: no solutions, an exercise that the records do not fit.
     """
     found = Sheets()
-    for exercise, one in {key[0]: record for key, record in issued.records.items()}.items():
-        if exercise not in course:
-            raise UnknownName(
-                f"no exercise {exercise!r} in {course.folder.label}, though it was issued: name the course that it was built "
-                "from, coursework --course FOLDER grade …"
-            )
-        _ = course[exercise].solution
-        course[exercise].from_record(one)
-    asked: dict[tuple[str, int], tuple[str, ...]] = {}
-    places: dict[tuple[str, str, str, Collected | None], SheetPlace | str] = {}
+    fill(course, issued, found, told_places(course, issued, list(rows), found))
+    return found
+
+
+Told = tuple[SheetPlace, Row] | Rejected  #: a row with its place, or why it has none
+
+
+def told_places(
+    course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen], found: Sheets
+) -> Iterator[Told]:
+    """Row by row its place, or why it has none; what is told of all together is noted in ``found``. The rows are read twice:
+    once for those that wait since others contradict them, then as they are asked for.
+
+    Raises
+    ------
+    CourseworkError
+        As for :func:`placed`, before the first row is read.
+    """
+    _check_records(course, issued)
+    waits = doubts(issued, ((row, partial(_sheet_of, issued, row)) for row in rows if isinstance(row, Row)))
+    return _told_in_turn(issued, rows, found, waits)
+
+
+def _told_in_turn(
+    issued: Issued, rows: Iterable[Row | Rejected | Seen], found: Sheets, waits: Doubts
+) -> Iterator[Told]:
+    place_told = _memory_of_places(issued)
     unsaid: set[SheetPlace] = set()  #: sheets of several sittings, whose answers do not say which
     for row in rows:
         if isinstance(row, Seen):
@@ -158,21 +221,17 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen]
             continue
         found.rows_in += 1
         if isinstance(row, Rejected):
-            found.rejected.append(row)
+            yield row
             continue
         if row.warning and row.warning not in found.warnings:
             found.warnings.append(row.warning)
-        named = row.student, row.exercise, row.seed, row.origin
-        if named not in places:
-            try:
-                places[named] = (*place_of(issued, row), 0 if row.origin is None else row.origin.sitting)
-            except Refused as why:
-                places[named] = str(why)
-        place = places[named]
+        place = place_told(row)
         if isinstance(place, str):
-            found.rejected.append(Rejected(row.source, place, as_texts(row)))
+            yield Rejected(row.source, place, as_texts(row))
             continue
-        key, reason = place[1:3], ""
+        if waits and (doubt := waits.get((place[:3], file_of(row)))):
+            yield Rejected(row.source, doubt, as_texts(row))
+            continue
         if (
             issued.has_sittings
             and not row.seed
@@ -181,14 +240,69 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen]
         ):
             unsaid.add(place)
             found.warnings.append(_latest(issued, place))
+        if row.origin is not None:
+            issued.has_sittings = issued.has_sittings or row.origin.sitting > 1
+        yield place, row
+
+
+def _check_records(course: Course, issued: Issued) -> None:
+    """The course has what was issued, and can mark it."""
+    for exercise, one in {key[0]: record for key, record in issued.records.items()}.items():
+        if exercise not in course:
+            raise UnknownName(
+                f"no exercise {exercise!r} in {course.folder.label}, though it was issued: name the course that it was built "
+                "from, coursework --course FOLDER grade …"
+            )
+        _ = course[exercise].solution
+        course[exercise].from_record(one)
+
+
+def _memory_of_places(issued: Issued) -> Callable[[Row], SheetPlace | str]:
+    """The place of a row, or why it has none; looked for once for rows of one sheet that are near each other."""
+    passing: dict[tuple[str, str, str, Collected | None], SheetPlace | str] = {}
+    lasting = passing.copy()
+
+    def place_told(row: Row) -> SheetPlace | str:
+        # Whom a platform names and no roster is who they were when first met; others are found again as they were.
+        known = lasting if row.origin is not None and not issued.has_roster else passing
+        named = row.student, row.exercise, row.seed, row.origin
+        if (place := known.get(named)) is None:
+            if len(passing) >= _REMEMBERED:
+                passing.clear()
+            try:
+                place = (*place_of(issued, row), 0 if row.origin is None else row.origin.sitting)
+            except Refused as why:
+                place = str(why)
+            known[named] = place
+        return place
+
+    return place_told
+
+
+def fill(course: Course, issued: Issued, found: Sheets, told: Iterable[Told]) -> None:
+    """Put rows on their sheets."""
+    put = putting(course, issued, found)
+    for one in told:
+        refused = one if isinstance(one, Rejected) else put(*one)
+        if refused is not None:
+            found.rejected.append(refused)
+    found.drop_empty()
+
+
+def putting(course: Course, issued: Issued, found: Sheets) -> Callable[[SheetPlace, Row], Rejected | None]:
+    """What puts a row on its sheet, or says why not; rows of a sheet come in their order."""
+    asked: dict[tuple[str, int], tuple[str, ...]] = {}
+
+    def put(place: SheetPlace, row: Row) -> Rejected | None:
+        key, reason = place[1:3], ""
         if key not in asked:
             asked[key] = tuple(str(part["id"]) for part in issued.records[key]["parts"])
         sheet = found.sheets.setdefault(place, {})
         if row.origin is not None:
-            _note(issued, found, place, row.origin)
+            _note(found, place, row.origin)
         if not row.part and row.origin is not None and _is_blank(row):
             _leave_blank(found, place, asked[key], row)
-            continue
+            return None
         if row.part not in asked[key]:
             row = row._replace(part=part_called(row.part, asked[key]))
         if row.part not in asked[key]:
@@ -198,19 +312,25 @@ def placed(course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen]
             before = sheet[row.part]
             if _is_blank(row):
                 found.blanks += 1
-                continue
+                return None
             if _is_blank(before):
                 found.blanks += 1
             else:
                 reason = f"repeats {before.source}, which is marked"
         if reason:
-            found.rejected.append(Rejected(row.source, reason, as_texts(row)))
-        else:
-            sheet[row.part] = row
-            if row.lang and place not in found.langs and row.lang in course[place[1]].languages:
-                found.langs[place] = row.lang
-    found.sheets = {place: sheet for place, sheet in found.sheets.items() if sheet}
-    return found
+            return Rejected(row.source, reason, as_texts(row))
+        sheet[row.part] = row
+        if row.lang and place not in found.langs and row.lang in course[place[1]].languages:
+            found.langs[place] = row.lang
+        return None
+
+    return put
+
+
+def _sheet_of(issued: Issued, row: Row) -> tuple[str, str, int] | None:
+    with suppress(Refused):
+        return place_of(issued, row)
+    return None
 
 
 def _leave_blank(found: Sheets, place: SheetPlace, asked: Sequence[str], row: Row) -> None:
@@ -222,9 +342,8 @@ def _leave_blank(found: Sheets, place: SheetPlace, asked: Sequence[str], row: Ro
         sheet.setdefault(part, row._replace(part=part))
 
 
-def _note(issued: Issued, found: Sheets, place: SheetPlace, origin: Collected) -> None:
-    """Keep which attempt a sheet is of, and when it was handed in."""
-    issued.has_sittings = issued.has_sittings or origin.sitting > 1
+def _note(found: Sheets, place: SheetPlace, origin: Collected) -> None:
+    """Keep when a sheet was handed in, and whether it was asked part by part."""
     if origin.submitted:
         found.submitted.setdefault(place, origin.submitted)
     if origin.apart:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from coursework.errors import counted
 from coursework.gradebook import canvas_answers, moodle_responses
-from coursework.gradebook.rows import Rejected, Row, Seen
+from coursework.gradebook.rows import Rejected, Row, Seen, name_in
 
 Rows = Iterator[tuple[str, Sequence[str]]]
 
@@ -53,6 +53,9 @@ def read_table(
         return
     finally:
         csv.field_size_limit(before)
+    if not records or not table.is_this(records[0][1]):  # one read by lines, one by quotation marks
+        yield Rejected(source, "the header is damaged: a quotation mark in it is never closed")
+        return
     yield from table.read(records[0][1], iter(records[1:]), source, warning)
 
 
@@ -69,7 +72,7 @@ def read_records(content: Any, source: str, warning: str) -> Iterator[Row | Reje
     rows = (
         (
             f"{source}, item {number}",
-            ["" if item.get(title) is None else str(item[title]) for title in header],
+            [name_in(item.get(title)) for title in header],
         )
         for number, item in enumerate(items, start=1)
     )

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from coursework.making.identity import Ids
@@ -53,6 +55,11 @@ class Rejected:
     row: dict[str, str] = field(default_factory=dict)
 
 
+def path_text(path: Path) -> str:
+    """A path as tables can hold it, whatever the bytes of its name: what is no character of UTF-8 is written ``\\xe9``."""
+    return os.fsencode(path).decode("utf-8", "backslashreplace")
+
+
 def decoded_text(data: bytes, source: str) -> tuple[str, str]:
     """The text, and a warning that names its file."""
     text, warning = decode(data)
@@ -60,8 +67,16 @@ def decoded_text(data: bytes, source: str) -> tuple[str, str]:
 
 
 def _whole(text: str) -> str:
-    """The text without halves of characters, which no file can hold."""
-    return text.encode("utf-8", "replace").decode("utf-8")
+    """The text without halves of characters and NUL, which no file or database can hold."""
+    return text.encode("utf-8", "replace").decode("utf-8").replace("\0", "\ufffd")
+
+
+_QUOTED = 200  #: characters of what is rejected
+
+
+def quoted(text: str) -> str:
+    """The beginning of what was written where nothing is read, as a table can hold it."""
+    return _whole(text.strip()[:_QUOTED])
 
 
 class _Repeated(dict):
@@ -111,14 +126,14 @@ def sheet_rows(
     if not answers and not getattr(answers, "unread", ()):
         yield Rejected(place, "the sheet holds no answer", {**names, "part": "", "answer": ""})
     for key, text, why in getattr(answers, "unread", ()):
-        row = {**names, "part": name_in(key), "answer": _whole(text)[:200]}
+        row = {**names, "part": name_in(key), "answer": quoted(text)}
         where = f"{place}, part {name_in(key)[:40]}" if key else place
         yield Rejected(where, why, row)
     for key, value in [*answers.items(), *getattr(answers, "repeats", ())]:
         part, answer = name_in(key), as_answer(value)
         where = f"{place}, part {part[:40]}"
         if isinstance(answer, (dict, set, bytes)):
-            row = {**names, "part": part, "answer": _text_of(answer)[:200]}
+            row = {**names, "part": part, "answer": quoted(_text_of(answer))}
             yield Rejected(where, "an answer is a text or a number", row)
             continue
         lang = name_in(about.get("lang"))

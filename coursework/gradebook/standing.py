@@ -26,7 +26,7 @@ from coursework.making.issued import Issued
 from coursework.making.students import folded
 from coursework.marking.feedback import Told
 from coursework.marking.mark import Mark
-from coursework.system.tables import as_written, delimiter_of, open_csv
+from coursework.system.tables import as_written, delimiter_of, open_csv, said_twice
 
 _NEEDED = tuple(c for c in MARKS_COLUMNS if c not in ("read_as", "feedback"))
 
@@ -83,7 +83,7 @@ class Standing:
             self._lines[place] = _Line(
                 place, row["verdict"], row["points"], row["out_of"], row.get("feedback")
             )
-            origin = Collected(sitting=int(sitting) if sitting.isdecimal() else 0)
+            origin = Collected(sitting=int(sitting) if sitting.isdecimal() and len(sitting) < 10 else 0)
             names = row["student"], row["exercise"], row["seed"], row["part"]
             yield Row(*names, row["answer"], place, origin=origin if self._is_pool else None)
 
@@ -124,8 +124,9 @@ def _know(issued: Issued, summary: Path) -> None:
             delimiter = delimiter_of(file.readline())
             file.seek(0)
             for row in csv.DictReader(file, delimiter=delimiter):
-                own = {title: row[title] for title in row if title and row[title] and identifies(title)}
-                issued.columns.setdefault(row.get("student") or "", own)
+                told = {as_written(title): as_written(cell) for title, cell in row.items() if title and cell}
+                own = {title: cell for title, cell in told.items() if identifies(title)}
+                issued.columns.setdefault(told.get("student", ""), own)
 
 
 def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
@@ -141,6 +142,8 @@ def _table(path: Path) -> Iterator[tuple[int, Mapping[str, str]]]:
                 raise BadInput(
                     f"{path} needs the columns {', '.join(_NEEDED)}; {', '.join(missing)} missing, found {found[:200]}"
                 )
+            if twice := said_twice(header, MARKS_COLUMNS):
+                raise BadInput(f"{path}: {twice}")
             for cells in reader:
                 if any(cell.strip() for cell in cells):
                     if len(cells) < len(header):

@@ -24,16 +24,25 @@ from coursework.gradebook.rows import (
     decoded_text,
     load_json,
     name_in,
+    path_text,
     sheet_rows,
     short_fault,
 )
 from coursework.gradebook.trees import BESIDE, HandedIn, handed_in, latest_first
 from coursework.making.issued import COLUMNS
 from coursework.system.extras import NotAtHand, library
-from coursework.system.tables import as_written, delimiter_of, record
+from coursework.system.limits import MOST_BYTES as MAX_BYTES
+from coursework.system.limits import (
+    MOST_CELL,
+    MOST_COLUMNS,
+    MOST_NOTEBOOK_BYTES,
+    MOST_ROWS,
+    MOST_UNPACKED,
+    beyond,
+)
+from coursework.system.tables import as_written, delimiter_of, record, said_twice
 
 ENDINGS = (".csv", ".json", ".ipynb", ".parquet", ".xml", ".tsv")
-MAX_BYTES = 1_000_000_000  #: of one file of answers
 
 
 def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
@@ -55,7 +64,7 @@ def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
                 p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files if p.name not in BESIDE
             )
             if not files:
-                yield Rejected(str(path), "the folder holds no file")
+                yield Rejected(path_text(path), "the folder holds no file")
         elif path.suffix.lower() not in ENDINGS:
             yield _odd_file(path)
         else:
@@ -82,9 +91,10 @@ _SPREADSHEETS = (".xlsx", ".xls", ".ods")
 def _odd_file(path: Path) -> Rejected:
     if path.suffix.lower() in _SPREADSHEETS:
         return Rejected(
-            str(path), "a spreadsheet is not read: download the table as CSV (comma separated values)"
+            path_text(path), "a spreadsheet is not read: download the table as CSV (comma separated values)"
         )
-    return Rejected(str(path), f"answers come as {', '.join(ENDINGS)}; found {path.suffix or 'no ending'}")
+    ending = Path(path_text(path)).suffix or "no ending"
+    return Rejected(path_text(path), f"answers come as {', '.join(ENDINGS)}; found {ending}")
 
 
 def read_file(path: Path) -> Iterator[Row | Rejected | Seen]:
@@ -105,14 +115,17 @@ def _read(path: Path, place: HandedIn | None) -> Iterator[Row | Rejected | Seen]
     reader = _READERS[path.suffix.lower()]
     try:
         size = path.stat().st_size
-        if size > MAX_BYTES:
-            yield Rejected(str(path), f"{size:,} bytes are too many for answers; the limit is {MAX_BYTES:,}")
+        most = MOST_NOTEBOOK_BYTES if path.suffix.lower() == ".ipynb" else MAX_BYTES
+        if size > most:
+            yield Rejected(path_text(path), beyond("a file", size, most, "bytes"))
             return
         data = path.read_bytes()
     except OSError as fault:
-        yield Rejected(str(path), f"cannot be read: {fault.strerror}")
+        yield Rejected(path_text(path), f"cannot be read: {fault.strerror}")
         return
-    rows = reader(data, str(path)) if place is None else read_notebook(data, str(path), place.name)
+    rows = (
+        reader(data, path_text(path)) if place is None else read_notebook(data, path_text(path), place.name)
+    )
     del data  # a reader lets go of it, too
     yield from rows
 
@@ -130,10 +143,17 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
         return
     lines = re.split(r"\r\n|\n|\r", text)
     del text, data
-    delimiter = delimiter_of(lines[0])
+    first = next((line for line in lines if line.strip()), "")
+    delimiter = delimiter_of(first)
+    if len(lines) > MOST_ROWS + 1:
+        yield Rejected(source, beyond("a file", len(lines) - 1, MOST_ROWS, "rows"))
+        return
+    if (columns := first.count(delimiter) + 1) > MOST_COLUMNS:
+        yield Rejected(source, beyond("a table", columns, MOST_COLUMNS, "columns"))
+        return
     header: list[str] = []
     named: Callable[[list[str]], Sequence[str]] = tuple
-    number = 0
+    number, has_rows = 0, False
     while number < len(lines):
         place = f"{source}, line {number + 1}"
         cells, taken = record(lines, number, delimiter, len(header))
@@ -141,6 +161,7 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
         if not any(c.strip() for c in cells):
             continue  # a blank line is no row
         if header:
+            has_rows = True
             yield from _csv_row(header, cells, delimiter, place, warning)
             # Lines that are plain, as nearly all are, without more ado.
             while number < len(lines) and '"' not in lines[number]:
@@ -162,13 +183,18 @@ def _read_csv(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
             wanted = f"the header must name {', '.join(COLUMNS)}; {', '.join(missing)} missing, found {found}"
             yield Rejected(place, fault_of(cells) or wanted)
             return
+        if twice := said_twice(header, COLUMNS):
+            yield Rejected(place, twice)
+            return
         named = itemgetter(*(header.index(c) for c in COLUMNS))
+    if not has_rows:
+        yield Rejected(source, NO_ANSWERS)
 
 
 def _row_of(cells: Sequence[str], place: str, warning: str) -> Row:
     """The row of the cells of :data:`COLUMNS`, in their order."""
     student, exercise, seed, part, answer = cells
-    if "'" in (student[:1], answer[:1]):
+    if "'" in student or "'" in answer:
         student, answer = as_written(student), as_written(answer)
     # Of a class they are a few texts, over and over: kept once.
     return Row(
@@ -184,6 +210,8 @@ def _row_of(cells: Sequence[str], place: str, warning: str) -> Row:
 
 _kept = sys.intern
 
+NO_ANSWERS = "the file holds no answers"
+
 
 def _read_parquet(path: Path) -> Iterator[Row | Rejected]:
     """The rows of a Parquet file with the columns of the CSV; the seed and the answer may be numbers."""
@@ -191,25 +219,73 @@ def _read_parquet(path: Path) -> Iterator[Row | Rejected]:
         pyarrow: Any = library("pyarrow", "Parquet needs", "parquet")
         parquet: Any = library("pyarrow.parquet", "Parquet needs", "parquet")
     except NotAtHand as why:
-        yield Rejected(str(path), str(why))
+        yield Rejected(path_text(path), str(why))
         return
     try:
         file = parquet.ParquetFile(path)
         missing = [c for c in COLUMNS if c not in file.schema_arrow.names]
         if missing:
             wanted = f"a Parquet file has the columns {', '.join(COLUMNS)}; {', '.join(missing)} missing"
-            yield Rejected(str(path), wanted)
+            yield Rejected(path_text(path), wanted)
             return
-        number = 0
+        if refused := _beyond(file.metadata) or _odd_columns(pyarrow.types, file.schema_arrow):
+            yield Rejected(path_text(path), refused)
+            return
+        plain = {file.schema.column(k).path for k in range(len(file.schema))}  # one of lists is not
+        file = parquet.ParquetFile(path, read_dictionary=[c for c in COLUMNS if c in plain])
+        number, source = 0, path_text(path)
         for batch in file.iter_batches(columns=list(COLUMNS)):
-            for student, exercise, seed, part, answer in zip(
-                *(batch.column(c).to_pylist() for c in COLUMNS), strict=True
-            ):
+            for cells in zip(*(_cells_of(batch.column(c), c) for c in COLUMNS), strict=True):
+                student, exercise, seed, part, answer = cells
                 number += 1
-                names = (name_in(student), name_in(exercise), name_in(seed), name_in(part))
-                yield Row(*names, as_answer(answer), f"{path}, row {number}")
-    except (OSError, pyarrow.ArrowException) as fault:
-        yield Rejected(str(path), f"not a Parquet file: {short_fault(fault)}")
+                place = f"{source}, row {number}"
+                if isinstance(answer, str) and len(answer) > MOST_CELL:
+                    row = {**dict(zip(COLUMNS, cells, strict=True)), "answer": answer[:200]}
+                    yield Rejected(place, beyond("an answer", len(answer), MOST_CELL, "characters"), row)
+                    continue
+                yield Row(student, exercise, seed, part, answer, place)
+        if not number:
+            yield Rejected(source, NO_ANSWERS)
+    # What is damaged, pyarrow tells in one of many ways: by a column that is not there, too.
+    except (OSError, ValueError, LookupError, OverflowError, pyarrow.ArrowException) as fault:
+        yield Rejected(path_text(path), f"not a Parquet file: {short_fault(fault)}")
+
+
+def _beyond(about: Any) -> str:
+    """Why a Parquet file is too much to be read, by what it says of itself before anything is unpacked; nothing where it is not."""
+    if about.num_rows > MOST_ROWS:
+        return beyond("a file", about.num_rows, MOST_ROWS, "rows")
+    size = sum(about.row_group(k).total_byte_size for k in range(about.num_row_groups))
+    return beyond("a file", size, MOST_UNPACKED, "bytes unpacked") if size > MOST_UNPACKED else ""
+
+
+def _cells_of(column: Any, name: str) -> list[Any]:
+    """The cells of a column of Parquet, each different one kept once: a small file may say one text a million times."""
+    read = as_answer if name == "answer" else name_in
+    if not hasattr(column, "dictionary"):
+        return [read(cell) for cell in column.to_pylist()]
+    texts = [read(text) for text in column.dictionary.to_pylist()]
+    return [read(None) if k is None else texts[k] for k in column.indices.to_pylist()]
+
+
+def _odd_columns(types: Any, schema: Any) -> str:
+    """What is wrong with the columns of a Parquet file: one is there twice, or holds what is no text and no number."""
+
+    def is_read(kind: Any) -> bool:
+        if types.is_dictionary(kind) or types.is_list(kind) or types.is_large_list(kind):
+            return is_read(kind.value_type)
+        tests = ("string", "large_string", "integer", "floating", "decimal", "boolean", "null")
+        return any(getattr(types, f"is_{test}")(kind) for test in tests)
+
+    for column in COLUMNS:
+        if len(schema.get_all_field_indices(column)) > 1:
+            return f"the file has the column {column} twice"
+        if not is_read(kind := schema.field(column).type):
+            kind = getattr(kind, "value_type", kind)
+            return (
+                f"the column {column} holds {str(kind)[:40]}: an answer is a text or a number, a name a text"
+            )
+    return ""
 
 
 def _csv_row(
@@ -257,7 +333,7 @@ def _read_json(data: bytes, source: str) -> Iterator[Row | Rejected | Seen]:
         return
     sheets = content if isinstance(content, list) else [content]
     if not sheets:
-        yield Rejected(source, "the file holds no answers")
+        yield Rejected(source, NO_ANSWERS)
     for number, sheet in enumerate(sheets, start=1):
         place = f"{source}, item {number}" if isinstance(content, list) else source
         if not isinstance(sheet, dict) or not isinstance(sheet.get("answers"), dict):

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from coursework.errors import BadInput, nearest
-from coursework.gradebook.accepted import ACCEPTED, points_of
+from coursework.gradebook.accepted import ACCEPTED, check_points, points_of
 from coursework.gradebook.changes import rows_of
 from coursework.gradebook.graded import Graded
 from coursework.language.words import words
@@ -19,7 +19,7 @@ TO_MARK = "to_mark"  #: the verdict of an answer that waits
 TO_MARK_COLUMNS = ("student", "exercise", "seed", "part", "answer", "points", "out_of", "reason")
 
 
-class _Given(NamedTuple):
+class Given(NamedTuple):
     """A line of the file whose points are filled in."""
 
     place: str
@@ -45,7 +45,7 @@ class ToMark:
         self.rows: list[dict[str, Any]] = []
         self.waiting = 0
         self.changed: list[str] = []  #: answers that are not those that were marked
-        self._given: dict[tuple[str, ...], _Given] = {}
+        self.given: dict[tuple[str, ...], Given] = {}  #: the lines of the file with points
         self._used: set[tuple[str, ...]] = set()
         for number, row in enumerate(rows_of(path) if path.exists() else (), start=2):
             _check_columns(path, row)
@@ -53,8 +53,8 @@ class ToMark:
             points = points_of(row["points"], place)
             if points is not None:
                 named = tuple(row[c] for c in ("student", "exercise", "seed", "part"))
-                given = _Given(place, named, row.get("answer", ""), points, row.get("reason", ""))
-                self._given[_key(*named)] = given
+                given = Given(place, named, row.get("answer", ""), points, row.get("reason", ""))
+                self.given[_key(*named)] = given
 
     def apply(self, graded: Graded, lang: str) -> Graded:
         """The sheet with the points that a person gave; what waits is remembered, to be written.
@@ -68,22 +68,23 @@ class ToMark:
         for part, line in graded.lines.items():
             if line.verdict != TO_MARK:
                 continue
-            found = self._found(graded, part, line)
+            found = self.found(graded, part, line)
             if found is not None:
-                lines[part] = _marked(line, found, lang)
+                lines[part] = given_mark(line, found.points, found.reason, lang, found.place)
                 if part not in (*graded.answered, *unanswered):
                     unanswered.append(part)
             self.waiting += found is None
             self.rows.append(_row(graded, line, found))
         return graded._replace(lines=lines, unanswered=tuple(unanswered))
 
-    def _found(self, graded: Graded, part: str, line: Mark) -> _Given | None:
+    def found(self, graded: Graded, part: str, line: Mark) -> Given | None:
+        """The points that the file gives to an answer; None where it has none, or gives them to another answer."""
         key = _key(graded.student, graded.exercise, str(graded.seed), part)
-        found = self._given.get(key)
+        found = self.given.get(key)
         if found is None:
             return None
         self._used.add(key)
-        if " ".join(found.answer.split()) != " ".join(line.answer.split()):
+        if not same_answer(found.answer, line.answer):
             self.changed.append(", ".join(found.named))
             return None
         return found
@@ -91,7 +92,7 @@ class ToMark:
     @property
     def unused(self) -> list[str]:
         """The marked answers that nobody gave."""
-        return [", ".join(one.named) for key, one in self._given.items() if key not in self._used]
+        return [", ".join(one.named) for key, one in self.given.items() if key not in self._used]
 
     @property
     def loses(self) -> bool:
@@ -110,19 +111,27 @@ def _key(student: str, exercise: str, seed: str, part: str) -> tuple[str, ...]:
     return folded(student), exercise, seed, part
 
 
-def _marked(line: Mark, found: _Given, lang: str) -> Mark:
-    """The mark that a person gave: accepted for all the points, partly right for some, wrong for none."""
-    if found.points > line.out_of:
-        raise BadInput(
-            f"{found.place}: {found.points:g} points for {line.part}, which has {line.out_of:g}; give that or fewer"
-        )
-    full = found.points >= line.out_of
-    says = f"{words(lang)['marking']['by_hand']} {found.reason}".strip()
-    verdict = ACCEPTED if full else "partial" if found.points > 0 else "wrong"
-    return line._replace(verdict=verdict, points=found.points, told=(Told(says, says),))
+def given_mark(line: Mark, points: float, reason: str, lang: str, place: str) -> Mark:
+    """The mark that a person gave: accepted for all the points, partly right for some, wrong for none; ``place`` is where
+    it is said.
+
+    Raises
+    ------
+    BadInput
+        The part has fewer points.
+    """
+    check_points(points, line.part, line.out_of, place)
+    verdict = ACCEPTED if points >= line.out_of else "partial" if points > 0 else "wrong"
+    says = f"{words(lang)['marking']['by_hand']} {reason}".strip()
+    return line._replace(verdict=verdict, points=points, told=(Told(says, says),))
 
 
-def _row(graded: Graded, line: Mark, found: _Given | None) -> dict[str, Any]:
+def same_answer(one: str, other: str) -> bool:
+    """Whether two texts are one answer, however they are spaced."""
+    return " ".join(one.split()) == " ".join(other.split())
+
+
+def _row(graded: Graded, line: Mark, found: Given | None) -> dict[str, Any]:
     return {
         "student": graded.student,
         "exercise": graded.exercise,

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
-from coursework.gradebook.rows import Collected, Seen
+from coursework.gradebook.rows import Collected, Seen, path_text
 
 #: Files that lie in such trees and hold no answers.
 BESIDE = frozenset(("timestamp.txt", "submission_secret.txt"))
@@ -31,28 +31,30 @@ class HandedIn(NamedTuple):
 
 def handed_in(path: Path) -> HandedIn | None:
     """Who handed a file in, by the folders that it lies in, else by its name; None where they say nothing."""
-    whole = path.resolve()
+    beside = path.resolve().parent
+    whole = Path(path_text(path.resolve()))
     for place, folder in reversed([*enumerate(whole.parts[:-1])]):
         root = str(Path(*whole.parts[:place]))
         if found := _EXCHANGE.fullmatch(folder):
-            return _handed((found["student"],), found["time"], root, "nbgrader's exchange", whole)
+            return _handed((found["student"],), found["time"], root, "nbgrader's exchange", beside)
         if found := _MOODLE.fullmatch(folder):
-            return _handed((found["student"],), "", root, "Moodle's submissions of an assignment", whole)
+            return _handed((found["student"],), "", root, "Moodle's submissions of an assignment", beside)
         if folder == "submitted" and len(whole.parts) - place > 3:
             return _handed(
                 (whole.parts[place + 1],),
                 "",
                 str(Path(root, folder)),
                 "nbgrader's tree of submissions",
-                whole,
+                beside,
             )
-    if found := _CANVAS.fullmatch(path.name):
-        return _handed((found["id"], found["student"]), "", str(path.parent), "Canvas's submissions", whole)
+    if found := _CANVAS.fullmatch(Path(path_text(path)).name):
+        who, root = (found["id"], found["student"]), path_text(path.parent)
+        return _handed(who, "", root, "Canvas's submissions", beside)
     return None
 
 
-def _handed(by: tuple[str, ...], time: str, root: str, what: str, path: Path) -> HandedIn:
-    beside = path.parent / "timestamp.txt"
+def _handed(by: tuple[str, ...], time: str, root: str, what: str, folder: Path) -> HandedIn:
+    beside = folder / "timestamp.txt"
     if not time and beside.is_file():
         time = beside.read_text("utf-8", "replace").strip()[:60]
     return HandedIn(Collected(by=by, submitted=time), Seen(root, what, is_tree=True))

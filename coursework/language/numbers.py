@@ -33,11 +33,16 @@ _EXACT = 1e-9  #: of a number that is printed as it is, and no rounded one
 
 
 def settled(value: float) -> float:
-    """A computed number to twelve digits, its last bits set aside, which differ from one processor to another.
+    """A computed number to ten digits, its last bits set aside, which differ from one processor to another.
 
     Halfway between two printed numbers, as 46.75 is to a tenth, they would choose between the two.
     """
-    return float(f"{value:.12g}")
+    return float(f"{value:.10g}")
+
+
+def rounded(value: float, decimals: int) -> float:
+    """A computed number as it is printed or drawn, to so many decimals: whatever its last bits, and never ``-0.0``."""
+    return round(settled(value), decimals) + 0.0
 
 
 def significant(value: float, digits: int = 4) -> str:

@@ -26,8 +26,8 @@ def languages() -> tuple[str, ...]:
 
 
 @cache
-def words(lang: str) -> Mapping[str, Any]:
-    """The engine's words in one language, as nested tables of texts.
+def words(lang: str, of: str = "") -> Mapping[str, Any]:
+    """The engine's words in one language, as nested tables of texts; ``of`` names those that a part of it has to itself, ``site``.
 
     Raises
     ------
@@ -39,15 +39,15 @@ def words(lang: str) -> Mapping[str, Any]:
     """
     if lang not in languages():
         raise no_language(lang)
-    found = _read(lang)
+    found = _read(file_of(lang, of))
     if lang != "en":
-        _compare(dict(texts_of(found)), dict(texts_of(words("en"))), file_of(lang))
+        _compare(dict(texts_of(found)), dict(texts_of(words("en", of))), file_of(lang, of))
     return found
 
 
-def file_of(lang: str) -> Path:
+def file_of(lang: str, of: str = "") -> Path:
     """Where the words of a language are, or would be."""
-    return Path(str(_FOLDER / f"{lang}.toml"))
+    return Path(str(_FOLDER / of / f"{lang}.toml"))
 
 
 def no_language(lang: str) -> UnknownName:
@@ -57,16 +57,18 @@ def no_language(lang: str) -> UnknownName:
     )
 
 
-def _read(lang: str) -> dict[str, Any]:
+def _read(file: Path) -> dict[str, Any]:
     import tomllib
 
     try:
-        return tomllib.loads(file_of(lang).read_text("utf-8-sig"))
+        return tomllib.loads(file.read_text("utf-8-sig"))
+    except FileNotFoundError:
+        raise BadCourse(f"{file} is not there: copy the one beside it and translate") from None
     except tomllib.TOMLDecodeError as fault:
-        raise BadCourse(f"{file_of(lang)}: {fault}") from fault
+        raise BadCourse(f"{file}: {fault}") from fault
     except UnicodeDecodeError as fault:
         line = fault.object.count(b"\n", 0, fault.start) + 1
-        raise BadCourse(f"{file_of(lang)}, line {line}, is not UTF-8: save it in that encoding") from fault
+        raise BadCourse(f"{file}, line {line}, is not UTF-8: save it in that encoding") from fault
 
 
 def _compare(texts: Mapping[str, object], english: Mapping[str, object], file: Path) -> None:

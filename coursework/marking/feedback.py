@@ -221,11 +221,19 @@ def right_feedback(variant: Variant, part: Part, read_as: str) -> str:
     return sentence.replace(_READ, echo(read_as, variant.lang))
 
 
+def right_says(variant: Variant, part: Part, read_as: str) -> str:
+    """The same, Markdown."""
+    return _right(variant.exercise, part, variant.lang, echo(read_as, variant.lang)).markdown()
+
+
+def _right(exercise: CourseExercise, part: Part, lang: str, read: str) -> Said:
+    name = f"${exercise.symbol(part.quantity)}$"
+    return Said(words(lang)["marking"]["correct"], {"name": name[:1].upper() + name[1:], "read": read})
+
+
 _READ = "\N{OBJECT REPLACEMENT CHARACTER}"
 
 
 @lru_cache(maxsize=4096)
 def _plain_right(exercise: CourseExercise, part: Part, lang: str) -> str:
-    name = f"${exercise.symbol(part.quantity)}$"
-    pieces = {"name": name[:1].upper() + name[1:], "read": _READ}
-    return Said(words(lang)["marking"]["correct"], pieces).plain(lang)
+    return _right(exercise, part, lang, _READ).plain(lang)

@@ -43,6 +43,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     ------
     UnknownName
         An answer to a part that the variant does not ask.
+    WrongValue
+        The answers are no mapping of parts, named by texts.
     NoSolution
         The course folder has no solutions.
     """
@@ -52,6 +54,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
             f"answers are given by part: {{'{next(iter(asked))}': '12 mm'}}; found {type(answers).__name__}"
         )
     for part_id in answers:
+        if not isinstance(part_id, str):
+            raise WrongValue(f"a part is named by a text; found {type(part_id).__name__}")
         if part_id not in asked:
             raise unknown("part", part_id, asked, f"{variant.exercise.name} {variant.seed}")
     key, known = variant.key, known or {}

@@ -257,6 +257,7 @@ _MARK_AFTER_FORMULA = re.compile(
 )
 
 
+@lru_cache(maxsize=4096)
 def to_html(markdown: str, lang: str) -> str:
     """Markdown as an HTML fragment; its headings stand below those of the page."""
     return _MARK_AFTER_FORMULA.sub(

@@ -78,10 +78,10 @@ def read_scene(path: Path, course: Course) -> SceneFile:
         table = tomllib.loads(text)
     except OSError as fault:
         raise BadInput(f"the scene {path} cannot be read: {fault.strerror or fault}") from fault
-    except tomllib.TOMLDecodeError as fault:
-        raise BadInput(f'{path}: {fault}; a value with a unit is a text: mass = "3 kg"') from fault
     except UnicodeDecodeError as fault:
         raise BadInput(f"{path} is not UTF-8: {fault.reason} at byte {fault.start}") from fault
+    except (ValueError, RecursionError) as fault:
+        raise BadInput(f'{path}: {fault}; a value with a unit is a text: mass = "3 kg"') from fault
     return _Reader(path, text, table, course).scene_file()
 
 

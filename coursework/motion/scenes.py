@@ -20,8 +20,7 @@ from coursework.motion.added import Motor
 from coursework.motion.effects import OF_FORCES
 from coursework.motion.showing import Showing
 from coursework.motion.staged import FLYWHEEL, FRICTION, INERTIA
-
-MOST_STEPS = 10_000_000  #: of a cycle
+from coursework.system.limits import MOST_STEPS
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ class Scene(Showing):
         Angles are whole multiples of the step, never accumulated.
         """
         if not 1 <= count <= MOST_STEPS:
-            raise WrongValue(f"a cycle has from 1 to {MOST_STEPS:g} steps; found {count:g}")
+            raise WrongValue(f"a cycle has from 1 to {MOST_STEPS:g} steps; found {count:g}; take fewer")
         driver, angle = self.driver.angle, np.arange(count + 1) * 360.0 / count
         columns = {driver: angle, **self._exercise_columns(self._driven(angle), angle.shape)}
         units = self._units(columns)

@@ -18,6 +18,7 @@ from traitlets import Unicode
 
 from coursework.nbgrader.cells import OURS, SCHEMA
 from coursework.nbgrader.marking import MarkedNotebook, marked_notebook
+from coursework.system.visible import one_line
 
 Done = tuple[NotebookNode, ResourcesDict]
 _TOLD = "coursework"  #: where a step leaves word for those behind it
@@ -106,7 +107,7 @@ class RestoreCells(NbGraderPreprocessor):
         if known:
             changed = restore(nb, known)
             for told in changed:
-                self.log.warning("%s: %s", resources["nbgrader"]["student"], told)
+                self.log.warning("%s: %s", *map(one_line, (resources["nbgrader"]["student"], told)))
         return nb, resources
 
 
@@ -199,7 +200,7 @@ class MarkAnswers(Execute):
         if any(name not in {_grade_id(cell) for cell in nb.cells} for name in known):
             restore(nb, known)  # where RestoreCells is not among the steps
         for told in marked.told:
-            self.log.warning("%s: %s", about["student"], told)
+            self.log.warning("%s: %s", *map(one_line, (about["student"], told)))
         for cell in nb.cells:
             self._fill(cell, known, marked)
         resources[_TOLD] = {"waiting": marked.waiting}

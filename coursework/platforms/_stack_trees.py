@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from coursework.course.variant import Variant
+from coursework.language.numbers import settled
 from coursework.model import Part
 from coursework.platforms._maxima import Unprintable, number, text
 from coursework.platforms._stack_following import Following, following, follows
@@ -198,7 +199,7 @@ def _of_following(variant: Variant, place: int, part: Part, found: Following) ->
     key = variant.key
     least = max(part.atol, key.envelope.get(part.quantity, 0.0)) if part.has_margin else 0.0
     share = part.rtol if part.has_margin else 0.0
-    half = f"max({number(float(least))},{number(float(share))}*abs(f{place}))+{number(1e-9)}*abs(f{place})"
+    half = f"max({number(settled(least))},{number(float(share))}*abs(f{place}))+{number(1e-9)}*abs(f{place})"
     earlier = {one: variant.parts[one - 1] for one in found.earlier}
     wrong = " or ".join(f"not {_right(one, p)}" for one, p in earlier.items())
     tried = "".join(

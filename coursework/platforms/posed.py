@@ -13,7 +13,7 @@ from typing import Any
 from coursework.course.answer_key import Key
 from coursework.course.variant import Variant
 from coursework.kinds.choices import cases_of
-from coursework.language.numbers import plain, significant
+from coursework.language.numbers import plain, settled, significant
 from coursework.marking.explaining import CLOSE
 from coursework.marking.mark import Mark
 from coursework.marking.marking import mark
@@ -157,6 +157,18 @@ def _from_errors(variant: Variant, key: Key, part: Part) -> Iterator[str]:
 
 
 def _intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interval]:
+    """What is taken for an answer, and for an error, without last bits, which would differ from one processor to another:
+    the ends are drawn in by more than these."""
+    for one in _found_intervals(variant, key, part):
+        inward = _INWARD * max(abs(one.low), abs(one.high)) if one.half else 0.0
+        low, high = settled(one.low + inward), settled(one.high - inward)
+        yield replace(one, low=low, high=high, value=settled(one.value))
+
+
+_INWARD = 1e-9  #: of the larger end
+
+
+def _found_intervals(variant: Variant, key: Key, part: Part) -> Iterator[Interval]:
     reference, width = float(key.reference[part.quantity]), key.half_width(part)
     yield from _turned(Interval(reference - width, reference + width, reference), part)
     for interval in _wrong_intervals(variant, key, part):

@@ -13,7 +13,7 @@ from functools import cached_property
 from itertools import groupby
 
 from coursework.figures import Beginning, Element, Figure, line, point, scale_bar, vector
-from coursework.language.numbers import localise, settled, significant, unit_text
+from coursework.language.numbers import localise, rounded, significant, unit_text
 from coursework.language.words import languages, listed, no_language, words
 from coursework.polygons.polygon import Polygon, Side, Stage
 
@@ -116,7 +116,7 @@ class Construction:
                 side.direction,
                 side.length,
                 f"{side.start}\\,{side.end}",
-                self._number(f"{settled(abs(side.value) / self.scale):.1f}"),
+                self._number(f"{rounded(abs(side.value) / self.scale, 1):.1f}"),
                 self._number(significant(abs(side.value), 4)),
             )
             for side in self.polygon.sides

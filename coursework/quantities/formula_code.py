@@ -24,6 +24,7 @@ from coursework import degrees
 from coursework.errors import BadStatement
 from coursework.markup.formula_tree import Fence, Fraction, Node, Num, Root, Script, Symbol, parse
 from coursework.reading.printed_formulas import DEGREE_SIGNS, Evaluation, NotEvaluable
+from coursework.system import python_code
 
 
 class NoExpression(Exception):
@@ -41,7 +42,7 @@ def expression(function: Callable[..., Any]) -> ast.expr:
     """
     try:
         source = textwrap.dedent(inspect.getsource(function))
-        body = ast.parse(source).body[0]
+        body = python_code.parse(source).body[0]
     except (OSError, TypeError, SyntaxError) as fault:
         raise NoExpression from fault
     statements = returning(body)

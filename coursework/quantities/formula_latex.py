@@ -21,6 +21,7 @@ import numpy as np
 
 from coursework.language.numbers import significant
 from coursework.quantities.formula_code import NoExpression, call, called, expression, put_in, returning
+from coursework.system import python_code
 
 _FUNCTIONS = {
     "sin": r"\sin",
@@ -74,7 +75,7 @@ def why_unprinted(function: Callable[..., Any]) -> str:
     """What in a function's code no formula says: a choice, or a function that has no name on paper; empty where
     it is something else, such as several steps."""
     try:
-        body = ast.parse(textwrap.dedent(inspect.getsource(function))).body[0]
+        body = python_code.parse(textwrap.dedent(inspect.getsource(function))).body[0]
     except (OSError, TypeError, SyntaxError):
         return ""
     statements = returning(body)

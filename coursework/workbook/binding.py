@@ -8,7 +8,9 @@ from typing import Any
 from coursework.course.chapters import Chapter
 from coursework.course.chapters import Section as Placed
 from coursework.course.course import Course
+from coursework.course.exercise import CourseExercise
 from coursework.course.lessons import PAGES, taught_by
+from coursework.course.variant import Variant
 from coursework.errors import BadCourse, BadInput
 from coursework.language.words import words
 from coursework.making.issuing import distinct_variants
@@ -59,7 +61,7 @@ def bound(
         raise BadCourse(
             f"the exercise {name} has a name that is a page of every book as well; rename its files"
         )
-    found = tuple(_all_chapters(course, lang))
+    found = tuple(chapters_of(course, lang))
     numbers = [chapter.number for chapter in found]
     for number in chapters:
         if number not in numbers:
@@ -74,7 +76,7 @@ def pieces_of(course: Course[Any]) -> int:
     return len(course.folder.lessons) + len(course.folder.names)
 
 
-def _all_chapters(course: Course[Any], lang: str) -> Iterator[Chapter]:
+def chapters_of(course: Course[Any], lang: str) -> Iterator[Chapter]:
     """Those of the course, and one of what stands in none."""
     folder = course.folder
     yield from folder.chapters
@@ -105,9 +107,16 @@ def _chapter(
     return BookChapter(chapter.number, chapter.title(lang), tuple(sections))
 
 
+def _variant(exercise: CourseExercise[Variant], lang: str, seed: int) -> Variant:
+    """The first that is worth issuing for a book; of a students' copy, which cannot tell, that of its own number."""
+    if not exercise.folder.has_solutions:
+        return exercise.variant(seed, lang)
+    return distinct_variants(exercise, _FAR + _APART * seed, 1, lang)[0]
+
+
 def _practised(course: Course[Any], name: str, lang: str, seed: int, number: str) -> Practised:
     exercise = course[name]
-    (variant,) = distinct_variants(exercise, _FAR + _APART * seed, 1, lang)
+    variant = _variant(exercise, lang, seed)
     taught = tuple((one.name, one.title) for one in taught_by(course.folder, name, lang))
     solution = answer_sheet(variant) if course.folder.has_solutions else None
     return Practised(number, handout(variant), solution, taught)

@@ -28,7 +28,7 @@ def own_course(tmp_path, course):
     for folder in ("exercises", "solutions"):
         home = tmp_path / folder
         home.mkdir()
-        for path in (course.folder.root / folder / "slotted").glob("slotted_mechanism*"):
+        for path in (course.folder.root / folder / "slotted").glob("*slotted_mechanism*"):
             shutil.copy(path, home / path.name)
     return tmp_path
 

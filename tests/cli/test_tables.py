@@ -148,7 +148,7 @@ def test_an_unknown_sign_is_refused(tmp_path, capsys):
 
 def test_a_formula_stays_text_where_semicolons_part_the_cells():
     (line,) = csv_text([{"a": "x;=cmd|'/c calc'!A1", "points": "0.5"}], ["a", "points"], SPREADSHEETS["comma"]).splitlines()[1:]  # fmt: skip
-    assert line == "\"x;=cmd|'/c calc'!A1\";0,5"
+    assert line == "\"x;'=cmd|'/c calc'!A1\";0,5"
 
 
 def test_a_mark_put_before_a_mark_is_no_part_of_the_first_heading(tmp_path):

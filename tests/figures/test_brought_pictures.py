@@ -169,6 +169,15 @@ def test_a_figure_without_words_is_refused(tmp_path):
         "<foreignObject><p/></foreignObject>",
         '<animate attributeName="href" to="javascript:alert(1)"/>',
         '<use href="other.svg#a"/>',
+        '<meta xmlns="" http-equiv="refresh" content="0;url=//example.org"/>',
+        '<img srcset="//example.org/a 1x"/>',
+        '<table background="//example.org/a"/>',
+        '<video xmlns="http://www.w3.org/1999/xhtml" poster="//example.org/a"/>',
+        '<title><link rel="stylesheet" imagesrcset="//example.org/a"/></title>',
+        '<rect style="background:u\\72l(//example.org/a)"/>',
+        "<style>@\\69mport '//example.org/a.css';</style>",
+        "<style>rect { background: image-set('//example.org/a' 1x) }</style>",
+        "<discard/>",
     ],
 )
 def test_what_would_run_or_fetch_is_refused(planted):

@@ -202,7 +202,7 @@ def test_the_rules_of_the_assignment_override_those_of_the_course(course, tmp_pa
     from coursework.gradebook import class_marking
 
     monkeypatch.setattr(class_marking, "WORTH_PROCESSES", 1)
-    monkeypatch.setattr(class_marking, "workers", lambda _: 2)
+    monkeypatch.setattr(class_marking, "workers", lambda *_: 2)
     assert (points(plain), points(milder)) == (0.5, 0.25)
 
 

@@ -10,10 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from coursework.api import open_course
 from coursework.errors import BadInput
 from coursework.gradebook.notebooks import literal_answers
+from coursework.gradebook.placing import Refused, place_of
 from coursework.gradebook.rows import Rejected, Row
 from coursework.gradebook.submissions import find, read_file
+from coursework.making.issued import Issued
 
 HEADER = "student,exercise,seed,part,answer\n"
 
@@ -320,6 +323,7 @@ def test_a_file_too_large_is_told(tmp_path, monkeypatch):
         ('# "rA": "319.8",  # mm', '"319.8",  # mm'),
         ('"x": "1",  # mm    "rA": "319.8",', '"319.8"'),
         ('"rA": "",  # "rA": 319.8', "319.8"),
+        ('"rA": #319.8,\n  35,', "319.8,"),
     ],
 )
 @pytest.mark.parametrize("last", ['"b": "2",\n}', '"b": "2"}', '"b": 1 "\n}'])
@@ -421,3 +425,12 @@ def test_where_a_comma_may_belong_elsewhere_the_whole_text_is_kept(tmp_path, hea
         assert rejected.row["answer"].startswith("12,5")
     else:
         assert rejected.row["answer"] == "rA,12.5"
+
+
+def test_of_namesakes_none_is_meant_before_the_others():
+    record, names = open_course()["grashof"].variant(1).record, ("Marie Martin (1)", "Marie Martin (2)")
+    dealt = [{"student": name, "record": record} for name in names]
+    issued = Issued({"format": 1, "roster": True, "issued": dealt}, "issued.json")
+    row = Row("marie martin", "grashof", "1", "s_plus_l", "2", "answers.csv, line 2")
+    with pytest.raises(Refused, match=r"which of 'Marie Martin \(1\)', 'Marie Martin \(2\)'"):
+        place_of(issued, row)

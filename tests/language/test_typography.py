@@ -6,7 +6,6 @@ import re
 import tomllib
 from dataclasses import replace
 from functools import reduce
-from importlib import resources
 
 import pytest
 from rendering_samples import handout
@@ -34,11 +33,9 @@ def keys(table: dict, path: str = "") -> set[str]:
     }
 
 
-def test_both_languages_have_the_same_words():
-    tables = {
-        lang: tomllib.loads((resources.files("coursework") / "language" / f"{lang}.toml").read_text("utf-8"))
-        for lang in ("fr", "en")
-    }
+@pytest.mark.parametrize("of", ["", "site"])
+def test_both_languages_have_the_same_words(of):
+    tables = {lang: tomllib.loads(language.file_of(lang, of).read_text("utf-8")) for lang in ("fr", "en")}
     french, english = (keys({k: v for k, v in t.items() if k != "units"}) for t in tables.values())
     assert french == english
     for name in english:
@@ -48,9 +45,9 @@ def test_both_languages_have_the_same_words():
 
 
 def test_a_language_whose_file_lacks_a_text_says_which(monkeypatch):
-    whole = language._read("en")
+    whole = language._read(language.file_of("en"))
     lacking = {**whole, "study": {k: v for k, v in whole["study"].items() if k != "refused"}}
-    monkeypatch.setattr(language, "_read", lambda lang: lacking if lang == "fr" else whole)
+    monkeypatch.setattr(language, "_read", lambda file: lacking if file.stem == "fr" else whole)
     with pytest.raises(BadCourse, match=r"fr\.toml lacks study\.refused\.all_begun, .*en\.toml"):
         words.__wrapped__("fr")
 

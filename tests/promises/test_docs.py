@@ -139,7 +139,7 @@ def test_pages_do_show_commands():
 
 @pytest.mark.parametrize(
     "wrong",
-    [["grade", "returned/", "--isued", "x"], ["grade", "returned/"], ["gade"], ["list", "--seed", "1"]],
+    [["grade", "returned/", "--isued", "x"], ["solve"], ["gade"], ["list", "--seed", "1"]],
 )
 def test_a_command_that_does_not_exist_would_be_found(wrong):
     with pytest.raises((click.UsageError, AssertionError)):

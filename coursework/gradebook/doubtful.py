@@ -1,0 +1,95 @@
+"""Different sheets of one student in several files: whose each is, where folders and names of files tell, and what waits for a person.
+
+What a notebook says of itself anybody can write. Where two files answer differently for the same student and variant, the
+one that is called by the student, or lies in their folder, is theirs; where none is, or where nothing tells, all wait.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import lru_cache
+from pathlib import Path
+
+from coursework.gradebook.rows import Row
+from coursework.making.issued import Issued
+from coursework.making.students import file_stems
+
+Sheet = tuple[str, str, int]  #: student, exercise and seed
+Doubts = Mapping[tuple[Sheet, str], str]  #: by sheet and file, why its rows wait
+
+_OWN = re.compile(
+    r".*?\.(?:ipynb|json)(?=, |$)", re.S
+)  #: what students hand in themselves, each in a file of their own
+_AGAIN = re.compile(r"\s*\([0-9]+\)$")  #: what browsers add to the name of a file that is there already
+
+
+def file_of(row: Row) -> str:
+    """The file of a student's own that a row came from; nothing where it is of a table, or a platform says whose it is."""
+    found = _OWN.match(row.source) if row.origin is None else None
+    return found[0] if found else ""
+
+
+def doubts(issued: Issued, rows: Iterable[tuple[Row, Callable[[], Sheet | None]]]) -> Doubts:
+    """The rows that wait for a person; each comes with what tells its sheet, if it has one."""
+    sheets: dict[Sheet, dict[str, dict[str, str]]] = {}
+    people: dict[str, set[str]] = {}
+    for row, sheet_of in rows:
+        if not (file := file_of(row)):
+            continue
+        people.setdefault(file, set()).add(row.student)
+        if (sheet := sheet_of()) is not None and (text := _text(row)):
+            sheets.setdefault(sheet, {}).setdefault(file, {}).setdefault(row.part, text)
+    found: dict[tuple[Sheet, str], str] = {}
+    for sheet, files in sheets.items():
+        own = {file: answers for file, answers in files.items() if len(people[file]) == 1}
+        if _differ(list(own.values())):
+            found |= {(sheet, file): why for file, why in _told(issued, sheet, list(own)).items()}
+    return found
+
+
+def _text(row: Row) -> str:
+    return "" if row.answer is None else " ".join(str(row.answer).split())
+
+
+def _differ(answers: Sequence[Mapping[str, str]]) -> bool:
+    """Whether two of them answer one question differently."""
+    met: dict[str, str] = {}
+    return any(met.setdefault(part, text) != text for one in answers for part, text in one.items())
+
+
+def _told(issued: Issued, sheet: Sheet, files: Sequence[str]) -> dict[str, str]:
+    """By file that waits, why; nothing where all are the student's own, of which the first counts."""
+    student = sheet[0]
+    theirs = [file for file in files if _called(issued, file, student) == student]
+    if not theirs:
+        listed = " and ".join(files[:2]) + (f" and {len(files) - 2} more" if len(files) > 2 else "")
+        why = (
+            f"{listed} are different sheets of {student}: a person must say which is theirs; take the other away, or call "
+            "the file by its student"
+        )
+        return dict.fromkeys(files, why)
+    return {
+        file: f"it names {student}, whose own sheet in {theirs[0]} is another: a person must say whose it is"
+        for file in files
+        if file not in theirs
+    }
+
+
+@lru_cache(maxsize=4)
+def _stems(students: tuple[str, ...]) -> Mapping[str, str]:
+    """Students by what their handouts are called."""
+    return dict(zip(file_stems(students), students, strict=True))
+
+
+def _called(issued: Issued, file: str, student: str) -> str | None:
+    """Whom the name of a file, or of its folder, names."""
+    stems = _stems(issued.students or (student,))
+    place = Path(file)
+    for name in (place.name.partition(".")[0], place.stem, place.parent.name):
+        name = _AGAIN.sub("", name)
+        if (
+            told := stems.get(name) or issued.account((name,)) or (student if name == student else None)
+        ) is not None:
+            return told
+    return None

@@ -1,0 +1,240 @@
+"""Sheets of a class whose answers are more than memory should hold: on disk until they are marked.
+
+Rows come in the order of their files, and those of a sheet may be far apart. They are parted by sheet, so that all of one are in
+one part, and a part is small; each part is put together, and what it gives is read back in the order in which the sheets
+first appeared. So what comes out is what :func:`coursework.gradebook.placing.placed` gives.
+
+What is written lies in files without a name, beside the result: they go with the process, however it ends.
+"""
+
+from __future__ import annotations
+
+import heapq
+import pickle
+import tempfile
+from array import array
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from itertools import chain, islice
+from operator import itemgetter
+from pathlib import Path
+from typing import IO, Any, NamedTuple
+
+from coursework.course.course import Course
+from coursework.gradebook.placing import SheetPlace, Sheets, Told, fill, putting, told_places
+from coursework.gradebook.rows import Rejected, Row, Seen
+from coursework.making.issued import Issued
+from coursework.system.writing import writing
+
+AT_ONCE = 50_000  #: rows that are held; where there are more, they go by the disk
+PARTS = 256  #: of which one is held at a time
+_BLOCK = 16  #: sheets of each part that are read at once
+
+
+@contextmanager
+def placed_beside(
+    course: Course, issued: Issued, rows: Iterable[Row | Rejected | Seen], out: Path
+) -> Iterator[Sheets]:
+    """Rows by sheet, as :func:`coursework.gradebook.placing.placed` gives them; where there are many, they lie on the disk of
+    ``out`` while the context lasts, and :meth:`Sheets.parts` reads them.
+
+    Raises
+    ------
+    CourseworkError
+        As for ``placed``.
+    BadInput
+        The disk cannot be written.
+    """
+    found = Sheets()
+    folder = next(place for place in (out, *out.absolute().parents) if place.is_dir())
+    with ExitStack() as stack:
+        with _Blocks(folder) as by_part:
+            with _Blocks(folder) as read:
+                again = _Again(rows, read)
+                told = told_places(course, issued, again, found)
+                if not again.are_many:
+                    fill(course, issued, found, told)
+                    yield found
+                    return
+                rejected = _parted(told, by_part)
+            sheets = _SheetsOnDisk(found, stack.enter_context(_Blocks(folder)))
+            for part in range(PARTS):
+                rejected += sheets.take(course, issued, by_part.of(part), part)
+        sheets.rejected = [one for _, one in sorted(rejected, key=itemgetter(0))]
+        yield sheets
+
+
+_Read = Row | Rejected | Seen
+
+
+class _Again:
+    """Rows that are read twice: held where they are few, on disk where they are many."""
+
+    def __init__(self, rows: Iterable[_Read], blocks: _Blocks) -> None:
+        self._first: Iterable[_Read] | None = rows
+        self._blocks = blocks
+        self._held: list[_Read] = []
+        self.are_many = False
+
+    def __iter__(self) -> Iterator[_Read]:
+        if self._first is None:
+            yield from chain.from_iterable(self._blocks.of(0))
+            yield from self._held
+            return
+        rows, self._first = self._first, None
+        for row in rows:
+            self._held.append(row)
+            if len(self._held) == AT_ONCE:
+                self.are_many = True
+                self._blocks.add(0, self._held)
+                self._held = []
+            yield row
+
+
+_Numbered = tuple[int, Rejected]  #: by the number of the row
+
+
+def _parted(told: Iterator[Told], by_part: _Blocks) -> list[_Numbered]:
+    """Put rows into the parts of their sheets; gives those that have no place."""
+    rejected: list[_Numbered] = []
+    numbered = enumerate(told)
+    while some := list(islice(numbered, AT_ONCE)):
+        parts: dict[int, list[tuple[int, SheetPlace, Row]]] = {}
+        for number, one in some:
+            if isinstance(one, Rejected):
+                rejected.append((number, one))
+            else:
+                parts.setdefault(hash(one[0]) % PARTS, []).append((number, *one))
+        for part, own in parts.items():
+            by_part.add(part, own)
+    return rejected
+
+
+class _Stored(NamedTuple):
+    """A sheet."""
+
+    number: int  #: of the first row that came
+    place: SheetPlace
+    rows: dict[str, Row]
+    lang: str | None
+    submitted: str | None
+    apart: bool
+
+
+class _SheetsOnDisk(Sheets):
+    """Sheets that are read as they are asked for."""
+
+    def __init__(self, found: Sheets, stored: _Blocks) -> None:
+        super().__init__(warnings=found.warnings, rows_in=found.rows_in, seen=found.seen)
+        self._stored = stored
+        self._count = self._answers = 0
+        self._names: set[str] = set()
+        self._is_dated = False
+
+    @property
+    def count(self) -> int:
+        return self._count
+
+    @property
+    def students(self) -> int:
+        return len(self._names)
+
+    @property
+    def answers(self) -> int:
+        return self._answers
+
+    @property
+    def is_dated(self) -> bool:
+        return self._is_dated
+
+    def take(
+        self,
+        course: Course,
+        issued: Issued,
+        blocks: Iterable[Sequence[tuple[int, SheetPlace, Row]]],
+        part: int,
+    ) -> list[_Numbered]:
+        """Put the rows of a part on their sheets, and these on disk; gives the rows that are refused."""
+        own, rejected = Sheets(), []
+        put = putting(course, issued, own)
+        numbers: dict[SheetPlace, int] = {}
+        for number, place, row in chain.from_iterable(blocks):
+            numbers.setdefault(place, number)
+            if (refused := put(place, row)) is not None:
+                rejected.append((number, refused))
+        self._is_dated = self._is_dated or own.is_dated
+        own.drop_empty()
+        self.rows_in += own.rows_in
+        self.blanks += own.blanks
+        self._count += own.count
+        self._answers += own.answers
+        self._names.update(place[0] for place in own.sheets)
+        sheets = (_stored(own, place, numbers[place]) for place in own.sheets)
+        while some := list(islice(sheets, _BLOCK)):
+            self._stored.add(part, some)
+        return rejected
+
+    def parts(self, size: int) -> Iterator[Sheets]:
+        streams = (chain.from_iterable(self._stored.of(part)) for part in range(PARTS))
+        in_order = heapq.merge(*streams, key=itemgetter(0))
+        while some := list(islice(in_order, size)):
+            yield _together(some)
+
+
+def _stored(sheets: Sheets, place: SheetPlace, number: int) -> _Stored:
+    told = sheets.langs.get(place), sheets.submitted.get(place), place in sheets.apart
+    return _Stored(number, place, sheets.sheets[place], *told)
+
+
+def _together(some: Iterable[_Stored]) -> Sheets:
+    found = Sheets()
+    for one in some:
+        found.sheets[one.place] = one.rows
+        if one.lang is not None:
+            found.langs[one.place] = one.lang
+        if one.submitted is not None:
+            found.submitted[one.place] = one.submitted
+        if one.apart:
+            found.apart.add(one.place)
+    return found
+
+
+class _Blocks:
+    """Lists of things by a number, in a file without a name.
+
+    They are pickled, which keeps an answer what it is, a number or a text; nobody else can write the file.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._at: dict[int, array[int]] = {}  #: where blocks begin and how long they are, in turn
+        self._end = 0
+        self._file: IO[bytes] | None = None
+
+    def __enter__(self) -> _Blocks:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._file is not None:
+            with suppress(OSError):  # a full disk has been told already
+                self._file.close()
+
+    def add(self, number: int, things: Sequence[Any]) -> None:
+        """Add a block; none has been read yet."""
+        data = pickle.dumps(things, 5)
+        self._at.setdefault(number, array("Q")).extend((self._end, len(data)))
+        with writing(self._folder):
+            if self._file is None:
+                self._file = tempfile.TemporaryFile(dir=self._folder)  # noqa: SIM115
+            self._file.write(data)
+        self._end += len(data)
+
+    def of(self, number: int) -> Iterator[Any]:
+        """The blocks of a number, in the order in which they were added."""
+        at = self._at.get(number, ())
+        for start, size in zip(at[::2], at[1::2], strict=True):
+            assert self._file is not None
+            with writing(self._folder):
+                self._file.seek(start)
+                data = self._file.read(size)
+            yield pickle.loads(data)

@@ -1,0 +1,151 @@
+"""What waits for a person: answers that nobody but a person can judge, put together where the same was written.
+
+An answer waits because it could not be read, is to be marked by a person, lacks its unit, is wrong by little, or because
+many wrote the very same and nothing explains it. What is right by little waits for nobody, and can be looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from hashlib import sha256
+from typing import NamedTuple
+
+from coursework.course.course import Course
+from coursework.course.key_batch import keys_of
+from coursework.gradebook.class_marking import rules_of
+from coursework.gradebook.graded import Graded
+from coursework.making.issued import Issued
+from coursework.marking.margins import half_widths_off
+from coursework.marking.mark import Mark
+from coursework.reading.spelling import plain_spelling, unwrapped
+
+NEAR = 2.0  #: accepted margins up to which a wrong answer is near the margin
+JUST = 0.9  #: of the accepted margin, beyond which a right answer is just inside it
+OFTEN = 3  #: students who wrote the same wrong answer, before it waits
+OFTEN_SHARE = 0.1  #: of those who answered the question
+LONGEST = 2000  #: characters by which texts are compared
+
+#: Why an answer may be looked at, in the order in which they are shown.
+WHY = ("unreadable", "drawn", "open", "unit", "near", "often", "just")
+SHOWN_ON_REQUEST = ("just",)  #: these wait for nobody
+
+
+class Waits(NamedTuple):
+    """An answer that may be looked at."""
+
+    sheet: Graded
+    mark: Mark
+    margin: float | None  #: its distance from the reference in accepted half-widths
+
+    @property
+    def student(self) -> str:
+        return self.sheet.student
+
+
+@dataclass(frozen=True)
+class Group:
+    """Answers to one question in which the same is written, judged against the same reference."""
+
+    id: str
+    why: str
+    exercise: str
+    part: str
+    members: tuple[Waits, ...]
+
+    @property
+    def first(self) -> Waits:
+        return self.members[0]
+
+
+class Measure(NamedTuple):
+    """What a sheet's answers are compared by: margins by part, and what the references are."""
+
+    margins: Mapping[str, float]
+    references: Mapping[str, str]
+
+
+NOTHING = Measure({}, {})
+_MEASURED = frozenset(("correct", "wrong", "missing_unit"))
+
+
+def measures(course: Course, issued: Issued, graded: Sequence[Graded]) -> Iterator[Measure]:
+    """What the answers of sheets are compared by, those that are read and may be near their margin."""
+    variants = [course[one.exercise].from_record(one.record) for one in graded]
+    for name in dict.fromkeys(one.exercise for one in graded):
+        keys_of(course[name], [v for v in variants if v.exercise.name == name], rules_of(course, issued))
+    for one, variant in zip(graded, variants, strict=True):
+        lines = {p: m for p, m in one.lines.items() if m.verdict in _MEASURED}
+        asked = [part for part in variant.parts if part.id in lines]
+        margins = {part.id: half_widths_off(variant, part, lines[part.id].answer) for part in asked}
+        told = {p: gap for p, gap in margins.items() if gap is not None}
+        references = {
+            part.id: repr(variant.key.reference.get(part.quantity))
+            for part in asked
+            if lines[part.id].verdict != "correct"
+        }
+        yield Measure(told, references)
+
+
+def groups(
+    graded: Iterable[Graded], measured: Mapping[tuple[str, str, int, int], Measure], order: Sequence[tuple[str, str]],
+    drawn: frozenset[tuple[str, str]] = frozenset(),
+) -> list[Group]:  # fmt: skip
+    """The answers that may be looked at, question by question in ``order`` (exercise and part), and there by why, those that
+    most wrote first.
+
+    ``measured`` is by student, exercise, seed and sitting; ``drawn`` are the questions that are answered by a drawing.
+    """
+    found: dict[tuple[str, ...], list[Waits]] = {}
+    answered: dict[tuple[str, str], set[str]] = {}
+    for one in graded:
+        measure = measured.get((*one[:3], one.sitting), NOTHING)
+        for part, mark in one.lines.items():
+            if mark.verdict == "missing":
+                continue
+            answered.setdefault((one.exercise, part), set()).add(one.student)
+            margin = measure.margins.get(part)
+            if (why := _why(mark, margin, is_drawn=(one.exercise, part) in drawn)) is None:
+                continue
+            key = why, one.exercise, part, mark.verdict, written(mark), measure.references.get(part, "")
+            found.setdefault(key, []).append(Waits(one, mark, margin))
+    place = {question: number for number, question in enumerate(order)}
+    made = [_group(key, members) for key, members in found.items() if _waits(key, members, answered)]
+    return sorted(
+        made, key=lambda g: (place.get((g.exercise, g.part), len(place)), WHY.index(g.why), -len(g.members))
+    )
+
+
+def _why(mark: Mark, margin: float | None, *, is_drawn: bool) -> str | None:
+    if mark.verdict == "to_mark":
+        return "drawn" if is_drawn else "open"
+    if mark.verdict == "unreadable":
+        return "unreadable"
+    if mark.verdict == "missing_unit":
+        return "unit"
+    if mark.verdict == "correct":
+        return "just" if margin is not None and JUST < margin <= 1 else None
+    if mark.verdict != "wrong":
+        return None
+    return "near" if margin is not None and margin <= NEAR else "often"
+
+
+def _waits(
+    key: tuple[str, ...], members: Sequence[Waits], answered: Mapping[tuple[str, str], set[str]]
+) -> bool:
+    """A wrong answer that nothing explains waits where many wrote it; whatever else is here, waits."""
+    if key[0] != "often":
+        return True
+    students = len({one.student for one in members})
+    return students >= max(OFTEN, OFTEN_SHARE * len(answered[key[1], key[2]]))
+
+
+def written(mark: Mark) -> str:
+    """What an answer says, in one spelling: as it was read, else its text without what only spelling differs by."""
+    text = mark.read_as or plain_spelling(unwrapped(mark.answer[:LONGEST]))
+    return " ".join(text.casefold().split()).rstrip(" .!;,")
+
+
+def _group(key: tuple[str, ...], members: Sequence[Waits]) -> Group:
+    name = sha256("\0".join(key).encode("utf-8", "backslashreplace")).hexdigest()[:16]
+    return Group(name, key[0], key[1], key[2], tuple(members))
