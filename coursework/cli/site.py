@@ -7,6 +7,7 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -105,9 +106,7 @@ def serve(
         serving = server.Serving(context.obj, place, entrance, own, lti)
         shown = serving.check()
         with server.filling(serving):
-            click.echo(f"coursework: {own}/ (kept in {shown}; Ctrl-C ends it)")
-            _open(own, opens)
-            server.serve(serving, at, workers)
+            server.serve(serving, at, workers, partial(_say, own, f"kept in {shown}", opens))
 
 
 def _check_lti(folder: Path, url: str) -> None:
@@ -221,10 +220,11 @@ def _entrance(host: str, url: str, demo: str | None, *, told: bool) -> Entrance:
     return Entrance.ACCOUNTS
 
 
-def _open(url: str, opens: bool) -> None:
-    """Open the browser, where there is a screen."""
+def _say(url: str, where: str, opens: bool) -> None:
+    """Say the address, and open the browser there, where there is a screen."""
     import webbrowser
 
+    click.echo(f"coursework: {url}/ ({where}; Ctrl-C ends it)")
     has_screen = (
         sys.platform in ("win32", "darwin") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")
     )
@@ -263,9 +263,7 @@ def preview(context: click.Context, exercise: str, port: int, variants: int, lan
     with server.listening(_LOOPBACK, port) as at:
         work = UnderWork(context.obj, exercise, variants)
         try:
-            address = _address(_LOOPBACK, at)
-            click.echo(f"coursework: {address}/ (follows {folder.root}; Ctrl-C ends it)")
-            _open(address, opens)
-            server.run(lambda: pages(work, lang), at)
+            says = partial(_say, _address(_LOOPBACK, at), f"follows {folder.root}", opens)
+            server.run(lambda: pages(work, lang), at, ready=says)
         finally:
             work.end()

@@ -103,10 +103,13 @@ def _refusal(host: str, port: int, fault: OSError) -> str:
     )
 
 
-def serve(serving: Serving, at: socket.socket, workers: int = 1) -> None:
-    """Answer until a signal says to end (Ctrl-C, SIGTERM, a closed terminal); requests under way are answered first."""
+def serve(serving: Serving, at: socket.socket, workers: int, ready: Callable[[], None]) -> None:
+    """Answer until a signal says to end (Ctrl-C, SIGTERM, a closed terminal); requests under way are answered first.
+
+    ``ready`` is called once such a signal is heeded.
+    """
     is_shared = serving.entrance is Entrance.ACCOUNTS
-    run(partial(_application, serving), at, workers, tells_all=is_shared, has_proxy=is_shared)
+    run(partial(_application, serving), at, workers, ready=ready, tells_all=is_shared, has_proxy=is_shared)
 
 
 def run(
@@ -114,10 +117,11 @@ def run(
     at: socket.socket,
     workers: int = 1,
     *,
+    ready: Callable[[], None],
     tells_all: bool = False,
     has_proxy: bool = False,
 ) -> None:
-    """Serve the application that ``made`` gives in each process.
+    """Serve the application that ``made`` gives in each process; ``ready`` is called once a signal to end is heeded.
 
     ``tells_all`` writes a line of the log for each request, not for faults alone; ``has_proxy`` believes a proxy on this
     machine who asks.
@@ -131,9 +135,9 @@ def run(
     )  # fmt: skip
     _open_more()
     if workers > 1:
-        _many(config, at)
+        _many(config, at, ready)
     else:
-        _one(config, at)
+        _one(config, at, ready)
 
 
 def _open_more() -> None:
@@ -166,20 +170,23 @@ def _logs(tells_all: bool) -> dict[str, Any]:
     }
 
 
-def _one(config: Config, at: socket.socket) -> None:
+def _one(config: Config, at: socket.socket, ready: Callable[[], None]) -> None:
     from uvicorn import Server
 
-    for number in (signal.SIGINT, signal.SIGTERM):  # raised once more behind the server's end
-        signal.signal(number, lambda *_: None)
+    server = Server(config)
+    for number in (signal.SIGINT, signal.SIGTERM):  # heeded before it listens, and behind its end once more
+        signal.signal(number, server.handle_exit)
     _end_with_terminal(lambda: signal.raise_signal(signal.SIGTERM))
-    Server(config).run(sockets=[at])
+    ready()
+    server.run(sockets=[at])
 
 
-def _many(config: Config, at: socket.socket) -> None:
+def _many(config: Config, at: socket.socket, ready: Callable[[], None]) -> None:
     from uvicorn.supervisors import Multiprocess
 
     supervisor = Multiprocess(config, sockets=[at])
     _end_with_terminal(lambda: supervisor.signal_queue.append(signal.SIGTERM))
+    ready()
     supervisor.run()
 
 

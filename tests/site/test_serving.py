@@ -3,6 +3,8 @@
 import re
 import signal
 import socket
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -35,6 +37,26 @@ def test_it_says_where_it_is_and_ends_cleanly(tmp_path, number):
         assert answers(site.url) == 404
         assert site.end(number) == 0
         assert "Traceback" not in site.log.read_text()
+
+
+TOLD_TO_END_AT_ONCE = """
+import os, signal, sys
+from coursework.site.server import listening, run
+async def nothing(scope, receive, send): pass
+def made(): return nothing
+def end(): os.kill(os.getpid(), int(sys.argv[1])); print("told")
+if __name__ == "__main__": run(made, listening("127.0.0.1", 0), int(sys.argv[2]), ready=end)
+"""
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("workers", [1, 2])
+def test_it_ends_cleanly_where_it_is_told_to_as_soon_as_it_says_where_it_is(tmp_path, number, workers):
+    script = tmp_path / "at_once.py"
+    script.write_text(TOLD_TO_END_AT_ONCE)
+    command = [sys.executable, script, str(int(number)), str(workers)]
+    ended = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    assert (ended.returncode, ended.stdout) == (0, "told\n"), ended.stderr
 
 
 @needs_processes
