@@ -6,7 +6,8 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from types import FrameType
 from typing import Any
 
@@ -35,7 +36,27 @@ def end_cleanly() -> None:
         signal.signal(signal.SIGHUP, _end)
 
 
+_waiting: list[int] = []  #: signals that came while none was heeded
+_is_heeded = True
+
+
+@contextmanager
+def whole() -> Iterator[None]:
+    """What is begun in this context is done before this process heeds that it is told to end. Of the main thread alone."""
+    global _is_heeded
+    _is_heeded, before = False, _is_heeded
+    try:
+        yield
+    finally:
+        _is_heeded = before
+        if _waiting and _is_heeded:
+            _end(_waiting.pop(0), None)
+
+
 def _end(number: int, frame: FrameType | None) -> None:
+    if not _is_heeded:
+        _waiting.append(number)
+        return
     signal.signal(number, signal.SIG_IGN)  # what is being put away is not disturbed
     raise Ended(number)
 

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple, Protocol, TypeAlias
 
 from coursework.errors import CourseworkError
 from coursework.system.blocks import processors
-from coursework.system.ending import done_or_ended, follow_parent
+from coursework.system.ending import done_or_ended, follow_parent, whole
 
 #: Hands a function of a module, and what it is told, to a process.
 Submit: TypeAlias = Callable[..., Future[Any]]
@@ -207,12 +207,15 @@ def _do_beside(job: Callable[..., Any], told: tuple[Any, ...]) -> None:
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Processes started meanwhile do not hear of interrupts, nor does this one; only the main thread may say so."""
+    """Processes started meanwhile do not hear of interrupts, nor does this one, and each is whole before this one heeds that it is
+    told to end: one that is half begun complains. Only the main thread may say so.
+    """
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before)
+    with whole():
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        try:
+            yield
+        finally:
+            signal.signal(signal.SIGINT, before)

@@ -16,8 +16,11 @@ def postgres():
 def url(request, tmp_path):
     """The address of an empty database."""
     if request.param == "sqlite":
-        return f"sqlite:///{tmp_path}/marks.db"
-    return request.getfixturevalue("postgres").database()
+        yield f"sqlite:///{tmp_path}/marks.db"
+        return
+    server = request.getfixturevalue("postgres")
+    yield (address := server.database())
+    server.give_back(address)
 
 
 @pytest.fixture

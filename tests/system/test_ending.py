@@ -98,5 +98,27 @@ def test_work_beside_that_does_not_end_when_told_is_ended(tmp_path):
     process = ending.begun(tmp_path, script=STUBBORN)
     assert ending.until((tmp_path / "done").exists)
     assert process.wait(ending.LONGEST) == 0
-    assert not ending.at_work(process.pid)
+    assert ending.until(lambda: not ending.at_work(process.pid))
     process.communicate()
+
+
+BEGINS = """
+import os, signal
+from coursework.system.ending import end_cleanly
+from coursework.system.processes import uninterrupted
+
+if __name__ == "__main__":
+    end_cleanly()
+    with uninterrupted():
+        with uninterrupted():
+            os.kill(os.getpid(), signal.SIGTERM)
+            print("half", flush=True)
+        print("whole", flush=True)
+    print("beyond", flush=True)
+"""
+
+
+def test_what_is_being_begun_is_whole_before_the_end(tmp_path):
+    process = ending.begun(tmp_path, script=BEGINS)
+    told, said = process.communicate(timeout=ending.LONGEST)
+    assert (told, said, process.returncode) == ("half\nwhole\n", "", 128 + signal.SIGTERM)
