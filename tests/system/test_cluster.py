@@ -69,6 +69,7 @@ def both(capsys, machines, *arguments, out=None):
 # ------------------------------------------------------------------ the same bytes
 
 
+@pytest.mark.slow
 def test_a_build_is_the_same_in_all_formats(capsys, machines, course_of_one, tmp_path):
     build = (
         "--course",
