@@ -32,7 +32,7 @@ def served(class_, port=0):
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, daemon=True)
     thread.start()
-    until = time.monotonic() + 20
+    until = time.monotonic() + 60
     while not server.started:
         assert time.monotonic() < until, "the server did not start"
         time.sleep(0.02)
@@ -69,6 +69,7 @@ def context_of(browser, class_, address, name=None, lang="en", size="telephone",
         java_script_enabled=script,
         **more,
     )
+    context.set_default_timeout(90_000)  # a busy machine is no fault
     if name is not None:
         cookie = Cookies(class_.site.secret).made(class_.ids[name])
         host = urlsplit(address).hostname

@@ -87,7 +87,7 @@ def told(page, words):
 
 
 def until(is_so):
-    end = time.monotonic() + 20
+    end = time.monotonic() + 60
     while not is_so():
         assert time.monotonic() < end, "it does not come to pass"
         time.sleep(0.05)
