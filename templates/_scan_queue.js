@@ -83,7 +83,7 @@
   }
   function cardOf(card) {
     const one = state.get(card.id);
-    const crops = make("div", { class: "crops" });
+    const crops = make("div", { class: ["free", "struck"].includes(card.waits) ? "crops from-right" : "crops" });
     card.crops.forEach((source, k) => crops.append(picture(source, card.crops.length > 1 ? fill(said("queue.scan"), k + 1) : about(card))));
     const pages = make("p", { class: "small" });
     card.pages.forEach((source, k) => pages.append(make("a", { href: source, target: "_blank", rel: "noopener" }, card.pages.length > 1 ? fill(said("queue.scan"), k + 1) : said("queue.page")), " "));
