@@ -57,10 +57,11 @@ def test_a_renamed_copy_in_one_language_is_checked_clean(name, tmp_path):
 def test_every_exercise_is_copied_alone_and_works(name, tmp_path):
     copied(tmp_path / "same", name)
     assert coursework.open_course(tmp_path / "same").names == (name,)
-    assert clean(tmp_path / "same", name, 1) == []
+    assert clean(tmp_path / "same", name, 3) == []
     copied(tmp_path / "other", name, "another", ("fr",))
-    assert coursework.open_course(tmp_path / "other").names == ("another",)
-    assert clean(tmp_path / "other", "another", 1) == []
+    renamed = coursework.open_course(tmp_path / "other")
+    assert renamed.names == ("another",)
+    assert renamed["another"].variant(0, "fr").solution()
 
 
 @pytest.mark.slow

@@ -4,6 +4,8 @@ it. In a solution a question and its answer stand on one page."""
 from __future__ import annotations
 
 import json
+import multiprocessing
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from itertools import product
 
@@ -25,11 +27,27 @@ every_paper = pytest.mark.parametrize("size", PAPERS)
 _NUMBER = "strong[#number.]"
 
 
-def pages_of_questions(source: str) -> list[int]:
+@pytest.fixture(scope="module")
+def marked_in():
+    """What is marked ``<found>`` in a text that is typeset: by another process, since the typesetter keeps 10 MB of each."""
+    spawn = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(1, spawn, max_tasks_per_child=40) as pool:
+        yield lambda source: json.loads(
+            pool.submit(typst.query, source.encode(), "<found>", field="value").result()
+        )
+
+
+@pytest.fixture(scope="module")
+def pages_of_questions(marked_in):
     """The page of each question, in order: a mark that takes no room stands in its number."""
-    assert source.count(_NUMBER) == 2  # in the two forms of a question
-    marked = source.replace(_NUMBER, "strong[#number.#context [#metadata(here().page()) <asked>]]")
-    return json.loads(typst.query(marked.encode(), "<asked>", field="value"))
+
+    def pages(source: str) -> list[int]:
+        assert source.count(_NUMBER) == 2  # in the two forms of a question
+        return marked_in(
+            source.replace(_NUMBER, "strong[#number.#context [#metadata(here().page()) <found>]]")
+        )
+
+    return pages
 
 
 def assert_none_left_over(pages: list[int]) -> None:
@@ -40,7 +58,7 @@ def assert_none_left_over(pages: list[int]) -> None:
 @every_language
 @every_paper
 @pytest.mark.parametrize("seed", [2, *(pytest.param(seed, marks=pytest.mark.slow) for seed in (1, 3, 4))])
-def test_no_handout_has_a_page_of_a_few_questions_that_are_left_over(size, lang, seed):
+def test_no_handout_has_a_page_of_a_few_questions_that_are_left_over(pages_of_questions, size, lang, seed):
     parted = 0
     for name in COURSE.names:
         sheet = COURSE[name].variant(seed, lang).handout("Zoé Martin")
@@ -52,7 +70,7 @@ def test_no_handout_has_a_page_of_a_few_questions_that_are_left_over(size, lang,
 
 @every_language
 @every_paper
-def test_nor_has_a_paper(size, lang):
+def test_nor_has_a_paper(pages_of_questions, size, lang):
     made = paper(heading(lang), (*NAMES, "four_bar_motion"))
     source = typst_source(RENDERER.template_folders, [made], size)
     pages = pages_of_questions(source)
@@ -63,7 +81,7 @@ def test_nor_has_a_paper(size, lang):
     assert start == len(pages)
 
 
-def test_questions_too_tall_to_stay_together_take_the_pages_that_they_need():
+def test_questions_too_tall_to_stay_together_take_the_pages_that_they_need(pages_of_questions):
     sheet = handout("en")
     tall = [
         replace(q, number=n, box="blank", room=(100, 110)) for n, q in enumerate(sheet.questions[:6], start=1)
@@ -79,20 +97,26 @@ _ASKED, _ANSWERED = "strong(number), prompt, small(points),", 'text(weight: "bol
 _PLACE = "here().page(), here().position().y.mm()"
 
 
-def places_in_solution(source: str) -> list[tuple[float, float, float]]:
+@pytest.fixture(scope="module")
+def places_in_solution(marked_in):
     """For each question the page it stands on, that of its answer, and how far down that is, mm."""
-    assert source.count(_ASKED) == source.count(_ANSWERED) == 1
-    marked = source.replace(
-        _ASKED, f"[#strong(number)#context [#metadata(({_PLACE})) <asked>]], prompt, small(points),"
-    ).replace(_ANSWERED, f"[#{_ANSWERED}#context [#metadata(({_PLACE})) <answered>]]")
-    asked, answered = (
-        json.loads(typst.query(marked.encode(), f"<{name}>", field="value")) for name in ("asked", "answered")
-    )
-    return [(one[0], *two) for one, two in zip(asked, answered, strict=True)]
+
+    def places(source: str) -> list[tuple[float, float, float]]:
+        assert source.count(_ASKED) == source.count(_ANSWERED) == 1
+        marked = source.replace(
+            _ASKED, f"[#strong(number)#context [#metadata((0, {_PLACE})) <found>]], prompt, small(points),"
+        ).replace(_ANSWERED, f"[#{_ANSWERED}#context [#metadata((1, {_PLACE})) <found>]]")
+        found = marked_in(marked)
+        asked, answered = ([place for which, *place in found if which == one] for one in (0, 1))
+        return [(one[0], *two) for one, two in zip(asked, answered, strict=True)]
+
+    return places
 
 
 @pytest.mark.parametrize("printed", sampled(product(PAPERS, languages()), [("letter", "fr")]), ids="-".join)
-def test_a_question_of_a_solution_stands_on_one_page_with_its_answer_where_that_takes_few_steps(printed):
+def test_a_question_of_a_solution_stands_on_one_page_with_its_answer_where_that_takes_few_steps(
+    places_in_solution, printed
+):
     size, lang = printed
     high, short = {"a4": 297, "letter": 279}[size], 0
     for name in COURSE.names:

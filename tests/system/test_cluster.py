@@ -500,15 +500,15 @@ def of_session(process):
     return found.stdout.split()
 
 
-def a_long_build(course, out):
-    return "--course", course, "build", "--variants", 60, "--formats", "pdf,html", "--out", out
+def a_long_build(course, out, variants=60):
+    return "--course", course, "build", "--variants", variants, "--formats", "pdf,html", "--out", out
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("stop", [signal.SIGINT, signal.SIGKILL])
 def test_a_command_that_is_stopped_leaves_nothing_behind(course_of_one, tmp_path, stop):
     out = tmp_path / "out"
-    command = begun(tmp_path, *a_long_build(course_of_one, out), "--cluster", "local:2")
+    command = begun(tmp_path, *a_long_build(course_of_one, out, 600), "--cluster", "local:2")
     Machines.wait_for(lambda: len(list(out.glob(".building/new/**/*.pdf"))) > 3)
     command.send_signal(stop)
     _, told = command.communicate(timeout=60)
