@@ -2,10 +2,48 @@
 
 from __future__ import annotations
 
+import os
+import re
+import shutil
+import tempfile
+from pathlib import Path
+
 import pytest
 
 import coursework
 from coursework.authoring.scaffold import new_course
+
+
+MEMORY = Path("/dev/shm")  #: files that are in memory, where a system has such a place
+ROOM = 6 << 30  #: bytes that must be free there, and of memory
+_PLACE = pytest.StashKey[str]()
+
+
+def pytest_configure(config):
+    """What the tests write is in memory where there is room for it, and goes with them unless one fails: a database waits for the
+    disk at each commit, and most of the tests' time would go by that. Whoever names a place has it there.
+    """
+    is_told = "TMPDIR" in os.environ or config.option.basetemp or hasattr(config, "workerinput")
+    if is_told or not MEMORY.is_dir() or not os.access(MEMORY, os.W_OK):
+        return
+    told = Path("/proc/meminfo").read_text() if Path("/proc/meminfo").exists() else ""
+    found = re.search(r"^MemAvailable: *(\d+) kB$", told, re.MULTILINE)
+    if not found or min(int(found[1]) * 1024, shutil.disk_usage(MEMORY).free) < ROOM:
+        return
+    place = tempfile.mkdtemp(prefix="coursework-tests-", dir=MEMORY)
+    Path(place).chmod(0o711)  # a database's server may be another account's
+    os.environ["TMPDIR"] = tempfile.tempdir = place
+    config.add_cleanup(lambda: os.environ.pop("TMPDIR", None))
+    config.stash[_PLACE] = place
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_sessionfinish(session, exitstatus):
+    if place := session.config.stash.get(_PLACE, ""):
+        if exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
+            shutil.rmtree(place, ignore_errors=True)
+        else:
+            print(f"\nwhat the tests wrote is in {place}")
 
 
 @pytest.fixture(scope="session", autouse=True)
