@@ -13,7 +13,6 @@ import pytest
 import coursework
 from coursework.authoring.scaffold import new_course
 
-
 MEMORY = Path("/dev/shm")  #: files that are in memory, where a system has such a place
 ROOM = 6 << 30  #: bytes that must be free there, and of memory
 _PLACE = pytest.StashKey[str]()
