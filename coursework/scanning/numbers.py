@@ -21,7 +21,15 @@ import numpy as np
 from coursework.scanning.beside import written_beside
 from coursework.scanning.digits import CONFIDENT
 from coursework.scanning.straightening import SCALE, Straight
-from coursework.scanning.strokes import STRONG, cells, has_stroke, is_bare, pieces, runs_through
+from coursework.scanning.strokes import (
+    STRONG,
+    cells,
+    cuts_a_corner,
+    has_stroke,
+    is_bare,
+    pieces,
+    runs_through,
+)
 from coursework.scanning.ticks import EMPTY, TICKED, UNSURE, tick
 from coursework.sheets.answer_pages import Box, Field
 
@@ -31,6 +39,7 @@ Reader = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 LEAST = CONFIDENT  #: the confidence in a box below which a person reads it
 _DASH, _UPRIGHT = 1.1, 2.0  #: mm, the least length of a minus sign, and of a stroke of a digit
 _THIN, _LEAN = 0.15, 16.0  #: of a fraction's bar: its breadth to its length, and degrees from upright
+_LIKE_EDGES = (1, 7)  #: digits for which the edge of a stain may be taken
 _CELL = (90, 70)  #: pixels of a box that is handed to the reader
 
 
@@ -94,6 +103,12 @@ def _written(
             read = _digits(pictures, [bare[b] for b in row], reader)
             told = told or across or ("digit" if _has_bar(pictures, [digit for digit, _ in read]) else "")
             found |= zip(row, read, strict=True)
+    if any(
+        digit in _LIKE_EDGES and cuts_a_corner(page, box)
+        for box, (digit, _) in found.items()
+        if not bare[box]
+    ):
+        told = told or "digit"
     signs = [_sign(page, box, bare) for box in (field.sign, field.power_sign)]
     row_read = _Row(
         tuple(found[b][0] for b in field.digits),

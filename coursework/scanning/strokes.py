@@ -93,6 +93,24 @@ def runs_through(page: Straight, box: Box) -> bool:
     return all(int((darkness(page, strip) > faint_limit(page)).sum()) >= least for strip in strips)
 
 
+def cuts_a_corner(page: Straight, box: Box) -> bool:
+    """Whether what is in a box runs on above or below it and beyond a side, as such an edge does, and a digit with a neighbour
+    that it touches may.
+    """
+    near, far = _BEYOND
+    least, rim = _THIN_STROKE * SCALE**2, round((far - near) * SCALE)
+    found = pieces(darkness(page, box, -far) > faint_limit(page))
+    within = slice(2 * rim, -2 * rim)  # where no outline runs, of this box or of those beside it
+    inside, above, below, left, right = (
+        found.inside(found.labels[part]) >= limit
+        for part, limit in (
+            ((within, within), least), (np.s_[:rim], least / 3), (np.s_[-rim:], least / 3),
+            ((within, np.s_[:rim]), least / 3), ((within, np.s_[-rim:]), least / 3),
+        )
+    )  # fmt: skip
+    return bool((inside & (above | below) & (left | right))[1:].any())
+
+
 def has_dark_outline(page: Straight, box: Box) -> bool:
     """Whether the outline of a box came out dark itself, as a scan in black and white may make it."""
     dark = darkness(page, box, -0.25)

@@ -180,3 +180,19 @@ def test_an_edge_that_runs_through_a_box_is_no_one(dark):
         Straight(ink, ink, page.shifts, 4, 0.5), FIELD, lambda cells: (np.array([8, 1]), np.ones(2))
     )
     assert found.waits == "digit"
+
+
+@pytest.mark.parametrize("below", [False, True])
+@pytest.mark.parametrize("dark", [30, 60, 120])
+def test_nor_is_one_that_cuts_its_corner(dark, below):
+    import cv2
+
+    page = flat(row("8", at=len(FIELD.digits) - 2))
+    ink, box = page.ink.copy(), FIELD.digits[-1]
+    high = ((box.y - 2.5, box.bottom - 1), (box.bottom + 2.5, box.y + 1))[below]
+    ends = zip((box.x + 1, box.right + 1.8), high, strict=True)
+    cv2.line(ink, *((round(x * SCALE), round(y * SCALE)) for x, y in ends), 255 - dark, 5)
+    found = number(
+        Straight(ink, ink, page.shifts, 4, 0.5), FIELD, lambda cells: (np.array([8, 1]), np.ones(2))
+    )
+    assert (found.text, found.waits) == ("81", "digit")
