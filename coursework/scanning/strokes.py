@@ -98,9 +98,9 @@ def cuts_a_corner(page: Straight, box: Box) -> bool:
     that it touches may.
     """
     near, far = _BEYOND
-    least, rim = _THIN_STROKE * SCALE**2, round((far - near) * SCALE)
+    least, rim = _THIN_STROKE * SCALE**2, round((far - near) / 2 * SCALE)  # a dark outline is broad
     found = pieces(darkness(page, box, -far) > faint_limit(page))
-    within = slice(2 * rim, -2 * rim)  # where no outline runs, of this box or of those beside it
+    within = slice(4 * rim, -4 * rim)  # where no outline runs, of this box or of those beside it
     inside, above, below, left, right = (
         found.inside(found.labels[part]) >= limit
         for part, limit in (
