@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -27,6 +28,16 @@ def begun(place, *words, script=None):
         [sys.executable, "-P", str(main), *map(str, words)],
         cwd=place, env=env, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True,
     )  # fmt: skip
+
+
+def ended(process):
+    """What a command has said on both streams when it ends; its whole session is ended where it does not."""
+    try:
+        return process.communicate(timeout=LONGEST)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        raise AssertionError(f"not ended after {LONGEST} s: {process.args}") from None
 
 
 def at_work(session):

@@ -11,7 +11,7 @@ import click
 from coursework.cli.commands import commands, named_command
 from coursework.cli.options import BAD, DONE, complain
 from coursework.errors import CourseworkError
-from coursework.system.ending import Ended, end_cleanly
+from coursework.system.ending import Ended, end_cleanly, has_ended
 from coursework.system.visible import visible_streams
 
 
@@ -48,6 +48,7 @@ def _run(arguments: Sequence[str]) -> int:
     except click.exceptions.Exit as stop:
         return stop.exit_code
     except Ended as end:
+        has_ended()
         complain(str(end))
         return int(str(end.code))
     except click.Abort:

@@ -151,17 +151,25 @@ def processes(count: int) -> Iterator[Submit]:
             try:
                 yield submit
             except BaseException:
-                begun = list((executor._processes or {}).values())  # public from Python 3.14 on
-                executor.shutdown(
-                    wait=False, cancel_futures=True
-                )  # first: nobody waits for what has not begun
-                _end(begun)
+                _leave(executor)
                 raise
     except BrokenProcessPool as broken:
         raise CourseworkError(
             "a process that shared the work ended by itself: too little memory, or a script that starts the work "
             "outside of 'if __name__ == \"__main__\":'; close what takes memory, or put that line before it"
         ) from broken
+
+
+def _leave(executor: ProcessPoolExecutor) -> None:
+    """End its processes, whatever they do; nothing of it is left. What it is made of is not public."""
+    begun = list((executor._processes or {}).values())
+    manager: Any = executor._executor_manager_thread
+    answers: Any = executor._result_queue
+    executor.shutdown(wait=False, cancel_futures=True)  # first: nobody waits for what has not begun
+    _end(begun)
+    if manager is not None:
+        answers._writer.close()  # who was ended while it answered has sent half of it
+        manager.join()
 
 
 def _end(workers: Sequence[BaseProcess]) -> None:

@@ -65,7 +65,7 @@ def test_whatever_ends_a_command_no_process_of_it_stays(course, tmp_path, job, n
     assert ending.until(lambda: len(ending.at_work(process.pid)) >= 4 or process.poll() is not None)
     assert process.poll() is None, process.communicate()
     process.send_signal(number)
-    said = process.communicate(timeout=ending.LONGEST)[1]
+    said = ending.ended(process)[1]
     assert ending.until(lambda: not ending.at_work(process.pid))
     assert not [*(tmp_path / "tmp").iterdir()]
     if number != signal.SIGKILL:
@@ -78,7 +78,7 @@ def test_whatever_ends_a_command_no_process_of_it_stays(course, tmp_path, job, n
 def twice(place, *words):
     """A command begun twice at once: of each the status and what it said."""
     both = [ending.begun(place, *words) for _ in range(2)]
-    said = [process.communicate(timeout=ending.LONGEST) for process in both]
+    said = [ending.ended(process) for process in both]
     return [(process.returncode, *one) for process, one in zip(both, said, strict=True)]
 
 
@@ -145,7 +145,7 @@ def test_two_gradings_at_once_leave_the_marks_of_one(small_course, tmp_path, tim
     words = "--course", small_course, "grade"
     more = "--issued", "issued.json", "--out", "marks", "--no-feedback"
     both = [(name, ending.begun(tmp_path, *words, f"{name}.csv", *more)) for name in ("ada", "bob")]
-    ended = {name: (p.communicate(timeout=ending.LONGEST), p.returncode) for name, p in both}
+    ended = {name: (ending.ended(p), p.returncode) for name, p in both}
     one_at_least_did_it([(status, *said) for said, status in ended.values()])
     of_whom = {row["student"].rstrip("0123456789") for row in table(tmp_path / "marks" / "marks.csv")}
     assert len(of_whom) == 1

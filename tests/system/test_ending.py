@@ -67,7 +67,7 @@ def test_a_process_that_is_told_to_end_puts_away_what_it_has_begun(tmp_path):
     process = ending.begun(tmp_path, script=WRITES)
     assert ending.until((tmp_path / "mark").exists)
     process.terminate()
-    _, said = process.communicate(timeout=ending.LONGEST)
+    _, said = ending.ended(process)
     assert process.returncode == 128 + signal.SIGTERM
     assert said.strip() == "coursework: ended by SIGTERM"
     assert ending.until(lambda: not ending.at_work(process.pid))
@@ -120,5 +120,110 @@ if __name__ == "__main__":
 
 def test_what_is_being_begun_is_whole_before_the_end(tmp_path):
     process = ending.begun(tmp_path, script=BEGINS)
-    told, said = process.communicate(timeout=ending.LONGEST)
+    told, said = ending.ended(process)
     assert (told, said, process.returncode) == ("half\nwhole\n", "", 128 + signal.SIGTERM)
+
+
+ELSEWHERE = """
+import signal, threading
+from coursework.system.ending import end_cleanly
+
+def is_told():
+    signal.pthread_kill(threading.get_ident(), signal.SIGTERM)
+
+if __name__ == "__main__":
+    end_cleanly()
+    never = threading.Lock()
+    never.acquire()
+    threading.Timer(0.5, is_told).start()
+    never.acquire()
+"""
+DROPPED = """
+import os, signal, time, weakref
+from coursework.system.ending import end_cleanly
+
+class Thing:
+    pass
+
+def told(thing):
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(600)
+
+if __name__ == "__main__":
+    end_cleanly()
+    thing = Thing()
+    seen = weakref.ref(thing, told)
+    del thing
+    time.sleep(600)
+"""
+SWALLOWED = """
+import os, signal, time
+from coursework.system.ending import end_cleanly
+
+if __name__ == "__main__":
+    end_cleanly()
+    for number in (signal.SIGTERM, signal.SIGHUP):
+        try:
+            os.kill(os.getpid(), number)
+            time.sleep(600)
+        except BaseException:
+            pass
+    time.sleep(600)
+"""
+
+
+@pytest.mark.parametrize("script", [ELSEWHERE, DROPPED, SWALLOWED])
+def test_a_process_that_did_not_hear_is_told_again(tmp_path, script):
+    process = ending.begun(tmp_path, script=script)
+    told, said = ending.ended(process)
+    assert (told, said) == ("", "")
+    assert process.returncode in (128 + signal.SIGTERM, 128 + signal.SIGHUP)
+
+
+PUTS_AWAY = """
+import os, signal, time
+from coursework.system.ending import end_cleanly
+
+if __name__ == "__main__":
+    end_cleanly()
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(600)
+    finally:
+        try:
+            os.kill(os.getpid(), signal.SIGHUP)
+            raise ValueError
+        except ValueError:
+            time.sleep(1)
+        print("put away", flush=True)
+"""
+
+
+def test_what_is_being_put_away_is_not_disturbed(tmp_path):
+    process = ending.begun(tmp_path, script=PUTS_AWAY)
+    assert ending.ended(process) == ("put away\n", "")
+    assert process.returncode == 128 + signal.SIGTERM
+
+
+ANSWERS = """
+from pathlib import Path
+from coursework.system.processes import processes
+
+def received():
+    return int(Path("/proc/self/io").read_text().split()[1])
+
+if __name__ == "__main__":
+    with processes(2) as submit:
+        submit(bytes, 10).result()
+        before = received()
+        submit(bytes, 500_000_000)
+        while received() < before + 20_000_000:
+            pass
+        raise SystemExit(3)
+"""
+
+
+def test_half_an_answer_is_not_waited_for(tmp_path):
+    process = ending.begun(tmp_path, script=ANSWERS)
+    assert ending.ended(process) == ("", "")
+    assert process.returncode == 3
