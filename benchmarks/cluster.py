@@ -2,10 +2,11 @@
 
 python benchmarks/cluster.py [ANSWERS] [SHEETS] [FOLDER]
 
-A scheduler and its workers are processes of this machine, started before the clock. Every round runs each way once, in turn;
-told are the least seconds of the whole command by the clock, the least of the processor (of all processes together, which says
-more where others take the processors too), the most memory of the process that was called, and whether what it wrote is,
-byte by byte, what one machine writes. Feedback sheets are not made.
+A scheduler and its workers are processes of this machine, started before the clock with the settings of docs/cluster.md
+(variables of the environment go before them). Every round runs each way once, in turn; told are the least seconds of the
+whole command by the clock, the least of the processor (of all processes together, which says more where others take the
+processors too), the most memory of the process that was called, and whether what it wrote is, byte by byte, what one
+machine writes. Feedback sheets are not made.
 
 python benchmarks/cluster.py memory [ANSWERS …]
 
@@ -46,6 +47,12 @@ def answered(course, chunks, answers, how):
 
 class_marking._marked_chunks = answered
 """
+SELDOM = {
+    "DASK_DISTRIBUTED__ADMIN__TICK__INTERVAL": "1s",
+    "DASK_DISTRIBUTED__ADMIN__SYSTEM_MONITOR__INTERVAL": "5s",
+    "DASK_DISTRIBUTED__WORKER__MEMORY__MONITOR_INTERVAL": "1s",
+    "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
+}
 IN_A_FILE = 50_000
 ROUNDS = int(os.environ.get("ROUNDS", "3"))
 
@@ -79,7 +86,7 @@ def machines(folder, count):
         "--local-directory",
         str(folder),
     ]
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    environment = {"OPENBLAS_NUM_THREADS": "1", **SELDOM, **os.environ}
     started = [
         subprocess.Popen(told, stdout=log, stderr=log, env=environment)
         for told in (scheduler, *[worker] * count)

@@ -17,7 +17,7 @@ import shutil
 import tempfile
 import threading
 from collections.abc import Callable, Iterator, Mapping
-from functools import cache, partial
+from functools import cache
 from importlib import metadata
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple
@@ -64,7 +64,7 @@ class Carried:
     def packed(self, function: Callable[..., Any], told: tuple[Any, ...]) -> bytes:
         """A task as a pickle that does it where it is read, with :attr:`content` as its one buffer, and whose value is what
         :meth:`unpacked` reads: who passes it on, or reads it, needs to know nothing of the package before."""
-        task = _dumped(partial(function, *told), self._roots)
+        task = tuple(_dumped(one, self._roots) for one in (function, *told))
         return pickle.dumps(_Task(self.content, self._caller, task), 5, buffer_callback=lambda _: False)
 
     def unpacked(self, made: bytes) -> Any:
@@ -84,7 +84,7 @@ class Carried:
 class _Task:
     """What is done where it is read."""
 
-    def __init__(self, content: bytes, caller: _Caller, task: bytes):
+    def __init__(self, content: bytes, caller: _Caller, task: tuple[bytes, ...]):
         self._told = pickle.PickleBuffer(content), tuple(caller), task
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -147,7 +147,7 @@ def _check(caller: _Caller) -> None:
 # ------------------------------------------------------------------ at the worker
 
 
-def _work(content: Any, caller: tuple[Any, ...], task: bytes) -> bytes:
+def _work(content: Any, caller: tuple[Any, ...], task: tuple[bytes, ...]) -> bytes:
     """Do a task in the process that reads it; gives what :meth:`Carried.unpacked` reads."""
     told = _Caller(*caller)
     roots: Roots = _builtin()
@@ -155,7 +155,8 @@ def _work(content: Any, caller: tuple[Any, ...], task: bytes) -> bytes:
         _check(told)
         if told.digest:
             roots = {_COURSE: (str(_unpacked(bytes(content), told.digest) / told.name),), **roots}
-        return _dumped((True, _loaded(task, roots)()), roots)
+        function, *given = (_loaded(one, roots) for one in task)
+        return _dumped((True, function(*given)), roots)
     except Exception as fault:
         return _dumped((False, _sendable(fault)), roots)
 
@@ -251,6 +252,11 @@ class _Unpickler(pickle.Unpickler):
 
 
 def _dumped(one: Any, roots: Roots) -> bytes:
+    """A pickle; each object of one that may hold a place is looked at, which takes several times as long."""
+    plain = pickle.dumps(one, 5)
+    names = (name.encode("utf-8", "surrogatepass") for names in roots.values() for name in names)
+    if not any(name in plain for name in (b"pathlib", *names)):
+        return plain
     file = io.BytesIO()
     _Pickler(file, roots).dump(one)
     return file.getvalue()

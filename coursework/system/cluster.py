@@ -31,6 +31,14 @@ _BEAT = 0.5  #: seconds from one look at the cluster to the next
 _ATTEMPTS = 20  #: to have a task done where schedulers come and go
 _CLOSING = 10.0  #: seconds that an end may take
 
+#: What a worker would ask itself a hundred times a second, while it works; fewer times do.
+_SELDOM = {
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.worker.memory.monitor-interval": "1s",
+    "distributed.worker.profile.enabled": False,
+}
+
 _FORM = re.compile(r"local:(?P<count>[1-9][0-9]{0,2})|(tcp|tls)://[^\s/]+:[0-9]{1,5}/?")
 
 
@@ -88,6 +96,7 @@ def _quiet() -> Iterator[None]:
     settings = {
         "distributed.admin.large-graph-warning-threshold": "1 GiB",
         "distributed.scheduler.worker-ttl": f"{STALL}s",
+        **_SELDOM,
     }
     with warnings.catch_warnings(), dask.config.set(settings):
         warnings.simplefilter("ignore", VersionMismatchWarning)

@@ -27,7 +27,7 @@ from coursework.errors import BadInput
 from coursework.gradebook import class_marking
 from coursework.system import cluster as clusters
 from coursework.system.cluster import cluster
-from coursework.system.processes import Lost, Task, in_turn
+from coursework.system.processes import Lost, Task, in_turn, processes
 
 FORMATS = "pdf,html,ipynb,tex"
 
@@ -183,6 +183,15 @@ def load(course_of_one):
     return Carried(course_folder(course_of_one))
 
 
+def test_workers_of_this_machine_look_at_themselves_seldom(load):
+    """Every hundredth of a second costs a tenth of their time."""
+    import dask
+
+    with cluster("local:1", load), processes(1) as submit:
+        asked = "distributed.worker.profile.enabled", "distributed.admin.tick.interval"
+        assert [submit(dask.config.get, name).result() for name in asked] == [False, "1s"]
+
+
 def test_answers_come_in_turn_whatever_comes_back_first(machines, load):
     tasks = [Task("", os.path.join, (f"{i}", "x")) for i in range(30)]
     tasks[::7] = slept([0.3] * len(tasks[::7]))
@@ -254,6 +263,8 @@ def test_places_are_told_from_the_course_and_back(load, course_of_one):
     assert done(Path.exists, inside) is True
     assert done(os.fspath, inside) == str(inside)
     assert done("{} and {}".format, inside, "no place") == f"{inside} and no place"
+    deep = [{"at": (inside, f"see {inside}, line 3")}, ["no place"] * 1000]
+    assert done(list, deep) == deep
     with pytest.raises(FileNotFoundError):
         done(open, str(course_of_one / "nothing"))
 
@@ -500,7 +511,7 @@ def of_session(process):
     return found.stdout.split()
 
 
-def a_long_build(course, out, variants=60):
+def a_long_build(course, out, variants):
     return "--course", course, "build", "--variants", variants, "--formats", "pdf,html", "--out", out
 
 
@@ -523,7 +534,7 @@ def test_a_command_that_is_stopped_leaves_nothing_behind(course_of_one, tmp_path
 @pytest.mark.slow
 def test_a_build_through_the_death_of_workers_is_the_same(own_machines, course_of_one, tmp_path):
     own_machines.workers(3, "--no-nanny")
-    out, build = tmp_path / "out", a_long_build(course_of_one, tmp_path / "out")
+    out, build = tmp_path / "out", a_long_build(course_of_one, tmp_path / "out", 120)
     command = begun(tmp_path, *build, "--cluster", own_machines.address)
     Machines.wait_for(lambda: len(list(out.glob(".building/new/**/*.pdf"))) > 3)
     for worker in own_machines.started[1:3]:
@@ -538,16 +549,21 @@ def test_a_build_through_the_death_of_workers_is_the_same(own_machines, course_o
 
 def test_a_build_whose_cluster_is_gone_writes_nothing(own_machines, course_of_one, tmp_path, capsys):
     own_machines.workers(1, "--no-nanny")
-    thread = meanwhile(own_machines.started[1].kill, after=2.0)
-    status = run(
-        [*map(str, (*a_long_build(course_of_one, tmp_path / "out"), "--cluster", own_machines.address))]
-    )
+    out = tmp_path / "out"
+
+    def end_in_the_middle():
+        Machines.wait_for(lambda: len(list(out.glob(".building/new/**/*.pdf"))) > 3)
+        own_machines.started[1].kill()
+
+    thread = meanwhile(end_in_the_middle)
+    build = a_long_build(course_of_one, out, 600)
+    status = run([*map(str, (*build, "--cluster", own_machines.address))])
     thread.join()
     told = capsys.readouterr().err
     assert status == 2
     assert told.startswith(f"coursework: no worker is left at {own_machines.address}")
     assert told.count("\n") == 1
-    assert not written(tmp_path / "out")
+    assert not written(out)
 
 
 @pytest.mark.slow
