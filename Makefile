@@ -1,5 +1,5 @@
 # Two commands do the job on a machine with Python and make: `make demo` and `make test`. `make site` opens the site,
-# `make docs` builds the pages, `make test-all` runs the long ends of the sweeps as well.
+# `make docs` builds the pages, `make test-all` runs the long ends of the sweeps as well, `make test-share` an eighth of them.
 # PYTHON chooses the interpreter, at least 3.11.
 
 PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
@@ -7,7 +7,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo site test test-all test-plain golden docs lint wheel-test clean
+.PHONY: demo site test test-all test-share test-plain golden docs lint wheel-test clean
 .DEFAULT_GOAL := demo
 
 # Installed anew when the requirements change; edited code needs no reinstallation.
@@ -41,6 +41,12 @@ test: $(VENV)/ready lint  ## Every promise, sweeps in short
 
 test-all: $(VENV)/ready lint  ## Every test, sweeps at full length
 	$(BIN)/$(PYTEST)
+
+# An eighth of what test-all has more than test; each commit names one of the eight by its own digits.
+SHARE ?= $(shell printf '%d/8' "$$((0x$$(git rev-parse --short=7 HEAD) % 8))")
+
+test-share: $(VENV)/ready lint  ## Every promise, and of the long ends of sweeps an eighth, with each commit another
+	$(BIN)/$(PYTEST) --share $(SHARE)
 
 # The tests of numbers, where a last bit would show.
 NUMBERS := exercises kinematics mechanics solids structure course/test_draws.py quantities/test_graph.py motion/test_scenes.py

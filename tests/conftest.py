@@ -7,6 +7,7 @@ import re
 import shutil
 import tempfile
 from pathlib import Path
+from zlib import crc32
 
 import pytest
 
@@ -16,6 +17,33 @@ from coursework.authoring.scaffold import new_course
 MEMORY = Path("/dev/shm")  #: files that are in memory, where a system has such a place
 ROOM = 6 << 30  #: bytes that must be free there, and of memory
 _PLACE = pytest.StashKey[str]()
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--share",
+        metavar="K/N",
+        default="0/1",
+        help="run the K-th of N shares of the slow tests, K from 0 on",
+    )
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config, items):
+    """Every process finds the same share, since it goes by the names of the tests."""
+    told = re.fullmatch(r"(\d+)/([1-9]\d*)", config.option.share)
+    if told is None or int(told[1]) >= int(told[2]):
+        raise pytest.UsageError(
+            f"--share takes K/N, 0/8 to 7/8 for eight shares; found {config.option.share!r}"
+        )
+    share, shares = map(int, told.groups())
+    others = {
+        item
+        for item in items
+        if item.get_closest_marker("slow") and crc32(item.nodeid.encode()) % shares != share
+    }
+    config.hook.pytest_deselected(items=[*others])
+    items[:] = [item for item in items if item not in others]
 
 
 def pytest_configure(config):
