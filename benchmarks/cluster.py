@@ -36,6 +36,8 @@ from pathlib import Path
 from marking import write
 from timing import print_table
 
+from coursework.system.cluster import SELDOM
+
 RUN = "import sys; from coursework.cli import main; sys.exit(main())"
 ALONE = """
 from coursework.gradebook import class_marking
@@ -47,12 +49,6 @@ def answered(course, chunks, answers, how):
 
 class_marking._marked_chunks = answered
 """
-SELDOM = {
-    "DASK_DISTRIBUTED__ADMIN__TICK__INTERVAL": "1s",
-    "DASK_DISTRIBUTED__ADMIN__SYSTEM_MONITOR__INTERVAL": "5s",
-    "DASK_DISTRIBUTED__WORKER__MEMORY__MONITOR_INTERVAL": "1s",
-    "DASK_DISTRIBUTED__WORKER__PROFILE__ENABLED": "False",
-}
 IN_A_FILE = 50_000
 ROUNDS = int(os.environ.get("ROUNDS", "3"))
 
@@ -86,7 +82,11 @@ def machines(folder, count):
         "--local-directory",
         str(folder),
     ]
-    environment = {"OPENBLAS_NUM_THREADS": "1", **SELDOM, **os.environ}
+    seldom = {
+        "DASK_" + name.replace(".", "__").replace("-", "_").upper(): str(value)
+        for name, value in SELDOM.items()
+    }
+    environment = {"OPENBLAS_NUM_THREADS": "1", **seldom, **os.environ}
     started = [
         subprocess.Popen(told, stdout=log, stderr=log, env=environment)
         for told in (scheduler, *[worker] * count)

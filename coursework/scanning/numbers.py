@@ -103,12 +103,12 @@ def _written(
             read = _digits(pictures, [bare[b] for b in row], reader)
             told = told or across or ("digit" if _has_bar(pictures, [digit for digit, _ in read]) else "")
             found |= zip(row, read, strict=True)
-    if any(
+    if not told and any(
         digit in _LIKE_EDGES and cuts_a_corner(page, box)
         for box, (digit, _) in found.items()
         if not bare[box]
     ):
-        told = told or "digit"
+        told = "digit"
     signs = [_sign(page, box, bare) for box in (field.sign, field.power_sign)]
     row_read = _Row(
         tuple(found[b][0] for b in field.digits),

@@ -31,8 +31,8 @@ _BEAT = 0.5  #: seconds from one look at the cluster to the next
 _ATTEMPTS = 20  #: to have a task done where schedulers come and go
 _CLOSING = 10.0  #: seconds that an end may take
 
-#: What a worker would ask itself a hundred times a second, while it works; fewer times do.
-_SELDOM = {
+#: Dask's settings of workers: what one would ask itself a hundred times a second, while it works, it asks seldom.
+SELDOM = {
     "distributed.admin.tick.interval": "1s",
     "distributed.admin.system-monitor.interval": "5s",
     "distributed.worker.memory.monitor-interval": "1s",
@@ -96,7 +96,7 @@ def _quiet() -> Iterator[None]:
     settings = {
         "distributed.admin.large-graph-warning-threshold": "1 GiB",
         "distributed.scheduler.worker-ttl": f"{STALL}s",
-        **_SELDOM,
+        **SELDOM,
     }
     with warnings.catch_warnings(), dask.config.set(settings):
         warnings.simplefilter("ignore", VersionMismatchWarning)

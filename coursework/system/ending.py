@@ -52,6 +52,7 @@ def has_ended() -> None:
 _waiting: list[int] = []  #: a signal that came while none was heeded
 _is_heeded = True
 _is_at_work = True  #: False in a process that waits for a task, and has nothing to put away
+_told = 0  #: where each signal is written, once somebody reads it
 
 
 @contextmanager
@@ -94,9 +95,6 @@ def _tell_again() -> None:
     signal.set_wakeup_fd(_told, warn_on_full_buffer=False)
     sys.unraisablehook = partial(_say_dropped, sys.unraisablehook)
     threading.Thread(target=_repeat, args=(hears,), daemon=True).start()
-
-
-_told = 0
 
 
 def _repeat(hears: int) -> None:

@@ -6,6 +6,7 @@ import csv
 import json
 import os
 import pickle
+import re
 import signal
 import socket
 import subprocess
@@ -26,7 +27,7 @@ from coursework.course.folder import course_folder
 from coursework.errors import BadInput
 from coursework.gradebook import class_marking
 from coursework.system import cluster as clusters
-from coursework.system.cluster import cluster
+from coursework.system.cluster import SELDOM, cluster
 from coursework.system.processes import Lost, Task, in_turn, processes
 
 FORMATS = "pdf,html,ipynb,tex"
@@ -188,8 +189,17 @@ def test_workers_of_this_machine_look_at_themselves_seldom(load):
     import dask
 
     with cluster("local:1", load), processes(1) as submit:
-        asked = "distributed.worker.profile.enabled", "distributed.admin.tick.interval"
-        assert [submit(dask.config.get, name).result() for name in asked] == [False, "1s"]
+        assert {name: submit(dask.config.get, name).result() for name in SELDOM} == SELDOM
+
+
+def test_the_settings_that_the_docs_give_other_workers_are_those():
+    import dask
+    import yaml
+
+    page = (Path(__file__).parents[2] / "docs" / "cluster.md").read_text("utf-8")
+    (told,) = re.findall(r"^```yaml\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    config = yaml.safe_load(told)
+    assert {name: dask.config.get(name, config=config) for name in SELDOM} == SELDOM
 
 
 def test_answers_come_in_turn_whatever_comes_back_first(machines, load):
