@@ -90,13 +90,39 @@ def counted(number: int, noun: str) -> str:
 
 
 def closest(name: str, known: Iterable[str]) -> str | None:
-    """The known name that may have been meant, if one is near."""
+    """Return the known name that may have been meant, whatever its case and accents; None where none is near.
+
+    Of a name of several words each word must be near one of the other's, so that nobody is offered a namesake.
+    """
     import difflib
 
-    known = list(known)
-    folded = {k.casefold(): k for k in known}
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    return near[0] if near else folded.get(name.casefold())
+    plain: dict[str, str] = {}
+    for one in known:
+        plain.setdefault(_unaccented(one), one)
+    sought = _unaccented(name)
+    if sought in plain:
+        return plain[sought]
+    near = difflib.get_close_matches(sought, plain, n=3, cutoff=_NEAR)
+    return next((plain[one] for one in near if _words_are_near(sought, one)), None)
+
+
+_NEAR = 0.6  #: of two names, twice the letters in common over the letters of both
+
+
+def _unaccented(name: str) -> str:
+    import unicodedata
+
+    letters = unicodedata.normalize("NFKD", name.casefold())
+    return "".join(letter for letter in letters if not unicodedata.combining(letter))
+
+
+def _words_are_near(sought: str, known: str) -> bool:
+    import difflib
+
+    words, others = sought.split(), known.split()
+    if min(len(words), len(others)) < 2:
+        return True
+    return all(difflib.get_close_matches(word, others, n=1, cutoff=_NEAR) for word in words)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

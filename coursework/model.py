@@ -122,7 +122,8 @@ class Part:
     Parts that name the same ``judge``, a function of the solution, are judged together by it: where many
     answers are right, and the quantity is only one of them. Their ``atol`` and ``rtol`` are the judge's.
     A part ``by_request`` is asked only where a build names it. Choices are printed in an order that is the variant's;
-    with ``ordered`` in that which is stated. Numbers, Roman classes, yes and no keep their order without it.
+    with ``ordered`` in that which is stated. Numbers, Roman classes, yes and no keep their order without it, and ``none`` stands
+    last; with ``shuffled`` they do not: where one case is right in every variant, its place must tell nothing.
     """
 
     quantity: str
@@ -144,6 +145,7 @@ class Part:
     room: Any = None
     millimetre: bool = False
     ordered: bool = False
+    shuffled: bool = False
     sort: Kind = field(init=False, repr=False, compare=False)  #: what its kind says of it
 
     def __post_init__(self) -> None:
@@ -168,6 +170,11 @@ class Part:
             )
         if self.ordered and not self.choices:
             raise BadCourse(f"part {self.quantity!r}: 'ordered' is said of choices, and it has none")
+        if self.shuffled and (self.ordered or not self.choices):
+            raise BadCourse(
+                f"part {self.quantity!r}: 'shuffled' is said of choices that are not 'ordered'; found ordered={self.ordered}, "
+                f"{len(self.choices)} choices"
+            )
         if self.asks_unit and (self.is_exact or self.unit == "1"):
             raise BadCourse(f"part {self.quantity!r}: it can ask for a unit only where its answer has one")
         if not self.points > 0:

@@ -27,7 +27,7 @@ from coursework.accuracy.timing import Times, interleaved
 from coursework.accuracy.ways import Values, Way, ways
 from coursework.course.exercise import CourseExercise
 from coursework.errors import BadCourse, BadInput, CourseworkError
-from coursework.system.distribution import DISTRIBUTION
+from coursework.system.distribution import add_extra
 
 GENERIC, HARD = "generic", "hard"
 DATA = "data"  #: the family of what the last digits of the data do by themselves
@@ -83,8 +83,7 @@ def needs_mpmath() -> None:
         import mpmath  # noqa: F401
     except ImportError:
         raise BadInput(
-            "accuracy is measured against mpmath, which is not installed: "
-            f"pip install '{DISTRIBUTION}[accuracy]'"
+            f"accuracy is measured against mpmath, which is not installed: {add_extra('accuracy')}"
         ) from None
 
 

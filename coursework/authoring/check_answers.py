@@ -19,7 +19,9 @@ from coursework.marking.marking import mark as grade
 from coursework.model import Part
 from coursework.quantities.rounding import student_who_rounds
 
-NONSENSE = ("?", "je ne sais pas", "12 +", "nan", "9**9**9", "1 = 1 = 1", "__import__('os')", "((((")
+NONSENSE = ("?", "je ne sais pas", "12 +", "nan", "9**9**9", "1 = 1 = 1", "__import__('os')", "((((", *(
+    "same as above", "voir au dos", "I ran out of time", "pas le temps de finir", "see question: 3", "not a hinge, or is it",
+))  # fmt: skip
 EXTREMES = ("0", "1e308", "-1e308", "1e-320")  #: coordinates too
 
 
@@ -236,6 +238,8 @@ def check_nonsense(variant: Variant, report: Report) -> None:
             report.counts["nonsense"] += 1
             if mark.points and mark.verdict == "correct":
                 report.fail(f"seed {variant.seed}: {nonsense!r} marks correct on {part_id}")
+            elif mark.points:
+                report.fail(f"seed {variant.seed}: {nonsense!r} earns {mark.points:g} on {part_id}")
     for number in EXTREMES:
         _check_extreme(variant, number, report)
 

@@ -22,6 +22,7 @@ from coursework.authoring.check_answers import (
     check_slips,
 )
 from coursework.authoring.check_formulas import check_formulas
+from coursework.authoring.check_guesses import check_guesses
 from coursework.authoring.check_knowledge import check_knowledge
 from coursework.authoring.check_loops import check_loops
 from coursework.authoring.check_mechanism import check_mechanism
@@ -161,6 +162,7 @@ def _check_variants(exercise: CourseExercise, count: int, report: Report) -> Non
         check_nonsense(variant, report)
     check_usual_errors(drawn, report)
     check_knowledge(drawn, report)
+    check_guesses(drawn, report)
     check_prices(drawn, report)
     check_loops(drawn[0], report)
     check_mechanism(drawn, report)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from coursework.course.course import Course
+from coursework.course.secrecy import Secret
 from coursework.errors import BadInput
 from coursework.language.words import words
 from coursework.system.writing import write_whole
@@ -49,6 +50,8 @@ def _head(stem: str, course: Course[Any], langs: Sequence[str]) -> str:
         '# roster = "class.csv"',
         f'lang = "{",".join(langs[:1])}"',
         f'out = "{stem}"',
+        *(f"# {said[lang]['secret_line']}" for lang in langs),
+        f'secret = "{Secret.new().text}"',
         "",
     ])  # fmt: skip
 

@@ -1,7 +1,8 @@
 """Drawing variants: the same values for ever from (exercise, version, seed), on any platform.
 
 Bits come from SHAKE-128 keyed by exercise, version, seed and a block counter, so no seed and no
-exercise disturbs another. Each value is a whole number of steps, drawn with integers alone, then
+exercise disturbs another. For an assignment, what keys them passes through an HMAC of its secret: then the
+seed is a code that draws nothing without the secret. Each value is a whole number of steps, drawn with integers alone, then
 divided once by a power of ten: it is the double nearest to the decimal that is printed.
 """
 
@@ -18,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from coursework.course.secrecy import Secret
 from coursework.errors import BadCourse, CourseworkError, MissingQuantity, Starved, nearest
 from coursework.model import Bound, Exercise, GivenSpec
 from coursework.quantities.graph import Graph
@@ -26,9 +28,12 @@ BLOCK = 16  #: candidates a block; part of the stream's definition
 MAX_BLOCKS = 256  #: a seed that finds nothing in BLOCK · MAX_BLOCKS candidates starves
 
 
-def _words(name: str, version: int, seed: int, block: int, width: int) -> np.ndarray:
+def _words(
+    name: str, version: int, seed: int, block: int, width: int, secret: Secret | None = None
+) -> np.ndarray:
     """Raw bits: uint64 of shape (BLOCK, width)."""
-    key = f"coursework/{name}/{version}/{seed}/{block}".encode()
+    told = f"coursework/{name}/{version}/{seed}/{block}"
+    key = told.encode() if secret is None else secret.digest("draw", told)
     bits = hashlib.shake_128(key).digest(8 * BLOCK * width)
     return np.frombuffer(bits, "<u8").reshape(BLOCK, width)
 
@@ -133,8 +138,10 @@ def kept(exercise: Exercise, drawn: Mapping[str, np.ndarray]) -> tuple[np.ndarra
     return good, refused
 
 
-def draw(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[dict[str, float | str]]:
-    """The given values of each seed's variant, in canonical units.
+def draw(
+    name: str, exercise: Exercise, seeds: Sequence[int], secret: Secret | None = None
+) -> list[dict[str, float | str]]:
+    """The given values of each seed's variant, in canonical units; with a secret, of each code of an assignment.
 
     Raises
     ------
@@ -148,7 +155,9 @@ def draw(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[dict[str, 
         # A block of candidates for each pending seed; few at a time, so that memory stays flat.
         still = []
         for chunk in _chunks(pending, 4096):
-            words = np.concatenate([_words(name, exercise.version, seeds[i], block, width) for i in chunk])
+            words = np.concatenate(
+                [_words(name, exercise.version, seeds[i], block, width, secret) for i in chunk]
+            )
             drawn = candidates(exercise, words)
             good, _ = kept(exercise, drawn)
             good = good.reshape(len(chunk), BLOCK)
@@ -162,7 +171,7 @@ def draw(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[dict[str, 
         pending = np.concatenate(still) if still else pending[:0]
         if not len(pending):
             return found  # type: ignore[return-value]  # none is left out
-    raise _starved(name, exercise, seeds[pending[0]])
+    raise _starved(name, exercise, seeds[pending[0]], secret)
 
 
 def nth_candidate(name: str, exercise: Exercise, seed: int, place: int) -> dict[str, float | str]:
@@ -192,10 +201,12 @@ def places(name: str, exercise: Exercise, seeds: Sequence[int]) -> list[int]:
     return found
 
 
-def _starved(name: str, exercise: Exercise, seed: int) -> Starved:
+def _starved(name: str, exercise: Exercise, seed: int, secret: Secret | None = None) -> Starved:
     """What is said of a seed without a variant: which conditions refuse most of its draws."""
     width = len(exercise.given)
-    words = np.concatenate([_words(name, exercise.version, seed, b, width) for b in range(MAX_BLOCKS)])
+    words = np.concatenate(
+        [_words(name, exercise.version, seed, b, width, secret) for b in range(MAX_BLOCKS)]
+    )
     _, refused = kept(exercise, candidates(exercise, words))
     refusals = Counter({condition: int(mask.sum()) for condition, mask in refused.items()})
     worst = ", ".join(f"{condition} ({count} times)" for condition, count in refusals.most_common(3) if count)

@@ -13,8 +13,10 @@ import numpy as np
 
 from coursework.course import draws
 from coursework.course.folder import Folder
+from coursework.course.lettering import printed_order
 from coursework.course.records import Records
 from coursework.course.requests import Intake
+from coursework.course.secrecy import Secret
 from coursework.course.texts import ExerciseTexts, Text
 from coursework.errors import BadCourse, NoSolution, Undefined, WrongValue, unknown
 from coursework.model import Driver, Exercise, Part
@@ -246,11 +248,17 @@ class CourseExercise(Generic[V]):
 
     # ----------------------------------------------------------------- variants
 
-    def variant(self, seed: int, lang: str | None = None, parts: Sequence[str] | None = None) -> V:
+    def variant(
+        self,
+        seed: int,
+        lang: str | None = None,
+        parts: Sequence[str] | None = None,
+        secret: Secret | None = None,
+    ) -> V:
         """The variant of a seed: the same for ever for this exercise and version; in the course's language unless told.
 
         ``parts`` are the ids of those that it asks; ``usual`` stands for those that are asked unless told, ``all``
-        for every one.
+        for every one. With the ``secret`` of an assignment, the seed is one of its codes.
 
         Raises
         ------
@@ -261,12 +269,16 @@ class CourseExercise(Generic[V]):
         Starved
             The conditions refuse every draw.
         """
-        return self.variants([seed], lang, parts)[0]
+        return self.variants([seed], lang, parts, secret)[0]
 
     def variants(
-        self, seeds: Iterable[int], lang: str | None = None, parts: Sequence[str] | None = None
+        self,
+        seeds: Iterable[int],
+        lang: str | None = None,
+        parts: Sequence[str] | None = None,
+        secret: Secret | None = None,
     ) -> list[V]:
-        """The variants of many seeds, drawn together."""
+        """The variants of many seeds, drawn together; with a ``secret``, of many codes of its assignment."""
         lang = self.folder.language if lang is None else lang
         chosen = self.chosen_parts(parts)
         seeds = list(seeds)
@@ -274,10 +286,17 @@ class CourseExercise(Generic[V]):
             if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
                 raise WrongValue(f"a seed is a whole number from 0 on; found {seed!r}")
         seeds = [int(seed) for seed in seeds]
-        drawn = self._drawn(seeds)
+        drawn = self._drawn(seeds, secret)
         return [
-            self._variant(self, seed, given, lang, chosen) for seed, given in zip(seeds, drawn, strict=True)
+            self._variant(self, seed, given, lang, chosen, None, self._orders(seed, secret))
+            for seed, given in zip(seeds, drawn, strict=True)
         ]
+
+    def _orders(self, code: int, secret: Secret | None) -> dict[str, tuple[str, ...]] | None:
+        """The orders of choices by part that a code of an assignment draws; None where they are the seed's."""
+        if secret is None:
+            return None
+        return {p.id: printed_order(self.name, code, p, secret) for p in self.spec.parts if p.choices}
 
     @cached_property
     def drawing(self) -> Exercise:
@@ -299,10 +318,14 @@ class CourseExercise(Generic[V]):
         draws.check_conditions(self.name, spec)
         return spec
 
-    def _drawn(self, seeds: Sequence[int]) -> list[dict[str, float | str]]:
+    def _drawn(self, seeds: Sequence[int], secret: Secret | None) -> list[dict[str, float | str]]:
         """The given values of seeds; without the solution that keeps them, of those that are recorded."""
         if not self.spec.kept_by_solution or self.folder.home("solutions", self.name) is not None:
-            return draws.draw(self.name, self.drawing, seeds)
+            return draws.draw(self.name, self.drawing, seeds, secret)
+        if secret is not None:
+            raise NoSolution(
+                f"{self.name}: which variants an assignment draws hangs on answers, which a students' copy does not hold"
+            )
         for seed in seeds:
             if seed >= len(self._recorded):
                 raise NoSolution(

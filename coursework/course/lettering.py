@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from coursework.course.secrecy import Secret
 from coursework.model import LETTERS, Part
 
 _ROMAN = "I II III IV V VI VII VIII IX X".split()
@@ -15,17 +16,20 @@ _ANSWERED = ("yes", "no", "true", "false")
 _LAST = ("none", "neither", "other")  #: cases that stand behind those that they deny
 
 
-def printed_order(exercise: str, seed: int, part: Part) -> tuple[str, ...]:
-    """The cases of a part in the order in which the variant of a seed prints them: the same for ever.
+def printed_order(exercise: str, seed: int, part: Part, secret: Secret | None = None) -> tuple[str, ...]:
+    """The cases of a part in the order in which the variant of a seed, or of a code of an assignment with its secret,
+    prints them: the same for ever.
 
     Parts of an exercise that offer the same cases offer them in one order.
     """
     if part.ordered:
         return part.choices
+    if part.shuffled:
+        return tuple(sorted(part.choices, key=_shuffled(f"{exercise}/{seed}/{part.id}", secret)))
     first = sorted(case for case in part.choices if case not in _LAST)
     last = [case for case in part.choices if case in _LAST]
     natural = next((place for place in _NATURAL if all(place(case) is not None for case in first)), None)
-    return (*sorted(first, key=natural or _shuffled(f"{exercise}/{seed}/{','.join(first)}")), *last)
+    return (*sorted(first, key=natural or _shuffled(f"{exercise}/{seed}/{','.join(first)}", secret)), *last)
 
 
 def letters_of(cases: Sequence[str]) -> Mapping[str, str]:
@@ -33,8 +37,10 @@ def letters_of(cases: Sequence[str]) -> Mapping[str, str]:
     return dict(zip(cases, LETTERS, strict=False))
 
 
-def _shuffled(stream: str) -> Callable[[str], Any]:
+def _shuffled(stream: str, secret: Secret | None) -> Callable[[str], Any]:
     """Cases by what a stream of bits of their own says of each: no case disturbs the order of others."""
+    if secret is not None:
+        return lambda case: secret.digest("choices", stream, case)
     return lambda case: hashlib.shake_128(f"coursework/choices/{stream}/{case}".encode()).digest(8)
 
 

@@ -17,6 +17,7 @@ from typing import Any, Protocol
 
 from coursework.course.exercise import ALL, USUAL, CourseExercise
 from coursework.course.marking_rules import Rules
+from coursework.course.secrecy import Secret
 from coursework.errors import BadCourse, BadInput, nearest
 from coursework.language.words import languages
 from coursework.sheets.paper import Logo
@@ -29,7 +30,19 @@ _MOST_DOTS = 200  #: before an equals sign: a key of thousands of names takes mi
 SITTINGS = ("best", "last")
 ANSWERS = ("shown", "never")
 #: Options of ``build`` that may stand in the file; the option wins.
-OPTIONS = ("roster", "formats", "lang", "paper", "practice", "booklet", "scan", "polygons", "out", "decimal")
+OPTIONS = (
+    "roster",
+    "columns",
+    "formats",
+    "lang",
+    "paper",
+    "practice",
+    "booklet",
+    "scan",
+    "polygons",
+    "out",
+    "decimal",
+)
 #: Keys that name files beside the assignment's own, and what goes with these.
 FILES = ("logo", "logo_alt", "roster", "out")
 
@@ -52,7 +65,7 @@ class AskedExercise:
     points: float | Mapping[str, float] | None = (
         None  #: by part, or for all to share; the exercise's own unless told
     )
-    seed: int | None = None  #: the same variant for everybody
+    seed: int | None = None  #: the same variant of the assignment for everybody
 
 
 @dataclass(frozen=True)
@@ -67,7 +80,7 @@ class Scale:
 class Assignment:
     """A paper: its heading, its exercises, who gets what, how it is marked."""
 
-    name: str  #: the file's stem; draws hang on it
+    name: str  #: the file's stem; draws depend on it and on the secret
     exercises: tuple[AskedExercise, ...]
     title: Texts = field(default_factory=dict)
     course: Texts = field(default_factory=dict)
@@ -86,6 +99,7 @@ class Assignment:
     solutions_after: datetime.date | None = None  #: from this day on feedback has the worked solutions
     marking: Mapping[str, Any] = field(default_factory=dict)
     options: Mapping[str, Any] = field(default_factory=dict)
+    secret: Secret | None = None  #: keys all draws; none where the file has no line for it
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -244,6 +258,7 @@ class _Reader:
             "solutions_after": self._date("solutions_after"),
             "marking": self._marking,
             "exercises": self._exercises,
+            "secret": self._secret,
         }
         found: dict[str, Any] = {}
         options = {}
@@ -367,6 +382,14 @@ class _Reader:
         except BadCourse as fault:
             raise BadInput(str(fault)) from fault
         return dict(value)
+
+    def _secret(self, value: Any) -> Secret:
+        try:
+            return Secret.of(value)
+        except ValueError as fault:
+            raise self.refused(
+                "secret", f"{fault}; delete the line, and 'coursework build' creates one"
+            ) from None
 
     # --------------------------------------------------------------- exercises
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from coursework.course.course import Course
+from coursework.course.secrecy import Secret
 from coursework.making import booklets
 from coursework.making.answer_papers import printed_handout
 from coursework.making.assignment import Assignment
@@ -61,10 +62,14 @@ def files(
 
 
 def tables(
-    course: Course, issues: Sequence[Issue], assignment: Assignment | None, spreadsheet: Spreadsheet
+    course: Course,
+    issues: Sequence[Issue],
+    assignment: Assignment | None,
+    spreadsheet: Spreadsheet,
+    secret: Secret | None = None,
 ) -> Iterator[File]:
-    """What was issued, the form for answers, and, for the staff, the key."""
-    content = issued_content(issues, assignment)
+    """What was issued, the form for answers, and, for the staff, the key; with the secret that the file has not."""
+    content = issued_content(issues, assignment, secret)
     yield File(Path("issued.json"), _text(lambda: json_text(content)))
     yield File(Path("answers.csv"), lambda: csv_file(form_rows(issues), COLUMNS, spreadsheet))
     if course.folder.has_solutions:

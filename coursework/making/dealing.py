@@ -1,6 +1,6 @@
 """Who gets which variant of an assignment.
 
-A variant hangs on the assignment's name, the exercise and the student, never on a place in the roster. What was issued
+A variant depends on the assignment's secret and name, the exercise and the student, never on a place in the roster. What was issued
 stays issued: a longer roster adds who is late, and changes nobody else's paper.
 """
 
@@ -16,13 +16,15 @@ from typing import Any, TypeVar
 
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
+from coursework.course.secrecy import Secret
 from coursework.course.variant import Variant
 from coursework.errors import BadInput, counted, nearest
 from coursework.making.assignment import AskedExercise, Assignment
 from coursework.making.flaws import try_judges
+from coursework.making.issued import secret_of
 from coursework.making.issuing import Issue, drawn_by
 from coursework.making.roster import Student
-from coursework.making.students import file_stems, folded
+from coursework.making.students import called, file_stems, folded
 from coursework.model import Part
 
 V = TypeVar("V", bound=Variant)
@@ -36,6 +38,8 @@ class Dealt:
 
     issues: list[Issue]
     notes: list[str] = field(default_factory=list)
+    secret: Secret | None = None  #: to be kept where the assignment's file has none
+    is_new: bool = False  #: the secret was created now
 
 
 def deal(
@@ -45,8 +49,12 @@ def deal(
     langs: Sequence[str],
     before: Mapping[str, Any] | None = None,
     make_up: Sequence[str] = (),
+    secret: Secret | None = None,
 ) -> Dealt:
     """A paper for each student, and a second one for who makes up; ``before`` is what ``issued.json`` says.
+
+    Draws are keyed by the secret of the assignment's file, else by that of ``before``, else by ``secret``, else by a
+    new one. What was issued before without a secret stays as it is.
 
     Raises
     ------
@@ -56,7 +64,7 @@ def deal(
     Starved
         An exercise has no variant that is worth issuing.
     """
-    hand = _Hand(course, assignment, langs, before)
+    hand = _Hand(course, assignment, langs, before, secret)
     everybody = hand.everybody(students)
     sittings = [(student, 1) for student in everybody]
     sittings += [(student, n) for student in everybody for n in range(2, hand.sittings(student.name) + 1)]
@@ -78,14 +86,15 @@ def deal(
             Issue(student.name, v.in_language(own[0]), own, stem, sitting, version, student.columns)
             for v in variants
         ]
-    return Dealt(issues, hand.notes)
+    kept = None if assignment.secret is not None else hand.secret
+    return Dealt(issues, hand.notes, kept, hand.is_new)
 
 
 def _named(name: str, students: Sequence[Student]) -> Student:
-    found = next((s for s in students if folded(s.name) == folded(name)), None)
+    found = called(name, (s.name for s in students))
     if found is None:
         raise BadInput(f"no student {name!r} was issued a paper{nearest(name, [s.name for s in students])}")
-    return found
+    return next(s for s in students if s.name == found)
 
 
 class _Hand:
@@ -97,9 +106,12 @@ class _Hand:
         assignment: Assignment,
         langs: Sequence[str],
         before: Mapping[str, Any] | None,
+        secret: Secret | None = None,
     ):
         self.course, self.assignment, self.langs = course, assignment, langs
         self.notes: list[str] = []
+        self.secret = assignment.secret or secret_of(before) or secret
+        self.is_new = False
         self._items = list((before or {}).get("issued", ()))
         self._columns = dict((before or {}).get("students", {}))
         self._unnamed: dict[int, str] = {}
@@ -119,6 +131,13 @@ class _Hand:
             self._records[place] = item["record"]
             if item.get("version"):
                 self._dealt[name] = str(item["version"])
+
+    @property
+    def _key(self) -> Secret:
+        """The secret of the draws of this assignment; created with the first draw where there is none."""
+        if self.secret is None:
+            self.secret, self.is_new = Secret.new(), True
+        return keyed(self.secret, self.assignment)
 
     def of(self, student: Student) -> str:
         """By what a student is told apart: the name, or the place of a paper that is nobody's."""
@@ -178,7 +197,8 @@ class _Hand:
                 continue
             near = {dealt.get(other) for other in beside.get(student, ())}
             free = [letter for letter in letters if letter not in near] or letters
-            dealt[student] = min(free, key=lambda letter: (used[letter], letter))
+            own = {letter: self._key.digest("version", student, letter) for letter in free}
+            dealt[student] = min(free, key=lambda letter: (used[letter], own[letter]))
             used[dealt[student]] += 1
         return dealt
 
@@ -196,21 +216,41 @@ class _Hand:
             if record is not None:
                 found[k] = exercise.from_record(record)
         missing = {k: self._who(*sittings[k], versions) for k in range(len(sittings)) if k not in found}
-        taken = {tuple(v.given.values()) for v in found.values()}
-        drawn = {}
-        if asked.seed is not None:
-            one = worth(exercise.variant(asked.seed, self.langs[0], asked.parts), asked)
-            drawn = {who: one for k, who in missing.items() if sittings[k][1] == 1}
-        drawn |= self._drawn(
-            exercise, asked, [w for w in dict.fromkeys(missing.values()) if w not in drawn], taken
-        )
+        drawn = self._shared(asked, sittings, versions, found)
+        if asked.seed is not None and (
+            own := {w for k, w in missing.items() if sittings[k][1] == 1} - {*drawn}
+        ):
+            one = worth(exercise.variant(asked.seed, self.langs[0], asked.parts, self._key), asked)
+            drawn |= dict.fromkeys(own, one)
+        left = [who for who in dict.fromkeys(missing.values()) if who not in drawn]
+        drawn |= self._drawn(exercise, asked, left, found.values()) if left else {}
         found |= {k: drawn[who] for k, who in missing.items()}
         if self.course.folder.has_solutions and found:
             try_judges(found[0].key)
         return [found[k] for k in range(len(sittings))]
 
+    def _shared(
+        self,
+        asked: AskedExercise,
+        sittings: Sequence[tuple[Student, int]],
+        versions: Mapping[str, str],
+        issued: Mapping[int, Any],
+    ) -> dict[str, Any]:
+        """Return what several have the same of, as it was issued to the first of them: later ones have it too."""
+        shared: dict[str, Any] = {}
+        for k, variant in issued.items():
+            student, sitting = sittings[k]
+            if sitting == 1 and (self.assignment.versions == 1 or versions.get(self.of(student))):
+                shared.setdefault(self._who(student, 1, versions), variant)
+        fixed = [v for k, v in issued.items() if sittings[k][1] == 1 and v.seed == asked.seed]
+        if fixed:
+            for student, sitting in sittings:
+                if sitting == 1:
+                    shared.setdefault(self._who(student, 1, versions), fixed[0])
+        return shared
+
     def _who(self, student: Student, sitting: int, versions: Mapping[str, str]) -> str:
-        """What a draw hangs on."""
+        """What a draw depends on."""
         if sitting > 1:
             return f"{student.who or self.of(student)} sitting {sitting}"
         if self.assignment.versions == 1:
@@ -229,16 +269,25 @@ class _Hand:
         exercise: CourseExercise[Any],
         asked: AskedExercise,
         people: Sequence[str],
-        taken: set[tuple[Any, ...]],
+        issued: Iterable[Any],
     ) -> dict[str, Any]:
         """A variant for each: all different while variants last."""
-        found, shared = drawn_by(self.assignment.name, exercise, people, self.langs[0], asked.parts, taken)
+        known = {variant.seed: tuple(variant.given.values()) for variant in issued}
+        found, shared = drawn_by(
+            self.assignment.name, exercise, people, self.langs[0], asked.parts, set(known.values()),
+            secret=self._key, known=known,
+        )  # fmt: skip
         if shared:
             self.notes.append(
                 f"{exercise.name}: {len(shared)} of {counted(len(people), 'paper')} share a variant with another; so many "
                 "different ones do not exist"
             )
         return {who: worth(variant, asked) for who, variant in found.items()}
+
+
+def keyed(secret: Secret, assignment: Assignment) -> Secret:
+    """Return what keys the draws of an assignment: a secret that two assignments share keys other papers in each."""
+    return secret.under("assignment", assignment.name)
 
 
 def worth(variant: V, asked: AskedExercise) -> V:

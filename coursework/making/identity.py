@@ -3,38 +3,69 @@
 from __future__ import annotations
 
 import re
+import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 
 from coursework.making.students import folded
 
-WHOLE = (
-    "student", "étudiant", "etudiant", "élève", "eleve", "full name", "nom complet", "nom et prénom", "nom prénom",
-    "student name",
+_ACCENTS = dict.fromkeys(range(0x300, 0x370))
+
+
+def plain(title: str) -> str:
+    """Return a title without case, accents, underscores, and punctuation at its ends: ``N° étudiant`` is ``no etudiant``."""
+    letters = unicodedata.normalize("NFD", folded(title.replace("_", " ").replace("°", "o "))).translate(
+        _ACCENTS
+    )
+    return " ".join(letters.split()).strip(" .:*")
+
+
+_IN_JSON: dict[str, str] = {}  #: a title as Moodle writes it in JSON, and as it is compared
+
+
+def _titles(*names: str) -> tuple[str, ...]:
+    _IN_JSON.update((re.sub(r"[^a-z0-9]", "", name), plain(name)) for name in names)
+    return tuple(dict.fromkeys(map(plain, names)))
+
+
+WHOLE = _titles(
+    "student", "étudiant", "élève", "full name", "nom complet", "nom et prénom", "nom prénom", "nom et prénoms", "prénom nom",
+    "prénom et nom", "nom, prénom", "student name", "nom de l'étudiant", "nom étudiant",
 )  # fmt: skip
-SURNAME = (
-    "nom", "name", "surname", "last name", "lastname", "family name", "nom de famille", "nom usuel",
+#: The name in use goes before the name at birth.
+SURNAME = _titles(
+    "nom d'usage", "nom usuel", "nom marital", "nom", "name", "surname", "last name", "lastname", "family name",
+    "nom de famille", "nom patronymique", "nom de naissance",
 )  # fmt: skip
-FIRST_NAME = (
-    "prénom", "prenom", "prénoms", "prenoms", "first name", "firstname", "given name", "forename",
+FIRST_NAME = _titles(
+    "prénom d'usage", "prénom usuel", "prénom", "prénoms", "prénom 1", "premier prénom", "first name", "firstname", "given name",
+    "forename", "prénom de l'étudiant",
 )  # fmt: skip
+_NUMBER_FIRST = _titles("number", "student number", "student id", "id")
 NUMBER = (
-    "number", "student number", "student id", "id", "id number", "numéro", "numero", "numéro d'étudiant", "n°", "no",
-    "matricule", "ine",
+    *_NUMBER_FIRST,
+    *_titles(
+        "id number", "numéro", "numéro d'étudiant", "numéro étudiant", "numéro de l'étudiant", "n°", "n° étudiant",
+        "n° d'étudiant", "num", "num étudiant", "no", "code étudiant", "code apogée", "numéro apogée", "n° apogée", "matricule",
+        "numéro de matricule", "numéro de carte étudiant", "ine", "code ine", "numéro ine", "n° ine", "ine/bea", "nip", "code nip",
+    ),
 )  # fmt: skip
-EMAIL = ("email", "e-mail", "mail", "email address", "courriel", "adresse de courriel", "adresse e-mail")
+EMAIL = _titles(
+    "email", "e-mail", "mail", "email address", "e-mail address", "courriel", "adresse de courriel", "adresse e-mail",
+    "adresse email", "adresse mail", "adresse électronique", "adresse de messagerie", "email institutionnel",
+    "e-mail institutionnel", "mail institutionnel", "courriel institutionnel", "adresse mail institutionnelle",
+    "adresse e-mail institutionnelle", "adresse email institutionnelle", "adresse électronique institutionnelle",
+    "email universitaire", "mail universitaire", "adresse mail universitaire", "mail étudiant", "email étudiant",
+)  # fmt: skip
 #: What platforms add to a number and an e-mail.
-LOGIN = (
+LOGIN = _titles(
     "sis user id", "sis login id", "integration id", "username", "login", "nom d'utilisateur", "identifiant",
     "numéro d'identification",
 )  # fmt: skip
 _APART = (
-    *NUMBER[:4],
-    "id number",
-    "numéro d'identification",
-    "numéro",
-    "sis user id",
+    *_NUMBER_FIRST,
+    *_titles("id number", "numéro d'identification", "numéro", "sis user id"),
     *EMAIL,
-    "sis login id",
+    *_titles("sis login id"),
     *LOGIN,
     *NUMBER,
 )
@@ -42,20 +73,10 @@ _APART = (
 Ids = Sequence[tuple[str, str]]  #: what identifies somebody: titles, and what stands there
 
 
-def plain(title: str) -> str:
-    """A title whatever its case, spaces, underscores and apostrophes."""
-    return folded(title.replace("_", " "))
-
-
-def _squeezed(title: str) -> str:
-    """A title as Moodle writes it in JSON: without all but unaccented letters and figures."""
-    return re.sub(r"[^a-z0-9]", "", title.casefold())
-
-
 def is_called(title: str, known: Iterable[str]) -> bool:
     """Whether a title is one of those known, as a table writes it or as Moodle writes it in JSON."""
     known = tuple(known)
-    return plain(title) in known or (title.isalnum() and title in map(_squeezed, known))
+    return plain(title) in known or _IN_JSON.get(title) in known
 
 
 def identifies(title: str) -> bool:

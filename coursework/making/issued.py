@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from coursework.course.secrecy import Secret
 from coursework.errors import BadInput
 from coursework.making.identity import Ids, ids_of, run_together, same_id, words_of
-from coursework.making.students import folded
+from coursework.making.students import folded, unaccented
 from coursework.system.json_files import json_of, read_json
 
 if TYPE_CHECKING:
@@ -136,7 +137,11 @@ class Issued:
             return name
         if not self.has_roster:
             return self._met(name, ids) if ids else self._known.setdefault(folded(name), name)
-        return self._known.get(folded(name)) or (None if ids is None else self._people.called(name))
+        return (
+            self._known.get(folded(name))
+            or self._people.without_accents(name)
+            or (None if ids is None else self._people.called(name))
+        )
 
     def account(self, names: Sequence[str]) -> str | None:
         """The student of the roster whom a platform calls so, by a number, an e-mail or what stands before its @, a login or
@@ -144,6 +149,7 @@ class Issued:
         told = (
             self._people.of_ids([("", n)])
             or self._known.get(folded(n))
+            or self._people.without_accents(n)
             or self._people.called(n)
             or self._people.of_mailbox(n)
             for n in names
@@ -214,9 +220,11 @@ class _People:
         self._by_words: dict[tuple[str, ...], str | None] = {}
         self._together: dict[str, str | None] = {}
         self._by_mailbox: dict[str, str | None] = {}
+        self._unaccented: dict[str, str | None] = {}
         for student in students:
             self.add(student, columns.get(student, {}))
             _enter(self._by_words, words_of(student), student)
+            _enter(self._unaccented, unaccented(student), student)
             for name in run_together(student):
                 _enter(self._together, name, student)
 
@@ -232,6 +240,10 @@ class _People:
     def of_mailbox(self, name: str) -> str | None:
         """The student whose e-mail begins so, before its @."""
         return self._by_mailbox.get(same_id(name))
+
+    def without_accents(self, name: str) -> str | None:
+        """Return the only student whose name differs in accents alone."""
+        return self._unaccented.get(unaccented(name))
 
     def called(self, name: str) -> str | None:
         """The student of a name whose words are in another order, or run together."""
@@ -327,13 +339,39 @@ def _columns(content: Any, source: str) -> dict[str, Mapping[str, str]]:
     return {str(s): {str(c): str(v) for c, v in own.items()} for s, own in content.items()}
 
 
-def issued_content(issues: Sequence[Issue], assignment: Assignment | None = None) -> dict[str, Any]:
-    """What ``issued.json`` says: who got which record. No answers."""
+SECRET = "secret"  #: under which an instructor's ``issued.json`` holds that of its assignment
+
+
+def secret_of(content: Mapping[str, Any] | None, source: str = "what was issued") -> Secret | None:
+    """Return the secret that an ``issued.json`` holds; None where it holds none.
+
+    Raises
+    ------
+    BadInput
+        It holds something else; the message does not quote it.
+    """
+    text = (content or {}).get(SECRET)
+    try:
+        return None if text is None else Secret.of(text)
+    except ValueError as fault:
+        raise BadInput(f"{source}: {fault}; restore the line from a copy of the file") from None
+
+
+def without_secret(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what an ``issued.json`` says to whoever only marks."""
+    return {key: value for key, value in content.items() if key != SECRET}
+
+
+def issued_content(
+    issues: Sequence[Issue], assignment: Assignment | None = None, secret: Secret | None = None
+) -> dict[str, Any]:
+    """What ``issued.json`` says: who got which record. No answers. With a ``secret``, it is the instructor's alone."""
     columns = {i.student: dict(i.columns) for i in issues if i.student and i.columns}
     return {
         "format": ISSUED_FORMAT,
         "roster": any(i.student for i in issues),
         **({} if assignment is None else {"assignment": assignment.stated()}),
+        **({} if secret is None else {SECRET: secret.text}),
         **({"students": columns} if columns else {}),
         "issued": [_item(i) for i in issues],
     }

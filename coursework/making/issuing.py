@@ -14,6 +14,7 @@ from coursework.course.answer_key import Key
 from coursework.course.asked import Asked
 from coursework.course.course import Course
 from coursework.course.exercise import ALL, USUAL, CourseExercise
+from coursework.course.secrecy import Secret
 from coursework.course.variant import Variant
 from coursework.errors import BadInput, NoSolution, Starved, counted, unknown
 from coursework.kinds.kind import Asking
@@ -104,10 +105,11 @@ _ALIKE = 60  #: the same where all that they draw has been dealt already
 _TOGETHER = 256  #: draws that are tried together
 
 
-def seed_for(stream: str, exercise: str, who: str, round_: int) -> int:
-    """The seed that somebody draws in a round, the same for ever."""
-    key = f"coursework/assignment/{stream}/{exercise}/{who}/{round_}".encode()
-    return int.from_bytes(hashlib.shake_128(key).digest(8), "little") % SEEDS
+def seed_for(stream: str, exercise: str, who: str, round_: int, secret: Secret | None = None) -> int:
+    """The seed that somebody draws in a round, the same for ever; with the secret of an assignment, the code."""
+    key = f"coursework/assignment/{stream}/{exercise}/{who}/{round_}"
+    bits = hashlib.shake_128(key.encode()).digest(8) if secret is None else secret.digest("code", key)[:8]
+    return int.from_bytes(bits, "little") % SEEDS
 
 
 def drawn_by(
@@ -118,11 +120,14 @@ def drawn_by(
     parts: Sequence[str] | None = None,
     taken: set[tuple[Any, ...]] | None = None,
     fits: Callable[[V], bool] | None = None,
+    secret: Secret | None = None,
+    known: Mapping[int, tuple[Any, ...]] | None = None,
 ) -> tuple[dict[str, V], list[str]]:
     """A variant for each of some people that hangs on them and not on their order, and who shares theirs with another.
 
     All are different, and none has the given values that are ``taken``, while variants last; each ``fits``,
-    where that is told.
+    where that is told. With the ``secret`` of an assignment nobody draws them without it. ``known`` are the given
+    values of what was issued by seed, perhaps without the secret: none of these seeds stands for other values.
 
     Raises
     ------
@@ -133,6 +138,7 @@ def drawn_by(
     """
     _check_can_tell(exercise)
     taken = set() if taken is None else taken
+    known = {} if known is None else known
     found: dict[str, V] = {}
     spare: dict[str, V] = {}  # worth issuing, though somebody has the same
     refused: Counter[str] = Counter()
@@ -140,8 +146,9 @@ def drawn_by(
     round_, together = 0, 1
     while waiting and round_ < (_ALIKE if spare.keys() >= set(waiting) else _ROUNDS):
         rounds = range(round_, min(round_ + together, _ROUNDS))
-        seeds = {(r, who): seed_for(stream, exercise.name, who, r) for r in rounds for who in waiting}
-        drawn = _that_ask(exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts), fits)
+        seeds = {(r, who): seed_for(stream, exercise.name, who, r, secret) for r in rounds for who in waiting}
+        drawn = _that_ask(exercise.variants(list(dict.fromkeys(seeds.values())), lang, parts, secret), fits)
+        drawn = [v for v in drawn if known.get(v.seed, given := tuple(v.given.values())) == given]
         by_seed = {v.seed: v for v in worthy(exercise, drawn, refused)}
         for r in rounds:
             # Who is first where two draw the same hangs on the draw, not on the roster.

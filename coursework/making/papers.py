@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from coursework.course.course import Course
+from coursework.course.secrecy import Secret
 from coursework.language.numbers import localise, plain
 from coursework.language.words import words
 from coursework.making import booklets
@@ -120,9 +121,10 @@ def files(
     spreadsheet: Spreadsheet = SPREADSHEETS["point"],
     only: Collection[str] | None = None,
     scan: bool = False,
+    secret: Secret | None = None,
 ) -> Iterator[File]:
     """Every file of an assignment, in order; with ``only``, the papers of these students alone, and no table; with
-    ``scan``, answer pages that a scanner reads in the PDFs."""
+    ``scan``, answer pages that a scanner reads in the PDFs. A ``secret`` stands in ``issued.json``."""
     renderer = renderer_of(course.folder).on(paper)
     made = papers(assignment, issues, polygons=polygons, scan=paper if scan else "")
     for one in made:
@@ -133,7 +135,7 @@ def files(
         return
     if booklet:
         yield from booklets.bound(course, _booklets(renderer, made), PAGE_COLUMNS, spreadsheet)
-    yield from tables(course, issues, assignment, spreadsheet)
+    yield from tables(course, issues, assignment, spreadsheet, secret)
 
 
 def _paper(

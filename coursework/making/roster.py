@@ -11,12 +11,15 @@ from pathlib import Path
 from coursework.errors import BadInput, counted
 from coursework.language.words import languages
 from coursework.making.identity import EMAIL, FIRST_NAME, NUMBER, SURNAME, WHOLE, plain, told_apart
-from coursework.making.platform_rosters import first_name_first, without_marks
+from coursework.making.platform_rosters import RosterLine, first_name_first, without_marks
 from coursework.making.students import folded
 from coursework.system.limits import MOST_COLUMNS, MOST_TABLE_BYTES, beyond, check_size
 from coursework.system.tables import as_written, decode, delimiter_of, record, said_twice
 
 _LANG = ("lang", "language", "langue")
+_ABOVE = 10  #: lines in which the heading is looked for
+#: Columns that can be named by hand, and their titles.
+COLUMNS = {"name": SURNAME, "first": FIRST_NAME, "number": NUMBER, "email": EMAIL, "lang": _LANG}
 
 
 @dataclass(frozen=True)
@@ -35,35 +38,49 @@ class Student:
         return own.strip().casefold() or folded(self.name)
 
 
-def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> list[Student]:
-    """The students of a CSV with a column ``student``, or with surname and first name, and, if wanted, ``lang``; or of what
-    Moodle and Canvas export, as it comes. Two people of one name are told apart by their numbers or e-mails.
+def read_roster(
+    path: Path, tell: Callable[[str], None] = lambda note: None, columns: Mapping[str, str] | None = None
+) -> list[Student]:
+    """Return the students of a CSV.
 
-    ``tell`` is called with what should be known and is no error: a column that is not used, a line that is nobody's, an odd
-    encoding.
+    The file has a column ``student``, or surname and first name, and, if wanted, ``lang``; the lists that Moodle, Canvas and
+    French registrars' offices export are read as they come. A title above the heading is passed over. Numbers or e-mails tell
+    two people of one name apart.
+
+    Parameters
+    ----------
+    path
+        The CSV.
+    tell
+        Called with what should be known and is no error: a column that is not used, a line that is nobody's, an odd encoding.
+    columns
+        Column of each of ``name``, ``first``, ``number``, ``email`` and ``lang``, by its place from 1 on or by its title, where
+        the titles do not say it themselves.
 
     Raises
     ------
     BadInput
         The file cannot be read, has a row without a name or with too many cells, names no student, or one twice.
     """
-    header, *rows = _rows(path, tell) or [(1, [])]
-    if len(header[1]) > MOST_COLUMNS:
-        raise BadInput(f"the roster {path}: {beyond('a table', len(header[1]), MOST_COLUMNS, 'columns')}")
-    titles = [plain(cell) for cell in header[1]]
+    lines = _rows(path, tell) or [(1, [])]
+    header, rows = _heading(path, lines, columns, tell)
+    if len(header) > MOST_COLUMNS:
+        raise BadInput(f"the roster {path}: {beyond('a table', len(header), MOST_COLUMNS, 'columns')}")
+    if columns:
+        header = _retitled(path, header, columns)
+    titles = [plain(cell) for cell in header]
     named = _name_columns(titles)
     if not named:
-        found = ", ".join(cell.strip() for cell in header[1] if cell.strip()) or "nothing"
-        raise BadInput(f"the roster {path} needs a column named student; found {found}")
-    if twice := said_twice(titles, (*(titles[column] for column in named), *_LANG, *NUMBER, *EMAIL)):
+        raise BadInput(f"the roster {path}: no column says who a student is; {_which(header)}")
+    if twice := said_twice(titles, (*(titles[own[0]] for own in named), *_LANG, *NUMBER, *EMAIL)):
         raise BadInput(f"the roster {path}: {twice}")
     lang_column = next((titles.index(c) for c in _LANG if c in titles), None)
-    rows, unused = without_marks(header[1], rows)
+    rows, unused = without_marks(header, rows)
     for note in unused.notes:
         tell(f"the roster {path}: {note}")
-    taken = {*named, *unused.columns, lang_column}
-    others = [k for k, title in enumerate(header[1]) if k not in taken and title.strip()]
-    lines = []
+    taken = {*(column for own in named for column in own), *unused.columns, lang_column}
+    others = [k for k, title in enumerate(header) if k not in taken and title.strip()]
+    found = []
     for number, cells in rows:
         place = f"the roster {path}, line {number}"
         if any(cell.strip() for cell in cells[len(titles) :]):
@@ -72,18 +89,17 @@ def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> 
                 "put a name that holds a comma or a semicolon between quotation marks, or give the column a title"
             )
         cells += [""] * (len(titles) - len(cells))
-        name = " ".join(" ".join(cells[column] for column in named).split())
+        name = " ".join(" ".join(_first_filled(cells, own) for own in named).split())
         name = first_name_first(name) if unused.turned else name
         lang = cells[lang_column].strip().lower() if lang_column is not None else ""
         if not name:
             raise BadInput(f"{place}: no name; write it, or take the line away")
         if lang and lang not in languages():
             raise BadInput(f"{place}: no language {lang!r}; there is {', '.join(languages())}")
-        own = {header[1][c].strip(): cells[c].strip() for c in others}
-        lines.append((number, Student(name, lang, own)))
-    if not lines:
+        found.append((number, Student(name, lang, {header[c].strip(): cells[c].strip() for c in others})))
+    if not found:
         raise BadInput(f"the roster {path} names no student")
-    _tell_lost(path, [header[1][c].strip() for c in others], tell)
+    _tell_lost(path, [header[c].strip() for c in others], tell)
     untitled = [
         column
         for column, title in enumerate(titles)
@@ -93,7 +109,58 @@ def read_roster(path: Path, tell: Callable[[str], None] = lambda note: None) -> 
         tell(
             f"the roster {path} has a column without a title, which is not used; give it one to carry it through"
         )
-    return _apart(path, lines)
+    return _apart(path, found)
+
+
+def _heading(
+    path: Path, lines: list[RosterLine], columns: Mapping[str, str] | None, tell: Callable[[str], None]
+) -> tuple[list[str], list[RosterLine]]:
+    """Return the heading and the lines below it: the first line that titles columns of names, else the first line of all."""
+    known = {plain(title) for title in (columns or {}).values() if not title.isdecimal()}
+    for place, (_, cells) in enumerate(lines[:_ABOVE]):
+        titles = [plain(cell) for cell in cells]
+        if _name_columns(titles) or (known and known <= {*titles}):
+            if place:
+                above = " ".join(cell.strip() for _, own in lines[:place] for cell in own if cell.strip())
+                tell(
+                    f"the roster {path}: passed over above the heading: {above[:60]}{'…' if len(above) > 60 else ''}"
+                )
+            return cells, lines[place + 1 :]
+    if columns:
+        tell(f"the roster {path}: line {lines[0][0]} is taken for the heading: {', '.join(lines[0][1])[:60]}")
+    return lines[0][1], lines[1:]
+
+
+def _retitled(path: Path, header: Sequence[str], columns: Mapping[str, str]) -> list[str]:
+    """Return the heading with the titles of columns that the caller names, and without those that they replace."""
+    titles, places = [plain(title) for title in header], {}
+    for what, which in columns.items():
+        place = int(which) - 1 if which.isdecimal() else -1
+        if not which.isdecimal() and plain(which) in titles:
+            place = titles.index(plain(which))
+        if not 0 <= place < len(header):
+            raise BadInput(f"the roster {path} has no column {which!r} for {what}; {_which(header)}")
+        places[place] = what
+    instead = {title for what in columns for title in COLUMNS[what]}
+    if "name" in columns:
+        instead |= {*WHOLE, *FIRST_NAME}
+    kept = [f"({title})" if plain(title) in instead else title for title in header]
+    return [COLUMNS[places[k]][0] if k in places else title for k, title in enumerate(kept)]
+
+
+def _which(header: Sequence[str]) -> str:
+    found = ", ".join(f"{k} {cell.strip()}" for k, cell in enumerate(header, 1) if cell.strip()) or "nothing"
+    return f"found {found}. Give the name a title such as student, or nom and prénom, or say which column is what: --columns name=1,first=2"
+
+
+def _first_filled(cells: Sequence[str], columns: Sequence[int]) -> str:
+    return next((cells[column] for column in columns if cells[column].strip()), "")
+
+
+def roster_and_notes(path: Path) -> tuple[list[Student], list[str]]:
+    """Return what :func:`read_roster` gives, and what it tells."""
+    told: list[str] = []
+    return read_roster(path, told.append), told
 
 
 def _tell_lost(path: Path, titles: Sequence[str], tell: Callable[[str], None]) -> None:
@@ -123,16 +190,15 @@ def _apart(path: Path, lines: Sequence[tuple[int, Student]]) -> list[Student]:
     return students
 
 
-def _name_columns(titles: list[str]) -> list[int]:
-    """The column of whole names; or those of surnames and first names, in the file's order."""
+def _name_columns(titles: list[str]) -> list[list[int]]:
+    """Return the column of whole names; or those of surnames and of first names, in the file's order, the preferred first."""
     for column, title in enumerate(titles):
         if title in WHOLE:
-            return [column]
-    surname = next((titles.index(c) for c in SURNAME if c in titles), None)
-    first_name = next((titles.index(c) for c in FIRST_NAME if c in titles), None)
-    if surname is None:
-        return []
-    return sorted({surname, surname if first_name is None else first_name})
+            return [[column]]
+    surnames, first_names = (
+        [titles.index(c) for c in known if c in titles] for known in (SURNAME, FIRST_NAME)
+    )
+    return sorted(filter(None, (surnames, first_names))) if surnames else []
 
 
 def _rows(path: Path, tell: Callable[[str], None]) -> list[tuple[int, list[str]]]:

@@ -21,6 +21,41 @@ def folded(name: str) -> str:
     return unicodedata.normalize("NFKC", " ".join(seen.split()).casefold())
 
 
+_MARKS = dict.fromkeys(range(0x300, 0x370))
+#: Letters that are no letter with an accent to Unicode, as they are written without them.
+_SPELLED = str.maketrans(
+    {
+        "œ": "oe",
+        "æ": "ae",
+        "ß": "ss",
+        "ø": "o",
+        "ł": "l",
+        "đ": "d",
+        "ð": "d",
+        "þ": "th",
+        "ħ": "h",
+        "ı": "i",
+        "ŋ": "n",
+        "ŧ": "t",
+    }
+)
+
+
+def unaccented(name: str) -> str:
+    """Return a name as it is compared, without accents: ``Loïc Lefèvre`` is ``loic lefevre``."""
+    return unicodedata.normalize("NFD", folded(name)).translate(_MARKS).translate(_SPELLED)
+
+
+def called(name: str, students: Iterable[str]) -> str | None:
+    """Return the student of a name, else the only one whose name differs in accents alone; None for a stranger."""
+    students = list(students)
+    for compared in (folded, unaccented):
+        found = {one for one in students if compared(one) == compared(name)}
+        if found:
+            return found.pop() if len(found) == 1 else None
+    return None
+
+
 def namesakes(name: str, students: Iterable[str]) -> list[str]:
     """The students whom more than this name tells apart: ``Marie Martin (2290)`` for ``marie martin``."""
     begins = f"{folded(name)} ("
@@ -38,7 +73,7 @@ def file_stems(names: Iterable[str]) -> list[str]:
     used: set[str] = set()
     stems = []
     for name in names:
-        plain = unicodedata.normalize("NFKD", name.casefold()).encode("ascii", "ignore").decode()
+        plain = unicodedata.normalize("NFKD", unaccented(name)).encode("ascii", "ignore").decode()
         plain = re.sub(r"[^a-z0-9]+", "-", plain).strip("-")[:60].strip("-")
         if name and not plain:
             plain = f"student-{hashlib.sha256(folded(name).encode()).hexdigest()[:8]}"

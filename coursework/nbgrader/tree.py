@@ -25,7 +25,7 @@ from coursework.making.papers import IssuedPaper, papers
 from coursework.nbgrader.cells import for_nbgrader, without_variants
 from coursework.rendering.renderer import Renderer, renderer_of
 from coursework.sheets.sheet import Handout
-from coursework.system.distribution import DISTRIBUTION, pip_install
+from coursework.system.distribution import pip_install
 from coursework.system.tables import json_text
 from coursework.system.writing import File
 
@@ -203,7 +203,7 @@ def _go_on(one: Collected, lang: str) -> str:
     text = str(said["go_on"]).strip().format(
         name=one.name,
         notebook=one.name,
-        install=pip_install(f"{DISTRIBUTION}[nbgrader]"),
+        install=pip_install(extra="nbgrader"),
         variants=said["each" if one.is_own else "one"],
         student=said["known" if one.has_roster else "anybody"],
     )  # fmt: skip

@@ -107,8 +107,8 @@ def _rows(submission: Path) -> Iterator[Row | Rejected]:
     for found in find([submission]):
         if isinstance(found, Rejected):
             yield _below(found, submission)
-        elif found.resolve().is_relative_to(submission.resolve()):
-            rows = (row for row in read_file(found) if not isinstance(row, Seen))
+        else:
+            rows = (row for row in read_file(found, [submission]) if not isinstance(row, Seen))
             yield from (_below(row, submission) for row in rows)
 
 

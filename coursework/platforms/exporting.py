@@ -63,7 +63,7 @@ def _beside(
 
 def pool_content(drawn: Drawn, students: Sequence[Student]) -> dict[str, Any]:
     """What ``issued.json`` says of a pool: records that belong to nobody, and whom the platform may deal them to."""
-    content = issued_content(drawn.issues, drawn.assignment)
+    content = issued_content(drawn.issues, drawn.assignment, drawn.secret)
     columns = {student.name: dict(student.columns) for student in students}
     return {
         **content,

@@ -17,15 +17,19 @@ from coursework.course.builtin import builtin_root
 from coursework.course.folder import Folder
 from coursework.errors import BadInput
 from coursework.language.words import words
-from coursework.making.issued import Issued
+from coursework.making.issued import SECRET, Issued, without_secret
 from coursework.platforms._autograder import SETTINGS
 from coursework.platforms.items import Pool
 from coursework.platforms.platform import Platform
+from coursework.system.json_files import json_of
+from coursework.system.tables import json_text
 from coursework.system.writing import File
 from coursework.system.zips import zipped
 
 #: What marking needs; what prints sheets is left out. Each is among the package's own requirements.
-REQUIREMENTS = ("jinja2>=3.1", "markdown-it-py>=3.0", "mdit-py-plugins>=0.4", "numpy>=1.26", "scipy>=1.11")
+REQUIREMENTS = (
+    "jinja2>=3.1.6,<4", "markdown-it-py>=3.0,<5", "mdit-py-plugins>=0.4,<0.8", "numpy>=1.26,<3", "scipy>=1.11,<2",
+)  # fmt: skip
 _COURSE = ("exercises", "solutions", "templates")
 _NO_FILE = ("__pycache__", ".git")
 
@@ -92,6 +96,9 @@ class Gradescope(Platform):
         if not folder.has_solutions:
             raise BadInput(f"{folder.label} has no solutions: it cannot mark")
         lang = next(str(record.get("lang", "fr")) for record in issued.records.values())
+        content = json_of(data, source)
+        if SECRET in content:  # whoever only marks needs none
+            data = json_text(without_secret(content)).encode("utf-8")
         yield File(Path("autograder.zip"), partial(_zip, folder, data, lang))
         yield File(Path(f"IMPORT.{lang}.txt"), lambda: _steps(issued, lang).encode("utf-8"))
 

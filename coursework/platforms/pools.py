@@ -10,11 +10,12 @@ from typing import Any, TypeVar
 
 from coursework.course.course import Course
 from coursework.course.exercise import CourseExercise
+from coursework.course.secrecy import Secret
 from coursework.course.variant import Variant
 from coursework.errors import BadInput
 from coursework.language.words import words
 from coursework.making.assignment import AskedExercise, Assignment, text_in
-from coursework.making.dealing import worth
+from coursework.making.dealing import keyed, worth
 from coursework.making.flaws import try_judges
 from coursework.making.issuing import Issue, chosen_parts, distinct_variants, drawn_by
 from coursework.markup.markdown import plain_line
@@ -39,7 +40,12 @@ class Drawn:
         first_seed: int = 0,
         langs: Sequence[str],
         assignment: Assignment | None = None,
+        secret: Secret | None = None,
     ):
+        #: Kept in ``issued.json`` where the assignment's file has none.
+        self.secret = secret if assignment and assignment.secret is None else None
+        own = assignment.secret or secret if assignment else None
+        self._key = keyed(own, assignment) if assignment and own else None
         self.course, self.assignment, self.langs = course, assignment, tuple(langs)
         for exercise in asked:
             _check_languages(course[exercise.name], langs)
@@ -57,14 +63,16 @@ class Drawn:
         """Variants that ask the same parts, all different while there are such."""
         lang = self.langs[0]
         if asked.seed is not None:
-            found: list[Any] = [exercise.variant(asked.seed, lang, asked.parts)]
+            found: list[Any] = [exercise.variant(asked.seed, lang, asked.parts, self._key)]
         else:
             fits = alike(exercise, first_seed, asked.parts)
             if self.assignment is None:
                 found = distinct_variants(exercise, first_seed, count, lang, parts=asked.parts, fits=fits)
             else:
                 places = [f"pool {place}" for place in range(count)]
-                drawn, _ = drawn_by(self.assignment.name, exercise, places, lang, asked.parts, fits=fits)
+                drawn, _ = drawn_by(
+                    self.assignment.name, exercise, places, lang, asked.parts, fits=fits, secret=self._key
+                )
                 found = [drawn[place] for place in places]
         try_judges(found[0].key)
         return [worth(variant, asked) for variant in found]
@@ -117,9 +125,23 @@ def of_exercises(
     return Drawn(course, asked, count, first_seed=first_seed, langs=langs)
 
 
-def of_assignment(course: Course[Any], assignment: Assignment, count: int, langs: Sequence[str]) -> Drawn:
-    """A pool of each exercise of an assignment, whose variants hang on its name."""
-    return Drawn(course, assignment.exercises, count, langs=langs, assignment=assignment)
+def of_assignment(
+    course: Course[Any],
+    assignment: Assignment,
+    count: int,
+    langs: Sequence[str],
+    secret: Secret | None = None,
+) -> Drawn:
+    """A pool of each exercise of an assignment; ``secret`` keys its draws where the assignment's file has none.
+
+    Raises
+    ------
+    ValueError
+        There is no secret at all: public words would draw the pool.
+    """
+    if secret is None and assignment.secret is None:
+        raise ValueError(f"{assignment.name} has no secret")
+    return Drawn(course, assignment.exercises, count, langs=langs, assignment=assignment, secret=secret)
 
 
 def alike(

@@ -54,7 +54,7 @@ def environment_of(folders: tuple[Path, ...], lang: str) -> Environment:
         "svg_image": svg_image,
     }
     env = environment(folders, lang, markup.html_text, filters)
-    env.globals.update(script=partial(_script, env), digest=partial(_digest, env))
+    env.globals.update(script=partial(_script, env), digest=partial(script_digest, env))
     return env
 
 
@@ -65,8 +65,8 @@ def _script(env: Environment, name: str) -> Markup:
     return Markup("\n" + env.loader.get_source(env, name)[0])
 
 
-def _digest(env: Environment, name: str) -> str:
-    """The one script that a page allows, told by its digest: a browser runs no other."""
+def script_digest(env: Environment, name: str) -> str:
+    """Return the digest of the one script that a page allows: a browser runs no other."""
     return "sha256-" + base64.b64encode(hashlib.sha256(_script(env, name).encode()).digest()).decode()
 
 

@@ -109,6 +109,25 @@ class Progress:
         return cls(entries)
 
 
+class TooLong(ValueError):
+    """Progress of more entries than are taken."""
+
+
+def read_brought(data: bytes, most: int) -> tuple[type[ValueError] | None, tuple[Entry, ...]]:
+    """Return the entries of a file that somebody brings, or why it is not taken: the fault's class.
+
+    Of a number that no database of JSON takes, no entry is.
+    """
+    try:
+        found = Progress.read(data.decode("utf-8-sig"))
+        json.dumps([dict(one) for one in found], allow_nan=False)
+    except LaterVersion:
+        return LaterVersion, ()
+    except ValueError:
+        return NotProgress, ()
+    return (TooLong, ()) if len(found) > most else (None, tuple(found))
+
+
 def entry(at: datetime, exercise: str, seed: int, part: str, what: str, **more: Any) -> dict[str, Any]:
     """Something that happens now, as it is kept."""
     told = at.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")

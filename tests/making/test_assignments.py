@@ -26,6 +26,7 @@ date = 2026-12-04
 duration = "1 h 30"
 mark = { of = 20, step = 0.5 }
 versions = "each"
+secret = "0b6c5d1f2a9e47388c1fd2b7a4e3905d"
 identity = ["number", "group"]
 
 [[exercises]]
@@ -77,18 +78,18 @@ def by_student(found):
     [
         ('course = "M', 'corse = "M', r"line 2: no key 'corse'; did you mean 'course'"),
         ("date = 2026-12-04", 'date = "the 4th"', r"line 3: date is a day"),
-        ('name = "grashof"', 'name = "grashoff"', r"line 19: no exercise 'grashoff'; did you mean 'grashof'"),
-        ('"theta4", "omega4"]', '"theta5", "omega4"]', r"line 11: slotted_mechanism has no part 'theta5'"),
-        ("points = 6", 'points = "six"', r"line 20: points are a number above 0; found 'six'"),
-        ("{ rA = 2,", "{ rB = 2,", r"line 12: slotted_mechanism has no part 'rB'"),
+        ('name = "grashof"', 'name = "grashoff"', r"line 20: no exercise 'grashoff'; did you mean 'grashof'"),
+        ('"theta4", "omega4"]', '"theta5", "omega4"]', r"line 12: slotted_mechanism has no part 'theta5'"),
+        ("points = 6", 'points = "six"', r"line 21: points are a number above 0; found 'six'"),
+        ("{ rA = 2,", "{ rB = 2,", r"line 13: slotted_mechanism has no part 'rB'"),
         ("step = 0.5", "step = 0", r"line 5: mark: step is a number above 0"),
         ('versions = "each"', "versions = 0", r"line 6: versions is \"each\", or a number"),
         ("follow_through = 0.5", "follow = 0.5", r"no rule of marking 'follow'"),
-        ("seed = 12", "seed = -1", r"line 16: a seed is a whole number"),
+        ("seed = 12", "seed = -1", r"line 17: a seed is a whole number"),
         ('duration = "1 h 30"', 'logo = "logo.svg"', r"line 4: logo: there is no file"),
         ("title = { fr", 'title = { xx = "?", fr', r"line 1: title: no language 'xx'"),
-        ('name = "grashof"', 'name = "vocabulary"', r"line 19: vocabulary stands twice"),
-        ('[[exercises]]\nname = "grashof"', '[[exercises]]\nnmae = "grashof"', r"line 19: no key 'nmae'"),
+        ('name = "grashof"', 'name = "vocabulary"', r"line 20: vocabulary stands twice"),
+        ('[[exercises]]\nname = "grashof"', '[[exercises]]\nnmae = "grashof"', r"line 20: no key 'nmae'"),
         ("date = 2026-12-04", "date = ", r"week3.toml: "),
     ],
 )

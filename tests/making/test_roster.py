@@ -66,7 +66,7 @@ def test_a_language_that_the_roster_overrides_is_told(small_course, tmp_path, ca
         assert run([str(a) for a in command]) == DONE
         return capsys.readouterr().err
 
-    assert build("--out", tmp_path / "one") == ""
+    assert "which counts" not in build("--out", tmp_path / "one")
     assert "of 1 of its 2 students, which counts; --lang fr,en is for" in build(
         "--lang", "fr,en", "--out", tmp_path / "two"
     )
@@ -157,3 +157,50 @@ def test_a_list_of_ones_own_keeps_every_column(tmp_path):
     students, notes = read(tmp_path, "student,id,section,email\nAnn,1,A,a@b.c\n")
     assert students[0].columns == {"id": "1", "section": "A", "email": "a@b.c"}
     assert notes == []
+
+
+# --------------------------------------------------------------- as registrars' offices export them
+
+OFFICES = {
+    "N° étudiant;Nom de naissance;Nom d'usage;Prénom;Adresse mail institutionnelle\n"
+    "22301;Lefèvre;;Loïc;l.lefevre@etu.example.fr\n22302;Roux;Martin;Zoé;z.martin@etu.example.fr\n",
+    "Liste des étudiants;;;;\nMécanique 2A, groupe B;;;;\n\n"
+    "Code étudiant;Nom de naissance;Nom d'usage;Prénom;Courriel\n"
+    "22301;Lefèvre;;Loïc;l.lefevre@etu.example.fr\n22302;Roux;Martin;Zoé;z.martin@etu.example.fr\n",
+    "NUM_ETUDIANT,NOM_USUEL,PRENOM,E-MAIL INSTITUTIONNEL\n"
+    "22301,Lefèvre,Loïc,l.lefevre@etu.example.fr\n22302,Martin,Zoé,z.martin@etu.example.fr\n",
+}
+
+
+@pytest.mark.parametrize("content", sorted(OFFICES))
+def test_lists_of_french_registrars_are_read_as_they_come(tmp_path, content):
+    students, notes = read(tmp_path, content)
+    assert [s.name for s in students] == ["Lefèvre Loïc", "Martin Zoé"]
+    assert [s.who for s in students] == ["22301", "22302"]
+    assert [note for note in notes if "above the heading" not in note] == []
+
+
+def test_namesakes_are_told_apart_by_a_french_number(tmp_path):
+    students, _ = read(tmp_path, "Nom,Prénom,N° étudiant\nDurand,Paul,7\nDurand,Paul,8\n")
+    assert [s.name for s in students] == ["Durand Paul (7)", "Durand Paul (8)"]
+
+
+def test_columns_that_no_title_explains_can_be_named_by_place_or_title(tmp_path):
+    path = tmp_path / "class.csv"
+    path.write_text("Machin;Truc;Chose\n12;Roux;Zoé\n13;Roy;Abel\n", "utf-8")
+    with pytest.raises(BadInput, match=r"found 1 Machin, 2 Truc, 3 Chose\..*--columns name=1,first=2"):
+        read_roster(path)
+    for columns in (
+        {"name": "2", "first": "3", "number": "1"},
+        {"name": "truc", "first": "Chose", "number": "1"},
+    ):
+        students = read_roster(path, columns=columns)
+        assert [(s.name, s.who) for s in students] == [("Roux Zoé", "12"), ("Roy Abel", "13")]
+    with pytest.raises(BadInput, match="has no column '4' for first; found 1 Machin, 2 Truc, 3 Chose"):
+        read_roster(path, columns={"name": "1", "first": "4"})
+
+
+def test_columns_named_by_hand_go_before_titles_that_say_otherwise(tmp_path):
+    path = tmp_path / "class.csv"
+    path.write_text("nom,prénom,code\nMécanique,Zoé Roux,12\nMécanique,Abel Roy,13\n", "utf-8")
+    assert [s.name for s in read_roster(path, columns={"name": "2"})] == ["Zoé Roux", "Abel Roy"]

@@ -1,0 +1,50 @@
+"""Names of students as people type them: accents and case may be wrong, and nobody is taken for a namesake."""
+
+import pytest
+
+from coursework.errors import closest
+from coursework.making.students import called, file_stems
+
+CLASS = ("Faure Loïc", "Faure Noémie", "Łukasz Nowak", "Cœur Anaïs", "Ruiz Ana", "Ruíz Ana")
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("Faure Loic", "Faure Loïc"),
+        ("FAURE LOÏC", "Faure Loïc"),
+        ("faure noemie", "Faure Noémie"),
+        ("Lukasz Nowak", "Łukasz Nowak"),
+        ("coeur anais", "Cœur Anaïs"),
+        ("ruíz ana", "Ruíz Ana"),
+        ("ruiz ana", "Ruiz Ana"),
+        ("RUÌZ ANA", None),
+        ("Faure", None),
+        ("Faure Lucie", None),
+    ],
+)
+def test_a_name_is_found_whatever_its_case_and_accents_unless_two_have_it(typed, meant):
+    assert called(typed, CLASS) == meant
+
+
+@pytest.mark.parametrize(
+    ("typed", "known", "offered"),
+    [
+        ("Faure Loic", CLASS, "Faure Loïc"),
+        ("Faure Loic", ["Faure Noémie", "Favre Luc"], None),
+        ("Li Wie", ["Li Wei", "Li Na"], "Li Wei"),
+        ("four_bar_postion", ["four_bar_position", "four_bar_motion"], "four_bar_position"),
+        ("THETA4", ["theta4", "theta3"], "theta4"),
+        ("zzz", ["theta4", "theta3"], None),
+    ],
+)
+def test_a_suggestion_is_made_only_where_it_is_near(typed, known, offered):
+    assert closest(typed, known) == offered
+
+
+def test_file_names_spell_letters_that_are_not_ascii():
+    assert file_stems(["Cœur Łukasz", "Ægir Straße", "Øyvind Đorđe"]) == [
+        "coeur-lukasz",
+        "aegir-strasse",
+        "oyvind-dorde",
+    ]
