@@ -27,7 +27,7 @@ KNOWN = ("both", "direction", "length", "neither")
 
 def known(quantity):
     """What is known of a vector before it is drawn: a row of the table."""
-    return Part(quantity, kind="choice", choices=KNOWN, ordered=True)
+    return Part(quantity, kind="choice", choices=KNOWN)
 
 
 def of_drawing(quantity, unit="mm", kind="number", points=1):

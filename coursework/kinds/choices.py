@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated, Tick
-from coursework.kinds.ticks import by_letters, lettered_ticks
+from coursework.kinds.ticks import by_letters, lettered_ticks, share_of_named
 from coursework.reading.reading import Reading
 from coursework.reading.several import read_choices
 
@@ -56,11 +56,7 @@ class Choices(Kind):
         return 0.0 if cases_of(value) == cases_of(reference) else math.inf
 
     def share(self, part: Stated, value: Any, reference: Any) -> float:
-        """Each right case gives its share, each wrong one takes as much away; 0 at least."""
-        right, named = cases_of(reference), cases_of(value)
-        if not right:
-            return 0.0
-        return max(0.0, (len(named & right) - len(named - right)) / len(right))
+        return share_of_named(cases_of(value), cases_of(reference), len(part.choices))
 
     def others(self, part: Stated, value: Any, half_width: float) -> tuple[Any, ...]:
         return (" ".join(sorted(cases_of(value) ^ {part.choices[0]})) or "none",)

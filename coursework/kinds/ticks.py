@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 
 from coursework.kinds.kind import Asking, Stated, Tick
 
@@ -17,3 +17,15 @@ def by_letters(found: Sequence[str], part: Stated, asking: Asking) -> str:
     """Ticked cases as students write them: by their letters, or by name where the sheet prints none."""
     letters = asking.letters(part)
     return ", ".join(letters.get(case, case) for case in found)
+
+
+def share_of_named(named: Set[str], right: Set[str], count: int) -> float:
+    """Return the share of the points that ``named`` cases earn, of ``count`` cases of which some are ``right``.
+
+    Each right case earns its share. Each wrong one costs as much, and so much at least that naming all cases earns nothing.
+    The share is never below 0.
+    """
+    if not right:
+        return 0.0
+    cost = max(1 / len(right), 1 / max(1, count - len(right)))
+    return max(0.0, len(named & right) / len(right) - cost * len(named - right))

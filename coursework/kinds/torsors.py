@@ -14,6 +14,7 @@ import numpy as np
 
 from coursework.kinds.kind import Asking, Kind, Spelling, Stated, Tick
 from coursework.kinds.nearness import in_half_widths, offset
+from coursework.kinds.ticks import share_of_named
 from coursework.language.numbers import significant
 from coursework.reading.reading import Reading
 from coursework.reading.torsors import Form, component_place, read_pattern, read_torsor
@@ -230,9 +231,7 @@ class Pattern(Kind):
         return 0.0 if self.components(value) == self.components(reference) else math.inf
 
     def share(self, part: Stated, value: Any, reference: Any) -> float:
-        """Each component that may differ from 0 gives its share, each that may not takes as much away; 0 at least."""
-        right, named = self.components(reference), self.components(value)
-        return max(0.0, (len(named & right) - len(named - right)) / len(right)) if right else 0.0
+        return share_of_named(self.components(value), self.components(reference), len(self.form.names))
 
     def slips(self, part: Stated, value: Any, reference: Any, numbers: Mapping[str, float]) -> Iterator[str]:
         right, named = self.components(reference), self.components(value)

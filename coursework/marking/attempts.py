@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ THINGS = 2  #: different things that a measured number is written for, before it
 FEW = 4  #: answers at least of which something can be told
 DIFFERENT = 3  #: things at least that a copied number is written for
 MOST = 0.75  #: of the answers
+GUESSED = 3  #: counts and cases at least that are wrong, and more than are right, where they are guessed
 
 
 @dataclass(frozen=True)
@@ -30,12 +31,49 @@ class Sheet:
 
     everywhere: frozenset[float] = frozenset()  #: numbers that are written for several different things
     has_work: bool = True  #: most answers copy no one number, no questions' numbers, nothing given
+    is_guessed: bool = False  #: most counts and cases that follow from no other are wrong
 
 
 def sheet_of(
     parts: Mapping[str, Part], readings: Mapping[str, Reading], known: Mapping[str, str], key: Key
 ) -> Sheet:
-    """What the numbers of a sheet show, those ``known`` to be right among them."""
+    """What the answers of a sheet show, those ``known`` to be right among them."""
+    return replace(
+        _numbers_of(parts, readings, known, key), is_guessed=_is_guessed(parts, readings, known, key)
+    )
+
+
+def _is_guessed(
+    parts: Mapping[str, Part], readings: Mapping[str, Reading], known: Mapping[str, str], key: Key
+) -> bool:
+    """Whether most counts and cases that follow from no other are wrong, and several are: guesses agree with guesses."""
+    exact = {i: p for i, p in parts.items() if p.sort.is_exact and p.sort.is_followed and not p.sort.is_open}
+    wrong = [
+        part
+        for i, part in exact.items()
+        if i not in known and readings[i].status == "read" and _is_wrong(part, readings[i], key)
+    ]
+    if len(wrong) < GUESSED:
+        return False
+    quantities = {part.quantity for part in exact.values()}
+    above = {q: key.solution.depending_on(q) for q in quantities}
+    first = {q for q in quantities if not any(q in above[other] for other in quantities - {q})}
+    lost = sum(part.quantity in first for part in wrong)
+    answered = sum(
+        p.quantity in first and (i in known or readings[i].status == "read") for i, p in exact.items()
+    )
+    return lost >= GUESSED and 2 * lost > answered
+
+
+def _is_wrong(part: Part, reading: Reading, key: Key) -> bool:
+    reference = key.reference[part.quantity]
+    return all(part.sort.distance(part, value, reference) > 1 for value in reading.values)
+
+
+def _numbers_of(
+    parts: Mapping[str, Part], readings: Mapping[str, Reading], known: Mapping[str, str], key: Key
+) -> Sheet:
+    """What the numbers of a sheet show."""
     answers: list[tuple[int, Part, float]] = []
     for number, (i, part) in enumerate(parts.items(), start=1):
         if not part.sort.is_scalar or part.sort.is_open:

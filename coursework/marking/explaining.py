@@ -194,7 +194,7 @@ def _explanations(
     quantity = judged_by.quantity
     width = key.envelope.get(quantity, 0.0)
     reference = key.reference[quantity]
-    if part.sort.follows and before.wrong:
+    if part.sort.follows and before.wrong and not (part.sort.is_exact and before.sheet.is_guessed):
         expected = key.followed(judged_by, before.own, before.wrong)
         room = width
         if part.sort.is_number:  # rounding on the way, and that of the answer itself

@@ -27,9 +27,10 @@ import numpy as np
 from coursework.errors import BadCourse, CourseworkError
 from coursework.marking.judges import Verdict
 from coursework.quantities.loops import Fault, Loop
-from coursework.reading.equations import Equation, parse_equation
+from coursework.reading.equations import Equation, parse_equation, value_or_nan
 from coursework.reading.equivalence import same_equation
 from coursework.reading.reading import Reading
+from coursework.reading.trees import Expression, Operation
 from coursework.solution import Judged
 
 if TYPE_CHECKING:
@@ -173,7 +174,9 @@ class LoopJudge:
     def _found(self, equation: Equation) -> Finding:
         usual, as_told = (self._near, self._steps), self._in_degrees
         found = self._as_it_stands(equation, *usual)
-        if found.rank or found.fault:
+        if found.rank:
+            return Finding(0, fault="wrapped") if self._is_wrapped(equation) else found
+        if found.fault:
             return found
         # Symbols of angles may stand for numbers of degrees, as the data print them.
         read = equation.in_degrees()
@@ -211,6 +214,27 @@ class LoopJudge:
         rows = np.stack([newest.real, newest.imag], axis=1)
         rank = _rank(rows)
         return Finding(rank, rows) if rank else Finding(0, fault="not_derived")
+
+    def _is_wrapped(self, equation: Equation) -> bool:
+        """Return whether a function is put about the whole of a right equation: ``exp(l - r) = 1``, ``atan(l) = atan(r)``.
+
+        Whoever takes the function off has the equation itself. So does no angle that is solved for, nor a complex form.
+        """
+        left, right = equation.left.root, equation.right.root
+        inner = []
+        if left.kind == right.kind == "call" and left.name == right.name:
+            inner.append((left.args[0], right.args[0]))
+        for node in (*left.walk(), *right.walk()):
+            if node.kind not in ("call", "power"):
+                continue
+            for inside in (arg for arg in node.args if not arg.constant):
+                value = value_or_nan(Expression(equation.text, inside), self._poses.values)
+                at_first = complex(np.ravel(value)[0]).real
+                inner.append((inside, Operation("number", repr(at_first))))
+        sides = ((Expression(equation.text, a), Expression(equation.text, b)) for a, b in inner)
+        return any(
+            self._as_it_stands(Equation(equation.text, a, b), self._near, self._steps).rank for a, b in sides
+        )
 
     def holds_with_numbers(self, equation: Equation, variant: Variant) -> bool:
         """Whether an equation holds for one variant alone: its numbers stand in place of their symbols."""

@@ -17,6 +17,7 @@ from coursework.reading.spelling import shorten, unwrapped
 Choices = Mapping[str, Sequence[str]]  #: labels by key
 Letters = Mapping[str, str]  #: letters by key, in the order printed
 
+_ASKS = re.compile(r"[?\uff1f]")  #: who asks, ``hinge?``, has not answered: a person looks
 _WHOLE = re.compile(r"^\s*([0-9]+)[.,]0+\s*$")  #: what a table makes of a whole number
 
 
@@ -38,6 +39,8 @@ def read_choice(text: Any, choices: Choices, letters: Letters = MappingProxyType
 
 def _choice(text: str, choices: Choices, letters: Letters) -> Reading:
     text = _WHOLE.sub(r"\1", unwrapped(text))
+    if _ASKS.search(text):
+        raise Stop("not_a_choice", text)
     keys = _on_lettered(text, choices, letters) if letters else in_words(text, choices)
     if len(keys) != 1:
         raise Stop("two_values" if keys else "not_a_choice", text)

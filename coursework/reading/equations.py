@@ -63,12 +63,12 @@ class Equation:
     def without_inverse(self) -> Equation | None:
         """An angle that stands alone beside an inverse function, undone: ``x = atan(f)`` as ``tan(x) = f``.
 
-        None where neither side is an inverse function. Angles that differ by what the function cannot tell satisfy it too.
+        None where neither side is an inverse function, or no symbol stands beside it: ``atan(f) = 0``. Angles that differ by what the function cannot tell satisfy it too.
         """
         for side, other in ((self.left.root, self.right.root), (self.right.root, self.left.root)):
             if side.kind == "neg":
                 side, other = side.args[0], Operation("neg", args=(other,))
-            if side.kind == "call" and side.name in INVERSE:
+            if side.kind == "call" and side.name in INVERSE and not other.constant:
                 function = Operation("call", _UNDOES[side.name], (other,))
                 argument = side.args[0] if len(side.args) == 1 else Operation("product", "*/", side.args)
                 return Equation(self.text, Expression(self.text, function), Expression(self.text, argument))

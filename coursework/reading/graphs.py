@@ -13,6 +13,7 @@ from coursework.reading.spelling import shorten, unwrapped
 
 _MOST = 4000  #: characters of an answer
 _MOST_JOINTS = 60
+_WORD = 3  #: letters of what may be a word of a sentence, ``idem que``, or a unit, ``rad/s``
 LETTER_OF = {"revolute": "R", "prismatic": "P", "higher": "H"}  #: as on the drawn graph
 
 
@@ -85,9 +86,27 @@ def read_graph(answer: Any, reference: Graph, *, named: bool = True) -> Reading:
     try:
         tokens = [*tokens_of(plain(unwrapped(answer)), frozenset(bodies_of(reference)), named)]
         values = tuple(map(_graph, _ways(_framed(tokens, reference, named))))
+        _refuse_strangers(values, reference, named, tokens)
     except Stop as stop:
         return Reading(answer, "unreadable", code=stop.code, found=shorten(stop.found))
     return Reading(answer, "read", values, tuple(map(spelled, values)))
+
+
+def _refuse_strangers(
+    values: Sequence[Graph], reference: Graph, named: bool, tokens: Sequence[Token]
+) -> None:
+    """Refuse a graph that speaks of none of the mechanism's bodies, ``rad/s``, or of one joint without its kind: ``p. 12``.
+
+    Where bodies have no names, words are bodies if something links them: ``not a slider either`` is a sentence.
+    """
+    known = {*bodies_of(reference), FRAME}
+    has_kind = any(token.sort == "kind" and (len(token.text) > 1 or token.text.isupper()) for token in tokens)
+    is_linked = has_kind and any(token.sort == "link" for token in tokens)
+    for graph in values:
+        bodies = bodies_of(graph)
+        is_known = not known.isdisjoint(bodies) if named else is_linked or all(len(b) < _WORD for b in bodies)
+        if not is_known or (len(graph) == 1 and not has_kind):
+            raise Stop("no_joint", spelled(graph))
 
 
 def _as_text(answer: Any) -> str:

@@ -217,7 +217,10 @@ _MARKED = re.compile(r"[(\[]?\s*(?P<mark>[a-z]|[0-9]{1,2})\s*(?:[)\]:]|\.(?![0-9
 def in_words(text: str, choices: Mapping[str, Sequence[str]]) -> list[str]:
     """The choices that a text may mean, whatever letters a sheet prints; a mark before a label counts where it is a number."""
     keys = by_label(text, choices)
-    if not keys and (marked := _MARKED.fullmatch(text.strip())):  # b) crossed
+    marked = None if keys else _MARKED.fullmatch(text.strip())
+    if marked and (
+        marked["mark"].isdigit() or len(marked["label"].strip(" .")) > 1
+    ):  # b) crossed, and not n.a.
         called = _called(marked["label"], choices)
         keys = list(dict.fromkeys((*called, *_by_number(marked["mark"], choices)))) if called else []
     return keys or _called(text, choices)

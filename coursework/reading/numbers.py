@@ -63,6 +63,8 @@ def without_name(text: str) -> str:
     if named := NAME.match(text):
         if says_value(named[0]):
             raise Stop("two_values", text)
+        if _ELSEWHERE.search(named[0]):
+            raise Stop("not_a_number", text)
         text = text[named.end() :]
     text = _ABOUT.sub("", text, count=1) if _ABOUT.match(text) else text
     return text.rstrip(" .;,!")
@@ -73,6 +75,14 @@ _NO_NAME = re.compile(
     r"|(?<![\w_^{(])[+-]?\s*(?:[0-9]+[.,][0-9]|[0-9]{3,}|[.,][0-9]|0(?![0-9]))|(?<![\w\s])\s*[+-]\s*[0-9]",
     re.I,
 )  #: what is no name of a quantity: another number (an index is none), or what is said against one
+
+
+#: What refers to another place, or speaks of the sheet and not of a quantity: ``see question: 3``, ``page: 2``, ``mark: 0``.
+_ELSEWHERE = re.compile(
+    r"(?<![^\W\d_])(?:voir|vois|see|cf|idem|ditto|same|m[eê]mes?|pareil|comme|like|page|pages|pp|note|mark|marks|grade|score|points?"
+    r"|temps restant|time left)(?![^\W\d_])(?!\s+[A-Z]\b)",
+    re.I,
+)
 
 
 def says_value(name: str) -> bool:
@@ -245,6 +255,8 @@ def read_amounts(text: str, target: Unit, thousands: bool = True, proportions: b
     """All honest readings of one number, the likelier first."""
     text = without_name(text)
     text = _PRINTED.sub(r"\1", text) if "(" in text else text
+    if _PAIR.fullmatch(text):
+        raise Stop("two_values", text)
     text = _inside(text) or text
     if not text:
         raise Stop("not_a_number", text)
@@ -261,6 +273,11 @@ def read_amounts(text: str, target: Unit, thousands: bool = True, proportions: b
 
 _PROPORTION = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*:\s*([0-9]+(?:[.,][0-9]+)?)")  #: ``1.25:1``
 RATIO = parse_unit("1").dimension
+
+
+_PAIR = re.compile(
+    r"[(\[{]\s*[+-]?[0-9]+\s*,\s*0+\s*[)\]}]"
+)  #: ``(0,0)`` is a point; who writes 0 writes no bracket and comma
 
 
 def _worked_out(text: str, target: Unit, *, per_one: bool = False) -> list[Amount]:
@@ -334,6 +351,7 @@ def _inside(text: str) -> str:
 
 _CHECKED = re.compile(r"([^(=≈]*[^\s(=≈+*/^-])\s+(\(.*\))\s*([^()=≈]*)", re.DOTALL)
 _ROUND = str.maketrans("[]{}", "()()")
+_NOUGHT = re.compile(r"\s*[+-]?0+(?:[.,]0*)?\s*")
 _EQUALS = re.compile(r"\s*[=≈]+\s*")
 
 
@@ -350,6 +368,10 @@ def _written_twice(text: str, target: Unit, thousands: bool) -> list[Amount] | N
     pieces = _EQUALS.split(text)
     if len(pieces) != 2 or not all(pieces):
         return None
+    if pieces[0] == pieces[1] and _NOUGHT.fullmatch(
+        pieces[0]
+    ):  # 0 = 0 holds whatever is asked: it states nothing
+        raise Stop("not_a_number", text)
     other, end = (_way(piece, target, thousands) for piece in pieces)
     if not (amounts := _agreeing(end, other, target)):
         raise Stop("two_values", text)

@@ -33,11 +33,17 @@ def read_choices(answer: Any, choices: Mapping[str, Sequence[str]]) -> Reading:
         return Reading(text, "missing")
     if len(text) > _MOST:
         return Reading(text, "unreadable", code="too_long", found=shorten(text))
-    found = _keys(unwrapped(text), choices)
+    found = _keys(_squeezed(unwrapped(text)), choices)
     if isinstance(found, str):
         return Reading(text, "unreadable", code="not_a_choice", found=shorten(found))
     order = [key for key in choices if key in found]
     return Reading(text, "read", (frozenset(found),), (", ".join(order) or _none_words()[0],))
+
+
+def _squeezed(text: str) -> str:
+    """The text without blank lines, and one space for several: patterns would try each of them."""
+    lines = (" ".join(line.split()) for line in text.splitlines())
+    return "\n".join(line for line in lines if line)
 
 
 def _keys(text: str, choices: Mapping[str, Sequence[str]]) -> frozenset[str] | str:
@@ -75,11 +81,11 @@ def _none_words() -> tuple[str, ...]:
 
 def _split(text: str, choices: Mapping[str, Sequence[str]]) -> frozenset[str] | str:
     """The cases of a text, whose labels may themselves hold commas: the longest piece that is one is taken."""
-    whole = read_choice(text.strip(" \"'."), choices)
-    if whole.status == "read":
+    whole = read_choice(text.strip(" \"'."), choices) if len(text) <= _longest(choices) else None
+    if whole is not None and whole.status == "read":
         return frozenset(whole.values)
     ends = [(m.start(), m.end()) for m in _SEPARATOR.finditer(text)][:_MOST_PIECES]
-    if not ends and set(tokens := text.split()) <= set(choices):
+    if not ends and (tokens := text.split()) and set(tokens) <= set(choices):
         return frozenset(tokens)
     found: set[str] = set()
     start = 0
@@ -87,18 +93,25 @@ def _split(text: str, choices: Mapping[str, Sequence[str]]) -> frozenset[str] | 
         if piece is None:
             return text[start:].strip() or text
         found |= {piece} if piece else set()
-    return frozenset(found)
+    return frozenset(found) or text  # punctuation alone names no case, and does not say that there is none
+
+
+def _longest(choices: Mapping[str, Sequence[str]]) -> int:
+    """Characters of the longest piece that may name a case, a remark behind it."""
+    return 4 * max((len(name) for key, labels in choices.items() for name in (key, *labels)), default=0) + 200
 
 
 def _pieces(
     text: str, ends: Sequence[tuple[int, int]], choices: Mapping[str, Sequence[str]]
 ) -> Iterator[tuple[str | None, int]]:
     """The keys of a text from left to right, each with where it starts; None where a piece is no case."""
-    start = 0
+    start, longest = 0, _longest(choices)
     while start < len(text):
         cuts = [(len(text), len(text)), *((a, b) for a, b in reversed(ends) if a >= start)]
         for end, after in cuts:
             piece = text[start:end].strip(" \"'.")
+            if len(piece) > longest:
+                continue
             reading = read_choice(piece, choices) if piece else None
             if reading is None:
                 yield "", start

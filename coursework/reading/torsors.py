@@ -46,7 +46,9 @@ WRENCH = Form(
     (0, 1, 5),
     re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*[rf]", re.I),
     re.compile(r"\s*(?:vec|overrightarrow|\{|\s)*m", re.I),
-    re.compile(r"(?P<name>[XYZLMN])(?:_?\d\w*|_[A-Z]\w?)?(?:[,/]\d+)*'?|(?P<half>[FRM])_?(?P<axis>[xyz])\w*"),
+    re.compile(
+        r"(?P<name>[XYZLMN])(?:_?\d\w*|_[A-Z]\w?)?(?:[,/]\d+)*'?|(?P<half>[FRM])_?(?P<axis>[xyz])(?:_?\d\w*|_[A-Z]\w?)?(?:[,/]\d+)*'?"
+    ),
 )
 
 
@@ -81,8 +83,9 @@ def read_torsor(answer: Any, form: Form, units: tuple[str, str], count: int) -> 
 def read_pattern(answer: Any, form: Form) -> Reading:
     """The components that an answer says may differ from zero: a ``frozenset`` of names of ``form``.
 
-    A table as that of :func:`read_torsor`, with 0 where nothing can be and anything else where something may:
-    a symbol, ``*``, 1; a dash stands where a plane torsor says nothing. Or the names alone, ``wz, vx``; ``0`` for none.
+    A table as that of :func:`read_torsor`, with 0 where nothing can be and a symbol, ``*``, a number or ``free`` where something
+    may; a dash stands where a plane torsor says nothing. Or the names alone, ``wz, vx``; ``0`` for none. Other words are not read,
+    nor are symbols in a row that neither brackets nor a 0 make a table.
     """
 
     def read(text: str) -> Reading:
@@ -120,6 +123,8 @@ def _as_text(answer: Any) -> str:
         return ", ".join(sorted(map(text_of, answer))) or "0"
     if isinstance(answer, Mapping):
         return "; ".join(f"{text_of(name)} = {_as_text(value)}" for name, value in answer.items())
+    if isinstance(answer, (list, tuple)) and not answer:
+        return "{ }"
     if isinstance(answer, (list, tuple)):
         return "[" + " ; ".join(map(_as_text, answer[:_MOST])) + "]"
     return answer if isinstance(answer, str) else text_of(answer)
@@ -381,19 +386,27 @@ def _echo(columns: Sequence[Reading | None], which: int, order: Sequence[int]) -
 
 # ---------------------------------------------------------------------- patterns
 
+_GREEK = "alpha|beta|gamma|delta|epsilon|zeta|eta|theta|iota|kappa|lambda|mu|nu|xi|omicron|pi|rho|sigma|tau|upsilon|phi|chi|psi|o?mega"
 _NONE = re.compile(
     r"0|∅|(?:none|nothing|zero|null?|nulle?|aucune?|rien|z[ée]ro|tout(?:es)?\s+nulle?s)\.?",
     re.I,
 )
 _ZERO = re.compile(r"[+-]?0+(?:[.,]0*)?|(?:zero|z[ée]ro|nulle?|null|nil|none|no|non)", re.I)
-_MARK = re.compile(r"[+-]?\\?[^\W_][\w\\{},'/=.]{0,20}|[*?≠]{1,2}0?", re.I)  #: a symbol, a number, a star
+_FREE = re.compile(
+    r"libres?|free|oui|yes|variables?|quelconques?|any|inconnue?s?|unknown|non[- ]?nulle?s?|non[- ]?zero",
+    re.I,
+)  #: words in a cell for what may differ from zero
+_MARK = re.compile(r"[+-]?\\?[^\W_][\w\\{},'/=.*]{0,20}|[*?≠]{1,2}0?", re.I)  #: a symbol, a number, a star
+_LETTERS = re.compile(r"[^\W\d_]+")
+_SYMBOL = re.compile(rf"(?:[a-z]|{_GREEK})[xyz]?", re.I)
+_TABLE = re.compile(r"[\[({;|\n&]|\\\\")  #: what makes a table of cells
 _DASHES = ("", "-", "--", ".", "/")
 
 
 def _named_components(text: str, form: Form) -> set[str] | None:
     """The components of a list of names alone; nothing where it is something else."""
     plain = tidy(unwrapped(text)).strip().strip("{}[]()$.").strip()
-    if _NONE.fullmatch(plain) or (not plain and re.fullmatch(r"\\?\{\s*\\?\}|\[\s*\]|\(\s*\)", text.strip())):
+    if _NONE.fullmatch(plain) or (not plain and re.fullmatch(r"\\?\{\s*\\?\}", text.strip())):
         return set()
     if not plain:
         return None
@@ -411,17 +424,34 @@ def _marked(text: str, form: Form) -> set[str]:
         (cells, behind), plane = _cells(text, form, plane=True, symbols=True), True
     if behind:
         raise Stop("wrong_torsor", text)
-    found = set()
-    for place, cell in enumerate(cells):
-        kept = None if cell is None else cell.strip(" ()[]{}")
-        dashed = kept in _DASHES
-        if dashed and not plane and not _dashed_as_plane(cells, form):
-            raise Stop("wrong_torsor", text)
-        if kept and not dashed and not _MARK.fullmatch(kept):
-            raise Stop("wrong_torsor", text)
-        if kept is not None and not dashed and not _ZERO.fullmatch(kept):
-            found.add(form.names[place])
-    return found
+    told = [None if cell is None else cell.strip(" ()[]{}") for cell in cells]
+    is_table = bool(_TABLE.search(text))
+    has_dashes = any(cell in _DASHES for cell in told)
+    if has_dashes and not (is_table and (plane or _dashed_as_plane(cells, form))):
+        raise Stop("wrong_torsor", text)
+    written = {form.names[place]: cell for place, cell in enumerate(told) if cell and cell not in _DASHES}
+    marked = {name: cell for name, cell in written.items() if not _ZERO.fullmatch(cell)}
+    has_zero = len(marked) < len(written) or all(
+        component_place(c, form) is not None for c in marked.values()
+    )
+    if not all(map(_is_mark, marked.values())) or not (
+        has_zero or (is_table and len(written) == len(form.names))
+    ):
+        raise Stop("wrong_torsor", text)
+    return set(marked)
+
+
+def _is_mark(cell: str) -> bool:
+    """Whether a cell says that something may stand there: a symbol, a product of some, a number, a star, ``free``."""
+    if _FREE.fullmatch(cell):
+        return True
+    return bool(_MARK.fullmatch(cell)) and all(map(_SYMBOL.fullmatch, _LETTERS.findall(_plain_symbols(cell))))
+
+
+def _plain_symbols(cell: str) -> str:
+    """A cell with its Greek letters spelled, indices and LaTeX's commands of form left out."""
+    cell = re.sub(r"\\(?:mathrm|mathit|text|vec|overrightarrow|dot|cdot|times)(?![A-Za-z])", " ", cell)
+    return re.sub(r"_\{[^{}]*\}|_\w+", " ", spelled_out(cell))
 
 
 def _dashed_as_plane(cells: Sequence[str | None], form: Form) -> bool:

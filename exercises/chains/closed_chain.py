@@ -1,5 +1,7 @@
 """A closed chain of four joints: loops, ranks, mobility and static indeterminacy."""
 
+import numpy as np
+
 from coursework.figures.perspective import in_perspective
 from coursework.model import Exercise, Part
 
@@ -31,6 +33,19 @@ def figure(
     return in_perspective(rows, bodies=((1, 1, 2), (2, 2, 3), (3, 3, 4), (0, 4, 1)), tall=26)
 
 
+def no_body_passes_through_another_joint(x2, y2, z2, x3, y3, z3, x4, y4, z4):
+    """A line between two neighbours would hide the joint that it passes through."""
+    zero = 0 * x2
+    points = [np.stack(p, axis=-1) for p in ((zero, zero, zero), (x2, y2, z2), (x3, y3, z3), (x4, y4, z4))]
+    hidden = np.zeros(np.shape(x2), dtype=bool)
+    for k in range(4):
+        p, q = points[k], points[(k + 1) % 4]
+        for other in (points[(k + 2) % 4], points[(k + 3) % 4]):
+            a, b = other - p, other - q
+            hidden |= np.all(np.cross(a, b) == 0, axis=-1) & (np.sum(a * b, axis=-1) < 0)
+    return ~hidden
+
+
 EXERCISE = Exercise(
     given={
         "joint_1": joint_kind(IN_CHAINS),
@@ -44,21 +59,22 @@ EXERCISE = Exercise(
         **{f"{axis}{k}": coordinate() for k in (2, 3, 4) for axis in "xyz"},
     },
     helpers=(),
-    keep=(),
+    keep=(no_body_passes_through_another_joint,),
     parts=(
-        Part("gamma", kind="integer", points=1),
+        Part("gamma", kind="integer", points=1, by_request=True),  # one loop, always
         Part("Nc", kind="integer", points=1),
-        Part("rc", kind="integer", points=2),
-        Part("m", kind="integer", points=1),
-        Part("Ns", kind="integer", points=1),
-        Part("rs", kind="integer", points=1),
+        Part("rc", kind="integer", points=5),
+        Part("m", kind="integer", points=0.5),
+        Part("Ns", kind="integer", points=0.5),
+        Part("rs", kind="integer", points=0.5),
         Part("h", kind="integer", points=1),
-        Part("i", kind="integer", points=1),
-        Part("m_internal", kind="integer", points=2),
+        Part("i", kind="integer", points=0.5),
+        Part("m_internal", kind="integer", points=1),
         Part("m_useful", kind="integer", points=1),
         Part("statics", kind="choice", choices=("isostatic", "hyperstatic"), points=1),
     ),
     tells=tells,
+    version=2,
     figure=figure,
     symbols={
         **{f"joint_{k}": f"L_{k}" for k in (1, 2, 3, 4)},

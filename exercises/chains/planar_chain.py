@@ -67,7 +67,7 @@ def one_joint_at_most_is_free(
 
 def few_freedoms_in_space(joint_1, joint_2, joint_3, joint_4):
     """With many, a chain is isostatic in space as well, and there is nothing to compare."""
-    return sum(freedoms_of(joint) for joint in (joint_1, joint_2, joint_3, joint_4)) <= 9
+    return sum(freedoms_of(joint) for joint in (joint_1, joint_2, joint_3, joint_4)) <= 8
 
 
 def tells(
@@ -114,7 +114,7 @@ EXERCISE = Exercise(
             for k in (1, 2, 3, 4)
             for name, spec in (
                 (f"joint_{k}", chosen(*(JOINTS if k in (2, 3) else WITH_FRAME), shown=False)),
-                (f"direction_{k}", direction(*(INCLINED if k in (2, 3) else ()))),
+                (f"direction_{k}", direction(*(INCLINED if k == 2 else ()))),
             )
         },
         "x2": drawn(-20, 20, step=20, unit="mm", shown=False),
@@ -127,19 +127,19 @@ EXERCISE = Exercise(
     helpers=(),
     keep=(all_joints_move_in_the_plane, one_joint_at_most_is_free, few_freedoms_in_space),
     parts=(
-        *(Part(f"planar_{k}", kind="choice", choices=PLANAR, ordered=True, points=1) for k in (1, 2, 3, 4)),
-        Part("gamma", kind="integer", points=1),
-        Part("Nc", kind="integer", points=1),
-        Part("rc", kind="integer", points=2),
-        Part("m", kind="integer", points=1),
-        Part("Ns", kind="integer", points=1),
-        Part("rs", kind="integer", points=1),
-        Part("h", kind="integer", points=1),
-        Part("h_space", kind="integer", points=2),
-        Part("comparison", kind="choice", choices=("sound", "hidden", "plane"), points=1),
+        *(Part(f"planar_{k}", kind="choice", choices=PLANAR, points=1) for k in (1, 2, 3, 4)),
+        Part("gamma", kind="integer", points=1, by_request=True),  # one loop, always
+        Part("Nc", kind="integer", points=0.5),
+        Part("rc", kind="integer", points=0.5),
+        Part("m", kind="integer", points=0.5),
+        Part("Ns", kind="integer", points=0.5),
+        Part("rs", kind="integer", points=0.5),
+        Part("h", kind="integer", points=0.5),
+        Part("h_space", kind="integer", points=5),
+        Part("comparison", kind="choice", choices=("sound", "hidden", "plane"), points=2),
     ),
     tells=tells,
-    version=2,
+    version=3,
     figure=figure,
     symbols={
         "Nc": "N_c",

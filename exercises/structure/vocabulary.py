@@ -87,7 +87,7 @@ for _question in BANK:
 EXERCISE = Exercise(
     given={"deck": drawn(1000, 999999, shown=False)},
     parts=tuple(
-        Part(question, kind="choice", choices=tuple(CASES[question]), when=_when(question))
+        Part(question, kind="choice", choices=tuple(CASES[question]), shuffled=True, when=_when(question))
         for question in BANK
     ),
     figure=figure,

@@ -1,5 +1,6 @@
 """Conditions that chains share about their mobility."""
 
+import hashlib
 from functools import cache
 
 import numpy as np
@@ -33,6 +34,19 @@ def mobility_of_loops(senses, joints, directions, points, *, in_plane=False):
         total = total + np.kron(np.outer(sense, sense), moved)
         count = count + (_planar_freedoms() if in_plane else freedoms)[row]
     return count - (np.linalg.eigvalsh(total) > 1e-6).sum(axis=-1)
+
+
+def evenly(*columns):
+    """A number in [0, 1) for each row of columns, spread evenly and the same for ever: by which draws are thinned out."""
+    told = [
+        np.asarray(column).astype(str)
+        if np.asarray(column).dtype.kind in "US"
+        else np.asarray(column, dtype=int).astype(str)
+        for column in np.broadcast_arrays(*columns)
+    ]
+    keys = ("/".join(row).encode() for row in zip(*(column.ravel().tolist() for column in told), strict=True))
+    found = [int.from_bytes(hashlib.shake_128(key).digest(6), "little") / 2**48 for key in keys]
+    return np.array(found).reshape(told[0].shape)
 
 
 @cache

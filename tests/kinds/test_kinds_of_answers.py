@@ -148,17 +148,18 @@ def test_a_matrix_is_judged_entry_by_entry(variant, answer, verdict):
         ("the current lags, it heats, and wears, and it stores energy", "correct", 2),
         ("le courant est en retard et heats et stores", "correct", 2),
         ("lags and heats", "partial", 4 / 3),
-        ("lags, heats, stores, leads", "partial", 4 / 3),
+        ("lags, heats, stores, leads", "wrong", 0),
         ("lags", "partial", 2 / 3),
         ("lags, leads", "wrong", 0),
         ("leads", "wrong", 0),
         ("none", "wrong", 0),
         ("aucune", "wrong", 0),
         ("lags, foo", "unreadable", 0),
+        *((nothing, "unreadable", 0) for nothing in (".", ",", "...", "[]", "[ ]", "+", "n.a.", "lags?")),
         ("", "missing", 0),
     ],
 )
-def test_each_right_choice_gives_its_share_and_each_wrong_one_takes_as_much(variant, answer, verdict, points):
+def test_each_right_choice_gives_its_share_and_all_together_give_nothing(variant, answer, verdict, points):
     mark = variant.grade({"true_of_it": answer})["true_of_it"]
     assert mark.verdict == verdict
     assert mark.points == pytest.approx(points)
@@ -232,7 +233,7 @@ def test_sheets_leave_room_and_say_the_rule(built):
     assert read_choices(re.search(r'value="(none)"> none of them', page)[1], {"a": ("one",)}).values == (
         frozenset(),
     )
-    assert "each wrong one takes as much away" in page
+    assert "each wrong one takes at least as much away" in page
     notebook = next((built / "handouts" / "coil").glob("*.fr.ipynb")).read_text("utf-8")
     assert "Chaque juste cochée donne sa part des points" in notebook
     solution = next((built / "instructor" / "coil").glob("*.en.solution.html")).read_text("utf-8")

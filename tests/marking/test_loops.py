@@ -143,12 +143,23 @@ def test_two_answers_about_a_loop_say_different_things():
 # ------------------------------------------------------------------- what is not right
 
 
+#: A right equation under a function: it holds where the equation does, and is not the equation.
+WRAPPED = tuple(
+    way.format("(r2 sin(θ2) + r3 sin(θ3) - r4 sin(θ4))", "(r2 sin(θ2) + r3 sin(θ3))", "(r4 sin(θ4))")
+    for way in (
+        "atan({0}) = 0", "exp({0}) = 1", "exp({1}) = exp({2})", "sin({0}/r1) = 0", "tan({0}) = 0", "1 + {0} = exp({0})*(1 - {0})",
+        "atan({1}) = atan({2})", "(1 + {0})^3 = 1", "2^{0} = 1", "ln(1 + {0}/r2) = 0", "e^(i*{0}) = 1", "r1*exp({0}) = r1",
+    )
+)  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("name", "part", "text", "told"),
     [
         ("four_bar_positions", "loop_1_x", "r1 = r1", "slip:says_nothing"),
         ("four_bar_positions", "loop_1_x", "cos(theta2)^2 + sin(theta2)^2 = 1", "slip:says_nothing"),
         ("four_bar_positions", "loop_1_y", "(r2 sin θ2 + r3 sin θ3 - r4 sin θ4)^2 = 0", "slip:squared"),
+        ("four_bar_positions", "loop_1_y", "atan(r2 sin θ2 + r3 sin θ3 - r4 sin θ4) = 0", "slip:wrapped"),
         ("four_bar_positions", "loop_1_y", "r2 sin(180/pi*θ2) + r3 sin(180θ3/pi) = r4 sin(180 θ4/pi)", "slip:angle_unit"),
         ("four_bar_motion", "loop_1_y_dot", "r2 sin θ2 + r3 sin θ3 = r4 sin θ4", "slip:not_derived"),
         ("slider_extras", "loop_2_x", "r2*cos(theta2) + r3*cos(theta3) = r6 + r5*cos(theta5)", "slip:other_loop"),
@@ -166,6 +177,11 @@ def test_two_answers_about_a_loop_say_different_things():
 )  # fmt: skip
 def test_what_is_missed_is_told(name, part, text, told):
     assert verdict(name, part, text) == told
+
+
+def test_an_equation_under_a_function_is_not_the_equation():
+    paid = [text for text in WRAPPED if verdict("four_bar_positions", "loop_1_y", text) == "correct"]
+    assert paid == []
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 import pytest
 
 from coursework import open_course
+from coursework.reading import several
 from coursework.reading.graph_tokens import plain
 from coursework.reading.graphs import graph_of, read_graph
 
@@ -20,6 +21,30 @@ def test_a_graph_of_one_piece_over_and_over_is_read_at_once(piece, way):
     """Blank lines alone took hours, and every other request waited; a test that hangs has failed."""
     text = way.format(piece * LONGEST)[:LONGEST]
     assert read_graph(text, GRAPH).status in ("read", "unreadable", "missing")
+
+
+CASES = {"fast": ("runs fast", "va vite"), "stable": ("is stable, and stays so",), "none_of": ("neither",)}
+
+
+def test_several_cases_are_looked_for_in_few_pieces_whatever_the_answer(monkeypatch):
+    """Blank space is none of them: a text of 4000 spaces took 0.3 s."""
+    read, tried = several.read_choice, []
+    monkeypatch.setattr(
+        several, "read_choice", lambda text, choices: tried.append(len(text)) or read(text, choices)
+    )
+    over = {}
+    for piece in (*PIECES, " ", "a, ", "[ ] a\n", ", ", "fast,", "and "):
+        for way in ("{0}", "fast{0}stable", "[x] {0}"):
+            tried.clear()
+            several.read_choices(way.format(piece * LONGEST)[:LONGEST], CASES)
+            if sum(tried) > 100_000:
+                over[way, piece] = sum(tried)
+    assert not over
+
+
+def test_blank_space_between_cases_is_no_more_than_one_space():
+    for blank in (" " * 3000, "\n" * 3000, " \t\n" * 900):
+        assert several.read_choices(f"fast,{blank}stable", CASES).values == (frozenset({"fast", "stable"}),)
 
 
 @pytest.mark.parametrize(

@@ -43,10 +43,8 @@ def in_plane(rows):
 
 
 def test_inclined_joints_are_drawn_and_upright_ones_too():
-    found = [
-        sum(v.given[f"direction_{k}"] in INCLINED for k in (2, 3)) for v in EXERCISE.variants(range(100))
-    ]
-    assert min(found.count(0), found.count(1), found.count(2)) >= 10
+    found = [v.given["direction_2"] in INCLINED for v in EXERCISE.variants(range(100))]
+    assert min(found.count(False), found.count(True)) >= 10
 
 
 def wedge(slope):
@@ -149,7 +147,7 @@ def test_four_bodies_with_inclined_joints_against_whole_numbers():
 
 @pytest.mark.parametrize("block", range(3))
 def test_answers_are_those_of_exact_motions_of_the_bodies(block):
-    for variant in EXERCISE.variants(range(60 * block, 60 * block + 60)):
+    for variant in EXERCISE.variants(range(60 * block, 60 * block + 60), parts=["all"]):
         a, joints = variant.solution(), joints_of(variant.given)
         kinds = [IN_PLANE[name, along] for name, along, _ in joints]
         assert [a[f"planar_{k}"] for k in (1, 2, 3, 4)] == kinds
