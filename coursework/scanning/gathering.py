@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from hashlib import sha256
 from typing import Any, NamedTuple, Protocol, TypeAlias
 
-from coursework.scanning.kept import ANSWERS, LOST, FieldKept, PageKept, Scanned
+from coursework.scanning.kept import ANSWERS, LOST, OTHER_NAME, FieldKept, PageKept, Scanned
 from coursework.scanning.typed import NAME, PAGE, Typed
 
 DIFFERS = "differs"  #: scans of one page say different things
@@ -148,12 +148,12 @@ def gather(
     """What pages say together."""
     found = Gathered()
     by_paper: dict[str, dict[int, dict[str, PageKept]]] = {}
-    lost: set[str] = set()
+    lost: dict[str, str] = {}
     for one in pages:
         if one.page.what == ANSWERS and one.page.code in papers:
             by_paper.setdefault(one.page.code, {}).setdefault(one.page.number, {})[one.id] = one.page
         elif one.page.what == LOST:
-            lost.add(one.id)
+            lost[one.id] = OTHER_NAME if one.page.reason == OTHER_NAME else CODE
     decided = {one.place: one for one in typed}
     used: set[Any] = set()
     for code, paper in papers.items():
@@ -164,7 +164,7 @@ def gather(
             found.missing.append((paper, missing))
         _gather_paper(found, paper, whose, scans, decided, used, parts)
     for name in sorted(lost):
-        found.cards.append(Card("", "", PAGE, 0, name, 1, 1, PAGE, CODE, "", 0.0, (), (name,)))
+        found.cards.append(Card("", "", PAGE, 0, name, 1, 1, PAGE, lost[name], "", 0.0, (), (name,)))
     for card in found.cards:
         for name in card.pages:
             found.waits[name] = found.waits.get(name, 0) + 1

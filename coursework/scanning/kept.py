@@ -6,10 +6,14 @@ whole or not at all.
 
 from __future__ import annotations
 
+import zlib
+from base64 import b64decode, b64encode
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, TypeVar, get_type_hints
+
+import numpy as np
 
 from coursework.errors import BadInput
 from coursework.system.json_files import read_json
@@ -25,6 +29,9 @@ SCALE = 8  #: pixels to the mm of a picture that is kept
 
 #: What a page is.
 ANSWERS, STATEMENT, BLANK, LOST, REFUSED = "answers", "statement", "blank", "lost", "refused"
+
+
+OTHER_NAME = "other name"  #: why a page is lost whose code is of one student, and its printed name of another
 
 
 @dataclass(frozen=True)
@@ -56,6 +63,7 @@ class PageKept:
     is_straight: bool = False  #: its picture is the page laid flat, at :data:`SCALE`
     has_picture: bool = True
     least: float = 0.0  #: the confidence below which it was left to a person
+    look: str = ""  #: how dark the page is, laid flat, by :func:`look_of`; empty where it is not straight
 
 
 @dataclass(frozen=True)
@@ -187,6 +195,52 @@ def joined(before: Iterable[FileKept], now: Iterable[FileKept]) -> list[FileKept
     return [found[key] for key in sorted(found)]
 
 
+# ------------------------------------------------------------------------- copies
+
+_CELL = 20  #: pixels, of a page of 10 to the mm, that are one of its look: a stroke in them shows
+_SAME = 20  #: of 255, by which cells of a copy differ at most
+
+
+def look_of(paper: np.ndarray) -> str:
+    """How dark a page laid flat is, cell by cell, as text: that of a copy is nearly the same, however it was turned."""
+    high, wide = (n // _CELL * _CELL for n in paper.shape)
+    cells = paper[:high, :wide].reshape(high // _CELL, _CELL, wide // _CELL, _CELL).mean(axis=(1, 3))
+    return b64encode(zlib.compress((cells // 4 * 4).astype(np.uint8).tobytes(), 9)).decode()
+
+
+def with_copies(pages: Iterable[Scanned]) -> list[Scanned]:
+    """The pages, of which those are told as copies that look like an earlier one of the same sheet."""
+    met: dict[tuple[str, int], list[tuple[np.ndarray, PageKept]]] = {}
+    found = []
+    for one in pages:
+        cells = _cells(one.page.look)
+        if cells is not None and not one.is_copy:
+            others = met.setdefault((one.page.code, one.page.number), [])
+            if any(_is_alike(cells, o) and _says_the_same(one.page, page) for o, page in others):
+                one = replace(one, is_copy=True)
+            else:
+                others.append((cells, one.page))
+        found.append(one)
+    return found
+
+
+def _is_alike(cells: np.ndarray, others: np.ndarray) -> bool:
+    return cells.shape == others.shape and bool(np.abs(cells - others).max() <= _SAME)
+
+
+def _says_the_same(one: PageKept, other: PageKept) -> bool:
+    """Whether no field of a page is read otherwise on another, where both are sure."""
+    sure = ((a, b) for a, b in zip(one.fields, other.fields, strict=False) if not (a.waits or b.waits))
+    return all(a.text == b.text for a, b in sure)
+
+
+def _cells(look: str) -> np.ndarray | None:
+    try:
+        return np.frombuffer(zlib.decompress(b64decode(look)), np.uint8).astype(np.int16) if look else None
+    except (ValueError, zlib.error):
+        return None
+
+
 @dataclass(frozen=True)
 class Scanned:
     """One page of one file, as it stands in the list of pages."""
@@ -195,7 +249,7 @@ class Scanned:
     number: int  #: in the file; 0 for a file of which no page can be read
     id: str
     page: PageKept
-    is_copy: bool = False  #: a file of the same content was met before
+    is_copy: bool = False  #: a file of the same content, or a page of the same look, was met before
 
 
 def scanned(out: Path, files: Iterable[FileKept]) -> Iterator[Scanned]:

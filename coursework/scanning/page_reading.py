@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,12 +18,14 @@ from coursework.scanning.kept import (
     ANSWERS,
     BLANK,
     LOST,
+    OTHER_NAME,
     REFUSED,
     SCALE,
     STATEMENT,
     FieldKept,
     PageKept,
     crop_of,
+    look_of,
     page_id,
     picture_of,
     put_page,
@@ -72,6 +74,11 @@ class Papers(Mapping[str, Sequence[AnswerPage]]):
         self.course, self.papers = course, answer_papers(issued)
         self._laid_out = lru_cache(_LAID_OUT)(self._pages)
         self.variant = lru_cache(8 * _LAID_OUT)(self._variant)
+
+    @cached_property
+    def students(self) -> tuple[str, ...]:
+        """Who has a paper."""
+        return tuple(sorted({paper.student for paper in self.papers.values() if paper.student}))
 
     def _pages(self, code: str) -> tuple[AnswerPage, ...]:
         paper = self.papers[code]
@@ -147,6 +154,8 @@ def _read(
             picture_of(name): _jpeg(found.grey, _HIGHEST)
         }
     pictures = {picture_of(name): _jpeg(found.grey, round(found.page.height * SCALE))}
+    if _is_of_another(found.grey, found.page, papers, code):
+        return PageKept(LOST, OTHER_NAME, least=least), pictures
     fields = []
     for place, one in enumerate(found.fields):
         crop = ""
@@ -155,7 +164,20 @@ def _read(
             pictures[crop] = _png(one.crop)
         text = _text(one.field, one.text, one.cases, papers, code)
         fields.append(_kept(one.field, text, float(one.confidence), one.waits, crop))
-    return PageKept(ANSWERS, "", code, found.page.number, tuple(fields), True, least=least), pictures
+    look = look_of(found.grey)
+    return PageKept(
+        ANSWERS, "", code, found.page.number, tuple(fields), True, least=least, look=look
+    ), pictures
+
+
+def _is_of_another(grey: np.ndarray, page: AnswerPage, papers: Papers, code: str) -> bool:
+    """Whether another name of the class than that of the paper is printed on a page."""
+    from coursework.scanning.names import other_name
+
+    paper = papers.papers[code]
+    lang = str(paper.records[0].get("lang", "en"))
+    folders = papers.course.folder.template_folders
+    return bool(other_name(grey, page.name, paper.student, papers.students, lang, folders))
 
 
 def _code(text: str) -> str:

@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from coursework.errors import BadInput
 from coursework.system.extras import library
-from coursework.system.limits import MOST_PAGES, beyond
+from coursework.system.limits import LEAST_OF_PAGE, MOST_PAGES, MOST_PAGES_OF_TIFF, beyond
+from coursework.system.processes import Exceeded, Means, confined
 
 #: A page of so many pixels is A4 at 600 dots an inch, and half as much again.
 LARGEST = 52_000_000
@@ -27,6 +28,12 @@ _BESIDE = 4  #: pixels beside a streak where there is none
 _BLACK, _WHITE = 40, 215  #: of 255: what is between is grey
 _STRIPS = 100  #: across the picture, in which a streak is looked for
 _STREAK = 5  #: of 255, by how much a streak is darker at least
+_FEW = 20  #: pages that a file of any size may have
+_MOST_PIECES = (
+    5_000  #: pictures and words of a page that is drawn here; one of more, or of lines, is drawn apart
+)
+_MOST_PICTURES = 8  #: of a page that is drawn here
+_DRAWING = Means(30.0, 1_500_000_000)  #: of a process in which a page is drawn
 _NEEDS = ("reading scans needs", "scan")
 SUFFIXES = (".pdf", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
 
@@ -80,23 +87,54 @@ def _of_pdf(path: Path) -> Iterator[Picture]:
         raise BadPicture(f"{path.name} is no PDF that can be read: {fault}") from fault
     with document:
         for number in range(len(document)):
-            yield Picture(path.name, number + 1, _drawn(pdfium, document, number, path.name))
+            yield Picture(path.name, number + 1, _drawn(pdfium, document, number, path))
 
 
-def _drawn(pdfium: Any, document: Any, number: int, name: str) -> np.ndarray:
+def _drawn(pdfium: Any, document: Any, number: int, path: Path) -> np.ndarray:
     """A page of a PDF, drawn at 300 dots an inch, or at fewer where that would be larger than a page can be."""
     try:
         page = document[number]
         width, height = page.get_width(), page.get_height()
         if not _SMALLEST <= min(width, height) <= max(width, height) <= _WIDEST:
             raise BadPicture(
-                f"page {number + 1} of {name} is {width / 72:.3g} by {height / 72:.3g} inches: no paper is so"
+                f"page {number + 1} of {path.name} is {width / 72:.3g} by {height / 72:.3g} inches: no paper is so"
             )
         scale = min(PDF_DPI / 72, (LARGEST / (width * height)) ** 0.5)
-        drawn = np.array(page.render(scale=scale, grayscale=True, rev_byteorder=False).to_numpy())
-        return drawn.reshape(drawn.shape[:2])
+        if _is_scanned(pdfium, page):
+            return _render(page, scale)
+        drawn: np.ndarray = confined(_DRAWING, _render_apart, path, number, scale)
+        return drawn
+    except Exceeded as fault:
+        raise BadPicture(
+            f"page {number + 1} of {path.name} takes too much {fault.what} to be drawn: print it, and scan it"
+        ) from None
     except pdfium.PdfiumError as fault:
-        raise BadPicture(f"page {number + 1} of {name} cannot be drawn: {fault}") from fault
+        raise BadPicture(f"page {number + 1} of {path.name} cannot be drawn: {fault}") from fault
+
+
+def _render(page: Any, scale: float) -> np.ndarray:
+    drawn = np.array(page.render(scale=scale, grayscale=True, rev_byteorder=False).to_numpy())
+    return drawn.reshape(drawn.shape[:2])
+
+
+def _render_apart(path: Path, number: int, scale: float) -> np.ndarray:
+    with _opened(path) as document:
+        return _render(document[number], scale)
+
+
+def _is_scanned(pdfium: Any, page: Any) -> bool:
+    """Return whether a page is what scanners write: few pictures, of no more dots than a page has, and the words that were
+    found on them. Anything else may take any time to be drawn."""
+    pictures = dots = 0
+    for count, one in enumerate(page.get_objects(max_depth=1)):
+        if one.type == pdfium.raw.FPDF_PAGEOBJ_IMAGE:
+            pictures, dots = pictures + 1, dots + int(np.prod(one.get_px_size()))
+        if (
+            one.type not in (pdfium.raw.FPDF_PAGEOBJ_IMAGE, pdfium.raw.FPDF_PAGEOBJ_TEXT)
+            or count >= _MOST_PIECES
+        ):
+            return False
+    return pictures <= _MOST_PICTURES and dots <= 2 * LARGEST
 
 
 def _of_image(path: Path) -> Iterator[Picture]:
@@ -173,8 +211,15 @@ def page_count(path: Path) -> int:
         It cannot be read, or has more than any scan.
     """
     count = _pages(path)
-    if count > MOST_PAGES:
-        raise BadPicture(f"{path.name}: {beyond('a file', count, MOST_PAGES, 'pages')}")
+    most = MOST_PAGES_OF_TIFF if path.suffix.lower() in (".tif", ".tiff") else MOST_PAGES
+    if count > most:
+        raise BadPicture(f"{path.name}: {beyond('a file', count, most, 'pages')}")
+    size = path.stat().st_size
+    if count > _FEW and size < count * LEAST_OF_PAGE:
+        raise BadPicture(
+            f"{path.name} has {count:,} pages in {size:,} bytes: no scan is so small; scan the sheets, or name the file that "
+            "the scanner wrote"
+        )
     return count
 
 
@@ -196,9 +241,7 @@ def picture_at(path: Path, number: int) -> Picture:
     if path.suffix.lower() != ".pdf":
         return Picture(path.name, number, _decoded(opencv(), path, number - 1))
     with _opened(path) as document:
-        return Picture(
-            path.name, number, _drawn(library("pypdfium2", *_NEEDS), document, number - 1, path.name)
-        )
+        return Picture(path.name, number, _drawn(library("pypdfium2", *_NEEDS), document, number - 1, path))
 
 
 def _opened(path: Path) -> Any:

@@ -40,6 +40,7 @@ from coursework.scanning.kept import (
     put_files,
     put_page,
     scanned,
+    with_copies,
 )
 from coursework.scanning.page_reading import Desk, Pages, Papers, count_pages, cut, read_pages, typed_page
 from coursework.scanning.parts import Joins
@@ -134,7 +135,7 @@ def scan(
     put_files(out, everything)
     if stands:
         write_whole(kept, typed_file(stands))
-    book = write_read(papers, list(scanned(out, everything)), stands, out, spreadsheet, least)
+    book = write_read(papers, with_copies(scanned(out, everything)), stands, out, spreadsheet, least)
     book.read_now = read_now
     return book
 

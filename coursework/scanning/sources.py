@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from coursework.errors import BadInput
+from coursework.system.links import LEADS_OUT, LeadsOut, open_inside, walked
 from coursework.system.unzipping import Limits, is_zip, unpack
 
 ENDINGS = (".pdf", ".png", ".jpg", ".jpeg", ".tif", ".tiff")
@@ -46,10 +47,14 @@ def _of(path: Path, unpacked: Path) -> Iterator[Scan]:
     if not path.is_dir():
         yield from _file(path, _text(path.name), unpacked)
         return
-    files = sorted(p for p in path.rglob("*") if p.is_file() and not _is_hidden(p, path))
+    found = walked(path)
+    files = [file for file in found.files if not _is_hidden(file, path)]
+    refused = [link for link in found.refused if not _is_hidden(link, path)]
     for file in files:
-        yield from _file(file, _text(file.relative_to(path).as_posix()), unpacked)
-    if not files:
+        yield from _file(file, _text(file.relative_to(path).as_posix()), unpacked, path)
+    for link in refused:
+        yield _refused(_text(link.relative_to(path).as_posix()), link, LEADS_OUT)
+    if not files and not refused:
         yield _refused(_text(path.name), path, "the folder holds no file")
 
 
@@ -62,15 +67,16 @@ def _text(name: str) -> str:
     return "".join(c if c.isprintable() else "\ufffd" for c in os.fsencode(name).decode("utf-8", "replace"))
 
 
-def _file(path: Path, name: str, unpacked: Path) -> Iterator[Scan]:
+def _file(path: Path, name: str, unpacked: Path, folder: Path | None = None) -> Iterator[Scan]:
     try:
-        size = path.stat().st_size
-        with path.open("rb") as data:
+        with path.open("rb") if folder is None else open_inside(path, folder) as data:
+            size = os.fstat(data.fileno()).st_size
             head = data.read(4)
             data.seek(0)
             digest = hashlib.file_digest(data, "sha256").hexdigest()[:_KEPT] if size <= MAX_BYTES else ""
     except OSError as fault:
-        yield _refused(name, path, f"cannot be read: {fault.strerror}")
+        why = LEADS_OUT if isinstance(fault, LeadsOut) else f"cannot be read: {fault.strerror}"
+        yield _refused(name, path, why)
         return
     ending = path.suffix.lower()
     if not size:

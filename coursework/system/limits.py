@@ -14,7 +14,9 @@ MOST_TABLE_BYTES = 200_000_000  #: of a roster, of answers accepted, of what was
 MOST_ROWS = 2_000_000  #: of one file of answers
 MOST_COLUMNS = 5_000  #: of one table
 MOST_CELL = 100_000  #: characters of one answer in a Parquet file
-MOST_PAGES = 20_000  #: of one file of a scan
+MOST_PAGES = 5_000  #: of one file of a scan
+MOST_PAGES_OF_TIFF = 500  #: of one TIFF, in which each page is looked for from the first on
+LEAST_OF_PAGE = 500  #: bytes of a file of a scan for each of its pages, where it has more than a few
 MOST_UNPACKED = 500_000_000  #: bytes of a Parquet file, unpacked
 
 # ----------------------------------------------------------------------------- asked

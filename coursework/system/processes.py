@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import multiprocessing
 import os
 import pickle
@@ -15,6 +16,7 @@ from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol, TypeAlias
@@ -29,6 +31,12 @@ Submit: TypeAlias = Callable[..., Future[Any]]
 _LAST = 19  #: the niceness of what others go before
 _MOST = 61  #: processes that some systems can wait for
 _PATIENCE = 3.0  #: seconds for processes to put away what they have begun
+_LOOK = 0.3  #: seconds between two looks at a process that is kept
+_AGAIN, _LONGEST = (
+    0.5,
+    30.0,
+)  #: seconds before one that ended is begun again, the more often it ended the more
+_STEADY = 10.0  #: seconds after which one that runs is taken for sound
 
 
 class Lost(CourseworkError, RuntimeError):
@@ -196,19 +204,74 @@ def beside(job: Callable[..., Any], *told: Any) -> Iterator[None]:
     if not others_can_start():
         yield
         return
-    process = multiprocessing.get_context("spawn").Process(target=_do_beside, args=(job, told), daemon=True)
-    with uninterrupted():
-        process.start()
-    if hasattr(os, "setpriority"):
-        with suppress(OSError):  # it has ended by itself
-            os.setpriority(os.PRIO_PROCESS, process.pid or 0, _LAST)
+    process = _begun(_LAST, job, told)
     try:
         yield
     finally:
         _end([process])
 
 
+@contextmanager
+def kept_beside(niceness: int, job: Callable[..., Any], *told: Any) -> Iterator[None]:
+    """While the context lasts, a process does a job that does not end; where it ends all the same, another one goes on. It ends
+    with the context, and with this process however that ends. Nothing is done where others cannot start.
+
+    Parameters
+    ----------
+    niceness
+        Its priority, 0 for that of this process to 19.
+    """
+    if not others_can_start():
+        yield
+        return
+    is_over = threading.Event()
+    begun: list[BaseProcess] = [_begun(niceness, job, told)]
+    watch = threading.Thread(
+        target=_follow_worker, args=(begun, is_over, niceness, job, told), name="worker", daemon=True
+    )
+    watch.start()
+    try:
+        yield
+    finally:
+        is_over.set()
+        watch.join(_PATIENCE)
+        _end(begun)
+
+
+def _begun(niceness: int, job: Callable[..., Any], told: tuple[Any, ...]) -> BaseProcess:
+    process = multiprocessing.get_context("spawn").Process(target=_do_beside, args=(job, told), daemon=True)
+    with uninterrupted():
+        process.start()
+    if hasattr(os, "setpriority"):
+        with suppress(OSError):  # it has ended by itself
+            os.setpriority(os.PRIO_PROCESS, process.pid or 0, niceness)
+    return process
+
+
+def _follow_worker(
+    begun: list[BaseProcess],
+    is_over: threading.Event,
+    niceness: int,
+    job: Callable[..., Any],
+    told: tuple[Any, ...],
+) -> None:
+    """Begin a process again whenever it ends; one that ends at once is given more and more time."""
+    pause = _AGAIN
+    while not is_over.wait(_LOOK):
+        if begun[0].is_alive():
+            continue
+        if is_over.wait(pause):
+            return
+        since = time.monotonic()
+        begun[0] = _begun(niceness, job, told)
+        while begun[0].is_alive() and not is_over.wait(_LOOK):
+            if time.monotonic() - since > _STEADY:
+                break
+        pause = _AGAIN if begun[0].is_alive() else min(_LONGEST, 2 * pause)
+
+
 def _do_beside(job: Callable[..., Any], told: tuple[Any, ...]) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # it is for who began this one
     follow_parent()
     job(*told)
 
@@ -227,3 +290,116 @@ def uninterrupted() -> Iterator[None]:
             yield
         finally:
             signal.signal(signal.SIGINT, before)
+
+
+# ------------------------------------------------------------------------ confined
+
+_NICE = 10  #: niceness of confined work: requests go before it
+_PATIENT = 6.0  #: seconds of waiting for each second of a processor, on a machine that is busy
+_STARTS = 20.0  #: seconds in which a process has started
+
+
+class Means(NamedTuple):
+    """Limits of a process: seconds of a processor, and bytes of memory beyond those with which it starts."""
+
+    seconds: float
+    memory: int
+
+
+class Exceeded(CourseworkError):
+    """Work that took more than its :class:`Means`; ``what`` is ``time`` or ``memory``."""
+
+    def __init__(self, what: str):
+        self.what = what
+        super().__init__(f"the work took more {what} than it may")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Exceeded, (self.what,)
+
+
+def confined(means: Means, function: Callable[..., Any], *told: Any) -> Any:
+    """Return what a function gives in a new process of limited time and memory, all of which is freed with the process.
+
+    Parameters
+    ----------
+    means
+        The limits. A system without ``setrlimit`` limits the time alone.
+    function, told
+        A function of a module, and its arguments; these and the result are pickled.
+
+    Raises
+    ------
+    Exceeded
+        The limits did not suffice.
+    CourseworkError
+        The function raised it.
+    """
+    if not others_can_start():
+        return function(*told)
+    spawn = multiprocessing.get_context("spawn")
+    answers, answer = spawn.Pipe(duplex=False)
+    process = spawn.Process(
+        target=_do_confined, args=(answer, means, pickle.dumps((function, told))), daemon=True
+    )
+    with answers:
+        with uninterrupted():
+            process.start()
+        answer.close()
+        try:
+            is_done, value = _answered(answers, process, means)
+        finally:
+            process.kill()
+            process.join()
+            process.close()
+    if is_done:
+        return value
+    raise value
+
+
+def _answered(answers: Connection, process: BaseProcess, means: Means) -> tuple[bool, Any]:
+    """Return whether the function gave something, and what it gave or raised."""
+    if not wait([answers], _STARTS + _PATIENT * means.seconds):
+        return False, Exceeded("time")
+    try:
+        is_done, value = pickle.loads(answers.recv_bytes(means.memory))
+        return is_done, value
+    except EOFError:  # it was ended: by its own limit of time, or for want of memory
+        process.join(_PATIENCE)
+        by_time = process.exitcode == -getattr(signal, "SIGXCPU", 0)
+        return False, Exceeded("time" if by_time else "memory")
+    except OSError:  # the answer is larger than all that it may take
+        return False, Exceeded("memory")
+
+
+def _do_confined(answer: Connection, means: Means, sent: bytes) -> None:
+    follow_parent()
+    with suppress(AttributeError, OSError):
+        os.nice(_NICE)
+    function, told = pickle.loads(sent)  # with what it imports, which is not counted
+    unlimited = _limit(means)
+    try:
+        given = pickle.dumps((True, function(*told)))
+    except MemoryError:
+        unlimited()
+        given = pickle.dumps((False, Exceeded("memory")))
+    except CourseworkError as fault:
+        given = pickle.dumps((False, fault))
+    except Exception as fault:  # its message may hold an answer
+        given = pickle.dumps((False, CourseworkError(f"{type(fault).__name__} in {function.__name__}")))
+    unlimited()
+    answer.send_bytes(given)
+
+
+def _limit(means: Means) -> Callable[[], None]:
+    """Limit this process from now on; return what takes the limit of memory away again."""
+    try:
+        import resource
+
+        held = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    except (ImportError, OSError):
+        return lambda: None
+    used = math.ceil(time.process_time() + means.seconds)
+    resource.setrlimit(resource.RLIMIT_CPU, (used, resource.getrlimit(resource.RLIMIT_CPU)[1]))
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (held + means.memory, before[1]))
+    return lambda: resource.setrlimit(resource.RLIMIT_AS, before)
