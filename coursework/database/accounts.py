@@ -7,11 +7,11 @@ from typing import Any
 
 from sqlalchemy import Connection, Select, insert, select, update
 
+from coursework.database.permissions import ADMINISTRATOR, STAFF, STUDENT
+from coursework.database.sessions import end_sessions
 from coursework.database.tables import account, person
 from coursework.errors import BadInput
 
-INSTRUCTOR, STUDENT = "instructor", "student"
-ROLES = (STUDENT, INSTRUCTOR)
 OWNER = "owner"  #: login of who opens the site on their own machine, without a password
 
 
@@ -82,36 +82,44 @@ def set_secret(connection: Connection, number: int, secret: str) -> None:
     connection.execute(update(account).where(account.c.id == number).values(secret=secret))
 
 
-def end_sessions(connection: Connection, number: int, at: datetime) -> None:
-    """All sessions of a person that began before are over."""
-    connection.execute(update(person).where(person.c.id == number).values(sessions_from=at))
+def set_role(connection: Connection, number: int, role: str) -> bool:
+    """Give a person who has an account another role; returns whether they need a new link to come in.
 
-
-def set_role(connection: Connection, number: int, role: str) -> None:
-    """What a person who has an account may do from now on."""
+    Their sessions end where the role changes. A link that was made for a student, and a password that a student chose by one,
+    are known to whoever could make links for students: both end with the student's role.
+    """
     mine = account.c.person_id == number, account.c.closed.is_(None)
-    connection.execute(update(account).where(*mine).values(role=role))
+    before = connection.execute(select(account.c.role).where(*mine)).scalar()
+    if before is None or before == role:
+        return False
+    rises = before == STUDENT and role in STAFF
+    ended: dict[str, Any] = {"secret": "", "invitation": None, "invited_until": None} if rises else {}
+    connection.execute(update(account).where(*mine).values(role=role, **ended))
+    end_sessions(connection, number)
+    return rises
 
 
-def is_last_instructor(connection: Connection, number: int) -> bool:
-    """Whether nobody would be left to teach without this person."""
+def is_last_administrator(connection: Connection, number: int) -> bool:
+    """Return whether nobody who can come in would be left to administer without this person."""
     mine = account_of(connection, number)
-    return (mine is not None and mine.login == OWNER) or _teaching(connection) == {number}
+    if mine is None or mine.role != ADMINISTRATOR:
+        return False
+    return mine.login == OWNER or not _administrators(connection) - {number}
 
 
-def has_instructor(connection: Connection, at: datetime) -> bool:
-    """Whether somebody can come in to teach, or is invited to."""
+def has_administrator(connection: Connection, at: datetime) -> bool:
+    """Return whether somebody can come in to administer, or is invited to."""
     asked = select(account.c.id).where(
-        account.c.role == INSTRUCTOR, account.c.closed.is_(None), account.c.invited_until > at
+        account.c.role == ADMINISTRATOR, account.c.closed.is_(None), account.c.invited_until > at
     )
-    return bool(_teaching(connection)) or connection.execute(asked).first() is not None
+    return bool(_administrators(connection)) or connection.execute(asked).first() is not None
 
 
-def _teaching(connection: Connection) -> set[int]:
-    """Instructors who can come in now; until the transaction ends nobody else changes one."""
+def _administrators(connection: Connection) -> set[int]:
+    """Return the administrators who can come in now; until the transaction ends nobody else changes one."""
     found = (
         select(account.c.person_id)
-        .where(account.c.role == INSTRUCTOR, account.c.closed.is_(None), account.c.secret != "")
+        .where(account.c.role == ADMINISTRATOR, account.c.closed.is_(None), account.c.secret != "")
         .with_for_update()
     )
     return set(connection.execute(found).scalars())

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
 from sqlalchemy import ColumnElement, Connection, Select, bindparam, insert, select, update
 
+from coursework.database.outdated import outdate, outdate_all, outdate_rows
 from coursework.database.people import put_people
 from coursework.database.tables import assignment, dealt, variant
 from coursework.errors import BadInput, nearest
-from coursework.making.issued import ISSUED_FORMAT, Issued
+from coursework.making.issued import ISSUED_FORMAT, SECRET, Issued, secret_of
 from coursework.making.roster import Student
 
 _Place = tuple[
@@ -76,18 +77,36 @@ def put_issued(connection: Connection, content: Mapping[str, Any], name: str = "
     issued = Issued(content, "what was issued")
     if not name:
         raise BadInput("what was issued has no name, since it is of no assignment: --name NAME")
-    told = {
+    told: dict[str, Any] = {
         "stated": content.get("assignment"),
         "has_roster": issued.has_roster,
         "is_pool": issued.is_pool,
         "columns": {s: dict(own) for s, own in issued.columns.items()},
+        **({} if (secret := secret_of(content)) is None else {"secret": secret.text}),
     }
+    was = _told_before(connection, name)
     number, before = _assignment(connection, name, course, told)
     items = [_item(item, place) for place, item in enumerate(content["issued"])]
     variants = _put_variants(connection, number, name, items)
     people = _people(connection, issued) if issued.has_roster and not issued.is_pool else {}
-    _put_dealt(connection, name, before, items, variants, people)
+    changed = _put_dealt(connection, name, before, items, variants, people)
+    if was is None or any(was[key] != told[key] for key in ("stated", "is_pool")) or "" in changed:
+        outdate_all(connection, number)
+    else:
+        own = told["columns"]
+        changed += [student for student in own if own[student] != was["columns"].get(student, own[student])]
+        changed += [student for student in own if student not in was["columns"]]
+        outdate(connection, number, changed)
+        if changed:
+            outdate_rows(connection, number)
     return number
+
+
+def _told_before(connection: Connection, name: str) -> dict[str, Any] | None:
+    """What the assignment of a name said before; None where there is none."""
+    columns = assignment.c.stated, assignment.c.is_pool, assignment.c.columns
+    row = connection.execute(select(*columns).where(assignment.c.name == name)).first()
+    return None if row is None else dict(row._mapping)
 
 
 def _assignment(
@@ -180,8 +199,8 @@ def _put_dealt(
     items: Sequence[Mapping[str, Any]],
     variants: Mapping[tuple[str, str], int],
     people: Mapping[str, int],
-) -> None:
-    """What is new is added; what is known keeps its row, and takes its new place."""
+) -> list[str]:
+    """Add what is new; what is known keeps its row, and takes its new place. Return the students of which anything changed."""
     given = {place[:3]: place[3] for place in before if place[0]}
     placed: dict[_Place, int] = {}
     new = []
@@ -197,6 +216,7 @@ def _put_dealt(
             continue
         own = {key: item[key] for key in ("place", "student", "sitting", "lang")}
         new.append({**own, "variant_id": variants[place[2:4]], "person_id": people.get(item["student"])})
+    changed = [str(row["student"]) for row in new]
     kept = len(items)
     moved = []
     for place, row in before.items():
@@ -204,12 +224,14 @@ def _put_dealt(
             placed[place], kept = kept, kept + 1
         if row["place"] != placed[place]:
             moved.append({"row": row["id"], "now": placed[place]})
+            changed.append(str(place[0]))
     if moved:
         connection.execute(
             update(dealt).where(dealt.c.id == bindparam("row")).values(place=bindparam("now")), moved
         )
     if new:
         connection.execute(insert(dealt), new)
+    return changed
 
 
 # ---------------------------------------------------------------------- reading
@@ -224,10 +246,16 @@ def _dealt(number: int) -> Select[Any]:
 
 
 def issued_content(
-    connection: Connection, number: int, person_id: int | None = None, *, student: str | None = None
+    connection: Connection,
+    number: int,
+    person_id: int | None = None,
+    *,
+    student: str | None = None,
+    students: Collection[str] = (),
+    secret: bool = False,
 ) -> dict[str, Any]:
-    """What ``issued.json`` says of an assignment; of one person alone, or of one student by name, where they are told and
-    were issued something.
+    """What ``issued.json`` says of an assignment; of one person alone, or of students by name, where they are told and were
+    issued something. With its ``secret`` where more is to be drawn, or where an instructor has the whole file.
 
     Raises
     ------
@@ -238,16 +266,21 @@ def issued_content(
     if about is None:
         raise BadInput(f"no assignment number {number} in the database")
     items: list[dict[str, Any]] = []
+    columns = about.columns
     if person_id is not None:
         items = _items(connection, number, dealt.c.person_id == person_id)
     elif student is not None:
         items = _items(connection, number, dealt.c.student == student)
+    elif students and about.has_roster and not about.is_pool:
+        columns = {name: own for name, own in columns.items() if name in students}
+        items = _items(connection, number, dealt.c.student.in_(list(students)))
     return {
         "format": ISSUED_FORMAT,
         "roster": about.has_roster,
         **({"pool": True} if about.is_pool else {}),
         **({} if about.stated is None else {"assignment": about.stated}),
-        **({"students": about.columns} if about.columns else {}),
+        **({SECRET: about.secret} if secret and about.secret else {}),
+        **({"students": columns} if columns else {}),
         "issued": items or _items(connection, number),
     }
 
@@ -269,8 +302,13 @@ def _issued_item(row: Any, record: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def issued_of(
-    connection: Connection, number: int, person_id: int | None = None, *, student: str | None = None
+    connection: Connection,
+    number: int,
+    person_id: int | None = None,
+    *,
+    student: str | None = None,
+    students: Collection[str] = (),
 ) -> Issued:
     """What was issued, to mark against; to one person alone, where they are told."""
-    content = issued_content(connection, number, person_id, student=student)
+    content = issued_content(connection, number, person_id, student=student, students=students)
     return Issued(content, f"assignment {number} of the database")

@@ -1,21 +1,79 @@
-"""Who did what that another may ask about: never an answer."""
+"""Record of who did what that another may ask about: added to, never changed, and never an answer."""
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from datetime import datetime
-from typing import Any
+from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, insert, select
 
 from coursework.database.tables import audit
 
-
-def note(connection: Connection, at: datetime, by: str, what: str, **about: Any) -> None:
-    """Write down that somebody did something."""
-    connection.execute(insert(audit).values(at=at, by=by, what=what, about=about))
+#: What happens to an account, which its holder is told of.
+OF_ACCOUNTS = ("invited", "invitation taken up", "password changed", "role", "data given")
 
 
-def noted(connection: Connection, count: int = 200, before: int = 0) -> list[Any]:
-    """What was done, the latest first; of what was written down before a line, where one is told."""
+class Actor(NamedTuple):
+    """Somebody who does something, and from where."""
+
+    name: str
+    person: int = 0  #: id; 0 for a command or a platform
+    address: str = ""  #: of the machine that asks
+
+
+def note(connection: Connection, at: datetime, by: str | Actor, what: str, **about: Any) -> None:
+    """Write down that somebody did something; ``person`` in ``about`` is the id of the person of whom it tells."""
+    who = by if isinstance(by, Actor) else Actor(by)
+    subject = about.get("person")
+    row = {
+        "at": at,
+        "by": who.name,
+        "what": what,
+        "about": about,
+        "actor": who.person or None,
+        "subject": subject if isinstance(subject, int) else None,
+        "address": who.address[:64] or None,
+    }
+    connection.execute(insert(audit).values(row))
+
+
+def noted(
+    connection: Connection,
+    count: int = 200,
+    before: int = 0,
+    *,
+    by: str = "",
+    what: Collection[str] = (),
+    subject: int | None = None,
+) -> list[Any]:
+    """Return what was done, the latest first.
+
+    Parameters
+    ----------
+    count
+        Lines at most.
+    before
+        Id of a line: only what was written down before it; 0 for all.
+    by
+        Part of the name of who did it.
+    what
+        Kinds of line; all where none is named.
+    subject
+        Id of the person of whom it tells; None for whomever.
+    """
     found = select(audit).order_by(audit.c.id.desc()).limit(count)
-    return list(connection.execute(found.where(audit.c.id < before) if before else found))
+    if before:
+        found = found.where(audit.c.id < before)
+    if by:
+        found = found.where(audit.c.by.icontains(by, autoescape=True))
+    if what:
+        found = found.where(audit.c.what.in_(what))
+    if subject is not None:
+        found = found.where(audit.c.subject == subject)
+    return list(connection.execute(found))
+
+
+def kinds(connection: Connection) -> list[str]:
+    """Return the kinds of line that there are."""
+    return list(connection.execute(select(audit.c.what).distinct().order_by(audit.c.what)).scalars())

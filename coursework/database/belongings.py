@@ -11,6 +11,7 @@ from coursework.database.people import person_by_id
 from coursework.database.tables import (
     account,
     answer,
+    area,
     assignment,
     audit,
     dealt,
@@ -25,6 +26,7 @@ from coursework.database.tables import (
     progress,
     rejected,
     scanned,
+    session,
     typed,
     variant,
 )
@@ -34,6 +36,7 @@ from coursework.making.students import folded
 #: What a row holds for the database alone, or for nobody.
 _HIDDEN = {
     "account": {"secret", "invitation"},
+    "session": {"digest"},
     "delivery": {"digest"},
     "progress": {"digest"},
     "marking": {"state"},
@@ -92,28 +95,30 @@ def _words(connection: Connection, mine: Any, issued: Any) -> frozenset[str]:
 def conditions(connection: Connection, who: Whose) -> dict[str, tuple[Table, ColumnElement[bool]]]:
     """The rows of each table that are a person's, in an order in which they can be taken away."""
     deliveries = select(delivery.c.id).where(delivery.c.person_id == who.person)
-    markings = _ids(connection, marking, who)
+    markings = ids_of(connection, marking, who)
     own_answers = or_(answer.c.delivery_id.in_(deliveries), answer.c.id.in_(_answers(connection, who)))
     return {
         "mark": (mark, mark.c.marking_id.in_(markings)),
         "marking": (marking, marking.c.id.in_(markings)),
-        "decision": (decision, decision.c.id.in_(_ids(connection, decision, who))),
+        "decision": (decision, decision.c.id.in_(ids_of(connection, decision, who))),
         "answer": (answer, own_answers),
         "rejected": (rejected, rejected.c.id.in_(_rejected(connection, who))),
         "delivery": (delivery, delivery.c.person_id == who.person),
-        "scanned": (scanned, scanned.c.id.in_(_ids(connection, scanned, who))),
-        "typed": (typed, typed.c.id.in_(_ids(connection, typed, who))),
+        "scanned": (scanned, scanned.c.id.in_(ids_of(connection, scanned, who))),
+        "typed": (typed, typed.c.id.in_(ids_of(connection, typed, who))),
         "dealt": (dealt, or_(dealt.c.person_id == who.person, dealt.c.id.in_(_dealt(connection, who)))),
         "extension": (extension, extension.c.person_id == who.person),
         "draft": (draft, draft.c.person_id == who.person),
         "progress": (progress, progress.c.person_id == who.person),
         "identity": (identity, identity.c.person_id == who.person),
+        "session": (session, session.c.person_id == who.person),
+        "area": (area, area.c.person_id == who.person),
         "account": (account, account.c.person_id == who.person),
         "person": (person, person.c.id == who.person),
     }  # fmt: skip
 
 
-def _ids(connection: Connection, table: Table, who: Whose) -> list[int]:
+def ids_of(connection: Connection, table: Table, who: Whose) -> list[int]:
     """Rows of a table that names assignments and students."""
     numbers = {number for number, _ in who.students}
     found = select(table.c.id, table.c.assignment_id, table.c.student).where(
@@ -162,8 +167,14 @@ def belongings(connection: Connection, who: Whose) -> dict[str, list[dict[str, A
         found[name] = [dict(row._mapping) for row in connection.execute(chosen)]
     found["dealt"] = _papers(connection, who)
     noted = connection.execute(select(audit).order_by(audit.c.id))
-    found["audit"] = [dict(row._mapping) for row in noted if _tells_of(row, who)]
+    found["audit"] = [_of_audit(row, who) for row in noted if _tells_of(row, who)]
     return found
+
+
+def _of_audit(row: Any, who: Whose) -> dict[str, Any]:
+    """Return a line of the audit; from where it was done, only where the person did it."""
+    told = dict(row._mapping)
+    return told if row.actor == who.person else {**told, "address": None}
 
 
 def _tells_of(row: Any, who: Whose) -> bool:

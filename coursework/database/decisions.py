@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Select, insert, select
+from sqlalchemy import Connection, Select, insert, or_, select
 
-from coursework.database.tables import decision, mark, marking, variant
+from coursework.database.outdated import outdate
+from coursework.database.tables import decision, mark, marking, student_total, variant
 from coursework.errors import BadInput, UnknownName, nearest
 from coursework.gradebook.accepted import accepted_mark, check_points
 from coursework.gradebook.graded import Graded
@@ -83,6 +84,7 @@ def decide(
         connection.execute(
             insert(decision), [{**place._asdict(), "seed": str(place.seed), **told} for place in places]
         )
+        outdate(connection, assignment_id, (place.student for place in places))
 
 
 def _check(connection: Connection, assignment_id: int, places: Sequence[Place], points: float | None) -> None:
@@ -116,14 +118,23 @@ class Decisions:
             self._of.setdefault((folded(student), exercise, part), []).append(one)
 
     @staticmethod
-    def read(connection: Connection, assignment_id: int, student: str | None = None) -> Decisions:
-        """Those of an assignment, in their order."""
+    def read(
+        connection: Connection, assignment_id: int, student: str | Collection[str] | None = None
+    ) -> Decisions:
+        """Return those of an assignment in their order; of one student or of several, where they are told."""
         found = select(decision).where(decision.c.assignment_id == assignment_id).order_by(decision.c.id)
-        own = None if student is None else folded(student)
+        if student is not None:
+            names = [student] if isinstance(student, str) else list(student)
+            # A file may spell a name in another way: what is spelled as nobody's is compared by hand.
+            known = select(student_total.c.id).where(
+                student_total.c.assignment_id == assignment_id, student_total.c.student == decision.c.student
+            )
+            found = found.where(or_(decision.c.student.in_(names), ~known.exists()))
+        own = None if student is None else frozenset(map(folded, names))
         return Decisions(
             (row.student, row.exercise, row.part, _decision(row))
             for row in connection.execute(found)
-            if own is None or folded(row.student) == own
+            if own is None or folded(row.student) in own
         )
 
     def on(self, student: str, exercise: str, part: str) -> Sequence[Decision]:

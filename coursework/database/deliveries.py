@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection, Select, distinct, func, insert, select, tuple_, update
 
 from coursework.database.assignments import issued_of
+from coursework.database.outdated import outdate_person, outdate_rows
 from coursework.database.store import insert_unless_there
 from coursework.database.tables import answer, dealt, delivery, marking, rejected, seen, variant
 from coursework.gradebook.placing import Refused, student_of
@@ -70,10 +71,15 @@ def deliver(
         known = delivery_alike(connection, assignment_id, digest)
         if replaces:
             _replace(connection, assignment_id, known.id, source, came)
+            outdate_rows(connection, assignment_id)
         return known
     _put_rows(connection, made, came_rows)
     if replaces:
         _replace(connection, assignment_id, made, source, came)
+    if person_id is None:
+        outdate_rows(connection, assignment_id)
+    else:
+        outdate_person(connection, assignment_id, person_id)
     return Delivery(made, True, source, number, receipt, late, came)
 
 

@@ -204,14 +204,18 @@ class Came(NamedTuple):
     late: int  #: seconds, of the last one
 
 
-def came_of(connection: Connection, assignment_id: int) -> dict[str, Came]:
-    """Who handed in on the site, by the name as issued."""
-    called = {person: name for name, person in people_of(connection, assignment_id).items()}
+def came_of(
+    connection: Connection, assignment_id: int, students: Collection[str] | None = None
+) -> dict[str, Came]:
+    """Who handed in on the site, by the name as issued; of some students alone, where they are told."""
+    called = {person: name for name, person in people_of(connection, assignment_id, students).items()}
     found = (
         select(delivery.c.person_id, delivery.c.came, delivery.c.late)
         .where(delivery.c.assignment_id == assignment_id, delivery.c.person_id.is_not(None))
         .order_by(delivery.c.id)
     )
+    if students is not None:
+        found = found.where(delivery.c.person_id.in_(list(called)))
     met: dict[str, Came] = {}
     for person, came, late in connection.execute(found):
         if (name := called.get(person)) is not None:
@@ -248,14 +252,18 @@ def students_since(connection: Connection, assignment_id: int, before: Stamp) ->
     return found
 
 
-def people_of(connection: Connection, assignment_id: int) -> dict[str, int]:
-    """The persons of those whom an assignment was issued to, by the name as issued."""
+def people_of(
+    connection: Connection, assignment_id: int, students: Collection[str] | None = None
+) -> dict[str, int]:
+    """The persons of those whom an assignment was issued to, by the name as issued; of some alone, where they are told."""
     found = (
         select(dealt.c.student, dealt.c.person_id)
         .join(variant)
         .where(variant.c.assignment_id == assignment_id, dealt.c.person_id.is_not(None))
         .distinct()
     )
+    if students is not None:
+        found = found.where(dealt.c.student.in_(list(students)))
     return {row.student: row.person_id for row in connection.execute(found)}
 
 

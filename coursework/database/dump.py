@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime
@@ -16,11 +17,14 @@ from sqlalchemy.exc import DBAPIError
 
 from coursework.database.assignments import issued_of
 from coursework.database.deliveries import rows_of
+from coursework.database.outdated import outdate_everything
+from coursework.database.promoting import promote_first
 from coursework.database.store import Store, json_of
 from coursework.database.tables import METADATA, Moment, assignment
 from coursework.errors import BadInput
 from coursework.system.folder_lock import is_bare
 from coursework.system.json_files import read_json
+from coursework.system.links import check_inside
 from coursework.system.tables import as_written, inert
 from coursework.system.writing import gone_unless_kept, write_whole
 
@@ -30,6 +34,8 @@ _CHUNK = 5000  #: rows that are written at once
 FORMAT = "coursework database dump 2"
 _BEFORE = "coursework database dump 1"  #: which left cells as they are, whatever a spreadsheet makes of them
 _ABOUT = "dump.json"
+#: Columns, all of which may be empty, that dumps of before do not have, by table.
+_NEWER: Mapping[str, set[str]] = {"assignment": {"secret"}, "audit": {"actor", "subject", "address"}}
 
 
 # --------------------------------------------------------------------------- out
@@ -50,11 +56,16 @@ def dump(store: Store, folder: Path) -> dict[str, int]:
     (folder / _ABOUT).unlink(missing_ok=True)  # what is half written is no dump
     rows = {}
     with store.reading() as connection:
-        for table in METADATA.sorted_tables:
+        for table in _dumped():
             rows[table.name] = _write(connection, table, folder / f"{table.name}.csv")
     about = {"format": FORMAT, "rows": rows}
     write_whole(folder / _ABOUT, (json.dumps(about, indent=1) + "\n").encode())
     return rows
+
+
+def _dumped() -> list[Table]:
+    """Return the tables that a dump holds: what is computed from others is computed anew, and nobody stays signed in."""
+    return [table for table in METADATA.sorted_tables if not table.info.keys() & {"derived", "fleeting"}]
 
 
 def _write(connection: Connection, table: Table, path: Path) -> int:
@@ -63,7 +74,7 @@ def _write(connection: Connection, table: Table, path: Path) -> int:
     found = connection.execution_options(yield_per=_CHUNK).execute(select(table).order_by(*table.primary_key))
     count = 0
     try:
-        with gone_unless_kept(part), part.open("w", encoding="utf-8", newline="") as file:
+        with gone_unless_kept(part), open(part, "w", encoding="utf-8", newline="", opener=_private) as file:
             writer = csv.writer(file)
             writer.writerow(column.name for column in table.c)
             shown = [json_of if isinstance(column.type, JSON) else _as_text for column in table.c]
@@ -78,6 +89,11 @@ def _write(connection: Connection, table: Table, path: Path) -> int:
     except OSError as fault:
         raise BadInput(f"{path} cannot be written: {fault.strerror}") from fault
     return count
+
+
+def _private(path: str, flags: int) -> int:
+    """Open a file that its owner alone may read: it holds what the database holds."""
+    return os.open(path, flags, 0o600)
 
 
 def _as_text(value: Any) -> str:
@@ -103,15 +119,19 @@ def restore(folder: Path, store: Store) -> dict[str, int]:
         for table in METADATA.sorted_tables:
             if connection.execute(select(*table.primary_key).limit(1)).first() is not None:
                 raise BadInput(f"the database is not empty: there are rows in {table.name}; name a new one")
-        for table in METADATA.sorted_tables:
+        for table in _dumped():
             path = folder / f"{table.name}.csv"
+            check_inside(path, folder)
             rows[table.name] = _read(connection, table, path, cell_text)
             if rows[table.name] != counted.get(table.name, 0):
                 raise BadInput(
                     f"{path} has {rows[table.name]} rows, and the dump had {counted.get(table.name, 0)}"
                 )
             _count_on(connection, table)
+        if "area" not in counted:  # written before there were administrators
+            promote_first(connection)
         _check_readable(connection)
+        outdate_everything(connection)
     return rows
 
 
@@ -151,13 +171,14 @@ def _about(folder: Path) -> tuple[Mapping[str, int], CellText]:
         raise BadInput(
             f"{folder} holds no dump: there is no {_ABOUT} in it; 'coursework database dump' makes one"
         )
+    check_inside(folder / _ABOUT, folder)
     about = read_json(folder / _ABOUT)
     if not isinstance(about, dict) or about.get("format") not in (FORMAT, _BEFORE):
         raise BadInput(f"{folder} is of another version: {_ABOUT} says {str(about)[:60]}")
     rows = about.get("rows")
     if not isinstance(rows, dict) or not all(isinstance(count, int) for count in rows.values()):
         raise BadInput(f"{folder / _ABOUT} says not how many rows each table has")
-    if strangers := rows.keys() - {table.name for table in METADATA.sorted_tables}:
+    if strangers := rows.keys() - {table.name for table in _dumped()}:
         raise BadInput(f"{folder} is of a later version: there is no table {', '.join(sorted(strangers))}")
     return rows, as_written if about["format"] == FORMAT else str
 
@@ -183,7 +204,7 @@ def _chunks(table: Table, path: Path, cell_text: CellText) -> Iterator[list[dict
     with path.open(encoding="utf-8", newline="") as file:
         reader = csv.reader(file)
         names = next(reader, [])
-        if sorted(names) != sorted(table.c.keys()):
+        if not _fit(table, names):
             raise BadInput(
                 f"{path} has the columns {', '.join(names)}; {table.name} has {', '.join(table.c.keys())}"
             )
@@ -196,6 +217,12 @@ def _chunks(table: Table, path: Path, cell_text: CellText) -> Iterator[list[dict
                 rows = []
     if rows:
         yield rows
+
+
+def _fit(table: Table, names: Sequence[str]) -> bool:
+    """Return whether a dump has a table's columns, each once; an older one may lack those that are newer."""
+    wanted = {*table.c.keys()} - _NEWER.get(table.name, set())
+    return len({*names}) == len(names) and wanted <= {*names} <= {*table.c.keys()}
 
 
 def _row(

@@ -13,23 +13,29 @@ from typing import Any
 
 from sqlalchemy import Connection, Table, delete, select, update
 
-from coursework.database.belongings import Whose, conditions, whose
+from coursework.database.belongings import Whose, conditions, ids_of, whose
+from coursework.database.outdated import outdate_rows
 from coursework.database.tables import (
     answer,
+    answer_now,
     assignment,
     audit,
     decision,
     delivery,
     extension,
     marking,
+    outdated,
     placing,
     rejected,
     scanned,
     seen,
+    student_total,
     typed,
+    unplaced,
     worksheet,
 )
 
+_CHUNK = 5000  #: rows that are taken away at once
 STRUCK = "…"  #: stands where a name stood
 _SHORTEST = (
     3  #: characters of what is struck out of the texts of others: a shorter word says of nobody who it is
@@ -66,10 +72,24 @@ def erase(connection: Connection, number: int) -> dict[str, int]:
     if who is None:
         return {}
     gone = {}
+    _derived_away(connection, who)
     for name, (table, theirs) in conditions(connection, who).items():
         gone[name] = connection.execute(delete(table).where(theirs)).rowcount
+    theirs = audit.c.actor == number
+    connection.execute(update(audit).where(theirs).values(actor=None, address=None))
     _strike(connection, who)
     return gone
+
+
+def _derived_away(connection: Connection, who: Whose) -> None:
+    """Take away the aggregates of a person, and all rows without a place, which may name them; the latter are computed anew."""
+    connection.execute(delete(unplaced))
+    for table in (answer_now, student_total, outdated):
+        theirs = ids_of(connection, table, who)
+        for start in range(0, len(theirs), _CHUNK):
+            connection.execute(delete(table).where(table.c.id.in_(theirs[start : start + _CHUNK])))
+    for number in connection.execute(select(assignment.c.id)).scalars().all():
+        outdate_rows(connection, number)
 
 
 def _strike(connection: Connection, who: Whose) -> None:

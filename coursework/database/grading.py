@@ -101,7 +101,7 @@ def _deliver(
     came = datetime.now(UTC)
     found = []
     for one in find(submissions):
-        rows = [one] if isinstance(one, Rejected) else list(read_file(one))
+        rows = [one] if isinstance(one, Rejected) else list(read_file(one, submissions))
         source = one.source if isinstance(one, Rejected) else path_text(one)
         found.append(deliver(connection, assignment_id, rows, source=source, came=came, replaces=replaces))
     return found

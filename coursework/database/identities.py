@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from sqlalchemy import Connection, select, update
+from sqlalchemy import Connection, delete, select, update
 
-from coursework.database.accounts import INSTRUCTOR
 from coursework.database.people import people, person_by_id
+from coursework.database.permissions import STAFF
 from coursework.database.store import insert_unless_there
-from coursework.database.tables import identity, person
+from coursework.database.tables import account, identity, person
 from coursework.making.identity import EMAIL, NUMBER, is_called, same_id
 
 
@@ -34,10 +34,10 @@ def known_as(connection: Connection, number: int) -> list[tuple[str, str]]:
 
 def fitting(connection: Connection, issuer: str, email: str, number: str) -> list[Any]:
     """The people whom an e-mail or a number tells, and whom the platform does not know yet. Nobody of the staff is among them:
-    what a platform says of an address makes nobody an instructor."""
+    what a platform says of an address gives nobody a role."""
     known = set(connection.execute(select(identity.c.person_id).where(identity.c.issuer == issuer)).scalars())
     rows = {row.id: row for row in people(connection)}
-    staff = {row.id for row in people(connection) if row.role == INSTRUCTOR}
+    staff = {row.id for row in people(connection) if row.role in STAFF}
     return [
         row
         for row in rows.values()
@@ -54,6 +54,26 @@ def _fits(row: Any, email: str, number: str) -> bool:
         (value == email and is_called(title, EMAIL)) or (value == number and is_called(title, NUMBER))
         for title, value in pairs
     )
+
+
+def has_password(connection: Connection, number: int) -> bool:
+    """Return True for a person who has chosen a password, so that nobody else says who they are."""
+    mine = account.c.person_id == number, account.c.secret != ""
+    return connection.execute(select(account.c.id).where(*mine)).first() is not None
+
+
+def ties_of(connection: Connection, number: int) -> list[Any]:
+    """Return how platforms know a person: ``id``, ``issuer`` and ``subject`` of each."""
+    told = select(identity.c.id, identity.c.issuer, identity.c.subject)
+    return list(connection.execute(told.where(identity.c.person_id == number).order_by(identity.c.id)))
+
+
+def separate(connection: Connection, number: int, tie_id: int) -> tuple[str, str] | None:
+    """Take one tie of a person away; returns its issuer and subject, None where there was none."""
+    mine = identity.c.id == tie_id, identity.c.person_id == number
+    gone = delete(identity).where(*mine).returning(identity.c.issuer, identity.c.subject)
+    row = connection.execute(gone).first()
+    return (row.issuer, row.subject) if row is not None else None
 
 
 def take_over(connection: Connection, number: int, name: str, lang: str) -> None:

@@ -12,6 +12,7 @@ from coursework.course.course import Course
 from coursework.database.assignments import issued_of
 from coursework.database.decisions import Decisions
 from coursework.database.deliveries import rows_of
+from coursework.database.outdated import outdate, outdate_rows
 from coursework.database.standing import Stood, lines_of, machine_marks, stood
 from coursework.database.states import exercise_state, sheet_state
 from coursework.database.store import Store
@@ -173,6 +174,13 @@ class Work:
             ]
             for first in range(0, len(lines), _CHUNK):
                 connection.execute(insert(mark), lines[first : first + _CHUNK])
+        outdate(connection, self.assignment_id, [row["student"] for row in rows])
+        if any(isinstance(self.now[place], str) or self.stood_at_fault(place) for place in free) or gone:
+            outdate_rows(connection, self.assignment_id)
+
+    def stood_at_fault(self, place: SheetPlace) -> bool:
+        """Tell whether a sheet could not be marked before."""
+        return place in self.stood and bool(self.stood[place].fault)
 
 
 # ---------------------------------------------------------------------- marking

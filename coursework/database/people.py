@@ -13,26 +13,26 @@ from coursework.making.roster import Student
 from coursework.markup.markdown import sort_key
 
 
-def _found() -> Select[Any]:
-    """People with the role of the account that they have; none where they have no account that is open."""
+def found_people() -> Select[Any]:
+    """Return a query of people with role and login of their open account, each None where there is none."""
     mine = (account.c.person_id == person.c.id) & account.c.closed.is_(None)
     return select(person, account.c.role, account.c.login).select_from(person.outerjoin(account, mine))
 
 
 def people(connection: Connection) -> list[Any]:
     """Everybody, by name, whatever its accents: Bäcker stands before Blanc."""
-    found = connection.execute(_found().order_by(person.c.id))
+    found = connection.execute(found_people().order_by(person.c.id))
     return sorted(found, key=lambda one: (sort_key(one.name), one.name))
 
 
 def person_by_id(connection: Connection, number: int) -> Any | None:
     """``id``, ``who``, ``name``, ``lang``, ``columns``, ``sessions_from``, ``role``, ``login`` of a person; None for nobody."""
-    return connection.execute(_found().where(person.c.id == number)).first()
+    return connection.execute(found_people().where(person.c.id == number)).first()
 
 
 def person_by_who(connection: Connection, who: str) -> Any | None:
     """The person whom a roster tells apart so."""
-    return connection.execute(_found().where(person.c.who == who)).first()
+    return connection.execute(found_people().where(person.c.who == who)).first()
 
 
 def hold(connection: Connection, number: int) -> None:

@@ -7,7 +7,7 @@ neither opens again what was closed nor takes back what was told.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from datetime import datetime, timedelta
 from enum import Enum
@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, insert, select, update
 
+from coursework.database.outdated import outdate_all, outdate_person
 from coursework.database.tables import assignment, dealt, delivery, extension, variant
 
 #: When marks and sentences are told; and when right answers and worked solutions.
@@ -140,6 +141,16 @@ class Publication:
         """The time that counts: the clock's, and never before a date that has passed already."""
         return clock if self.reached is None else max(clock, self.reached)
 
+    def counted(self, arrived: datetime, clock: datetime) -> datetime:
+        """Return the time that counts for what arrived a moment ago, whatever date was written down since it did.
+
+        Parameters
+        ----------
+        arrived, clock
+            What the clock said when it arrived, and what it says now.
+        """
+        return arrived if self.now(clock) == clock else self.now(clock)
+
     def phase(self, now: datetime) -> Phase:
         if self.opens is not None and now < self.opens:
             return Phase.TO_COME
@@ -198,19 +209,34 @@ def published(connection: Connection, number: int) -> Publication | None:
 def publish(connection: Connection, number: int, publication: Publication | None) -> None:
     """Publish an assignment, or, with None, take that back; what was handed in stays."""
     told = None if publication is None else publication.as_json()
+    if _charging(published(connection, number)) != _charging(publication):
+        outdate_all(connection, number)
     connection.execute(update(assignment).where(assignment.c.id == number).values(published=told))
 
 
-def charges(connection: Connection, number: int) -> dict[tuple[str, int], float]:
+def _charging(publication: Publication | None) -> tuple[object, ...]:
+    """What bears on the points that are taken off of late hand-ins."""
+    if publication is None or publication.late != CHARGE:
+        return ()
+    return publication.closes, publication.late_until, publication.late_percent
+
+
+def charges(
+    connection: Connection, number: int, students: Collection[str] | None = None
+) -> dict[tuple[str, int], float]:
     """The shares that are taken off of what came late, by student and try; what an extension, or a later date of closing, has
-    brought back into time is not late any more."""
+    brought back into time is not late any more. Those of some students alone, where they are told."""
     publication = published(connection, number)
     if publication is None or publication.late != CHARGE:
         return {}
     theirs = extensions(connection, number)
     late = select(delivery).where(delivery.c.assignment_id == number, delivery.c.late > 0)
     names = select(dealt.c.person_id, dealt.c.student).join(variant).where(variant.c.assignment_id == number)
+    if students is not None:
+        names = names.where(dealt.c.student.in_(list(students)))
     called = {row.person_id: row.student for row in connection.execute(names)}
+    if students is not None:
+        late = late.where(delivery.c.person_id.in_(list(called)))
     found = {}
     for row in connection.execute(late):
         own = publication.extended(theirs.get(row.person_id))
@@ -223,6 +249,7 @@ def extend(connection: Connection, number: int, person: int, more: Extension) ->
     """Give somebody other dates or tries; the last that was given stands."""
     row = {"assignment_id": number, "person_id": person, **more._asdict()}
     connection.execute(insert(extension).values(row))
+    outdate_person(connection, number, person)
 
 
 def extensions(connection: Connection, number: int) -> dict[int, Extension]:
@@ -310,3 +337,5 @@ def say_sittings(connection: Connection, number: int, counts: str) -> None:
     }
     if told:
         connection.execute(update(assignment).where(assignment.c.id == number).values(told))
+        if counts != (row.stated or {}).get("sittings"):
+            outdate_all(connection, number)

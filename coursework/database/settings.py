@@ -36,6 +36,11 @@ def secret(connection: Connection) -> bytes:
         ) from None
 
 
+def renew_secret(connection: Connection) -> None:
+    """Take the signing key away: the next process that asks for it draws another."""
+    connection.execute(delete(setting).where(setting.c.name == _KEY))
+
+
 def value_of(connection: Connection, name: str) -> Any:
     """What is kept under a name; None where nothing is."""
     found = connection.execute(select(setting.c.value).where(setting.c.name == name)).scalar()
@@ -46,6 +51,11 @@ def put_value(connection: Connection, name: str, value: Any) -> None:
     """Keep something under a name, in place of what stood there."""
     connection.execute(delete(setting).where(setting.c.name == name))
     connection.execute(insert(setting).values(name=name, value=json.dumps(value, ensure_ascii=False)))
+
+
+def drop_value(connection: Connection, name: str) -> None:
+    """Delete what is kept under a name."""
+    connection.execute(delete(setting).where(setting.c.name == name))
 
 
 def course_taken(connection: Connection) -> int:

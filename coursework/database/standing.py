@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, Select, func, select
@@ -42,19 +42,27 @@ class Stood(NamedTuple):
     apart: bool
     submitted: str
     fault: str  #: why it could not be marked
+    first: int = 0  #: its first marking, by which sheets are ordered; where that is asked for
 
 
-def stood(connection: Connection, assignment_id: int, student: str | None = None) -> dict[SheetPlace, Stood]:
+#: One student by name, several, or with None all.
+Whom = str | Collection[str] | None
+
+
+def stood(connection: Connection, assignment_id: int, student: Whom = None) -> dict[SheetPlace, Stood]:
     """The last marking of each sheet, in the order in which they first came; those too that nothing answers to any more."""
     last = _last(assignment_id, student).subquery()
-    found = select(marking).join(last, marking.c.id == last.c.last).order_by(last.c.first)
-    return {one.place: one for one in map(_stood, connection.execute(found))}
+    found = select(marking, last.c.first).join(last, marking.c.id == last.c.last).order_by(last.c.first)
+    rows = connection.execute(found)
+    return {one.place: one for one in (_stood(row)._replace(first=row.first) for row in rows)}
 
 
-def _last(assignment_id: int, student: str | None) -> Select[Any]:
+def _last(assignment_id: int, student: Whom) -> Select[Any]:
     first, last = func.min(marking.c.id).label("first"), func.max(marking.c.id).label("last")
     found = select(first, last).where(marking.c.assignment_id == assignment_id).group_by(*_SHEET)
-    return found if student is None else found.where(marking.c.student == student)
+    if student is None:
+        return found
+    return found.where(marking.c.student.in_([student] if isinstance(student, str) else list(student)))
 
 
 def _stood(row: Any) -> Stood:

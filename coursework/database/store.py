@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,7 @@ from sqlalchemy.exc import ArgumentError, DatabaseError, DBAPIError, NoSuchModul
 from sqlalchemy.exc import TimeoutError as NoConnection
 
 from coursework.errors import BadInput
+from coursework.system.sqlite_files import scrub
 
 _MIGRATIONS = Path(__file__).parent / "migrations"
 _READS = "coursework_reads"  #: said of a connection that writes nothing
@@ -50,6 +52,7 @@ class Store:
             ) from fault
         except ModuleNotFoundError as missing:
             raise BadInput(f"{_shown(url)} needs the package {missing.name}: pip install it") from missing
+        _make_private(self.url)
         self._reads: dict[str, Any] = {_READS: True}
         if self.engine.dialect.name == "postgresql":
             self._reads["isolation_level"] = "REPEATABLE READ"  # as every transaction of SQLite is
@@ -97,6 +100,11 @@ class Store:
             raise BadInput(f"{_shown(self.url)}: {_cause(fault)}; nothing of this was kept") from fault
 
     @property
+    def has_one_writer(self) -> bool:
+        """Whether one transaction alone may write at a time."""
+        return self.engine.dialect.name == "sqlite"
+
+    @property
     def shown(self) -> str:
         """Its file, or its address without a password."""
         url = make_url(self.url)
@@ -105,6 +113,17 @@ class Store:
             if url.drivername.startswith("sqlite")
             else _shown(self.url)
         )
+
+    def scrub(self, patience: float = 5.0) -> bool:
+        """Rewrite the file of SQLite without what was deleted; servers do so by themselves, later.
+
+        Returns
+        -------
+        bool
+            False where another process kept some of it for ``patience`` seconds.
+        """
+        path = file_of(self.url)
+        return path is None or scrub(path, patience)
 
     def close(self) -> None:
         """Let go of all connections."""
@@ -173,6 +192,20 @@ def file_of(url: str) -> Path | None:
     return Path(str(told.database)) if in_file else None
 
 
+def _make_private(url: str) -> None:
+    """Make the file of a new database of SQLite, with passwords, keys and answers in it, for its owner alone; those that SQLite puts
+    beside it are like it. What stands in the way is told when the file is opened."""
+    file = file_of(url)
+    if file is not None and not str(file).startswith("file:"):
+        with suppress(OSError):
+            os.close(os.open(file, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600))
+
+
+def is_shared(file: Path | None) -> bool:
+    """Return True for a file that other users of this machine can read."""
+    return file is not None and os.name == "posix" and file.exists() and bool(file.stat().st_mode & 0o077)
+
+
 def _shown(url: str) -> str:
     """The address without a password."""
     try:
@@ -198,6 +231,7 @@ def _sqlite_settings(connection: Any, record: Any) -> None:
         "journal_mode = WAL",
         "synchronous = FULL",
         "foreign_keys = ON",
+        "secure_delete = ON",
         f"busy_timeout = {1000 * _PATIENCE}",
     ):
         cursor.execute(f"PRAGMA {setting}")

@@ -12,6 +12,7 @@ from typing import Any
 
 from sqlalchemy import (
     JSON,
+    BigInteger,
     Boolean,
     Column,
     DateTime,
@@ -92,7 +93,7 @@ person = Table(
     Column("lang", Words, nullable=False, default=""),
     Column("columns", Json, nullable=False, default=dict),  #: of the rosters that name them
     Column("created", Moment, nullable=False),
-    Column("sessions_from", Moment),  #: sessions that began before are over
+    Column("sessions_from", Moment),  #: written by earlier versions, and read by none
 )
 
 #: How somebody signs in with a password; what a password becomes is argon2's business.
@@ -106,9 +107,44 @@ account = Table(
     Column("invitation", String(64), index=True),  #: digest of what the invitation's address ends with
     Column("invited_until", Moment),
     Column("joined", Moment),  #: when an invitation was taken up
-    Column("role", String(16), nullable=False),  #: student, instructor
+    Column("role", String(16), nullable=False),  #: student, assistant, instructor, administrator
     Column("created", Moment, nullable=False),
     Column("closed", Moment),
+)
+
+#: A browser in which somebody is signed in. No dump holds it: what is restored signs nobody in.
+session = Table(
+    "session",
+    METADATA,
+    _key(),
+    _of("person", index=True),
+    Column("digest", String(64), nullable=False, unique=True),  #: of the token that the browser holds
+    Column("browser", Words, nullable=False, default=""),  #: "Firefox, Linux"
+    Column("created", Moment, nullable=False),
+    Column("seen", Moment, nullable=False),  #: the last use, to some minutes
+    Column("until", Moment, nullable=False, index=True),  #: when it expires unless it is used
+    info={"fleeting": True},
+)
+
+#: Assignments and groups in which an assistant works: in every assignment where none is named, in the whole class where no
+#: group is.
+area = Table(
+    "area",
+    METADATA,
+    _key(),
+    _of("person", index=True),
+    Column("assignment_id", ForeignKey("assignment.id", ondelete="CASCADE")),
+    Column("class_group", Words),  #: whatever its case and spaces
+)
+
+#: Passwords that did not fit, by a keyed digest of login and network: no login can be read from it.
+failure = Table(
+    "failure",
+    METADATA,
+    Column("key", String(64), primary_key=True),
+    Column("count", Integer, nullable=False),
+    Column("last", Moment, nullable=False, index=True),
+    info={"fleeting": True},
 )
 
 #: How a platform knows somebody.
@@ -136,6 +172,8 @@ assignment = Table(
     Column("is_pool", Boolean, nullable=False, default=False),  #: a platform deals its variants out
     Column("columns", Json, nullable=False, default=dict),  #: of the roster, by student
     Column("asked", Json),  #: what its file says, for who comes late; none of a build of exercises
+    #: keys the draws of who comes later; none of what was issued without one
+    Column("secret", String(32)),
     Column("published", Json),  #: dates, tries, feedback, late rules; none while it is not published
     Column("created", Moment, nullable=False),
 )
@@ -389,6 +427,23 @@ extension = Table(
     Column("made", Moment, nullable=False),
 )
 
+#: Work that a worker does beside the requests: hand-ins to mark, what was saved to be handed in once it closed. A row goes
+#: with its work; one with a ``fault`` is given up, and somebody has to look at it.
+job = Table(
+    "job",
+    METADATA,
+    _key(),
+    Column("kind", String(16), nullable=False),  #: mark, rescue
+    _of("assignment", index=True),
+    _of("delivery", null=True, index=True),
+    _of("person", null=True, index=True),
+    Column("tries", Integer, nullable=False, default=0),  #: how often it was begun
+    Column("worker", String(64), nullable=False, default=""),  #: which began it last
+    Column("until", Moment),  #: when another worker may take it; none while nobody works at it
+    Column("fault", Words, nullable=False, default=""),  #: why it was given up
+    Column("made", Moment, nullable=False),
+)
+
 #: Small things of the site itself: the key that signs its cookies.
 setting = Table(
     "setting",
@@ -406,6 +461,117 @@ audit = Table(
     Column("by", Words, nullable=False),  #: who did it
     Column("what", Words, nullable=False),
     Column("about", Json, nullable=False, default=dict),  #: never an answer
+    Column("actor", Integer),  #: id of the person who did it; none for commands and platforms
+    Column("subject", Integer, index=True),  #: id of the person of whom it tells
+    Column("address", String(64)),  #: of the machine from which it was done
+)
+
+# --------------------------------------------------------------------- aggregates
+# What follows is computed from the tables above (:mod:`coursework.database.aggregates`), so that a page of the desk reads a
+# page of rows and not a class. No dump holds it.
+
+_DERIVED = {"derived": True}
+
+#: Aggregates to be computed anew, noted in the transaction that changed what they are made of: those of a student, of
+#: ``everybody``, or the ``rows`` that could not be placed.
+outdated = Table(
+    "outdated",
+    METADATA,
+    _key(),
+    _of("assignment", index=True),
+    Column("kind", String(16), nullable=False),
+    Column("student", Words, nullable=False, default=""),
+    info=_DERIVED,
+)
+
+#: A student of a class: the sitting that counts, as ``summary.csv`` gives it.
+student_total = Table(
+    "student_total",
+    METADATA,
+    _key(),
+    _of("assignment"),
+    Column("student", Words, nullable=False),
+    Column("search", Words, nullable=False),  #: folded name and identity
+    Column("identity", Words, nullable=False, default=""),
+    Column("place", BigInteger, nullable=False),  #: in the class
+    Column("sitting", Integer, nullable=False),
+    Column("points", Double, nullable=False),
+    Column("out_of", Double, nullable=False),
+    Column("charged", Double, nullable=False, default=0.0),  #: points that are taken off for lateness
+    Column("mark", Words, nullable=False, default=""),
+    Column("tries", Integer, nullable=False, default=0),
+    Column("late", Integer, nullable=False, default=0),  #: seconds
+    Column("waits", Integer, nullable=False, default=0),  #: answers that count and that nobody could mark yet
+    Column("handed_in", Boolean, nullable=False, default=False),
+    Column("answered", Boolean, nullable=False, default=False),  #: a sheet of theirs is marked
+    Column("verdicts", Json, nullable=False, default=dict),
+    Column("by_exercise", Json, nullable=False, default=dict),
+    UniqueConstraint("assignment_id", "student"),
+    Index("ix_student_total_place", "assignment_id", "place"),
+    info=_DERIVED,
+)
+
+#: An answer of a class as it stands: last marked, and decided on; its texts are those of its row of ``mark``.
+answer_now = Table(
+    "answer_now",
+    METADATA,
+    _key(),
+    _of("assignment"),
+    Column("marking", Integer, nullable=False),
+    Column("first", Integer, nullable=False),  #: marking of its sheet: the order in which sheets came
+    Column("place", Integer, nullable=False),  #: on its sheet
+    Column("student", Words, nullable=False),
+    Column("exercise", Words, nullable=False),
+    Column("seed", Words, nullable=False),
+    Column("sitting", Integer, nullable=False),
+    Column("part", Words, nullable=False),
+    Column("verdict", Words, nullable=False),
+    Column("points", Double, nullable=False),
+    Column("out_of", Double, nullable=False),
+    Column("by_hand", Boolean, nullable=False),
+    Column("counts", Boolean, nullable=False),  #: its sitting counts
+    Column("is_cell", Boolean, nullable=False),  #: it stands in the class table
+    Column("is_listed", Boolean, nullable=False),  #: it is a line of ``marks.csv``
+    Column("is_shown", Boolean, nullable=False),  #: something was answered, in a sitting that is looked at
+    Column("wrote", String(16), nullable=False),  #: digest of the answer in one spelling
+    Column("why", String(16)),  #: why a person may look at it (:data:`coursework.gradebook.waiting.WHY`)
+    Column("card", String(16)),  #: of the queue: the same for all who wrote the same
+    Column("decided", Boolean, nullable=False),
+    Index("ix_answer_now_student", "assignment_id", "student"),
+    Index("ix_answer_now_question", "assignment_id", "exercise", "part"),
+    Index("ix_answer_now_card", "assignment_id", "card"),
+    info=_DERIVED,
+)
+
+#: A row that could not be placed or marked; what became of it is told by ``placing``.
+unplaced = Table(
+    "unplaced",
+    METADATA,
+    _key(),
+    _of("assignment", index=True),
+    Column("row", String(64), nullable=False),  #: digest, as in ``placing``
+    Column("student", Words, nullable=False, default=""),  #: as issued; empty for a stranger
+    Column("near", Words, nullable=False, default=""),  #: whose name is like that of a stranger
+    Column("source", Words, nullable=False),
+    Column("reason", Words, nullable=False),
+    Column("said", Json, nullable=False, default=dict),
+    info=_DERIVED,
+)
+
+#: What an assignment comes to.
+assignment_total = Table(
+    "assignment_total",
+    METADATA,
+    _key(),
+    _of("assignment"),
+    Column("students", Integer, nullable=False, default=0),
+    Column("handed_in", Integer, nullable=False, default=0),
+    Column("answered", Integer, nullable=False, default=0),
+    Column("waiting", Integer, nullable=False, default=0),  #: answers and rows that wait for a person
+    Column("facts", Json, nullable=False, default=dict),  #: what bears on the points of all
+    Column("version", Integer, nullable=False, default=0),  #: counts how often it was computed
+    UniqueConstraint("assignment_id"),
+    info=_DERIVED,
 )
 
 for _table in METADATA.tables.values():  # the number of a row that was erased is never given to another

@@ -13,6 +13,7 @@ from coursework.gradebook.changes import rows_of
 from coursework.gradebook.columns import LATE, VERDICTS
 from coursework.gradebook.scale import exact
 from coursework.making.identity import Ids, identifies
+from coursework.system.links import check_inside
 
 SCORES = ("points", "mark", "percent")
 
@@ -48,6 +49,8 @@ def class_points(marks: Path, score: str) -> list[Scored]:
         There is none, or a line of it holds no number.
     """
     path = marks / "summary.csv" if marks.is_dir() else marks
+    if path != marks:
+        check_inside(path, marks)
     if not path.is_file():
         raise BadInput(f"no {path}: name the folder of marks that 'coursework grade' wrote")
     found = list(_scored(path, score))

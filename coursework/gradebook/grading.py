@@ -70,7 +70,7 @@ def grade_files(
 
     def rows() -> Iterator[Row | Rejected | Seen]:
         for found in find(submissions):
-            yield from [found] if isinstance(found, (Rejected, Seen)) else read_file(found)
+            yield from [found] if isinstance(found, (Rejected, Seen)) else read_file(found, submissions)
 
     with placed_beside(course, issued, rows(), out) as sheets:
         if not sheets.count:

@@ -9,7 +9,7 @@ from coursework.errors import BadInput
 from coursework.gradebook.class_points import Scored
 from coursework.making.identity import NUMBER, plain
 
-_NUMBERS = ("id number", "numéro d'identification", *NUMBER)
+_NUMBERS = ("id number", plain("numéro d'identification"), *NUMBER)
 
 
 def number_of(one: Scored) -> str:

@@ -5,12 +5,14 @@ Every row of every file comes out, as a :class:`Row` or as a :class:`Rejected` w
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import islice
 from operator import itemgetter
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 from coursework.errors import BadInput, closest
 from coursework.gradebook.notebooks import read_notebook
@@ -40,6 +42,7 @@ from coursework.system.limits import (
     MOST_UNPACKED,
     beyond,
 )
+from coursework.system.links import LEADS_OUT, LeadsOut, folder_of, open_inside, walked
 from coursework.system.tables import as_written, delimiter_of, record, said_twice
 
 ENDINGS = (".csv", ".json", ".ipynb", ".parquet", ".xml", ".tsv")
@@ -59,16 +62,21 @@ def find(paths: Iterable[Path]) -> Iterator[Path | Rejected]:
             raise BadInput(f"no such file or folder: {path}{_beside(path)}")
     for path in paths:
         if path.is_dir():
-            files = latest_first(p for p in path.rglob("*") if p.is_file() and not _is_hidden(p, path))
-            yield from (
-                p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files if p.name not in BESIDE
-            )
-            if not files:
-                yield Rejected(path_text(path), "the folder holds no file")
+            yield from _below(path)
         elif path.suffix.lower() not in ENDINGS:
             yield _odd_file(path)
         else:
             yield path
+
+
+def _below(folder: Path) -> Iterator[Path | Rejected]:
+    found = walked(folder)
+    files = latest_first(p for p in found.files if not _is_hidden(p, folder))
+    refused = [p for p in found.refused if not _is_hidden(p, folder)]
+    yield from (Rejected(path_text(p), LEADS_OUT) for p in refused)
+    yield from (p if p.suffix.lower() in ENDINGS else _odd_file(p) for p in files if p.name not in BESIDE)
+    if not files and not refused:
+        yield Rejected(path_text(folder), "the folder holds no file")
 
 
 def _beside(path: Path) -> str:
@@ -97,29 +105,50 @@ def _odd_file(path: Path) -> Rejected:
     return Rejected(path_text(path), f"answers come as {', '.join(ENDINGS)}; found {ending}")
 
 
-def read_file(path: Path) -> Iterator[Row | Rejected | Seen]:
-    """The rows of one file; a file that cannot be read is one rejected row."""
+def read_file(path: Path, given: Iterable[Path] = ()) -> Iterator[Row | Rejected | Seen]:
+    """The rows of one file; a file that cannot be read is one rejected row.
+
+    ``given`` is what somebody named, a folder of which may hold the file: nothing outside of that folder is read.
+    """
+    folder = folder_of(path, given)
     place = handed_in(path) if path.suffix.lower() == ".ipynb" else None
     if place is None:
-        yield from _read(path, None)
+        yield from _read(path, None, folder)
         return
     yield place.seen
-    for row in _read(path, place):
+    for row in _read(path, place, folder):
         yield row._replace(origin=place.origin) if isinstance(row, Row) else row
 
 
-def _read(path: Path, place: HandedIn | None) -> Iterator[Row | Rejected | Seen]:
-    if path.suffix.lower() == ".parquet":
-        yield from _read_parquet(path)
+def read_rows(path: Path, most: int) -> list[Row | Rejected | Seen] | None:
+    """Return the rows of one file; None where it has more than ``most``."""
+    rows = list(islice(read_file(path), most + 1))
+    return rows if len(rows) <= most else None
+
+
+def _read(path: Path, place: HandedIn | None, folder: Path | None) -> Iterator[Row | Rejected | Seen]:
+    try:
+        file = path.open("rb") if folder is None else open_inside(path, folder)
+    except OSError as fault:
+        refused = LEADS_OUT if isinstance(fault, LeadsOut) else f"cannot be read: {fault.strerror}"
+        yield Rejected(path_text(path), refused)
         return
+    with file:
+        if path.suffix.lower() == ".parquet":
+            yield from _read_parquet(path, file)
+        else:
+            yield from _read_whole(path, file, place)
+
+
+def _read_whole(path: Path, file: BinaryIO, place: HandedIn | None) -> Iterator[Row | Rejected | Seen]:
     reader = _READERS[path.suffix.lower()]
     try:
-        size = path.stat().st_size
+        size = os.fstat(file.fileno()).st_size
         most = MOST_NOTEBOOK_BYTES if path.suffix.lower() == ".ipynb" else MAX_BYTES
         if size > most:
             yield Rejected(path_text(path), beyond("a file", size, most, "bytes"))
             return
-        data = path.read_bytes()
+        data = file.read()
     except OSError as fault:
         yield Rejected(path_text(path), f"cannot be read: {fault.strerror}")
         return
@@ -213,7 +242,7 @@ _kept = sys.intern
 NO_ANSWERS = "the file holds no answers"
 
 
-def _read_parquet(path: Path) -> Iterator[Row | Rejected]:
+def _read_parquet(path: Path, opened: BinaryIO) -> Iterator[Row | Rejected]:
     """The rows of a Parquet file with the columns of the CSV; the seed and the answer may be numbers."""
     try:
         pyarrow: Any = library("pyarrow", "Parquet needs", "parquet")
@@ -222,7 +251,7 @@ def _read_parquet(path: Path) -> Iterator[Row | Rejected]:
         yield Rejected(path_text(path), str(why))
         return
     try:
-        file = parquet.ParquetFile(path)
+        file = parquet.ParquetFile(opened)
         missing = [c for c in COLUMNS if c not in file.schema_arrow.names]
         if missing:
             wanted = f"a Parquet file has the columns {', '.join(COLUMNS)}; {', '.join(missing)} missing"
@@ -232,7 +261,7 @@ def _read_parquet(path: Path) -> Iterator[Row | Rejected]:
             yield Rejected(path_text(path), refused)
             return
         plain = {file.schema.column(k).path for k in range(len(file.schema))}  # one of lists is not
-        file = parquet.ParquetFile(path, read_dictionary=[c for c in COLUMNS if c in plain])
+        file = parquet.ParquetFile(opened, read_dictionary=[c for c in COLUMNS if c in plain])
         number, source = 0, path_text(path)
         for batch in file.iter_batches(columns=list(COLUMNS)):
             for cells in zip(*(_cells_of(batch.column(c), c) for c in COLUMNS), strict=True):

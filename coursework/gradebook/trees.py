@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
 from coursework.gradebook.rows import Collected, Seen, path_text
+from coursework.system.links import open_inside
 
 #: Files that lie in such trees and hold no answers.
 BESIDE = frozenset(("timestamp.txt", "submission_secret.txt"))
+_LONGEST_TIME = 400  #: bytes of it
 _TIME = r"[0-9]{4}-[0-9]{2}-[0-9]{2}[ T_][0-9]{2}[:_][0-9]{2}[:_][0-9]{2}[^+]*"
 _EXCHANGE = re.compile(rf"(?P<student>[^+]+)\+(?P<assignment>[^+]+)\+(?P<time>{_TIME})(?:\+.*)?")
 _MOODLE = re.compile(r"(?P<student>.+)_(?P<id>[0-9]+)_assignsubmission_(?:file|onlinetext)")
@@ -55,8 +58,9 @@ def handed_in(path: Path) -> HandedIn | None:
 
 def _handed(by: tuple[str, ...], time: str, root: str, what: str, folder: Path) -> HandedIn:
     beside = folder / "timestamp.txt"
-    if not time and beside.is_file():
-        time = beside.read_text("utf-8", "replace").strip()[:60]
+    if not time:
+        with suppress(OSError), open_inside(beside, folder) as file:
+            time = file.read(_LONGEST_TIME).decode("utf-8", "replace").strip()[:60]
     return HandedIn(Collected(by=by, submitted=time), Seen(root, what, is_tree=True))
 
 

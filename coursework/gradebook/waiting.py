@@ -104,16 +104,23 @@ def groups(
             if mark.verdict == "missing":
                 continue
             answered.setdefault((one.exercise, part), set()).add(one.student)
-            margin = measure.margins.get(part)
-            if (why := _why(mark, margin, is_drawn=(one.exercise, part) in drawn)) is None:
-                continue
-            key = why, one.exercise, part, mark.verdict, written(mark), measure.references.get(part, "")
-            found.setdefault(key, []).append(Waits(one, mark, margin))
+            if (key := key_of(one, mark, measure, drawn)) is not None:
+                found.setdefault(key, []).append(Waits(one, mark, measure.margins.get(part)))
     place = {question: number for number, question in enumerate(order)}
     made = [_group(key, members) for key, members in found.items() if _waits(key, members, answered)]
     return sorted(
         made, key=lambda g: (place.get((g.exercise, g.part), len(place)), WHY.index(g.why), -len(g.members))
     )
+
+
+def key_of(
+    one: Graded, mark: Mark, measure: Measure, drawn: frozenset[tuple[str, str]]
+) -> tuple[str, ...] | None:
+    """Return what answers of one group have in common, first why they may be looked at; None of what nobody looks at."""
+    margin = measure.margins.get(mark.part)
+    if (why := _why(mark, margin, is_drawn=(one.exercise, mark.part) in drawn)) is None:
+        return None
+    return why, one.exercise, mark.part, mark.verdict, written(mark), measure.references.get(mark.part, "")
 
 
 def _why(mark: Mark, margin: float | None, *, is_drawn: bool) -> str | None:
@@ -146,6 +153,10 @@ def written(mark: Mark) -> str:
     return " ".join(text.casefold().split()).rstrip(" .!;,")
 
 
+def name_of(key: Sequence[str]) -> str:
+    """Return the name of a group: a digest of what its answers have in common."""
+    return sha256("\0".join(key).encode("utf-8", "backslashreplace")).hexdigest()[:16]
+
+
 def _group(key: tuple[str, ...], members: Sequence[Waits]) -> Group:
-    name = sha256("\0".join(key).encode("utf-8", "backslashreplace")).hexdigest()[:16]
-    return Group(name, key[0], key[1], key[2], tuple(members))
+    return Group(name_of(key), key[0], key[1], key[2], tuple(members))

@@ -14,6 +14,7 @@ import numpy as np
 
 from coursework.errors import BadInput
 from coursework.gradebook.columns import SITTING, VERDICTS
+from coursework.system.links import check_inside
 from coursework.system.tables import as_written, delimiter_of, open_csv, said_twice
 
 MOST_POINTS = 1e9  #: more is no number of points
@@ -80,6 +81,8 @@ def read(folder: Path) -> Marks:
         No ``marks.csv``, a column that is missing, or a line that holds no mark.
     """
     path = folder / "marks.csv"
+    for name in ("marks.csv", "summary.csv", "rejected.csv"):
+        check_inside(folder / name, folder)
     if not path.is_file():
         raise BadInput(_no_marks(folder))
     decimals = _Decimals()

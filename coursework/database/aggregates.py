@@ -1,0 +1,458 @@
+"""Aggregates of the desk: totals by student, answers as they stand, counts by assignment.
+
+Whatever changes marks, decisions, hand-ins, papers or rules notes in its own transaction whose aggregates are outdated
+(:mod:`coursework.database.outdated`). :func:`refresh` computes these anew from the tables themselves, by the very code that makes
+``summary.csv``, a few hundred students at a time. Two that refresh at once do no harm: who finds that a note is gone throws away
+what it computed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from sqlalchemy import Connection, case, delete, func, insert, select, update
+
+from coursework.course.course import Course
+from coursework.database.class_standing import ClassNow, Facts, read_rows, read_students
+from coursework.database.class_tables import answers_waiting
+from coursework.database.desk import About, listed
+from coursework.database.outdated import EVERYBODY, ROWS, STUDENT, outdate
+from coursework.database.store import Store, insert_unless_there
+from coursework.database.tables import (
+    answer_now,
+    assignment,
+    assignment_total,
+    dealt,
+    delivery,
+    mark,
+    marking,
+    outdated,
+    rejected,
+    student_total,
+    unplaced,
+    variant,
+)
+from coursework.gradebook.columns import own_columns
+from coursework.gradebook.graded import Graded
+from coursework.gradebook.rows import Rejected
+from coursework.gradebook.scale import mark_of
+from coursework.gradebook.waiting import (
+    NOTHING,
+    key_of,
+    name_of,
+    written,
+)
+from coursework.making.students import folded
+from coursework.marking.mark import Mark
+
+CHUNK = 200  #: students that are computed at once
+_WRITTEN = 2000  #: rows that are written at once
+_STRANGERS = 10**10  #: places of who is on no roster begin here
+_WAIT = ("unreadable", "to_mark")
+
+
+def outstanding(connection: Connection, assignment_id: int | None = None) -> dict[int, int]:
+    """Return how many students' aggregates are outdated, by assignment; where all are, as many as it was issued to."""
+    noted = select(
+        outdated.c.assignment_id, outdated.c.kind, func.count(outdated.c.student.distinct())
+    ).group_by(outdated.c.assignment_id, outdated.c.kind)
+    if assignment_id is not None:
+        noted = noted.where(outdated.c.assignment_id == assignment_id)
+    found: dict[int, int] = {}
+    for number, kind, count in connection.execute(noted).all():
+        if kind == EVERYBODY:
+            count = _how_many(connection, number)
+        elif kind == ROWS:
+            count = 1 if not _has_files(connection, number) else _how_many(connection, number)
+        found[number] = max(found.get(number, 0), count)
+    return found
+
+
+def _how_many(connection: Connection, number: int) -> int:
+    own = select(func.count(variant.c.id)).where(variant.c.assignment_id == number)
+    return int(connection.execute(own).scalar() or 0) or 1
+
+
+def refresh(course: Course, store: Store, assignment_id: int, most: int | None = None) -> bool:
+    """Compute what is outdated of an assignment, at most so many students where that is told; False where some is left.
+
+    Raises
+    ------
+    CourseworkError
+        The course cannot mark what was issued; nothing of it is computed then.
+    """
+    done = 0
+    while most is None or done < most:
+        found = _step(course, store, assignment_id)
+        if found is None:
+            return True
+        done += found
+    with store.reading() as connection:
+        return not connection.execute(
+            select(outdated.c.id).where(outdated.c.assignment_id == assignment_id).limit(1)
+        ).first()
+
+
+def _step(course: Course, store: Store, number: int) -> int | None:
+    """Do one piece of the work; return of how many students it was, None where nothing is left."""
+    with store.reading() as connection:
+        notes = _notes(connection, number)
+        if notes is None:
+            return None
+        about = next(iter(listed(connection, number)), None)
+        if about is None:
+            return None
+        made = _computed(connection, course, about, notes)
+    with store.begin() as connection:
+        row = select(assignment.c.id).where(assignment.c.id == number)
+        connection.execute(row.with_for_update(key_share=True))
+        if _taken(connection, notes.ids):
+            made.write(connection)
+    return len(notes.students) or 1
+
+
+class _Notes(NamedTuple):
+    """Notes that are dealt with together."""
+
+    kind: str
+    ids: Sequence[int]
+    students: frozenset[str]
+
+
+def _notes(connection: Connection, number: int) -> _Notes | None:
+    """Return the notes that come next: those of everybody first, then the rows, then some students."""
+    own = outdated.c.assignment_id == number
+    for kind in (EVERYBODY, ROWS):
+        ids = connection.execute(select(outdated.c.id).where(own, outdated.c.kind == kind)).scalars().all()
+        if ids:
+            return _Notes(kind, ids, frozenset())
+    first = (
+        select(outdated.c.student)
+        .where(own, outdated.c.kind == STUDENT)
+        .group_by(outdated.c.student)
+        .order_by(func.min(outdated.c.id))
+        .limit(CHUNK)
+    )
+    names = connection.execute(first).scalars().all()
+    if not names:
+        return None
+    theirs = select(outdated.c.id).where(own, outdated.c.kind == STUDENT, outdated.c.student.in_(names))
+    return _Notes(STUDENT, connection.execute(theirs).scalars().all(), frozenset(names))
+
+
+def _taken(connection: Connection, ids: Sequence[int]) -> bool:
+    """Take notes away; False where somebody else dealt with one of them meanwhile."""
+    gone = 0
+    for start in range(0, len(ids), _WRITTEN):
+        some = outdated.c.id.in_(ids[start : start + _WRITTEN])
+        gone += connection.execute(delete(outdated).where(some)).rowcount
+    return gone == len(ids)
+
+
+class _Computed:
+    """What is to be written of an assignment."""
+
+    def __init__(self, about: About):
+        self.about = about
+        self.outdate: Collection[str] = ()  #: students who are noted
+        self.away: Collection[str] = ()  #: students whose rows go
+        self.totals: list[dict[str, Any]] = []
+        self.answers: list[dict[str, Any]] = []
+        self.unplaced: list[dict[str, Any]] | None = None
+        self.facts: Facts | None = None
+
+    def write(self, connection: Connection) -> None:
+        number = self.about.id
+        away = list(self.away)
+        for table in (answer_now, student_total):
+            for start in range(0, len(away), _WRITTEN):
+                names = table.c.student.in_(away[start : start + _WRITTEN])
+                connection.execute(delete(table).where(table.c.assignment_id == number, names))
+        if self.unplaced is not None:
+            connection.execute(delete(unplaced).where(unplaced.c.assignment_id == number))
+            _insert(connection, unplaced, self.unplaced)
+        _insert(connection, student_total, self.totals)
+        _insert(connection, answer_now, self.answers)
+        outdate(connection, number, self.outdate)
+        write_total(connection, number, self.facts)
+
+
+def _insert(connection: Connection, table: Any, rows: Sequence[Mapping[str, Any]]) -> None:
+    for start in range(0, len(rows), _WRITTEN):
+        connection.execute(insert(table), list(rows[start : start + _WRITTEN]))
+
+
+def _computed(connection: Connection, course: Course, about: About, notes: _Notes) -> _Computed:
+    made = _Computed(about)
+    if notes.kind == EVERYBODY:
+        made.outdate = _everybody(connection, about)
+    elif notes.kind == ROWS:
+        _unplaced(connection, course, about, made)
+    else:
+        _students(connection, course, about, notes.students, made)
+    return made
+
+
+# ----------------------------------------------------------------------- students
+
+
+def _everybody(connection: Connection, about: About) -> list[str]:
+    """Return every name that is somebody's: as issued, as marked, as computed before."""
+    number = about.id
+    issued = select(dealt.c.student).join(variant).where(variant.c.assignment_id == number)
+    marked = select(marking.c.student).where(marking.c.assignment_id == number)
+    known = select(student_total.c.student).where(student_total.c.assignment_id == number)
+    told = select(unplaced.c.student).where(unplaced.c.assignment_id == number)
+    names = dict.fromkeys(connection.execute(issued.union(marked, known, told)).scalars())
+    return [one for one in (*names, *(about.columns if _is_pool(connection, number) else ())) if one]
+
+
+def _is_pool(connection: Connection, number: int) -> bool:
+    return bool(connection.execute(select(assignment.c.is_pool).where(assignment.c.id == number)).scalar())
+
+
+def _students(
+    connection: Connection, course: Course, about: About, noted: Collection[str], made: _Computed
+) -> None:
+    """Compute some students; names are resolved to those as issued."""
+    students = _as_issued(connection, about, noted)
+    made.away = frozenset(students) | frozenset(noted)
+    facts = facts_of(connection, about.id)
+    if facts.as_json() != _facts_before(connection, about.id):
+        made.facts = facts
+        made.outdate = [one for one in _everybody(connection, about) if one not in made.away]
+    if not students:
+        return
+    own = select(unplaced).where(unplaced.c.assignment_id == about.id, unplaced.c.student.in_(students))
+    lost = [
+        Rejected(row.source, row.reason, row.said) for row in connection.execute(own.order_by(unplaced.c.id))
+    ]
+    now = read_students(connection, course, about, students, lost, facts)
+    places = _places(connection, about, now)
+    cells = _cells(now)
+    made.totals = [_total(now, student, places[student], cells.get(student, {})) for student in now.results]
+    made.answers = list(_answers(now, cells))
+
+
+def _as_issued(connection: Connection, about: About, noted: Collection[str]) -> frozenset[str]:
+    """Return the students whom names name, however these are spelled."""
+    issued = select(dealt.c.student).join(variant).where(variant.c.assignment_id == about.id)
+    marked = select(marking.c.student).where(marking.c.assignment_id == about.id)
+    told = select(unplaced.c.student).where(unplaced.c.assignment_id == about.id, unplaced.c.student != "")
+
+    def among(*more: Any) -> set[str]:
+        asked = issued.where(*(dealt.c.student.in_(own) for own in more)).union(
+            marked.where(*(marking.c.student.in_(own) for own in more)),
+            told.where(*(unplaced.c.student.in_(own) for own in more)),
+        )
+        return {one for one in connection.execute(asked).scalars() if one}
+
+    found = among(list(noted)) | {one for one in noted if one in about.columns}
+    if strangers := {folded(one) for one in noted if one not in found}:
+        found |= {one for one in among() if folded(one) in strangers}
+    return frozenset(found)
+
+
+def _places(connection: Connection, about: About, now: ClassNow) -> dict[str, int]:
+    """Return the place of each student in the class: as issued, else as they came."""
+    names = list(now.results)
+    order = (
+        select(dealt.c.student, func.min(dealt.c.place))
+        .join(variant)
+        .where(variant.c.assignment_id == about.id, dealt.c.student.in_(names))
+        .group_by(dealt.c.student)
+    )
+    found: dict[str, int] = {row[0]: row[1] for row in connection.execute(order)}
+    listed_at = {name: place for place, name in enumerate(about.columns)} if now.issued.is_pool else {}
+    came: dict[str, int] = {}
+    for place, first in now.firsts.items():
+        came[place[0]] = min(came.get(place[0], first), first)
+    for name in names:
+        if name not in found:
+            at = listed_at.get(name)
+            found[name] = _STRANGERS + came.get(name, _STRANGERS) if at is None else _STRANGERS // 2 + at
+    return found
+
+
+_Cells = dict[tuple[str, str], Graded]
+
+
+def _cells(now: ClassNow) -> dict[str, _Cells]:
+    """Return which sheet fills each question of a student's line in the class table."""
+    found: dict[str, _Cells] = {}
+    for one in now.graded.values():
+        if one.sitting == now.results[one.student].sitting:
+            own = found.setdefault(one.student, {})
+            own.update({(one.exercise, part): one for part in one.lines})
+    return found
+
+
+def _total(now: ClassNow, student: str, place: int, cells: _Cells) -> dict[str, Any]:
+    result, came = now.results[student], now.came.get(student)
+    told = own_columns(now.issued, student)
+    titles = (now.issued.assignment or {}).get("identity") or ()
+    identity = " ".join(filter(None, (told.get(folded(str(title)), "") for title in titles)))
+    sittings = [n for s, n in now.book.students if s == student] if cells else []
+    return {
+        "assignment_id": now.about.id,
+        "student": student,
+        "search": folded(f"{student} {identity}"),
+        "identity": identity,
+        "place": place,
+        "sitting": result.sitting,
+        "points": result.points,
+        "out_of": result.out_of,
+        "charged": result.late,
+        "mark": mark_of(now.issued, result.counts, result.out_of),
+        "tries": came.tries if came else max(sittings, default=0),
+        "late": came.late if came else 0,
+        "waits": sum(sheet.lines[part].verdict in _WAIT for (_, part), sheet in cells.items()),
+        "handed_in": bool(cells) or came is not None,
+        "answered": any(one.student == student for one in now.machine.values()),
+        "verdicts": {name: count for name, count in result.verdicts.items() if count},
+        "by_exercise": dict(result.by_exercise),
+    }
+
+
+def _answers(now: ClassNow, cells: Mapping[str, _Cells]) -> Iterator[dict[str, Any]]:
+    for place, machine in now.machine.items():
+        stands = now.graded[place]
+        measure = now.measures.get((*place[:3], machine.sitting), NOTHING)
+        counts = stands.sitting == now.results[stands.student].sitting
+        matters = counts or stands.sitting == now.last_sitting[stands.student]
+        listed_parts = {*stands.answered, *stands.unanswered}
+        for at, (part, before) in enumerate(machine.lines.items()):
+            line = stands.lines[part]
+            shown = matters and before.verdict != "missing"
+            key = key_of(machine, before, measure, now.drawn) if shown else None
+            yield {
+                "assignment_id": now.about.id,
+                "marking": now.numbers[place],
+                "first": now.firsts[place],
+                "place": at,
+                "student": stands.student,
+                "exercise": stands.exercise,
+                "seed": str(stands.seed),
+                "sitting": stands.sitting,
+                "part": part,
+                "verdict": line.verdict,
+                "points": line.points,
+                "out_of": line.out_of,
+                "by_hand": is_by_hand(before, line),
+                "counts": counts,
+                "is_cell": cells.get(stands.student, {}).get((stands.exercise, part)) is stands,
+                "is_listed": part in listed_parts,
+                "is_shown": shown,
+                "wrote": name_of([written(line)]),
+                "why": None if key is None else key[0],
+                "card": None if key is None else name_of(key),
+                "decided": now.decisions.standing(machine, before) is not None,
+            }
+
+
+def is_by_hand(before: Mark, now: Mark) -> bool:
+    """Tell whether a person made another mark of what the marking gave."""
+    return before is not now and (before.verdict, before.points) != (now.verdict, now.points)
+
+
+# -------------------------------------------------------------------------- facts
+
+
+def facts_of(connection: Connection, number: int) -> Facts:
+    """Return what the sheets of all bear on the points of one: nothing in a class with a roster whose papers come whole."""
+    row = connection.execute(
+        select(assignment.c.has_roster, assignment.c.is_pool).where(assignment.c.id == number)
+    ).one()
+    apart = select(marking.c.id).where(marking.c.assignment_id == number, marking.c.apart.is_(True)).limit(1)
+    if row.has_roster and not row.is_pool and connection.execute(apart).first() is None:
+        return Facts()
+    sheet = (marking.c.student, marking.c.exercise, marking.c.seed, marking.c.attempt)
+    last = select(func.max(marking.c.id)).where(marking.c.assignment_id == number).group_by(*sheet)
+    stands = marking.c.id.in_(last), marking.c.state != "", marking.c.fault == ""
+    exercises, whole, asked = dict[str, None](), set[str](), dict[str, set[str]]()
+    kinds = select(marking.c.exercise, marking.c.apart, func.min(marking.c.id)).where(*stands)
+    for name, is_apart, _ in sorted(
+        connection.execute(kinds.group_by(marking.c.exercise, marking.c.apart)), key=lambda found: found[2]
+    ):
+        exercises[name] = None
+        if not is_apart:
+            whole.add(name)
+    parts = (
+        select(marking.c.exercise, mark.c.part)
+        .join(mark)
+        .where(*stands, marking.c.apart.is_(True))
+        .distinct()
+    )
+    for name, part in connection.execute(parts):
+        asked.setdefault(name, set()).add(part)
+    return Facts(
+        tuple(sorted(exercises)), frozenset(whole), {name: frozenset(own) for name, own in asked.items()}
+    )
+
+
+def _facts_before(connection: Connection, number: int) -> dict[str, Any]:
+    found = select(assignment_total.c.facts).where(assignment_total.c.assignment_id == number)
+    return connection.execute(found).scalar() or Facts().as_json()
+
+
+# --------------------------------------------------------------------------- rows
+
+
+def _has_files(connection: Connection, number: int) -> bool:
+    """Tell whether anything came in that may have no place: by a file, or on a sheet that cannot be marked."""
+    files = select(delivery.c.id).where(delivery.c.assignment_id == number, delivery.c.person_id.is_(None))
+    faults = select(marking.c.id).where(marking.c.assignment_id == number, marking.c.fault != "")
+    refused = select(rejected.c.id).join(delivery).where(delivery.c.assignment_id == number)
+    return any(connection.execute(one.limit(1)).first() is not None for one in (files, faults, refused))
+
+
+def _unplaced(connection: Connection, course: Course, about: About, made: _Computed) -> None:
+    """Compute the rows that have no place; whose they are is noted where that changed."""
+    made.unplaced = []
+    if _has_files(connection, about.id):
+        now = read_rows(connection, course, about)
+        made.unplaced = [
+            {
+                "assignment_id": about.id,
+                "row": name,
+                "student": student,
+                "near": near,
+                "source": row.source,
+                "reason": row.reason,
+                "said": dict(row.row),
+            }
+            for name, row, student, near in now
+        ]
+    own = select(unplaced.c.row, unplaced.c.student).where(unplaced.c.assignment_id == about.id)
+    before = {(row.row, row.student) for row in connection.execute(own)}
+    after = {(row["row"], row["student"]) for row in made.unplaced}
+    made.outdate = {student for _, student in before ^ after if student}
+
+
+# -------------------------------------------------------------------------- counts
+
+
+def write_total(connection: Connection, number: int, facts: Facts | None = None) -> None:
+    """Write what an assignment comes to, from the aggregates of its students and answers."""
+    own = student_total.c.assignment_id == number
+    counted = select(
+        func.count(),
+        func.coalesce(func.sum(case((student_total.c.handed_in, 1), else_=0)), 0),
+        func.coalesce(func.sum(case((student_total.c.answered, 1), else_=0)), 0),
+    ).where(own)
+    students, handed_in, answered = connection.execute(counted).one()
+    told = {
+        "students": students,
+        "handed_in": handed_in,
+        "answered": answered,
+        "waiting": answers_waiting(connection, number),
+        **({} if facts is None else {"facts": facts.as_json()}),
+    }
+    key = {"assignment_id": number}
+    usual = {"facts": Facts().as_json(), "version": 0}
+    insert_unless_there(connection, assignment_total, {**usual, **told, **key}, ("assignment_id",))
+    more = {**told, "version": assignment_total.c.version + 1}
+    connection.execute(
+        update(assignment_total).where(assignment_total.c.assignment_id == number).values(more)
+    )

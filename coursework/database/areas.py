@@ -1,0 +1,99 @@
+"""Assignments and groups of assistants: kept, and turned into the students of an assignment."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any
+
+from sqlalchemy import Connection, delete, insert, select
+
+from coursework.database.permissions import (
+    ASSISTANT,
+    Area,
+    Holder,
+    Permission,
+    group_key,
+    groups_within,
+    may,
+)
+from coursework.database.tables import area, assignment, dealt, person, variant
+from coursework.making.identity import is_called
+
+GROUP = ("group", "groupe", "td", "groupe de td", "section")  #: titles of the roster's column of groups
+
+
+def areas_of(connection: Connection, number: int) -> tuple[Area, ...]:
+    """Return the assignments and groups in which a person assists."""
+    found = select(area).where(area.c.person_id == number).order_by(area.c.id)
+    return tuple(Area(row.assignment_id, row.class_group) for row in connection.execute(found))
+
+
+def put_areas(connection: Connection, number: int, areas: Iterable[Area]) -> None:
+    """Let a person assist in these areas, and in no others."""
+    connection.execute(delete(area).where(area.c.person_id == number))
+    rows = [
+        {"person_id": number, "assignment_id": one.assignment, "class_group": one.group}
+        for one in dict.fromkeys(areas)
+    ]
+    if rows:
+        connection.execute(insert(area), rows)
+
+
+def group_of(columns: Mapping[str, Any] | None) -> str:
+    """Return the group that a line of a roster names, as it is written; empty where it names none."""
+    told = (
+        str(value).strip() for title, value in (columns or {}).items() if value and is_called(title, GROUP)
+    )
+    return next(told, "")
+
+
+def groups_known(connection: Connection) -> dict[str, str]:
+    """Return every group of the rosters as it is written, by its key."""
+    found = [group_of(row.columns) for row in connection.execute(select(person.c.columns))]
+    for row in connection.execute(select(assignment.c.columns)):
+        found += [group_of(columns) for columns in (row.columns or {}).values()]
+    return {group_key(one): one for one in sorted(found, reverse=True) if one}
+
+
+def groups_of(connection: Connection, number: int) -> dict[str, str]:
+    """Return the key of the group of each student of an assignment: by its own roster, else by what is known of the person."""
+    columns = connection.execute(select(assignment.c.columns).where(assignment.c.id == number)).scalar() or {}
+    given = (
+        select(dealt.c.student, person.c.id, person.c.columns)
+        .select_from(dealt.join(variant).outerjoin(person))
+        .where(variant.c.assignment_id == number)
+    )
+    found = {row.student: group_of(row.columns) for row in connection.execute(given)}
+    for student, told in columns.items():
+        found[student] = group_of(told) or found.get(student, "")
+    return {student: group_key(one) for student, one in found.items()}
+
+
+def students_within(connection: Connection, holder: Holder, number: int) -> frozenset[str] | None:
+    """Return the students of an assignment whom somebody of the staff sees, as issued; None for all of them."""
+    groups = groups_within(holder, number)
+    if groups is None:
+        return None
+    return students_in(connection, number, groups)
+
+
+def may_for(
+    connection: Connection, holder: Holder, permission: Permission, number: int, student: str
+) -> bool:
+    """Return whether somebody may do something to a student of an assignment, who is told by the name as issued."""
+    if not may(holder, permission, number):
+        return False
+    within = students_within(connection, holder, number)
+    return within is None or student in within
+
+
+def students_in(connection: Connection, number: int, groups: Collection[str]) -> frozenset[str]:
+    """Return the students of an assignment who are in one of some groups."""
+    if not groups:
+        return frozenset()
+    return frozenset(one for one, group in groups_of(connection, number).items() if group in groups)
+
+
+def held_by(connection: Connection, number: int, role: str) -> tuple[Area, ...]:
+    """Return the areas that count for a role: an assistant's own, nobody else's."""
+    return areas_of(connection, number) if role == ASSISTANT else ()

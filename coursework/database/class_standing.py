@@ -1,0 +1,350 @@
+"""A class as it stands, or some of its students: sheets, marks, totals, what waits. A page of the desk reads aggregates instead
+(:mod:`coursework.database.aggregates`), which are computed from this."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from hashlib import sha256
+from typing import Any
+
+from sqlalchemy import Connection
+
+from coursework.course.course import Course
+from coursework.database.assignments import issued_of
+from coursework.database.decisions import Decisions
+from coursework.database.deliveries import rows_of
+from coursework.database.desk import About, Came, Placed, Stamp, came_of, placings, stamp
+from coursework.database.publication import charges
+from coursework.database.standing import lines_of, machine_marks, stood
+from coursework.errors import closest
+from coursework.gradebook.book import Gradebook, Result, Sitting, Total, results
+from coursework.gradebook.class_marking import rejecting
+from coursework.gradebook.graded import Graded
+from coursework.gradebook.placing import SheetPlace, Sheets, placed
+from coursework.gradebook.rows import Rejected
+from coursework.gradebook.waiting import SHOWN_ON_REQUEST, Group, Measure, Waits, groups, measures
+from coursework.making.issued import Issued
+from coursework.making.students import namesakes
+
+
+@dataclass(frozen=True)
+class RejectedRow:
+    """A row that could not be placed."""
+
+    id: str  #: digest of what it says and where
+    row: Rejected
+    student: str  #: whom it names, as issued; empty for a stranger
+    near: str  #: whose name is like the one that it tells, where it names a stranger
+    became: Placed | None
+
+    @property
+    def waits(self) -> bool:
+        """Whether somebody must still look at it."""
+        return self.became is None
+
+
+@dataclass(frozen=True)
+class Open:
+    """What of a group waits for a person still."""
+
+    group: Group
+    members: tuple[Waits, ...]
+
+    @property
+    def why(self) -> str:
+        return self.group.why
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What the sheets of others bear on somebody's points: which exercises came, whole or part by part."""
+
+    exercises: tuple[str, ...] = ()
+    whole: frozenset[str] = frozenset()
+    apart: Mapping[str, frozenset[str]] = field(default_factory=dict)
+
+    def as_json(self) -> dict[str, Any]:
+        apart = {name: sorted(parts) for name, parts in sorted(self.apart.items())}
+        return {"exercises": sorted(self.exercises), "whole": sorted(self.whole), "apart": apart}
+
+    def tell(self, book: Gradebook) -> None:
+        """Let a gradebook of some know it."""
+        for name in self.exercises:
+            book.exercises.setdefault(name, Total())
+        book.whole.update(self.whole)
+        for name, parts in self.apart.items():
+            book.apart.setdefault(name, set()).update(parts)
+
+
+@dataclass
+class ClassNow:
+    """An assignment and its class, or some students of it, at one stamp."""
+
+    course: Course
+    about: About
+    issued: Issued
+    stamp: Stamp
+    machine: Mapping[SheetPlace, Graded]  #: as the marking gave them
+    numbers: Mapping[SheetPlace, int]  #: of the markings
+    firsts: Mapping[SheetPlace, int]  #: first markings of the sheets
+    measured: Mapping[int, Measure]  #: by marking
+    sheets: Sheets
+    faults: Mapping[SheetPlace, str]
+    decisions: Decisions
+    placings: Mapping[str, Placed]
+    came: Mapping[str, Came]
+    charged: Mapping[Sitting, float]  #: shares that are taken off of what came late
+    facts: Facts | None = None  #: of the whole class, where this is a part of it
+    is_part: bool = False  #: some students alone; which rows came is not read
+
+    @cached_property
+    def is_marked(self) -> bool:
+        """Whether all that came is marked, or cannot be."""
+        return self.sheets.sheets.keys() <= self.machine.keys() | self.faults.keys()
+
+    @cached_property
+    def graded(self) -> dict[SheetPlace, Graded]:
+        """As they stand: what people decided counts."""
+        return {place: self.decisions.apply(one) for place, one in self.machine.items()}
+
+    @cached_property
+    def book(self) -> Gradebook:
+        """The gradebook of the class, or of its part."""
+        sheets = Sheets(self.sheets.sheets, list(self.sheets.rejected), list(self.sheets.warnings))
+        book = Gradebook(
+            self.issued, self.sheets.rows_in, self.sheets.blanks, sheets.rejected, sheets.warnings
+        )
+        book.charged = self.charged
+        if self.facts is not None:
+            self.facts.tell(book)
+        if self.is_part:
+            for one in self.graded.values():
+                book.add(one)
+            return book
+        both: dict[SheetPlace, Graded | str] = {**self.graded, **self.faults}
+        for one in list(rejecting(sheets, ((p, both[p]) for p in sheets.sheets if p in both))):
+            book.add(one)
+        return book
+
+    @cached_property
+    def results(self) -> dict[str, Result]:
+        """What each student has, of the sitting that counts."""
+        return dict(results(self.book))
+
+    @cached_property
+    def last_sitting(self) -> dict[str, int]:
+        found: dict[str, int] = {}
+        for one in self.machine.values():
+            found[one.student] = max(found.get(one.student, 0), one.sitting)
+        return found
+
+    @cached_property
+    def one_sitting(self) -> bool:
+        """Whether nobody has several."""
+        sittings: dict[str, int] = {}
+        return all(
+            sittings.setdefault(one.student, one.sitting) == one.sitting for one in self.machine.values()
+        )
+
+    def matters(self, one: Graded) -> bool:
+        """Whether a sheet is of the sitting that counts, or of the last one."""
+        if self.one_sitting:
+            return True
+        return one.sitting in (self.results[one.student].sitting, self.last_sitting[one.student])
+
+    # ----------------------------------------------------------------- questions
+
+    @cached_property
+    def questions(self) -> tuple[tuple[str, str], ...]:
+        """Exercise and part of every question that was issued, in the order of the sheets."""
+        exercises = [str(e) for e in (self.issued.assignment or {}).get("exercises", ())]
+        names = dict.fromkeys((*exercises, *self.issued.exercises))
+        by_exercise: dict[str, dict[str, None]] = {name: {} for name in names}
+        for (name, _), record in self.issued.records.items():
+            by_exercise[name].update((str(p["id"]), None) for p in record["parts"])
+        return tuple(
+            (name, part) for name, parts in by_exercise.items() for part in self._in_order(name, parts)
+        )
+
+    def _in_order(self, name: str, parts: Mapping[str, None]) -> list[str]:
+        known = [p.id for p in self.course[name].spec.parts] if name in self.course else []
+        return sorted(parts, key=lambda part: known.index(part) if part in known else len(known))
+
+    @cached_property
+    def drawn(self) -> frozenset[tuple[str, str]]:
+        """The questions that are answered by a drawing."""
+        return frozenset(
+            (name, part.id)
+            for name in self.issued.exercises
+            if name in self.course
+            for part in self.course[name].spec.parts
+            if part.sort.box in ("blank", "millimetre")
+        )
+
+    def number(self, exercise: str, part: str) -> str:
+        """What papers call a question, ``2.3``."""
+        names = list(dict.fromkeys(name for name, _ in self.questions))
+        own = [p for name, p in self.questions if name == exercise]
+        return f"{names.index(exercise) + 1}.{own.index(part) + 1}"
+
+    # ------------------------------------------------------------------- waiting
+
+    @property
+    def groups(self) -> list[Group]:
+        """All that a person may look at, decided or not."""
+        return self._groups_of_all if self.one_sitting else self._groups_that_matter
+
+    @cached_property
+    def _groups_of_all(self) -> list[Group]:
+        return self._grouped(self.machine.values())
+
+    @cached_property
+    def _groups_that_matter(self) -> list[Group]:
+        return self._grouped(one for one in self.machine.values() if self.matters(one))
+
+    def _grouped(self, shown: Iterable[Graded]) -> list[Group]:
+        return groups(shown, self.measures, self.questions, self.drawn)
+
+    @cached_property
+    def measures(self) -> dict[tuple[str, str, int, int], Measure]:
+        """What sheets are compared by: by student, exercise, seed and sitting."""
+        return {
+            (*place[:3], self.machine[place].sitting): self.measured[number]
+            for place, number in self.numbers.items()
+            if number in self.measured
+        }
+
+    @cached_property
+    def open(self) -> dict[str, Open]:
+        """What waits, by the group's id, in order: also what is looked at on request alone."""
+        found = {}
+        for group in self.groups:
+            members = tuple(one for one in group.members if not self.is_decided(one))
+            if members:
+                found[group.id] = Open(group, members)
+        return found
+
+    def is_decided(self, one: Waits) -> bool:
+        return self.decisions.standing(one.sheet, one.mark) is not None
+
+    @property
+    def waiting(self) -> int:
+        """How many answers and rows wait for a person."""
+        asked = sum(len(one.members) for one in self.open.values() if one.why not in SHOWN_ON_REQUEST)
+        return asked + sum(one.waits for one in self.named)
+
+    @cached_property
+    def unplaced(self) -> tuple[tuple[str, Rejected, str, str], ...]:
+        """Every row that could not be placed or marked: its digest, whom it names, and whose name is like that."""
+        sheets = Sheets(self.sheets.sheets, list(self.sheets.rejected))
+        list(rejecting(sheets, self.faults.items()))
+        return tuple((row_id(row), row, *named_by(self.issued, row)) for row in sheets.rejected)
+
+    @cached_property
+    def rejected(self) -> tuple[RejectedRow, ...]:
+        """Every row that could not be placed, with what became of it."""
+        return tuple(RejectedRow(*one, self.placings.get(one[0])) for one in self.unplaced)
+
+    @property
+    def of_nobody(self) -> int:
+        """How many rows that name no student of the class wait on the page of files."""
+        return sum(one.waits for one in self.rejected) - sum(one.waits for one in self.named)
+
+    @property
+    def named(self) -> tuple[RejectedRow, ...]:
+        """Those of a student of the class."""
+        return tuple(one for one in self.rejected if one.student and one.student in self.issued.students)
+
+
+def named_by(issued: Issued, row: Rejected) -> tuple[str, str]:
+    """Return whom a rejected row names, as issued, and whose name is like that of a stranger."""
+    told = row.row.get("student", "")
+    student = issued.student(told) if told else None
+    is_one = told and student is None and len(namesakes(told, issued.students)) < 2
+    near = closest(told[:60], issued.students) if is_one else None
+    return student or "", near or ""
+
+
+def row_id(row: Rejected) -> str:
+    """The digest by which a rejected row is known."""
+    told = "\0".join((row.source, *(f"{k}={v}" for k, v in sorted(row.row.items()))))
+    return sha256(told.encode("utf-8", "backslashreplace")).hexdigest()[:32]
+
+
+# ------------------------------------------------------------------------ reading
+
+
+def read_class(connection: Connection, course: Course, about: About) -> ClassNow:
+    """Read a whole class: for a table that goes out, never for a page.
+
+    Raises
+    ------
+    CourseworkError
+        The course cannot mark what was issued.
+    """
+    issued = issued_of(connection, about.id)
+    sheets = placed(course, issued, rows_of(connection, about.id))
+    return _read(connection, course, about, issued, sheets, None)
+
+
+def read_students(
+    connection: Connection,
+    course: Course,
+    about: About,
+    students: Collection[str],
+    rejected: Sequence[Rejected] = (),
+    facts: Facts | None = None,
+) -> ClassNow:
+    """Read some students of a class; ``rejected`` are their rows that could not be placed or marked.
+
+    Raises
+    ------
+    CourseworkError
+        The course cannot mark what was issued.
+    """
+    issued = issued_of(connection, about.id, students=students)
+    issued.students = tuple(one for one in issued.students if one in students)
+    return _read(connection, course, about, issued, Sheets(rejected=list(rejected)), students, facts)
+
+
+def read_rows(
+    connection: Connection, course: Course, about: About
+) -> tuple[tuple[str, Rejected, str, str], ...]:
+    """Read every row that could not be placed or marked: its digest, whom it names, and whose name is like that.
+
+    Raises
+    ------
+    CourseworkError
+        The course cannot mark what was issued.
+    """
+    issued = issued_of(connection, about.id)
+    sheets = placed(course, issued, rows_of(connection, about.id))
+    faults = {place: one.fault for place, one in stood(connection, about.id).items() if one.fault}
+    list(rejecting(sheets, ((p, why) for p, why in faults.items() if p in sheets.sheets)))
+    return tuple((row_id(row), row, *named_by(issued, row)) for row in sheets.rejected)
+
+
+def _read(
+    connection: Connection,
+    course: Course,
+    about: About,
+    issued: Issued,
+    sheets: Sheets,
+    students: Collection[str] | None,
+    facts: Facts | None = None,
+) -> ClassNow:
+    last = stood(connection, about.id, students)
+    found = dict(machine_marks(issued, last.values(), lines_of(connection, last.values())))
+    machine = {place: one for place, one in found.items() if not isinstance(one, str)}
+    numbers = {place: last[place].id for place in machine}
+    measured = dict(zip(numbers.values(), measures(course, issued, list(machine.values())), strict=True))
+    faults = {place: one for place, one in found.items() if isinstance(one, str)}
+    firsts = {place: last[place].first for place in machine}
+    return ClassNow(
+        course, about, issued, stamp(connection, about.id), machine, numbers, firsts, measured, sheets,
+        faults if students is None else {}, Decisions.read(connection, about.id, students),
+        placings(connection, about.id) if students is None else {}, came_of(connection, about.id, students),
+        charges(connection, about.id, students), facts, students is not None,
+    )  # fmt: skip

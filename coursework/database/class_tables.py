@@ -1,0 +1,492 @@
+"""What pages of the desk ask of the aggregates: a page of students, the cards of the queue, the answers to a question. Each costs a
+fixed number of statements, and gives no more rows than a page has."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from sqlalchemy import (
+    CTE,
+    ColumnElement,
+    Connection,
+    Select,
+    and_,
+    case,
+    func,
+    literal,
+    or_,
+    select,
+    true,
+    update,
+)
+
+from coursework.database.tables import (
+    answer_now,
+    assignment,
+    assignment_total,
+    mark,
+    placing,
+    student_total,
+    unplaced,
+    variant,
+)
+from coursework.gradebook.waiting import OFTEN, OFTEN_SHARE, SHOWN_ON_REQUEST, WHY
+from coursework.making.students import folded
+
+PAGE = 100  #: rows of a page
+SORTS = ("name", "total", "waits", "late", "tries")
+
+Question = tuple[str, str]  #: exercise and part
+
+
+@dataclass(frozen=True)
+class Scope:
+    """Which students and assignments somebody may see; None for all. Every listing of the desk takes one."""
+
+    students: Collection[str] | None = None  #: names as issued
+    assignments: Collection[int] | None = None
+
+    @property
+    def is_all(self) -> bool:
+        return self.students is None and self.assignments is None
+
+    def of_students(self, column: ColumnElement[str]) -> ColumnElement[bool]:
+        """Return the condition that a row is of a permitted student."""
+        return true() if self.students is None else column.in_(list(self.students))
+
+    def of_assignments(self, column: ColumnElement[int]) -> ColumnElement[bool]:
+        """Return the condition that a row is of a permitted assignment."""
+        return true() if self.assignments is None else column.in_(list(self.assignments))
+
+
+ALL = Scope()
+
+
+# ------------------------------------------------------------------------ outline
+
+
+class Outline(NamedTuple):
+    """The questions that were issued, and what each is worth."""
+
+    worth: Mapping[Question, float]  #: points, exercise after exercise as issued
+
+    @property
+    def exercises(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(name for name, _ in self.worth))
+
+
+def outline_stamp(connection: Connection, number: int) -> tuple[int, int]:
+    """Return what tells whether the outline of an assignment may be another: variants are only added, or erased."""
+    found = select(func.count(), func.coalesce(func.max(variant.c.id), 0)).where(
+        variant.c.assignment_id == number
+    )
+    count, last = connection.execute(found).one()
+    return int(count), int(last)
+
+
+def outline(connection: Connection, number: int) -> Outline:
+    """Return the questions of an assignment, from one record for each way in which an exercise was issued."""
+    text = variant.c.record["parts"].as_string()
+    first = (
+        select(func.min(variant.c.id).label("id"))
+        .where(variant.c.assignment_id == number)
+        .group_by(variant.c.exercise, text)
+    ).subquery()
+    found = select(variant.c.exercise, variant.c.record["parts"].label("parts")).join(
+        first, first.c.id == variant.c.id
+    )
+    worth: dict[Question, float] = {}
+    for row in connection.execute(found.order_by(variant.c.id)):
+        worth.update({(row.exercise, str(part["id"])): float(part["points"]) for part in row.parts})
+    return Outline(worth)
+
+
+# ----------------------------------------------------------------------- students
+
+
+class Asked(NamedTuple):
+    """A page of the class table, as it is asked for."""
+
+    sort: str = ""  #: one of :data:`SORTS`, ``EXERCISE/PART``, or empty for the order of the class
+    find: str = ""
+    page: int = 1
+    since: int = 0  #: aggregates that are later than this number alone
+
+
+class StudentsPage(NamedTuple):
+    """Students of a class, and how many there are."""
+
+    rows: Sequence[Any]  #: of ``student_total``
+    cells: Mapping[str, Mapping[Question, Any]]  #: of ``answer_now``, by student
+    found: int  #: students that the search finds, on all pages
+    last: int  #: number of the latest aggregate of the class
+
+    @property
+    def pages(self) -> int:
+        return max(1, -(-self.found // PAGE))
+
+
+def students_page(
+    connection: Connection, number: int, asked: Asked, scope: Scope = ALL, question: Question | None = None
+) -> StudentsPage:
+    """Return a page of the class table; ``question`` is that of the order, where it is one."""
+    own = and_(student_total.c.assignment_id == number, scope.of_students(student_total.c.student))
+    shown = and_(own, _finds(student_total.c.search, asked.find))
+    if asked.since:
+        shown = and_(shown, student_total.c.id > asked.since)
+    count = select(func.count()).select_from(student_total).where(shown).scalar_subquery()
+    last = select(func.max(student_total.c.id)).where(own).scalar_subquery()
+    found, latest = connection.execute(select(count, last)).one()
+    pages = max(1, -(-int(found) // PAGE))
+    first = (min(max(asked.page, 1), pages) - 1) * PAGE
+    ordered = _in_order(select(student_total).where(shown), number, asked.sort, question)
+    rows = connection.execute(ordered.offset(first).limit(PAGE)).all()
+    return StudentsPage(
+        rows, cells_of(connection, number, [row.student for row in rows]), int(found), int(latest or 0)
+    )
+
+
+def _finds(column: ColumnElement[str], sought: str) -> ColumnElement[bool]:
+    plain = folded(sought[:200])
+    return column.contains(plain, autoescape=True) if plain else true()
+
+
+def _in_order(found: Select[Any], number: int, sort: str, question: Question | None) -> Select[Any]:
+    place = student_total.c.place, student_total.c.student
+    if question is not None:
+        cell = and_(
+            answer_now.c.assignment_id == number,
+            answer_now.c.student == student_total.c.student,
+            answer_now.c.exercise == question[0],
+            answer_now.c.part == question[1],
+            answer_now.c.is_cell.is_(True),
+        )
+        joined = found.outerjoin(answer_now, cell)
+        return joined.order_by(answer_now.c.id.is_(None), answer_now.c.points, *place)
+    by: dict[str, list[ColumnElement[Any]]] = {
+        "name": [student_total.c.search.asc()],
+        "total": [student_total.c.points.desc()],
+        "waits": [student_total.c.waits.desc()],
+        "late": [student_total.c.late.desc()],
+        "tries": [student_total.c.tries.desc()],
+    }
+    return found.order_by(*by.get(sort, []), *place)
+
+
+def cells_of(
+    connection: Connection, number: int, students: Collection[str]
+) -> dict[str, dict[Question, Any]]:
+    """Return the answers of students that stand in the class table."""
+    own = answer_now.c.assignment_id == number, answer_now.c.student.in_(list(students))
+    columns = [
+        answer_now.c[name]
+        for name in ("student", "exercise", "part", "verdict", "points", "out_of", "by_hand")
+    ]
+    found: dict[str, dict[Question, Any]] = {}
+    for row in connection.execute(select(*columns).where(*own, answer_now.c.is_cell.is_(True))):
+        found.setdefault(row.student, {})[row.exercise, row.part] = row
+    return found
+
+
+def means(connection: Connection, number: int, scope: Scope = ALL) -> dict[Question, tuple[float, int]]:
+    """Return the sum of the points of each question, and of how many students who handed in."""
+    own = answer_now.c.assignment_id == number, answer_now.c.is_cell.is_(True)
+    columns = answer_now.c.exercise, answer_now.c.part, func.sum(answer_now.c.points), func.count()
+    found = select(*columns).where(*own, scope.of_students(answer_now.c.student))
+    rows = connection.execute(found.group_by(answer_now.c.exercise, answer_now.c.part))
+    return {(row[0], row[1]): (float(row[2]), int(row[3])) for row in rows}
+
+
+class Totals(NamedTuple):
+    """What a class comes to."""
+
+    students: int = 0
+    handed_in: int = 0
+    answered: int = 0  #: students of whom a sheet is marked
+    waiting: int = 0  #: answers that wait for a person
+    rows: int = 0  #: rows of a student of the class that wait
+    of_nobody: int = 0  #: rows that wait and name no student of the class
+    version: int = 0
+
+
+def totals(connection: Connection, number: int | None = None, scope: Scope = ALL) -> dict[int, Totals]:
+    """Return the totals of assignments, or of one."""
+    found = select(assignment_total).where(scope.of_assignments(assignment_total.c.assignment_id))
+    if number is not None:
+        found = found.where(assignment_total.c.assignment_id == number)
+    rows = _rows_waiting(connection, number)
+    return {
+        one.assignment_id: Totals(
+            one.students,
+            one.handed_in,
+            one.answered,
+            one.waiting,
+            *rows.get(one.assignment_id, (0, 0)),
+            one.version,
+        )
+        for one in connection.execute(found)
+    }
+
+
+def _is_named() -> ColumnElement[bool]:
+    return and_(unplaced.c.student != "", assignment.c.has_roster.is_(True))
+
+
+def _waits() -> ColumnElement[bool]:
+    became = select(placing.c.id).where(
+        placing.c.assignment_id == unplaced.c.assignment_id, placing.c.row == unplaced.c.row
+    )
+    return ~became.exists()
+
+
+def _rows_waiting(connection: Connection, number: int | None) -> dict[int, tuple[int, int]]:
+    """Return how many rows wait, of students of the class and of nobody, by assignment."""
+    named = case((_is_named(), 1), else_=0)
+    found = (
+        select(unplaced.c.assignment_id, func.sum(named), func.count())
+        .join(assignment, assignment.c.id == unplaced.c.assignment_id)
+        .where(_waits())
+        .group_by(unplaced.c.assignment_id)
+    )
+    if number is not None:
+        found = found.where(unplaced.c.assignment_id == number)
+    return {row[0]: (int(row[1]), int(row[2]) - int(row[1])) for row in connection.execute(found)}
+
+
+# -------------------------------------------------------------------------- cards
+
+
+def _cards(number: int, order: Sequence[Question] = (), scope: Scope = ALL) -> CTE:
+    """Return the groups of answers that may be looked at, numbered in their order: question by question, there by why, those that
+    most wrote first."""
+    at = answer_now.c
+    question = at.exercise, at.part
+    own = and_(at.assignment_id == number, scope.of_students(at.student))
+    answered = (
+        select(*question, func.count(at.student.distinct()).label("students"))
+        .where(own, at.is_shown.is_(True))
+        .group_by(*question)
+        .subquery()
+    )
+    students = func.count(at.student.distinct())
+    grouped = (
+        select(
+            at.card,
+            at.why,
+            *question,
+            func.count().label("members"),
+            func.sum(case((at.decided, 0), else_=1)).label("open"),
+            students.label("students"),
+            func.min(at.first).label("first"),
+        )
+        .where(own, at.card.is_not(None))
+        .group_by(at.card, at.why, *question)
+        .having(or_(at.why != "often", students >= OFTEN))
+        .subquery()
+    )
+    same = and_(answered.c.exercise == grouped.c.exercise, answered.c.part == grouped.c.part)
+    places = [
+        (and_(grouped.c.exercise == exercise, grouped.c.part == part), place)
+        for place, (exercise, part) in enumerate(order)
+    ]
+    rank = case(*places, else_=len(order)) if places else literal(0)
+    whys = [(grouped.c.why == name, place) for place, name in enumerate(WHY)]
+    why = case(*whys, else_=len(WHY))
+    number_of = func.row_number().over(
+        order_by=(rank, why, grouped.c.members.desc(), grouped.c.first, grouped.c.card)
+    )
+    often = or_(grouped.c.why != "often", grouped.c.students >= OFTEN_SHARE * answered.c.students)
+    return (
+        select(*grouped.c, number_of.label("number"))
+        .select_from(grouped.join(answered, same))
+        .where(often)
+        .cte("cards")
+    )
+
+
+def answers_waiting(connection: Connection, number: int, scope: Scope = ALL) -> int:
+    """Return how many answers wait for a person, without those that are looked at on request alone."""
+    cards = _cards(number, (), scope)
+    asked = select(func.coalesce(func.sum(cards.c.open), 0)).where(cards.c.why.not_in(SHOWN_ON_REQUEST))
+    return int(connection.execute(asked).scalar_one())
+
+
+class Filter(NamedTuple):
+    """Which cards are shown."""
+
+    why: str = ""  #: all but what waits for nobody, unless told
+    exercise: str = ""
+    part: str = ""
+
+    def of(self, cards: CTE) -> ColumnElement[bool]:
+        told = [cards.c.open > 0]
+        told.append(cards.c.why == self.why if self.why else cards.c.why.not_in(SHOWN_ON_REQUEST))
+        if self.exercise:
+            told.append(cards.c.exercise == self.exercise)
+            told += [cards.c.part == self.part] if self.part else []
+        return and_(*told)
+
+
+class CardRow(NamedTuple):
+    """A card of the queue."""
+
+    id: str
+    why: str
+    exercise: str
+    part: str
+    members: int  #: answers, decided or not
+    open: int
+    number: int  #: its place among all cards, decided or not
+
+
+class Queue:
+    """The cards of an assignment, asked for few at a time."""
+
+    def __init__(self, connection: Connection, number: int, order: Sequence[Question], scope: Scope = ALL):
+        self._connection, self._number, self._scope = connection, number, scope
+        self._cards = _cards(number, order, scope)
+
+    def _select(self) -> Select[Any]:
+        at = self._cards.c
+        return select(at.card, at.why, at.exercise, at.part, at.members, at.open, at.number)
+
+    def _rows(self, found: Select[Any]) -> list[CardRow]:
+        return [CardRow(*row) for row in self._connection.execute(found)]
+
+    def card(self, name: str) -> CardRow | None:
+        """Return a card by its name, decided or not."""
+        return next(iter(self._rows(self._select().where(self._cards.c.card == name))), None)
+
+    def count(self, shown: Filter) -> int:
+        found = select(func.count()).select_from(self._cards).where(shown.of(self._cards))
+        return int(self._connection.execute(found).scalar_one())
+
+    def before(self, shown: Filter, number: int) -> int:
+        """Return how many cards are shown before a place among all."""
+        found = select(func.count()).select_from(self._cards)
+        told = shown.of(self._cards), self._cards.c.number < number
+        return int(self._connection.execute(found.where(*told)).scalar_one())
+
+    def page(self, shown: Filter, first: int, count: int = PAGE) -> list[CardRow]:
+        """Return cards that are shown, from one of them on."""
+        found = self._select().where(shown.of(self._cards)).order_by(self._cards.c.number)
+        return self._rows(found.offset(first).limit(min(count, PAGE)))
+
+    def after(self, shown: Filter, number: int) -> CardRow | None:
+        """Return the first card that is shown from a place among all on; after the last comes the first."""
+        at = self._cards.c.number
+        found = self._select().where(shown.of(self._cards)).order_by(at < number, at)
+        return next(iter(self._rows(found.limit(1))), None)
+
+    def by_why(self) -> dict[str, int]:
+        """Return how many cards wait, by why."""
+        found = select(self._cards.c.why, func.count()).where(self._cards.c.open > 0)
+        return {row[0]: int(row[1]) for row in self._connection.execute(found.group_by(self._cards.c.why))}
+
+    def by_question(self, shown: Filter) -> dict[Question, int]:
+        """Return how many cards wait, by question."""
+        question = self._cards.c.exercise, self._cards.c.part
+        everywhere = shown._replace(exercise="", part="").of(self._cards)
+        found = select(*question, func.count()).where(everywhere).group_by(*question)
+        return {(row[0], row[1]): int(row[2]) for row in self._connection.execute(found)}
+
+    def done(self) -> int:
+        """Return how many answers of the cards were decided."""
+        found = select(func.coalesce(func.sum(self._cards.c.members - self._cards.c.open), 0))
+        return int(self._connection.execute(found).scalar_one())
+
+    def alike(self, card: CardRow) -> list[str]:
+        """Return the other cards on which the same cannot be read."""
+        if card.why != "unreadable":
+            return []
+        at = answer_now.c
+        mine = select(at.wrote).where(at.assignment_id == self._number, at.card == card.id)
+        same = at.wrote == mine.order_by(at.decided).limit(1).scalar_subquery()
+        others = (
+            select(at.card)
+            .where(at.assignment_id == self._number, at.why == "unreadable", at.card != card.id)
+            .where(at.decided.is_(False), same)
+            .where(self._scope.of_students(at.student))
+            .distinct()
+        )
+        return list(self._connection.execute(others).scalars())
+
+    # ---------------------------------------------------------------------- members
+
+    def _members(self, names: Collection[str], *columns: Any, open_only: bool) -> Select[Any]:
+        at = answer_now.c
+        own = [
+            at.assignment_id == self._number,
+            at.card.in_(list(names)),
+            self._scope.of_students(at.student),
+            *([at.decided.is_(False)] if open_only else []),
+        ]
+        joined = answer_now.join(mark, and_(mark.c.marking_id == at.marking, mark.c.part == at.part))
+        return select(*columns).select_from(joined).where(*own).order_by(at.first, at.place)
+
+    def members(self, names: Collection[str], *, open_only: bool, limit: int | None = None) -> list[Any]:
+        """Return answers of cards in the order in which they came: id, student, exercise, seed, sitting, part, answer."""
+        at = answer_now.c
+        columns = at.id, at.student, at.exercise, at.seed, at.sitting, at.part, at.decided, mark.c.answer
+        return list(
+            self._connection.execute(self._members(names, *columns, open_only=open_only).limit(limit))
+        )
+
+    def decided(self, name: str, limit: int) -> list[Any]:
+        """Return the first answers of a card that were decided."""
+        at = answer_now.c
+        columns = at.id, at.student, at.exercise, at.seed, at.sitting, at.part, at.decided, mark.c.answer
+        found = self._members([name], *columns, open_only=False).where(at.decided.is_(True))
+        return list(self._connection.execute(found.limit(limit)))
+
+    def spellings(self, name: str, limit: int) -> list[str]:
+        """Return the first ways in which the same was written."""
+        at = answer_now.c
+        found = self._members([name], mark.c.answer, open_only=False).order_by(None)
+        first = found.group_by(mark.c.answer).order_by(func.min(at.first)).limit(limit)
+        return list(self._connection.execute(first).scalars())
+
+
+def say_decided(connection: Connection, rows: Collection[int], *, decided: bool) -> None:
+    """Note at once on which answers somebody decided; what it makes of the points is computed next."""
+    numbers = list(rows)
+    for start in range(0, len(numbers), 5000):
+        some = answer_now.c.id.in_(numbers[start : start + 5000])
+        connection.execute(update(answer_now).where(some).values(decided=decided))
+
+
+# --------------------------------------------------------------------------- rows
+
+
+class RowHere(NamedTuple):
+    """A row that could not be placed."""
+
+    row: str
+    student: str  #: of the class; empty for a stranger
+    near: str
+    source: str
+    reason: str
+    said: Mapping[str, str]
+
+
+def rows_page(
+    connection: Connection, number: int, first: int = 0, *, named: bool = False, waiting: bool = False, row: str = "",
+    student: str | None = None, exercise: str = "", part: str = "", scope: Scope = ALL, count: int = PAGE,
+) -> tuple[list[RowHere], int]:  # fmt: skip
+    """Return rows that could not be placed, from one of them on, and how many there are."""
+    told = [unplaced.c.assignment_id == number]
+    if scope.students is not None:
+        told.append(scope.of_students(unplaced.c.student))
+    told += [_is_named()] if named else []
+    told += [_waits()] if waiting else []
+    told += [unplaced.c.row == row] if row else []
+    told += [unplaced.c.student == student] if student is not None else []
+    told += [unplaced.c.said["exercise"].as_string() == exercise] if exercise else []
+    told += [unplaced.c.said["part"].as_string() == part] if part else []
+    base = unplaced.join(assignment, assignment.c.id == unplaced.c.assignment_id)
+    columns = [unplaced.c[name] for name in RowHere._fields]
+    found = select(*columns).select_from(base).where(*told).order_by(unplaced.c.id).offset(first).limit(count)
+    many = select(func.count()).select_from(base).where(*told)
+    return [RowHere(*one) for one in connection.execute(found)], int(connection.execute(many).scalar_one())

@@ -1,0 +1,137 @@
+"""Queue of the work that a worker does beside the requests: kept with what it is about, taken by one worker at a time.
+
+A job that is begun belongs to its worker for a while; where the worker was killed, it is taken again: at once by the worker that
+follows under the same name, by any other once the time is over. What fails too often is given up and kept with its fault.
+"""
+
+from __future__ import annotations
+
+from datetime import datetime, timedelta
+from typing import NamedTuple
+
+from sqlalchemy import Connection, delete, func, insert, or_, select, update
+
+from coursework.database.tables import job
+
+MARK, RESCUE = "mark", "rescue"
+MOST_TRIES = 3
+_LEASE = timedelta(minutes=2)  #: after which another worker takes what one has begun
+
+
+class Job(NamedTuple):
+    """A piece of work."""
+
+    id: int
+    kind: str  #: ``mark``: a delivery; ``rescue``: what a person saved before an assignment closed
+    assignment: int
+    delivery: int | None
+    person: int | None
+    tries: int  #: how often it was begun, this time included
+    fault: str
+    made: datetime
+
+
+_COLUMNS = (
+    job.c.id,
+    job.c.kind,
+    job.c.assignment_id,
+    job.c.delivery_id,
+    job.c.person_id,
+    job.c.tries,
+    job.c.fault,
+    job.c.made,
+)
+
+
+def put_job(
+    connection: Connection,
+    kind: str,
+    assignment: int,
+    at: datetime,
+    *,
+    delivery: int | None = None,
+    person: int | None = None,
+) -> None:
+    """Add a job, in the transaction of what it is about."""
+    row = {
+        "kind": kind,
+        "assignment_id": assignment,
+        "delivery_id": delivery,
+        "person_id": person,
+        "made": at,
+    }
+    connection.execute(insert(job).values(row))
+
+
+def waiting(connection: Connection) -> tuple[int, datetime | None, datetime | None]:
+    """The number of jobs that are not given up, and when the first and the last of them were added."""
+    found = select(func.count(), func.min(job.c.id), func.max(job.c.id)).where(job.c.fault == "")
+    count, first, last = connection.execute(found).one()
+    ends = {
+        row.id: row.made
+        for row in connection.execute(select(job.c.id, job.c.made).where(job.c.id.in_((first, last))))
+    }
+    return int(count), ends.get(first), ends.get(last)
+
+
+def take_job(connection: Connection, worker: str, at: datetime) -> Job | None:
+    """Take the first job that nobody works at, and count the try; None where there is none.
+
+    A job that was begun :data:`MOST_TRIES` times is given up: it killed its worker.
+    """
+    while True:
+        is_free = or_(job.c.until.is_(None), job.c.until < at, job.c.worker == worker)
+        found = select(*_COLUMNS).where(job.c.fault == "", is_free).order_by(job.c.tries, job.c.id).limit(1)
+        row = connection.execute(found.with_for_update(skip_locked=True)).first()
+        if row is None:
+            return None
+        if row.tries >= MOST_TRIES:
+            give_up(connection, row.id, "the worker ended")
+            continue
+        begun = {"tries": row.tries + 1, "worker": worker, "until": at + _LEASE}
+        connection.execute(update(job).where(job.c.id == row.id).values(begun))
+        return Job(*row)._replace(tries=row.tries + 1)
+
+
+def done(connection: Connection, number: int) -> None:
+    """Take a job away."""
+    connection.execute(delete(job).where(job.c.id == number))
+
+
+def drop_jobs(connection: Connection, delivery: int) -> None:
+    """Take away what marks a delivery: it is marked."""
+    connection.execute(delete(job).where(job.c.delivery_id == delivery))
+
+
+def put_back(connection: Connection, one: Job, fault: str) -> bool:
+    """Let a job that failed be tried again, or give it up after :data:`MOST_TRIES`; True where it is given up."""
+    if one.tries >= MOST_TRIES:
+        give_up(connection, one.id, fault)
+        return True
+    connection.execute(update(job).where(job.c.id == one.id).values(worker="", until=None))
+    return False
+
+
+def give_up(connection: Connection, number: int, fault: str) -> None:
+    """Keep a job as one that nobody tries any more."""
+    connection.execute(update(job).where(job.c.id == number).values(fault=fault, worker="", until=None))
+
+
+def job_of(connection: Connection, delivery: int) -> Job | None:
+    """The job that marks a delivery; None where it is marked, or nobody was asked to."""
+    row = connection.execute(
+        select(*_COLUMNS).where(job.c.delivery_id == delivery, job.c.kind == MARK)
+    ).first()
+    return None if row is None else Job(*row)
+
+
+def before(connection: Connection, one: Job) -> int:
+    """The number of jobs that come before one."""
+    found = select(func.count()).where(job.c.fault == "", job.c.id < one.id)
+    return int(connection.execute(found).scalar_one())
+
+
+def given_up(connection: Connection, assignment: int) -> list[Job]:
+    """The jobs of an assignment that failed too often."""
+    found = select(*_COLUMNS).where(job.c.assignment_id == assignment, job.c.fault != "").order_by(job.c.id)
+    return [Job(*row) for row in connection.execute(found)]

@@ -1,0 +1,45 @@
+"""Notes of which aggregates are outdated, written in the very transaction that changes what they are computed from."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from sqlalchemy import Connection, insert, select
+
+from coursework.database.tables import assignment, dealt, outdated, variant
+
+STUDENT, EVERYBODY, ROWS = "student", "everybody", "rows"
+
+
+def outdate(connection: Connection, assignment_id: int, students: Iterable[str]) -> None:
+    """Note that the marks, decisions or hand-ins of some students changed."""
+    noted = [
+        {"assignment_id": assignment_id, "kind": STUDENT, "student": one} for one in dict.fromkeys(students)
+    ]
+    if noted:
+        connection.execute(insert(outdated), noted)
+
+
+def outdate_person(connection: Connection, assignment_id: int, person_id: int) -> None:
+    """Note that the hand-ins or dates of one person changed."""
+    names = select(dealt.c.student).join(variant).where(variant.c.assignment_id == assignment_id)
+    outdate(
+        connection, assignment_id, connection.execute(names.where(dealt.c.person_id == person_id)).scalars()
+    )
+
+
+def outdate_all(connection: Connection, assignment_id: int) -> None:
+    """Note that what bears on everybody's figures changed: the papers, the rules, the roster."""
+    connection.execute(insert(outdated).values(assignment_id=assignment_id, kind=EVERYBODY))
+    outdate_rows(connection, assignment_id)
+
+
+def outdate_rows(connection: Connection, assignment_id: int) -> None:
+    """Note that other rows may be without a place."""
+    connection.execute(insert(outdated).values(assignment_id=assignment_id, kind=ROWS))
+
+
+def outdate_everything(connection: Connection) -> None:
+    """Note every assignment, where a database comes without its aggregates."""
+    for number in connection.execute(select(assignment.c.id)).scalars().all():
+        outdate_all(connection, number)
