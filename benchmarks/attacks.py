@@ -5,6 +5,7 @@ python benchmarks/attacks.py                # all
 python benchmarks/attacks.py answers        # milliseconds of a processor, by kind of question, at lengths that double
 python benchmarks/attacks.py assignments    # files of assignments: how many are told in a line, how many are taken
 python benchmarks/attacks.py bodies         # a site of its own on the loopback interface: status, milliseconds, memory
+python benchmarks/attacks.py uploads        # ten files of one student at once, and how long another student waits meanwhile
 """
 
 from __future__ import annotations
@@ -18,8 +19,10 @@ import sys
 import tempfile
 import time
 import zipfile
+from collections import Counter
 from collections.abc import Iterator
-from contextlib import suppress
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -178,8 +181,15 @@ def _bodies() -> Iterator[_Body]:
 
 def bodies() -> None:
     """A demonstration's site, its instructor signed in, and what becomes of each body."""
-    import httpx
+    staff = r'value="(\d+)">[^<]*<span[^>]*>(?:instructor|enseignant)'
+    with _demonstration() as (pid, url), _signed_in(url, staff) as client:
+        rows = [_sent(client, int(url.rpartition(":")[2]), pid, body) for body in _bodies()]
+    print_table(("a body of", "status", "ms", "ms of a processor", "memory before, MB", "at most, MB"), rows)
 
+
+@contextmanager
+def _demonstration() -> Iterator[tuple[int, str]]:
+    """A demonstration's site: its process, and its address."""
     with tempfile.TemporaryDirectory() as folder:
         said = Path(folder, "said.txt")
         with said.open("w") as out:
@@ -187,17 +197,69 @@ def bodies() -> None:
                 [sys.executable, "-c", COMMAND, "serve", "--demo", "--port", "0"], stdout=out, cwd=folder
             )
         try:
-            while not (found := re.search(r"http://[\d.]+:(\d+)", said.read_text())):
+            while not (found := re.search(r"http://[\d.]+:\d+", said.read_text())):
                 time.sleep(0.2)
-            with httpx.Client(base_url=found[0], timeout=300, trust_env=False) as client:
-                page = client.get("/who").text
-                staff = re.search(r'value="(\d+)">[^<]*<span[^>]*>(?:instructor|enseignant)', page, re.I)[1]
-                client.post("/who", data={"_seal": _seal(client), "person": staff})
-                rows = [_sent(client, int(found[1]), site.pid, body) for body in _bodies()]
+            yield site.pid, found[0]
         finally:
             site.terminate()
             site.wait()
-    print_table(("a body of", "status", "ms", "ms of a processor", "memory before, MB", "at most, MB"), rows)
+
+
+@contextmanager
+def _signed_in(url: str, who: str, place: int = 0):
+    """A client signed in as one of those whom the page of people shows as ``who``."""
+    import httpx
+
+    with httpx.Client(base_url=url, timeout=300, trust_env=False) as client:
+        found = re.findall(who, client.get("/who").text, re.I)[place]
+        client.post("/who", data={"_seal": _seal(client), "person": found})
+        yield client
+
+
+# ----------------------------------------------------------------------- uploads
+
+_AT_ONCE = 10
+
+
+def uploads() -> None:
+    """Ten files of one student at once: what becomes of them, what they cost, how long another student waits for a page."""
+    header = b"student,exercise,seed,part,answer\n"
+    row, own = b"Ada,grashof,1,part,12\n", []
+    files = {
+        "a table of 8 MB": ("a.csv", header + row * (8 * MEGABYTE // len(row))),
+        "a table of 255 kB": ("a.csv", header + row * 700 + b"\n" * 240_000),
+        "JSON in brackets, 255 kB": ("a.json", b"[" * 255 * 1024),
+        "a notebook of 2 MB": ("a.ipynb", b'{"cells": [' + b'{"cell_type": "code", "source": ["answers = {"]},' * 42_000),
+    }  # fmt: skip
+    student = r'value="(\d+)">[^<]*<span[^>]*>(?:student|étudiant)'
+    with (
+        _demonstration() as (pid, url),
+        _signed_in(url, student) as one,
+        _signed_in(url, student, 1) as other,
+    ):
+        address = re.search(r'href="(/assignments/\d+)"', one.get("/assignments").text)[1]
+        for what, (name, data) in files.items():
+            own.append((what, *_uploaded(pid, one, other, address, name, data)))
+    print_table(("ten times", "status", "s", "another's page, s", "MB before", "at most", "after"), own)
+
+
+def _uploaded(pid: int, one, other, address: str, name: str, data: bytes) -> tuple[str, ...]:
+    seal, before, begun = _seal(one), _memory(pid, "VmRSS"), time.perf_counter()
+
+    def send(_: int) -> int:
+        return one.post(f"{address}/file", data={"_seal": seal}, files={"file": (name, data)}).status_code
+
+    with ThreadPoolExecutor(_AT_ONCE) as threads:
+        sent = [threads.submit(send, k) for k in range(_AT_ONCE)]
+        time.sleep(0.2)
+        asked = time.perf_counter()
+        other.get("/assignments")
+        waited = time.perf_counter() - asked
+        told = Counter(one.result() for one in sent)
+    took = time.perf_counter() - begun
+    statuses = ", ".join(f"{count} × {status}" for status, count in sorted(told.items()))
+    memory = (before, _memory(pid, "VmHWM"), _memory(pid, "VmRSS"))
+    return (statuses, f"{took:.1f}", f"{waited:.2f}", *(f"{one:.0f}" for one in memory))
 
 
 def _seal(client) -> str:
@@ -250,11 +312,11 @@ def _processor(pid: int) -> float:
 
 def main() -> None:
     asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    asked.add_argument("what", nargs="*", default=["answers", "assignments", "bodies"])
+    asked.add_argument("what", nargs="*", default=["answers", "assignments", "bodies", "uploads"])
     told = asked.parse_args().what
     print(f"{machine()}\n")
     for what in told:
-        {"answers": answers, "assignments": assignments, "bodies": bodies}[what]()
+        {"answers": answers, "assignments": assignments, "bodies": bodies, "uploads": uploads}[what]()
 
 
 if __name__ == "__main__":

@@ -44,15 +44,15 @@ from coursework.database.deliveries import rows_of
 from coursework.database.people import put_account, put_person
 from coursework.database.pool import Pooled, put_pooled
 from coursework.database.publication import Publication, publish
+from coursework.database.sessions import begin_session
 from coursework.database.store import Store
 from coursework.making.assignment import AskedExercise, Assignment
 from coursework.making.dealing import deal
 from coursework.making.issued import issued_content
 from coursework.making.roster import Student as Enrolled
 from coursework.making.students import folded
-from coursework.site.frame.cookies import Cookies, cookie_name
+from coursework.site.frame.cookies import cookie_name
 from coursework.site.frame.pool import Pool
-from coursework.site.frame.settings import Site
 
 EXERCISES = ("slotted_mechanism", "four_bar_positions", "slider_extras", "quick_return", "ball_reducer")
 READY = 40  #: variants of each that are found before the class comes
@@ -280,8 +280,9 @@ def set_up(store, count):
             put_pooled(connection, name, course[name].version, found)
         homework = put_issued(connection, dealt(count), HOMEWORK.name)
         publish(connection, homework, Publication(now - timedelta(hours=1), now + timedelta(hours=2)))
-    cookies = Cookies(Site(course, store).secret)
-    return {one: f"{cookie_name(False)}={cookies.made(one)}" for one in ids}, homework
+    with store.begin() as connection:
+        tokens = {one: begin_session(connection, one, "", now) for one in ids}
+    return {one: f"{cookie_name(False)}={token}" for one, token in tokens.items()}, homework
 
 
 def begun(place, db, workers):
@@ -302,7 +303,8 @@ def begun(place, db, workers):
 def processor_seconds(pid):
     """Of a process and those that it began."""
     try:
-        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+        tasks = Path(f"/proc/{pid}/task").glob("*/children")  # each thread has its own
+        children = [one for task in tasks for one in task.read_text().split()]
         numbers = [
             Path(f"/proc/{one}/stat").read_text().rpartition(")")[2].split() for one in (pid, *children)
         ]

@@ -1,6 +1,7 @@
 """An assignment dealt to the people of :mod:`site_people`, and published; texts that answer to a paper."""
 
 import re
+import time
 from datetime import UTC, datetime
 
 from site_people import MAX, ZOE
@@ -11,6 +12,7 @@ from coursework.making.assignment import AskedExercise, Assignment, Scale
 from coursework.making.dealing import deal
 from coursework.making.issued import Issued, issued_content
 from coursework.making.roster import Student
+from coursework.site.publication import dealings
 
 OPENS, CLOSES = datetime(2026, 11, 23, 8, tzinfo=UTC), datetime(2026, 11, 23, 12, tzinfo=UTC)
 ASSIGNMENT = Assignment(
@@ -54,3 +56,28 @@ def handed_in(browser, number, texts, form_number="1"):
 
 def code_of(reply):
     return re.search(r"/receipts/([A-Z2-7-]+)", reply.headers["location"])[1]
+
+
+FORM = {
+    "opens": "2026-11-23T08:00", "closes": "2026-11-23T12:00", "tries": "2", "sittings": "last", "late": "charge", "late_percent": "12,5",
+    "late_until": "2026-11-25T12:00", "feedback": "closed", "answers": "never",
+}  # fmt: skip
+
+
+def dealt_by(one, staff, reply):
+    """The number of the assignment when the dealing that a reply leads to is over."""
+    assert reply.status_code == 303, reply.text
+    token = reply.headers["location"].rpartition("/")[2]
+    until = time.monotonic() + 60
+    while not (found := dealings.dealing(one.site, token)).is_over:
+        assert time.monotonic() < until
+        time.sleep(0.05)
+    assert found.state == "done", found.told
+    return found.number
+
+
+def handed_out(one, staff, data=None, **files):
+    sent = {name: (f"week4.{name}", content) for name, content in files.items()}
+    if "file" in files:
+        sent["file"] = ("week4.toml", files["file"])
+    return staff.fill("/desk/assignments/new", data or {}, files=sent)

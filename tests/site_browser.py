@@ -59,7 +59,9 @@ def chromium():
 
 def context_of(browser, class_, address, name=None, lang="en", size="telephone", script=True, **more):
     """A browser's window of somebody: their session, language and screen."""
-    from coursework.site.frame.cookies import COOKIE, Cookies
+    from site_people import signed_in
+
+    from coursework.site.frame.cookies import COOKIE
 
     width, height = WIDTHS[size]
     context = browser.new_context(
@@ -71,7 +73,7 @@ def context_of(browser, class_, address, name=None, lang="en", size="telephone",
     )
     context.set_default_timeout(90_000)  # a busy machine is no fault
     if name is not None:
-        cookie = Cookies(class_.site.secret).made(class_.ids[name])
+        cookie = signed_in(class_.site.store, class_.ids[name])
         host = urlsplit(address).hostname
         context.add_cookies([{"name": COOKIE, "value": cookie, "domain": host, "path": "/"}])
     return context

@@ -7,14 +7,26 @@ from starlette.testclient import TestClient
 
 from coursework import open_course
 from coursework.database.people import put_account, put_person
+from coursework.database.sessions import begin_session
 from coursework.database.store import Store
 from coursework.making.students import folded
 from coursework.site.application import application
-from coursework.site.frame.cookies import COOKIE, Cookies
+from coursework.site.frame.cookies import COOKIE, Cookies, Session
 from coursework.site.frame.settings import Entrance, Site
 
 HOME = "http://127.0.0.1:8000"
 ZOE, MAX, TEACHER = "Zoé", "Max", "Ada Teacher"
+
+
+def signed_in(store, person):
+    """The cookie of a browser in which a person has just signed in."""
+    with store.begin() as connection:
+        return begin_session(connection, person, "Firefox, Linux", datetime.now(UTC))
+
+
+def seal_of(site, cookie):
+    """A CSRF token that goes with a cookie."""
+    return Cookies(site.secret).seal(Session(cookie))
 
 
 class Browser(TestClient):
@@ -40,11 +52,22 @@ class Class:
         self.app = application(self.site)
         self.ids = {}
         with self.site.store.begin() as connection:
-            for name, role in ((ZOE, "student"), (MAX, "student"), (TEACHER, "instructor")):
+            for name, role in ((ZOE, "student"), (MAX, "student"), (TEACHER, "administrator")):
                 self.ids[name] = put_person(connection, who=folded(name), name=name, lang="", columns={})
                 put_account(
                     connection, self.ids[name], login=f"{name.split()[0].lower()}@example.org", role=role
                 )
+
+    @classmethod
+    def of(cls, other):
+        """Another process of the same site, with the people of the first."""
+        found = cls.__new__(cls)
+        found.at, found.ids = other.at, other.ids
+        found.site = Site(
+            other.site.course, Store(other.site.store.url), other.site.entrance, HOME, other.site.clock
+        )
+        found.app = application(found.site)
+        return found
 
     def again(self):
         """The same site, begun once more."""
@@ -55,5 +78,5 @@ class Class:
         """A browser of somebody; of nobody unless told."""
         found = Browser(self.app, lang)
         if name is not None:
-            found.cookies.set(COOKIE, Cookies(self.site.secret).made(self.ids[name]))
+            found.cookies.set(COOKIE, signed_in(self.site.store, self.ids[name]))
         return found

@@ -41,7 +41,12 @@ class Served:
     @property
     def workers(self):
         """Numbers of the processes that answer."""
-        return [one for one in self._begun() if niceness(one) != 19]
+        return [one for one in self._begun() if niceness(one) not in (10, 19)]
+
+    @property
+    def markers(self):
+        """Numbers of the processes that mark what was handed in."""
+        return [one for one in self._begun() if niceness(one) == 10]
 
     @property
     def fillers(self):
@@ -49,8 +54,8 @@ class Served:
         return [one for one in self._begun() if niceness(one) == 19]
 
     def _begun(self):
-        pid = self.process.pid
-        children = Path(f"/proc/{pid}/task/{pid}/children").read_text().split()
+        tasks = Path(f"/proc/{self.process.pid}/task").glob("*/children")  # each thread has its own
+        children = [one for task in tasks for one in task.read_text().split()]
         return [int(one) for one in children if b"spawn_main" in Path(f"/proc/{one}/cmdline").read_bytes()]
 
     def kill(self):

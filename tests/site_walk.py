@@ -148,7 +148,7 @@ def fillings(site: Filled) -> dict[str, Filling]:
     )
     anybodys = (
         "/", "/language", "/who", "/sign-in", "/sign-out", "/account", "/account/data", "/practice", "/progress",
-        "/progress/progress.json", "/assignments", "/desk", "/desk/issued", "/desk/people", "/desk/people/add", "/desk/audit",
+        "/progress/progress.json", "/assignments", "/desk", "/desk/issued", "/desk/people", "/desk/people/add", "/desk/people/add-staff", "/desk/audit",
         "/desk/receipts", "/desk/lti", "/desk/assignments", "/desk/assignments/new",
     )  # fmt: skip
     of_class = (
@@ -162,7 +162,11 @@ def fillings(site: Filled) -> dict[str, Filling]:
         **dict.fromkeys(anybodys, Filling()),
         "/static/{name}": Filling({"name": "site.css"}),
         "/invitation/{token}": Filling({"token": "mistyped"}),
-        **{f"/desk/people/{{person}}{end}": person for end in ("", "/data", "/erase")},
+        "/connect/{token}": Filling({"token": "mistyped"}),
+        **{
+            f"/desk/people/{{person}}{end}": person
+            for end in ("", "/invitation", "/role", "/separate", "/data", "/erase")
+        },
         "/practice/{exercise}": practice,
         **{
             f"/practice/{{exercise}}/{{seed}}{end}": practice

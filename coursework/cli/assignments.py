@@ -72,7 +72,7 @@ def build_assignment(
     from coursework.making import papers
     from coursework.making.assignment import read_assignment
     from coursework.making.dealing import deal
-    from coursework.making.issued import issued_content
+    from coursework.making.issued import issued_content, secret_of
     from coursework.making.letters import unprinted_names
     from coursework.making.roster import Student, read_roster
     from coursework.rendering.renderer import renderer_of
@@ -92,14 +92,15 @@ def build_assignment(
     if settings.of("scan"):
         check_scan(settings.of("formats"), booklet=settings.of("booklet"))
     writes(context, out)
-    before = None if overwrite else _issued_before(out / "issued.json")
+    stood = _issued_before(out / "issued.json", anew=overwrite)
+    before = None if overwrite else stood
     if before is None and (again or make_up):
         which = "--again" if again else "--make-up"
         raise BadInput(f"{which} is for what was issued: there is no {out / 'issued.json'}")
     notes: list[str] = []
     roster = settings.path("roster")
     if roster is not None and not again:
-        students = read_roster(roster, notes.append)
+        students = read_roster(roster, notes.append, settings.of("columns"))
         _check_identity(assignment, students, notes)
     elif before is not None and before.get("roster"):
         students = []
@@ -109,7 +110,12 @@ def build_assignment(
             )
     else:
         students = [Student("") for _ in range(settings.of("variants", "count") or 1)]
-    dealt = deal(course, assignment, students, settings.of("lang", "langs"), before, make_up)
+    langs = settings.of("lang", "langs")
+    dealt = deal(
+        course, assignment, students, langs, before, make_up, secret_of(stood, str(out / "issued.json"))
+    )
+    if dealt.is_new:
+        notes.append(secret_made(path, out / "issued.json", langs[0]))
     names = {issue.student for issue in dealt.issues}
     only = None if not again else {_known(name, names) for name in again}
     wanted = list(
@@ -124,6 +130,7 @@ def build_assignment(
             polygons=settings.of("polygons"),
             spreadsheet=SPREADSHEETS[settings.of("decimal")],
             only=only,
+            secret=dealt.secret,
         )
     )
     with_nbgrader = "nbgrader" in settings.of("formats") and only is None
@@ -134,7 +141,7 @@ def build_assignment(
     if not again and not make_up:
         notes += dealt.notes
     tell(notes)
-    content = issued_content(dealt.issues, assignment)
+    content = issued_content(dealt.issues, assignment, dealt.secret)
     keeping(context, settings.of("db"), settings.of("name"), course.folder.root.name)(content)
     same = json_text(content).encode("utf-8")
     kept = before is not None and (out / "issued.json").read_bytes() == same
@@ -155,16 +162,38 @@ def build_assignment(
         )
 
 
-def _issued_before(path: Path) -> Mapping[str, Any] | None:
+def secret_made(path: Path, kept: Path, lang: str) -> str:
+    """Return the line that says that an assignment's file has no secret, and where the new one is kept."""
+    from coursework.language.words import words
+
+    return str(words(lang)["assignment"]["secret_made"]).format(file=path, kept=kept)
+
+
+def for_practice(lang: str) -> str:
+    """Return the line that says that exercises built without an assignment are no exam."""
+    from coursework.language.words import words
+
+    return str(words(lang)["assignment"]["for_practice"])
+
+
+def _issued_before(path: Path, *, anew: bool) -> Mapping[str, Any] | None:
+    """Return what was issued there; of what is dealt ``anew``, whatever can still be read."""
     from coursework.making.issued import Issued
 
-    return Issued.stood(path) if path.is_file() else None
+    if not path.is_file():
+        return None
+    try:
+        return Issued.stood(path)
+    except BadInput:
+        if anew:
+            return None
+        raise
 
 
 def _known(name: str, names: set[str]) -> str:
-    from coursework.making.students import folded
+    from coursework.making.students import called
 
-    found = next((one for one in names if folded(one) == folded(name)), None)
+    found = called(name, names)
     if found is None:
         raise BadInput(f"no student {name!r} was issued a paper{nearest(name, names)}")
     return found

@@ -299,6 +299,53 @@ def _happened(one: Any) -> str:
     return f"{one.kind}{points} by {one.by}{reason}"
 
 
+@database.command("new-key")
+@_url_argument
+@click.pass_context
+def new_key(context: click.Context, url: str) -> None:
+    """Replace the key that signs a site's cookies and forms, where somebody else may have read it; then start the site again."""
+    store = store_at(context, url)
+    from datetime import UTC, datetime
+
+    from coursework.database.audit import note
+    from coursework.database.settings import renew_secret, secret
+
+    with store.begin() as connection:
+        renew_secret(connection)
+        secret(connection)
+        note(connection, datetime.now(UTC), "command line", "signing key replaced")
+    click.echo(
+        "a new key was drawn: start the site again, and forms of pages that are open are to be loaded anew"
+    )
+
+
+@database.command("sign-out")
+@_url_argument
+@click.argument("login", required=False)
+@click.pass_context
+def sign_out(context: click.Context, url: str, login: str | None) -> None:
+    """End the sessions of a site, those of one LOGIN or of everybody: who is signed in must sign in again, at once."""
+    store = store_at(context, url)
+    from datetime import UTC, datetime
+
+    from coursework.database.accounts import account_by_login
+    from coursework.database.audit import note
+    from coursework.database.sessions import end_all_sessions, end_sessions
+
+    with store.begin() as connection:
+        if login is None:
+            count = end_all_sessions(connection)
+            note(connection, datetime.now(UTC), "command line", "signed out")
+            click.echo(f"{counted(count, 'session')} ended")
+            return
+        found = account_by_login(connection, login.strip().casefold())
+        if found is None:
+            raise BadInput(f"nobody signs in as {login!r}")
+        end_sessions(connection, found.person_id)
+        note(connection, datetime.now(UTC), "command line", "signed out", person=found.person_id)
+    click.echo(f"the sessions of {login} ended")
+
+
 @database.command()
 @_url_argument
 @click.argument("folder", metavar="DIR", type=FilePath(path_type=Path, file_okay=False))

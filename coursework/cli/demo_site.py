@@ -1,11 +1,12 @@
 """A site to look at: the class of twelve, what it handed in and how it was marked, and what is open to it now.
 
-The same each time: variants hang on the names of students, and times are written here.
+The same each time: variants depend on the names of students and a key that is no secret, and times are written here.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -14,10 +15,12 @@ from coursework.api import open_course
 from coursework.authoring.new_assignment import new_assignment
 from coursework.cli.demo import CLASS, HABITS, ROSTER
 from coursework.course.course import Course
+from coursework.course.secrecy import Secret
 from coursework.database.assignments import names, put_issued
 from coursework.database.deliveries import deliver
 from coursework.database.marking import mark_new
 from coursework.database.people import people, put_account, put_person
+from coursework.database.permissions import ADMINISTRATOR, STUDENT
 from coursework.database.publication import AT_ONCE, CLOSED, Publication, publish
 from coursework.database.store import Store
 from coursework.gradebook.rows import Collected, Row
@@ -77,7 +80,7 @@ def _assignment(course: Course[Any], name: str, place: int, is_own: bool, folder
         )
         path.unlink(missing_ok=True)
         new_assignment(path, course, chosen, course.folder.languages)
-    return read_assignment(path, course)
+    return replace(read_assignment(path, course), secret=Secret(f"demonstration  {place:1d}".encode()))
 
 
 def _issue(
@@ -121,7 +124,7 @@ def _sign_up(store: Store, students: list[Student]) -> None:
     """Everybody of the class, and who teaches it."""
     with store.begin() as connection:
         teacher = put_person(connection, who=TEACHER, name=TEACHER, lang="", columns={})
-        put_account(connection, teacher, login="teacher@example.org", role="instructor")
+        put_account(connection, teacher, login="teacher@example.org", role=ADMINISTRATOR)
         for k, student in enumerate(students, 1):
             person = put_person(connection, student.who, student.name, student.lang, student.columns)
-            put_account(connection, person, login=f"student{k}@example.org", role="student")
+            put_account(connection, person, login=f"student{k}@example.org", role=STUDENT)

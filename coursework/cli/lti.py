@@ -471,7 +471,13 @@ def forget(person: str, folder: Path) -> None:
     _ready()
     from coursework.lti.storage import Storage
 
-    gone = Storage(folder).forget(person)
+    storage = Storage(folder)
+    gone = storage.forget(person)
     if not gone:
         raise BadInput(f"nothing is kept of {person!r}")
+    if not storage.scrub():
+        click.echo(
+            f"{storage.path} still holds traces, since another program reads it: repeat this command later",
+            err=True,
+        )
     click.echo(f"{counted(gone, 'line')} taken away")

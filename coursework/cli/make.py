@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from coursework.cli.assignments import build_assignment, check_scan, is_assignment
+from coursework.cli.assignments import build_assignment, check_scan, for_practice, is_assignment
 from coursework.cli.database import keeping
 from coursework.cli.options import (
     UNLESS_TOLD,
@@ -17,6 +17,7 @@ from coursework.cli.options import (
     Lists,
     Whole,
     cluster_option,
+    columns_option,
     db_option,
     decimal_option,
     exercise_names,
@@ -60,6 +61,7 @@ if TYPE_CHECKING:
     type=FilePath(path_type=Path),
     help="CSV with a column student, or surname and first name, and, if wanted, lang.",
 )
+@columns_option
 @click.option("--formats", type=Lists(known_formats), default="pdf,ipynb,html", show_default=True)
 @click.option(
     "--lang",
@@ -126,6 +128,7 @@ def build(
     count: int | None,
     seed: int,
     roster: Path | None,
+    columns: Mapping[str, str] | None,
     formats: Sequence[str],
     langs: Sequence[str],
     parts: str,
@@ -172,13 +175,15 @@ def build(
     names = exercise_names(course, exercises if issued is None else issued.exercises)
     writes(context, out)
     notes: list[str] = []
-    students = read_roster(roster, notes.append) if roster else []
+    students = read_roster(roster, notes.append, columns) if roster else []
     own = sum(bool(student.lang) for student in students)
     if own and not _is_untold(context, "langs"):
         notes.append(
             f"the roster says the language of {own} of its {counted(len(students), 'student')}, which counts; "
             f"--lang {','.join(langs)} is for those of whom it says none"
         )
+    if roster:
+        notes.append(for_practice(langs[0]))
     tell(notes)
     shared_by_cluster(context, cluster)
     written = build_files(

@@ -130,6 +130,36 @@ def known_formats() -> tuple[str, ...]:
     return FORMATS
 
 
+class Columns(click.ParamType):
+    """Columns of a table by what they hold: ``name=3,first=4``, each by its place from 1 on or by its title."""
+
+    name = "columns"
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> dict[str, str]:
+        from coursework.making.roster import COLUMNS
+
+        told = (
+            value.items()
+            if isinstance(value, dict)
+            else (p.partition("=")[::2] for p in str(value).split(",") if p.strip())
+        )
+        found = {str(what).strip().casefold(): str(which).strip() for what, which in told}
+        if not found or not all(found.values()) or not found.keys() <= COLUMNS.keys():
+            self.fail(
+                f"takes pairs such as name=3,first=4, of {', '.join(COLUMNS)}; found {str(value)[:60]!r}",
+                param,
+                ctx,
+            )
+        return found
+
+
+columns_option = click.option(
+    "--columns",
+    type=Columns(),
+    metavar="WHAT=COLUMN,…",
+    help="Columns of the roster whose titles do not say what they hold, by place or title: name=3,first=4,number=1; "
+    "also email and lang.",
+)
 db_option = click.option(
     "--db",
     metavar="URL",

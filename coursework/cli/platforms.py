@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from coursework.cli.assignments import is_assignment
+from coursework.cli.assignments import for_practice, is_assignment, secret_made
 from coursework.cli.options import (
     UNLESS_TOLD,
     FilePath,
     Lists,
     Whole,
+    columns_option,
     decimal_option,
     exercise_names,
     exercises_argument,
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from click.shell_completion import CompletionItem
 
     from coursework.course.course import Course
+    from coursework.course.secrecy import Secret
     from coursework.making.assignment import Assignment
     from coursework.making.roster import Student
     from coursework.platforms.pools import Drawn
@@ -82,6 +84,7 @@ class _PlatformName(click.ParamType):
     type=FilePath(path_type=Path),
     help="CSV of the students, as the platform exports it: answers that come back are told apart by it.",
 )
+@columns_option
 @seed_option
 @click.option(
     "--lang",
@@ -107,6 +110,7 @@ def export(
     exercises: Sequence[str],
     count: int | None,
     roster: Path | None,
+    columns: Mapping[str, str] | None,
     seed: int,
     langs: Sequence[str],
     parts: str,
@@ -132,7 +136,7 @@ def export(
     course = opened(context)
     writes(context, out)
     notes: list[str] = []
-    students = read_roster(roster, notes.append) if roster else []
+    students = read_roster(roster, notes.append, columns) if roster else []
     if issued is not None and (exercises or roster):
         raise BadInput(f"--issued {issued} says what was issued: name no exercises and no roster beside it")
     if issued is not None and chosen.deals:
@@ -144,7 +148,7 @@ def export(
         tell(notes)
         _export_autograder(course, wanted, issued, students, out)
         return
-    drawn = _drawn(course, wanted, students)
+    drawn = _drawn(course, wanted, students, out)
     made = exported(chosen, drawn, students, SPREADSHEETS[decimal])
     lines = list(told(made.lost, drawn.langs[0]))
     if strict and lines:
@@ -214,12 +218,17 @@ def _as_built(course: Course[Any], wanted: _Wanted, students: Sequence[Student])
         )
         return json_text(issued_content(issues)).encode("utf-8")
     assignment, langs = _assignment(course, wanted)
+    if assignment.secret is None:
+        raise BadInput(
+            f"{wanted.exercises[0]} has no secret, so that its build has drawn papers of its own: name what was issued, "
+            "--issued DIR/issued.json"
+        )
     dealt = deal(course, assignment, students or [Student("") for _ in range(count)], langs)
     tell(dealt.notes)
     return json_text(issued_content(dealt.issues, assignment)).encode("utf-8")
 
 
-def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student]) -> Drawn:
+def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student], out: Path) -> Drawn:
     from coursework.platforms.pools import of_assignment, of_exercises
 
     if not course.folder.has_solutions:
@@ -227,11 +236,25 @@ def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student]) ->
     count = wanted.variants or len(students)
     if not is_assignment(wanted.exercises):
         names = exercise_names(course, wanted.exercises)
+        tell([for_practice(wanted.langs[0])])
         return of_exercises(course, names, count or _VARIANTS, wanted.seed, wanted.langs, wanted.parts)
     assignment, langs = _assignment(course, wanted)
     if assignment.versions and count > assignment.versions:
         count = assignment.versions
-    return of_assignment(course, assignment, count or assignment.versions or _VARIANTS, langs)
+    secret = None if assignment.secret else _secret_beside(wanted, out, langs[0])
+    return of_assignment(course, assignment, count or assignment.versions or _VARIANTS, langs, secret)
+
+
+def _secret_beside(wanted: _Wanted, out: Path, lang: str) -> Secret:
+    """Return the secret of an export made there before, else a new one, which is told."""
+    from coursework.course.secrecy import Secret
+    from coursework.making.issued import Issued, secret_of
+
+    path = out / "issued.json"
+    found = secret_of(Issued.stood(path), str(path)) if path.is_file() else None
+    if found is None:
+        tell([secret_made(Path(wanted.exercises[0]), path, lang)])
+    return found or Secret.new()
 
 
 def _assignment(course: Course[Any], wanted: _Wanted) -> tuple[Assignment, Sequence[str]]:

@@ -72,7 +72,14 @@ def _ready() -> None:
     help="A class of twelve with its assignment, in a folder, or in one that is gone afterwards.",
 )
 @click.option(
-    "--instructor", metavar="LOGIN", help="Print a link by which an instructor chooses a password, and end."
+    "--administrator",
+    metavar="LOGIN",
+    help="Print a link by which an administrator chooses a password, and end.",
+)
+@click.option(
+    "--instructor",
+    metavar="LOGIN",
+    help="The same for an instructor; the first one of a site is its administrator.",
 )
 @click.option(
     "--lti",
@@ -84,7 +91,7 @@ def _ready() -> None:
 @click.pass_context
 def serve(
     context: click.Context, db: str | None, host: str, port: int, url: str | None, workers: int, demo: str | None,
-    instructor: str | None, lti: Path | None, opens: bool,
+    administrator: str | None, instructor: str | None, lti: Path | None, opens: bool,
 ) -> None:  # fmt: skip
     """Start the site: practice for students, a desk for instructors.
 
@@ -92,21 +99,38 @@ def serve(
     """
     _ready()
     from coursework.site import server
+    from coursework.site.frame.settings import Entrance
 
     if demo is not None and db is not None:
         raise BadInput("--demo brings its own database: leave --db out, or name a folder, --demo FOLDER")
-    if instructor is not None:
-        _invite(context.obj, db, instructor, _told(url) if url else f"http://{host}:{port}")
-        return
+    for role, login in (("administrator", administrator), ("instructor", instructor)):
+        if login is not None:
+            _invite(context.obj, db, login, role, _told(url) if url else f"http://{host}:{port}")
+            return
     with _kept(context.obj, db, demo) as place, server.listening(host, port) as at:
         own = _told(url) if url else _address(host, at)
         if lti is not None:
             _check_lti(lti, own)
         entrance = _entrance(host, own, demo, told=url is not None)
-        serving = server.Serving(context.obj, place, entrance, own, lti)
+        serving = server.Serving(context.obj, place, entrance, own, lti, server.worker_name())
         shown = serving.check()
-        with server.filling(serving):
+        if entrance is Entrance.ACCOUNTS:
+            _check_private(place)
+        with server.filling(serving), server.working(serving):
             server.serve(serving, at, workers, partial(_say, own, f"kept in {shown}", opens))
+
+
+def _check_private(db: str) -> None:
+    """Say where other users of this machine can read the database."""
+    from coursework.database.store import file_of, is_shared
+
+    file = file_of(db)
+    if is_shared(file):
+        tell(
+            [
+                f"other users of this machine can read {file}, with all answers and the signing key: chmod 600 {file}"
+            ]
+        )
 
 
 def _check_lti(folder: Path, url: str) -> None:
@@ -130,14 +154,14 @@ def _check_lti(folder: Path, url: str) -> None:
         tell([f"a key was made: {kept.new().kid}"])
 
 
-def _invite(course: str | None, db: str | None, login: str, url: str) -> None:
-    """Print where an instructor chooses a password."""
+def _invite(course: str | None, db: str | None, login: str, role: str, url: str) -> None:
+    """Print where somebody of the staff chooses a password."""
     from coursework.site.frame.settings import Entrance
-    from coursework.site.people.accounts import first_instructor
+    from coursework.site.people.accounts import invited_by_command
     from coursework.site.server import Serving
 
     site = Serving(course, db or _usual(), Entrance.ACCOUNTS, url).site()
-    click.echo(first_instructor(site, login))
+    click.echo(invited_by_command(site, login, role))
     site.store.close()
 
 

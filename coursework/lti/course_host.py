@@ -33,6 +33,7 @@ from coursework.lti.services import NotServed
 from coursework.lti.storage import Paper, Score, Storage, Try
 from coursework.lti.wanted import BEST, Wanted
 from coursework.making.assignment import AskedExercise, Assignment, read_assignment, text_in
+from coursework.making.dealing import keyed
 from coursework.making.papers import date_text
 from coursework.marking.marking import mark
 from coursework.rendering.feedback import verdict_word
@@ -89,7 +90,7 @@ class CourseHost:
         return [*found, Shelf(said["others"] if placed else folder.title(lang), others)]
 
     def _set_out(self, name: str, assignment: Assignment, lang: str) -> Offer:
-        points = sum(self._points(asked) for asked in assignment.exercises)
+        points = sum(self._points(asked, assignment) for asked in assignment.exercises)
         return Offer(
             f"assignment:{name}",
             text_in(assignment.title, lang) or name,
@@ -103,13 +104,16 @@ class CourseHost:
         known = " ".join([name, *(exercise.title(one) for one in exercise.languages)])
         return Offer(f"exercise:{name}", exercise.title(spoken), self._points(AskedExercise(name)), known)
 
-    def _points(self, asked: AskedExercise) -> float:
-        """What an exercise is worth."""
+    def _points(self, asked: AskedExercise, assignment: Assignment | None = None) -> float:
+        """What an exercise is worth, of an assignment or alone."""
         if isinstance(asked.points, float):
             return asked.points
         # Which parts are asked may hang on the given values; one variant stands for them all.
         exercise = self.course[asked.name]
-        parts = exercise.variant(asked.seed or 0, exercise.languages[0], asked.parts).parts
+        key = None
+        if assignment is not None and asked.seed is not None:
+            key = keyed(assignment.secret or self._storage.secret(), assignment)
+        parts = exercise.variant(asked.seed or 0, exercise.languages[0], asked.parts, key).parts
         own = asked.points if isinstance(asked.points, Mapping) else {}
         return float(sum(own.get(part.id, part.points) for part in parts))
 
@@ -426,7 +430,7 @@ class CourseHost:
         assignment = self._assignment(wanted)
         student = launch.role is Role.STUDENT
         issued = [one.records for one in self._storage.papers(place)] if student else []
-        records = own_records(self.course, assignment, launch, visit.lang, issued)
+        records = own_records(self.course, assignment, launch, visit.lang, self._storage.secret(), issued)
         paper = Paper(launch.person, launch.name or launch.person, wanted.as_plain(), records)
         return self._storage.issue(place, paper) if student else paper
 

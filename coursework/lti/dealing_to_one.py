@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from coursework.course.course import Course
+from coursework.course.secrecy import Secret
 from coursework.course.variant import Variant
 from coursework.lti.launch import Launch
 from coursework.making.assignment import Assignment
-from coursework.making.dealing import worth
+from coursework.making.dealing import keyed, worth
 from coursework.making.issuing import drawn_by
 
 Record = Mapping[str, Any]
@@ -21,11 +21,12 @@ def own_records(
     assignment: Assignment,
     launch: Launch,
     lang: str,
+    secret: Secret,
     issued: Sequence[Sequence[Record]] = (),
 ) -> list[Record]:
     """The records of a person's variants, an exercise each.
 
-    A seed is a function of issuer, link and person. Where that variant is somebody's in this link already, as ``issued``
+    A code is a function of the secret, issuer, link and person; the secret of the assignment's file wins. Where that variant is somebody's in this link already, as ``issued``
     says, the next one is drawn, while variants last.
 
     Raises
@@ -33,27 +34,28 @@ def own_records(
     Starved
         An exercise has no variant that is worth issuing.
     """
-    stream, who = f"lti/{launch.issuer}/{launch.link}", _who(assignment, launch)
+    key = keyed(assignment.secret or secret, assignment)
+    stream, who = f"lti/{launch.issuer}/{launch.link}", _who(assignment, launch, key)
     found = []
     for number, asked in enumerate(assignment.exercises):
         exercise = course[asked.name]
         spoken = lang if lang in exercise.languages else exercise.languages[0]
         if asked.seed is not None:
-            variant = exercise.variant(asked.seed, spoken, asked.parts)
+            variant = exercise.variant(asked.seed, spoken, asked.parts, key)
         else:
             shared = assignment.versions is not None
-            taken = (
-                set() if shared else {_given(records[number]) for records in issued if len(records) > number}
-            )
-            drawn, _ = drawn_by(stream, exercise, [who], spoken, asked.parts, taken)
+            stood = [records[number] for records in issued if len(records) > number]
+            known = {int(record["seed"]): _given(record) for record in stood}
+            taken = set() if shared else set(known.values())
+            drawn, _ = drawn_by(stream, exercise, [who], spoken, asked.parts, taken, secret=key, known=known)
             variant = drawn[who]
         found.append(worth(variant, asked).record)
     return found
 
 
-def _who(assignment: Assignment, launch: Launch) -> str:
-    """What a draw hangs on: the person; where there are versions, which of them is theirs."""
-    digest = hashlib.sha256("\n".join([launch.issuer, launch.link, launch.person]).encode()).hexdigest()
+def _who(assignment: Assignment, launch: Launch, key: Secret) -> str:
+    """What a draw depends on: the person; where there are versions, which of them is theirs."""
+    digest = key.digest("person", launch.issuer, launch.link, launch.person).hex()
     if assignment.versions is None:
         return digest
     return (

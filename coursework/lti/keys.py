@@ -22,7 +22,7 @@ from jwt.algorithms import RSAAlgorithm
 
 from coursework.errors import BadInput, nearest
 
-_BITS = 2048
+_BITS = 3072  #: as strong as a symmetric key of 128 bits
 _SECRET = "session.secret"
 _NAME = re.compile(r"(?P<at>\d{8}T\d{6}Z)-(?P<kid>[\w-]{43})\.pem")
 

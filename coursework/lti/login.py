@@ -91,7 +91,9 @@ class Login:
         if "lti_message_hint" in hints:
             asked["lti_message_hint"] = hints["lti_message_hint"]
         join = "&" if urlsplit(platform.auth_url).query else "?"
-        return Sent(f"{platform.auth_url}{join}{urlencode(asked)}", cookie_of(state), value)
+        return Sent(
+            f"{platform.auth_url}{join}{urlencode(asked)}", cookie_of(state, self.settings.url), value
+        )
 
     def returned(self, state: str, cookies: Mapping[str, str]) -> Returned:
         """Who comes back with a state.
@@ -117,7 +119,7 @@ class Login:
             raise Refused("platform", 403, f"{held['of'][0]!r} is no longer known")
         if self._clock() > held["exp"]:
             raise Refused("stale", 400, "a login of long ago", again=held["hints"])
-        value = cookies.get(cookie_of(state))
+        value = cookies.get(cookie_of(state, self.settings.url))
         if value is None:
             raise Refused("cookie", 400, "no cookie came back", again=held["hints"])
         if not secrets.compare_digest(_digest(value), held["by"]):
@@ -125,9 +127,20 @@ class Login:
         return Returned(platform, held["nonce"], float(held["exp"]), held["hints"])
 
 
-def cookie_of(state: str) -> str:
-    """What the cookie of a state is called: each has its own, so that two links may be opened at once."""
-    return f"lti-{_digest(state)[:16]}"
+def cookie_of(state: str, url: str) -> str:
+    """Return the name of the cookie of a state: each has its own, so that two links may be opened at once."""
+    return cookie_name(f"lti-{_digest(state)[:16]}", url)
+
+
+def session_cookie(session: str, url: str) -> str:
+    """Return the name of the cookie of a session: each link that is open has its own."""
+    return cookie_name(f"lti-at-{_digest(session)[:16]}", url)
+
+
+def cookie_name(name: str, url: str) -> str:
+    """Return the name of a cookie of the service at ``url``: over https with the prefix that keeps plain http and neighbouring hosts
+    from setting one in its place."""
+    return f"__Host-{name}" if url.startswith("https:") else name
 
 
 def _digest(text: str) -> str:

@@ -11,7 +11,7 @@ from coursework.course.folder import Folder
 from coursework.language.words import words
 from coursework.rendering import feedback, papers, views
 from coursework.rendering.environment import render
-from coursework.rendering.html import environment_of
+from coursework.rendering.html import environment_of, script_digest
 from coursework.sheets.paper import FeedbackPaper, Paper
 
 Filled = Mapping[str, Sequence[str]]
@@ -43,6 +43,10 @@ class Pages:
         said = words(lang)
         usual = {"lang": lang, "words": said, "said": said["lti"], "paper": "a4", "title": ""}
         return render(environment_of(self._folders, lang), f"{template}.html.j2", {**usual, **names})
+
+    def digest(self, script: str) -> str:
+        """Return the digest by which a policy allows a script among the templates, ``sha256-…``."""
+        return script_digest(environment_of(self._folders, "en"), script)
 
     def sheet(self, paper: Paper, form: Form, *, alone: bool) -> str:
         """A sheet whose answers are handed in here; ``alone`` where it is one exercise and no paper."""

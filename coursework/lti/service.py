@@ -10,8 +10,9 @@ import time
 import traceback
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from typing import Any
-from urllib.parse import parse_qsl, urlsplit
+from urllib.parse import parse_qsl
 
 import httpx
 from starlette.applications import Starlette
@@ -28,7 +29,7 @@ from coursework.lti.host import Form, Host, Reply, Visit
 from coursework.lti.key_sets import KeySets
 from coursework.lti.keys import KeyFolder
 from coursework.lti.launch import PICKING, Launch, launch_of
-from coursework.lti.login import Login, cookie_of
+from coursework.lti.login import Login, cookie_of, session_cookie
 from coursework.lti.pages import Pages
 from coursework.lti.refusal import Refused
 from coursework.lti.roles import Role
@@ -37,13 +38,13 @@ from coursework.lti.services import SCORE, Member, NotServed, Services
 from coursework.lti.settings import Platform, Settings, origin
 from coursework.lti.storage import Storage, Waiting
 from coursework.lti.tokens import verified
+from coursework.system.headers import Guarded, security_headers
 
 LOG = logging.getLogger("coursework.lti")
 _LARGEST = 256 * 1024  #: bytes of a form
 _FIELDS = 400  #: of a form
 _ROSTER_SECONDS = 60.0  #: that a roster is kept
 _SECONDS = 8.0  #: that a platform has to answer
-_COOKIE = "lti-session"
 
 Told = Mapping[str, Sequence[str]]
 
@@ -88,6 +89,8 @@ def service(
 
     handlers: Mapping[Any, Any] = {HTTPException: desk.no_page}
     app = Starlette(routes=routes, lifespan=running, exception_handlers=handlers)
+    is_secure = settings.url.startswith("https:")
+    app.add_middleware(Guarded, is_secure=lambda: is_secure, frames=settings.frames)
     app.router.redirect_slashes = False  # it would lead to whatever host a request names
     app.state.sender = desk.sender
     return app
@@ -141,7 +144,7 @@ class _Service:
                 why = _place_of(fault)
                 LOG.error("%s failed: %s", _shown_path(request), why)
                 response = await run_in_threadpool(self.refused, request, Refused("failed", 500))
-            self._guard(response)
+            self._guard(response, request)
             shown = _shown_path(request)
             LOG.info(
                 "%s %s %d %.0f ms%s",
@@ -155,17 +158,15 @@ class _Service:
 
         return answer
 
-    def _guard(self, response: Response) -> None:
-        """What a browser may do with our pages: hold them in a frame of a platform that we know, and little more."""
-        ancestors = response.headers.get("x-frames") or " ".join(self.settings.frames) or "'none'"
-        if "x-frames" in response.headers:
-            del response.headers["x-frames"]
-        response.headers["Content-Security-Policy"] = (
-            f"frame-ancestors {ancestors}; base-uri 'none'; object-src 'none'"
+    def _guard(self, response: Response, request: Request) -> None:
+        """Add the security headers: a platform that is known may show the page in a frame."""
+        told = request.state
+        frames = getattr(told, "frames", self.settings.frames)
+        forms = dict.fromkeys([*self.settings.frames, *getattr(told, "forms", ())])
+        is_secure = self.settings.url.startswith("https:")
+        response.headers.update(
+            security_headers(is_secure, frames, list(forms), getattr(told, "scripts", ()))
         )
-        response.headers["X-Content-Type-Options"] = "nosniff"
-        # Without the origin, nobody could tell where a form comes from.
-        response.headers["Referrer-Policy"] = "same-origin"
         response.headers.setdefault("Cache-Control", "no-store")
 
     def refused(self, request: Request, fault: Refused) -> Response:
@@ -184,7 +185,7 @@ class _Service:
     async def no_page(self, request: Request, fault: HTTPException) -> Response:
         why = "method" if fault.status_code == 405 else "page"
         response = await run_in_threadpool(self.refused, request, Refused(why, fault.status_code))
-        self._guard(response)
+        self._guard(response, request)
         return response
 
     def _lang(self, wanted: str) -> str:
@@ -203,7 +204,7 @@ class _Service:
         told = {name: values[0] for name, values in form.items()} if form else dict(request.query_params)
         sent = self._login.sent(told)
         response = RedirectResponse(sent.url, 302)
-        self._set_cookie(response, sent.cookie, sent.value, "/launch", self.settings.login_seconds)
+        self._set_cookie(response, sent.cookie, sent.value, self.settings.login_seconds)
         return response
 
     def launch(self, request: Request, form: Told) -> Response:
@@ -217,6 +218,8 @@ class _Service:
         if not hmac.compare_digest(str(claims["nonce"]).encode("utf-8", "replace"), back.nonce.encode()):
             raise Refused("nonce", 400, "the nonce of another login")
         launch = launch_of(claims)
+        if not back.platform.emails_verified:  # anybody may have written any address there
+            launch = replace(launch, email="")
         if not self.storage.use(back.nonce, back.until):
             raise Refused("replayed", 403, "a launch that came before")
         if launch.kind == PICKING and not launch.role.picks:
@@ -224,37 +227,36 @@ class _Service:
         name, secret = self.storage.begin(launch, self.settings.session_seconds)
         self._pass_on(self._visit(launch, name))
         response = RedirectResponse(f"{self.settings.url}/at/{name}", 303)
-        self._set_cookie(response, _COOKIE, secret, f"/at/{name}", self.settings.session_seconds)
-        self._set_cookie(response, cookie_of(state), "", "/launch", 0)
+        self._set_cookie(
+            response, session_cookie(name, self.settings.url), secret, self.settings.session_seconds
+        )
+        self._set_cookie(response, cookie_of(state, self.settings.url), "", 0)
         return response
 
-    def _set_cookie(self, response: Response, name: str, value: str, path: str, seconds: float) -> None:
+    def _set_cookie(self, response: Response, name: str, value: str, seconds: float) -> None:
         """A cookie that is sent in the frame of another site too, and there kept for that site alone. Browsers take such a
         one from this machine in plain http as well."""
         response.headers.append(
             "set-cookie",
-            f"{name}={value}; Path={self._path(path)}; Max-Age={int(seconds)}; HttpOnly; SameSite=None; Secure; Partitioned",
+            f"{name}={value}; Path=/; Max-Age={int(seconds)}; HttpOnly; SameSite=None; Secure; Partitioned",
         )
-
-    def _path(self, path: str) -> str:
-        return urlsplit(self.settings.url).path.rstrip("/") + path
 
     # ----------------------------------------------------------------- the pages
 
     def page(self, request: Request, form: Told) -> Response:
         name = request.path_params["session"]
-        launch = self.storage.launch(name, request.cookies.get(_COOKIE))
+        launch = self.storage.launch(name, request.cookies.get(session_cookie(name, self.settings.url)))
         visit = self._visit(launch, name, request)
         if request.method == "POST":
             self._check_seal(request, visit, form)
         if launch.kind == PICKING:
-            response = self._picking(visit, form, request.method == "POST")
+            response = self._picking(visit, form, request)
         elif visit.path == "roster.csv":
             response = self._roster_file(visit)
         else:
             response = self._hosted(visit, form, request.method == "POST")
         platform = self._platform(launch)
-        response.headers["x-frames"] = " ".join(platform.frames)
+        request.state.frames = platform.frames
         return response
 
     def _hosted(self, visit: Visit, form: Form, posted: bool) -> Response:
@@ -334,20 +336,20 @@ class _Service:
 
     # ------------------------------------------------------------------- picking
 
-    def _picking(self, visit: Visit, form: Form, posted: bool) -> Response:
+    def _picking(self, visit: Visit, form: Form, request: Request) -> Response:
         launch = visit.launch
         if visit.path or launch.picking is None or not launch.role.picks:
             raise Refused(
                 "role" if not launch.role.picks else "page", 403 if not launch.role.picks else 404, "picking"
             )
         shelves = self.host.shelves(visit.lang)
-        if posted:
+        if request.method == "POST":
             items = (
                 []
                 if form.get("cancel")
                 else deep_linking.content_items(launch, shelves, form, self.settings.url)
             )
-            return self._sent_back(visit, items)
+            return self._sent_back(visit, items, request)
         sought = visit.query.get("q", "")[:200].strip()
         names = {
             "title": words(visit.lang)["lti"]["pick"]["title"],
@@ -360,7 +362,7 @@ class _Service:
         }
         return Response(self.pages.page("lti_pick", visit.lang, names), media_type="text/html")
 
-    def _sent_back(self, visit: Visit, items: Sequence[dict[str, Any]]) -> Response:
+    def _sent_back(self, visit: Visit, items: Sequence[dict[str, Any]], request: Request) -> Response:
         """A page that takes the instructor back to the platform, with what was picked."""
         launch, said = visit.launch, words(visit.lang)["lti"]["pick"]
         if launch.picking is None:
@@ -370,6 +372,8 @@ class _Service:
             if len(items) == 1 or (not items and words(visit.lang)["numbers"]["one_below_two"])
             else "many"
         ]
+        request.state.forms = [origin(launch.picking.return_url)]
+        request.state.scripts = [self.pages.digest("_lti_return.js")]
         names = {
             "title": said["return_title"],
             "message": ready.format(len(items)),
@@ -396,6 +400,9 @@ async def _form(request: Request) -> dict[str, list[str]]:
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind != "application/x-www-form-urlencoded":
         raise Refused("bad_request", 415, f"a form of kind {kind[:60]!r}")
+    told = request.headers.get("content-length", "")
+    if told.isascii() and told.isdecimal() and (len(told) > 15 or int(told) > _LARGEST):
+        raise Refused("too_large", 413, "a form")
     data = b""
     async for piece in request.stream():
         data += piece

@@ -134,6 +134,12 @@ class Services:
         self, platform: Platform, scopes: Sequence[str], method: str, url: str, *, accept: str = "", kind: str = "", json: Any = None
     ) -> httpx.Response:  # fmt: skip
         """An answer of the platform; one more try with a new token where it no longer takes the old one."""
+        if origin(url) not in platform.services:
+            raise NotServed(
+                f"{platform.name} names an address at {origin(url)[:100]!r}, which is not among its own: add it to its 'origins' in "
+                "platforms.toml where it is",
+                403,
+            )
         for fresh in (False, True):
             headers = {"Authorization": f"Bearer {self.token(platform, scopes, fresh)}"}
             headers |= {"Accept": accept} if accept else {}

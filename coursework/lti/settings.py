@@ -31,8 +31,14 @@ class Platform:
     jwks_url: str  #: its public keys
     origins: tuple[
         str, ...
-    ] = ()  #: whose pages may hold ours in a frame, besides those of ``issuer`` and ``auth_url``
+    ] = ()  #: whose pages may hold ours in a frame, and which have gradebook and roster, besides ``issuer`` and ``auth_url``
     audience: str = ""  #: of a request for a token; ``token_url`` unless told
+    emails_verified: bool = False  #: its e-mails are verified by it, so that nobody can take another's
+
+    @property
+    def services(self) -> tuple[str, ...]:
+        """The origins that are asked for tokens, columns of the gradebook and rosters, whatever a launch says."""
+        return tuple(dict.fromkeys([*self.frames, origin(self.token_url), origin(self.jwks_url)]))
 
     @property
     def frames(self) -> tuple[str, ...]:
@@ -143,6 +149,7 @@ _KEYS = (
     "jwks_url",
     "origins",
     "audience",
+    "emails_verified",
 )
 _SERVICE = ("url", "assignments", "session_hours")
 
@@ -225,8 +232,14 @@ class _Reader:
                 for one in self._texts([*place, "origins"], table.get("origins", []))
             ),
             audience=str(table.get("audience", "")),
+            emails_verified=self._truth([*place, "emails_verified"], table.get("emails_verified", False)),
             **urls,
         )
+
+    def _truth(self, place: Sequence[str | int], value: Any) -> bool:
+        if not isinstance(value, bool):
+            raise self.refused(place, f"{place[-1]} is true or false; found {value!r}")
+        return value
 
     def _texts(self, place: Sequence[str | int], value: Any) -> tuple[str, ...]:
         if not isinstance(value, list) or not all(
@@ -281,6 +294,7 @@ def as_toml(settings: Settings) -> str:
         lines += [f"{key} = {_text(getattr(one, key))}" for key in ("auth_url", "token_url", "jwks_url")]
         lines += [f"origins = {_list(one.origins)}"] if one.origins else []
         lines += [f"audience = {_text(one.audience)}"] if one.audience else []
+        lines += ["emails_verified = true"] if one.emails_verified else []
     return "\n".join(lines) + "\n"
 
 

@@ -14,10 +14,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from coursework.course.secrecy import Secret
 from coursework.errors import BadInput
 from coursework.lti.launch import Launch
 from coursework.lti.refusal import Refused
 from coursework.lti.roles import Role
+from coursework.system.sqlite_files import scrub
 
 FILE = "lti.sqlite"
 _WAIT = 10.0  #: seconds for another writer
@@ -42,6 +44,7 @@ CREATE INDEX IF NOT EXISTS scores_due ON scores (due);
 CREATE TABLE IF NOT EXISTS opened (
   place TEXT NOT NULL, person TEXT NOT NULL, launch TEXT NOT NULL, PRIMARY KEY (place, person)) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS looked (what TEXT PRIMARY KEY, stood TEXT NOT NULL) WITHOUT ROWID;
+CREATE TABLE IF NOT EXISTS secrets (what TEXT PRIMARY KEY, text TEXT NOT NULL) WITHOUT ROWID;
 CREATE TABLE IF NOT EXISTS courses (
   course TEXT PRIMARY KEY, title TEXT NOT NULL, memberships TEXT NOT NULL, seen REAL NOT NULL) WITHOUT ROWID;
 """
@@ -125,6 +128,7 @@ class Storage:
         try:
             file.row_factory = sqlite3.Row
             file.execute("PRAGMA synchronous = FULL")
+            file.execute("PRAGMA secure_delete = ON")
             yield file
         finally:
             file.close()
@@ -324,6 +328,22 @@ class Storage:
 
     # ------------------------------------------------------- what was looked at
 
+    def secret(self) -> Secret:
+        """Return what keys the draws of exercises, and of assignments whose file has no secret: created once.
+
+        Raises
+        ------
+        BadInput
+            What is kept is no secret.
+        """
+        with self._writing() as file:
+            file.execute("INSERT OR IGNORE INTO secrets VALUES ('draws', ?)", [Secret.new().text])
+            (text,) = file.execute("SELECT text FROM secrets WHERE what = 'draws'").fetchone()
+        try:
+            return Secret.of(text)
+        except ValueError as fault:
+            raise BadInput(f"{self.path}: {fault}; restore a backup") from None
+
     def stood(self, what: str) -> str:
         """How something stood when it was last looked at; nothing before."""
         with self._open() as file:
@@ -343,6 +363,10 @@ class Storage:
             rows = file.execute("SELECT * FROM courses ORDER BY seen DESC")
             return [(tuple(json.loads(row["course"])), row["title"], row["memberships"]) for row in rows]
 
+    def scrub(self) -> bool:
+        """Rewrite the file without what was deleted; returns False where another process kept some of it."""
+        return scrub(self.path)
+
     def forget(self, person: str, issuer: str = "") -> int:
         """Take away all that is kept of a person, of one platform where it is told; how many lines that were."""
         begins = json.dumps([issuer])[:-1] + "," if issuer else ""  # as places do
@@ -354,11 +378,21 @@ class Storage:
                 ).rowcount
                 for table in ("papers", "tries", "scores", "opened")
             )
-            for row in file.execute("SELECT id, launch FROM sessions").fetchall():
-                launch = json.loads(row["launch"])
-                if launch["person"] == person and issuer in ("", launch["issuer"]):
-                    gone += file.execute("DELETE FROM sessions WHERE id = ?", [row["id"]]).rowcount
-            return gone
+            return gone + _end_sessions(file, person, issuer)
+
+    def end_sessions(self, person: str, issuer: str) -> int:
+        """End the sessions of a person of a platform; returns how many there were."""
+        with self._writing() as file:
+            return _end_sessions(file, person, issuer)
+
+
+def _end_sessions(file: sqlite3.Connection, person: str, issuer: str) -> int:
+    gone = 0
+    for row in file.execute("SELECT id, launch FROM sessions").fetchall():
+        launch = json.loads(row["launch"])
+        if launch["person"] == person and issuer in ("", launch["issuer"]):
+            gone += file.execute("DELETE FROM sessions WHERE id = ?", [row["id"]]).rowcount
+    return gone
 
 
 def _digest(text: str) -> str:

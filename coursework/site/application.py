@@ -10,7 +10,6 @@ from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.routing import BaseRoute, Mount, Route
 
-from coursework.database.store import CONNECTIONS
 from coursework.site.desk import (
     class_page,
     files,
@@ -23,19 +22,18 @@ from coursework.site.desk import (
     scans,
     student_page,
 )
+from coursework.site.frame.arrivals import Arrivals
 from coursework.site.frame.door import Door
+from coursework.site.frame.lanes import PAGES_AT_ONCE
 from coursework.site.frame.settings import Site
 from coursework.site.frame.visits import Page
-from coursework.site.lti import links_page
+from coursework.site.lti import connecting, links_page
 from coursework.site.papers import assignments
-from coursework.site.people import accounts, home, people_page, privacy
+from coursework.site.people import accounts, home, people_page, privacy, scrubbing
 from coursework.site.practice import practice_page, progress_page
 from coursework.site.publication import publishing
 from coursework.site.warming import begin_warming
-
-#: Requests that a process answers at the same time: none uses more than two connections to the database, so that none waits for
-#: one that never comes.
-_AT_ONCE = CONNECTIONS // 2
+from coursework.system.headers import Guarded
 
 #: Every address of the site, a file's after another's.
 PAGES: tuple[Page, ...] = (
@@ -47,6 +45,7 @@ PAGES: tuple[Page, ...] = (
     *privacy.PAGES,
     *overview.PAGES,
     *links_page.PAGES,
+    *connecting.PAGES,
     *queue.PAGES,
     *assignments.PAGES,
     *publishing.PAGES,
@@ -79,7 +78,9 @@ def application(site: Site, lti: Starlette | None = None) -> Starlette:
     app = Starlette(
         routes=routes, exception_handlers={HTTPException: door.lost}, lifespan=lambda app: _beside(site, lti)
     )
+    app.add_middleware(Guarded, is_secure=lambda: site.is_secure)
     app.router.redirect_slashes = False  # it would lead to whatever host a request names
+    app.add_middleware(Arrivals, clock=lambda: site.clock())
     return app
 
 
@@ -95,8 +96,10 @@ def _lti(site: Site) -> Starlette | None:
 @asynccontextmanager
 async def _beside(site: Site, lti: Starlette | None) -> AsyncIterator[None]:
     """What goes on beside the requests, while the site is served."""
-    current_default_thread_limiter().total_tokens = _AT_ONCE
+    current_default_thread_limiter().total_tokens = PAGES_AT_ONCE
     stop = begin_warming(site)
+    if scrubbing.is_left(site):
+        scrubbing.scrub_until_done(site, stop)
     async with lti.router.lifespan_context(lti) if lti else nullcontext():
         yield
     stop.set()

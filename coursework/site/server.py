@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import logging
+import logging.config
 import multiprocessing
 import os
 import signal
@@ -23,8 +24,9 @@ from coursework.database.store import Store
 from coursework.errors import BadInput, CourseworkError
 from coursework.site.application import application
 from coursework.site.frame.settings import Entrance, Site
-from coursework.site.people.accounts import check_instructor
-from coursework.system.processes import beside
+from coursework.site.people.accounts import check_administrator
+from coursework.site.worker import work
+from coursework.system.processes import beside, kept_beside, others_can_start
 
 if TYPE_CHECKING:
     from uvicorn import Config
@@ -34,6 +36,9 @@ _LAST_REQUESTS = 15  #: seconds that requests under way are given when the serve
 _SILENCE = 60  #: seconds after which a process that says nothing is taken for dead
 _WAITING = 1024  #: connections that may wait to be answered
 _MOST_FILES = 65_536  #: and connections that a process holds, where the machine lets it
+_PROTOCOL = "coursework.site.connections:Stamped"
+_KEEP_ALIVE = 75  #: seconds that a connection may rest: longer than browsers and proxies rest theirs before they use them again
+_NICENESS = 10  #: of the worker: requests go before
 _AGAIN = 2.0  #: seconds before a process that could not begin is begun again
 Application = Callable[..., Any]
 
@@ -47,6 +52,7 @@ class Serving:
     entrance: Entrance
     url: str
     lti: Path | None = None  #: folder of the platforms
+    worker: str = ""  #: name under which a worker marks beside the processes that answer; none where they mark themselves
 
     def site(self) -> Site:
         """The site.
@@ -56,7 +62,8 @@ class Serving:
         CourseworkError
             The course or the database cannot be opened.
         """
-        return Site(open_course(self.course), Store(self.db), self.entrance, self.url, lti=self.lti)
+        course, store = open_course(self.course), Store(self.db)
+        return Site(course, store, self.entrance, self.url, lti=self.lti, has_worker=bool(self.worker))
 
     def check(self) -> str:
         """Try once what every process will do; the database is made, or brought to this version. Gives where it is.
@@ -67,7 +74,7 @@ class Serving:
             The course or the database cannot be opened, or nobody could come in to teach.
         """
         site = self.site()
-        check_instructor(site)
+        check_administrator(site)
         site.store.close()
         return site.store.shown
 
@@ -131,7 +138,7 @@ def run(
     config = Config(
         partial(_made, made), factory=True, workers=workers, log_config=_logs(tells_all), access_log=False, server_header=False,
         proxy_headers=has_proxy, forwarded_allow_ips="127.0.0.1",
-        timeout_graceful_shutdown=_LAST_REQUESTS, timeout_worker_healthcheck=_SILENCE,
+        timeout_keep_alive=_KEEP_ALIVE, http=_PROTOCOL, timeout_graceful_shutdown=_LAST_REQUESTS, timeout_worker_healthcheck=_SILENCE,
     )  # fmt: skip
     _open_more()
     if workers > 1:
@@ -213,6 +220,24 @@ def _made(made: Callable[[], Application]) -> Application:
 def _follow(ended: Callable[[], None]) -> None:
     ended()
     os.kill(os.getpid(), signal.SIGTERM)
+
+
+def worker_name() -> str:
+    """Name of the worker of this server, which those that follow it bear too; none where none can start."""
+    return f"{socket.gethostname()[:40]} {os.getpid()}" if others_can_start() else ""
+
+
+def working(serving: Serving) -> AbstractContextManager[None]:
+    """One process, whatever the number of those that answer, that marks what was handed in and rescues what was saved."""
+    return kept_beside(_NICENESS, _work, serving) if serving.worker else nullcontext()
+
+
+def _work(serving: Serving) -> None:
+    logging.config.dictConfig(_logs(False))
+    try:
+        work(serving.site(), serving.worker)
+    except CourseworkError as fault:  # the database is away: another one is begun in a while
+        LOG.error("%s", fault)
 
 
 def filling(serving: Serving) -> AbstractContextManager[None]:

@@ -1,13 +1,68 @@
-"""What is installed under the import name ``coursework``: the distribution's own name, and its version.
+"""The package as it is installed: its name, its version, and the commands that install it.
 
-On public indexes ``coursework`` is the name of other people's package; ``pip`` is told this one.
+On public indexes ``coursework`` is the name of other people's package, and ``mechanism-coursework`` is nobody's: whoever registers
+it would run code on every machine whose user types what a message says. No command takes it from an index before
+:data:`PUBLISHED` says that it is there.
 """
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+from importlib import metadata
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
 
 DISTRIBUTION = "mechanism-coursework"
 VERSION = "0.1.0"
+#: Whether this project has registered its name on the public index.
+PUBLISHED = False
+#: The file that ``make wheel`` writes.
+WHEEL = f"mechanism_coursework-{VERSION}-py3-none-any.whl"
+
+_SHELL = set(" ;<>&|[]*~!")
 
 
-def pip_install(requirement: str = "") -> str:
-    """The command that installs a requirement, the package in this very version unless told."""
-    told = requirement or f"{DISTRIBUTION}=={VERSION}"
-    return f'pip install "{told}"' if set(told) & set(" ;<>&|[]*~!") else f"pip install {told}"
+def pip_install(requirement: str = "", extra: str = "") -> str:
+    """Return the command that installs a requirement; without one, this very version of the package with an extra.
+
+    The command is for other machines: it names a file in the current folder, or a published version.
+    """
+    if not requirement:
+        wanted = f"[{extra}]" if extra else ""
+        requirement = f"{DISTRIBUTION}{wanted}=={VERSION}" if PUBLISHED else f"./{WHEEL}{wanted}"
+    return f'pip install "{requirement}"' if set(requirement) & _SHELL else f"pip install {requirement}"
+
+
+def add_extra(extra: str) -> str:
+    """Return the command that adds the libraries of an extra to the package as it is installed here."""
+    source, editable = _source()
+    if not source:
+        return pip_install(extra=extra)
+    requirement = f"{source}[{extra}]" if "://" not in source else f"{DISTRIBUTION}[{extra}] @ {source}"
+    quoted = f'"{requirement}"' if os.name == "nt" else shlex.quote(requirement)
+    return f"pip install {'--editable ' if editable else ''}{quoted}"
+
+
+def _source() -> tuple[str, bool]:
+    """Return the folder, file or address that pip installed the package from, "" where that is gone or unknown, and whether
+    it is an editable folder."""
+    try:
+        told = metadata.distribution(DISTRIBUTION).read_text("direct_url.json")
+        url = json.loads(told or "{}")
+    except (metadata.PackageNotFoundError, ValueError):
+        return "", False
+    address = str(url.get("url", ""))
+    if urlsplit(address).scheme != "file":
+        return _address(url, address), False
+    path = Path(url2pathname(urlsplit(address).path))
+    is_there = (path / "pyproject.toml").is_file() or (path.suffix == ".whl" and path.is_file())
+    return (str(path) if is_there else ""), bool(url.get("dir_info", {}).get("editable"))
+
+
+def _address(url: dict[str, Any], address: str) -> str:
+    repository = url.get("vcs_info")
+    return f"{repository['vcs']}+{address}@{repository['commit_id']}" if repository else address

@@ -6,7 +6,7 @@ from importlib import import_module
 from types import ModuleType
 
 from coursework.errors import BadInput
-from coursework.system.distribution import DISTRIBUTION
+from coursework.system.distribution import add_extra
 
 
 class NotAtHand(BadInput):
@@ -26,9 +26,7 @@ def library(module: str, job: str, extra: str) -> ModuleType:
         return import_module(module)
     except Exception as fault:  # whatever a library does that does not fit the others
         if isinstance(fault, ModuleNotFoundError) and fault.name == name:
-            raise NotAtHand(
-                f"{job} {name}, which is not installed: pip install '{DISTRIBUTION}[{extra}]'"
-            ) from fault
+            raise NotAtHand(f"{job} {name}, which is not installed: {add_extra(extra)}") from fault
         said = " ".join(str(fault).split())[:120]
         raise NotAtHand(
             f"{job} {name}, which is installed and cannot be loaded ({type(fault).__name__}: {said}): "

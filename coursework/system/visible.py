@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import re
 import sys
+import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -70,7 +71,11 @@ def visible_streams() -> Iterator[None]:
 
 
 class VisibleLines(logging.Formatter):
-    """Lines of a log, one a message, whatever its words hold."""
+    """Lines of a log, one a message, whatever its words hold; times are UTC."""
+
+    converter = staticmethod(time.gmtime)
+    default_time_format = "%Y-%m-%dT%H:%M:%S"
+    default_msec_format = "%s.%03dZ"
 
     def formatMessage(self, record: logging.LogRecord) -> str:
         return one_line(super().formatMessage(record))

@@ -12,6 +12,7 @@ from lti_platform import CLIENT, DEEP, LTI, MEMBER, SITE, TOOL, field, seal
 
 from coursework.language.words import words
 from coursework.lti.key_sets import AGAIN_SECONDS, KEPT_SECONDS
+from coursework.lti.login import session_cookie
 
 SAID = words("en")["lti"]["refused"]
 
@@ -105,7 +106,7 @@ def test_another_browser_s_login_is_refused(tool, visitor):
         "id_token": visitor.platform.signed(visitor.platform.claims(asked["nonce"])),
     }
     assert refused(other.browser.post("/launch", data=told), "cookie", 400)
-    (name,) = [name for name in visitor.browser.cookies if name.startswith("lti-")]
+    (name,) = [name for name in visitor.browser.cookies if name.startswith("__Host-lti-")]
     other.browser.cookies.set(name, "guessed", domain="tool.example.org", path="/launch")
     assert refused(other.browser.post("/launch", data=told), "browser", 403)
 
@@ -386,6 +387,10 @@ def test_logging_in_writes_nothing_down(tool, visitor):
 
 def test_a_form_that_is_too_large_is_refused(visitor):
     assert refused(visitor.browser.post("/launch", data={"state": "x" * 300_000}), "too_large", 413)
+    told = {"content-type": "application/x-www-form-urlencoded", "content-length": "300000"}
+    assert refused(
+        visitor.browser.post("/launch", content=b"x=y", headers=told), "too_large", 413
+    )  # by its head alone
     page, path = visitor.enter()
     assert refused(visitor.hand_in(path, page, {"rA": "1" * 5000}), "too_large", 413)
     assert refused(visitor.browser.post(path, data={f"f{k}": "1" for k in range(500)}), "bad_request", 400)
@@ -414,8 +419,8 @@ def test_another_s_cookie_opens_nothing(tool, visitor):
     _, path = visitor.enter()
     _, others = other.enter(sub="bob", name="Bob")
     assert refused(other.browser.get(path), "cookie", 403)
-    (cookie,) = [one for one in other.browser.cookies.jar if one.name == "lti-session"]
-    other.browser.cookies.set("lti-session", cookie.value, domain="tool.example.org", path=path)
+    mine, theirs = (session_cookie(one.rpartition("/")[2], TOOL) for one in (path, others))
+    other.browser.cookies.set(mine, other.browser.cookies[theirs], domain="tool.example.org", path="/")
     assert refused(other.browser.get(path), "browser", 403)
     assert other.browser.get(others).status_code == 200
 
@@ -444,6 +449,7 @@ def test_cookies_are_for_https_and_for_one_frame_alone(visitor):
     answer = visitor.browser.get("/login", params={"iss": SITE, "login_hint": "ada", "client_id": CLIENT})
     cookies = [answer.headers["set-cookie"], visitor.launch().headers["set-cookie"]]
     for cookie in cookies:
+        assert cookie.startswith("__Host-lti-"), "plain http or a neighbouring host could set it"
         for word in ("HttpOnly", "Secure", "SameSite=None", "Partitioned"):
             assert word in cookie
 
@@ -451,7 +457,7 @@ def test_cookies_are_for_https_and_for_one_frame_alone(visitor):
 def test_only_the_platform_may_hold_a_page_in_a_frame(visitor):
     page, _ = visitor.enter()
     policy = page.headers["content-security-policy"]
-    assert f"frame-ancestors {SITE} https://frames.example.org;" in policy
+    assert f"frame-ancestors {SITE} https://frames.example.org" in policy.split("; ")
     assert page.headers["cache-control"] == "no-store"
     assert page.headers["x-content-type-options"] == "nosniff"
 

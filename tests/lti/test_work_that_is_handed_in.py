@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import shutil
 
 import httpx
 import jwt
@@ -30,6 +31,8 @@ from coursework.lti.launch import launch_of
 from coursework.lti.sending import wait_after
 from coursework.lti.services import Services
 from coursework.lti.storage import Score
+from coursework.making.assignment import Assignment
+from coursework.making.dealing import keyed
 from coursework.making.roster import read_roster
 
 SAID = words("en")["lti"]
@@ -41,9 +44,15 @@ def drawn(html, name=NAME):
     return int(html.split(f"{name} · ")[1].split(" ")[0])
 
 
-def right_answers(course, html, wrong=(), name=NAME):
+def variant_on(tool, html, name=NAME, assignment=""):
+    """The variant of a page, which its code draws with the secret of the service alone."""
+    asked = Assignment(assignment or name, ())
+    return tool.course[name].variant(drawn(html, name), secret=keyed(tool.storage.secret(), asked))
+
+
+def right_answers(tool, html, wrong=(), name=NAME, assignment=""):
     """What a student writes who is right, but for some parts."""
-    variant = course[name].variant(drawn(html, name))
+    variant = variant_on(tool, html, name, assignment)
     return {part.id: written(variant, part, part.id in wrong) for part in variant.parts}
 
 
@@ -55,10 +64,10 @@ def written(variant, part, wrong=False):
     return f"{value * (3.7 if wrong else 1):.6g}"
 
 
-def works(visitor, course, wrong=(), **changed):
+def works(visitor, tool, wrong=(), **changed):
     """A student who enters and hands in; the feedback and the path."""
     page, path = visitor.enter(**changed)
-    done = visitor.hand_in(path, page, right_answers(course, page.text, wrong))
+    done = visitor.hand_in(path, page, right_answers(tool, page.text, wrong))
     assert done.status_code == 303, done.text
     return visitor.browser.get(path), path
 
@@ -75,15 +84,21 @@ def test_a_variant_is_the_student_s_own_and_stays(tool):
     assert len({drawn(page.text) for page in (first, other, elsewhere)}) == 3
 
 
-def test_a_seed_is_a_function_of_issuer_link_and_person(tool, tmp_path, course):
+def test_a_code_is_a_function_of_secret_issuer_link_and_person(tool, tmp_path, course):
     first, _ = tool.visitor().enter()
-    fresh, _ = Tool(tmp_path / "other", course).visitor().enter(name="Renamed", context={"id": "moved"})
+    moved = Tool(tmp_path / "other", course)
+    shutil.copy(tool.storage.path, moved.storage.path)
+    with moved.storage._writing() as file:
+        file.execute("DELETE FROM papers")
+    fresh, _ = moved.visitor().enter(name="Renamed", context={"id": "moved"})
     assert drawn(first.text) == drawn(fresh.text)
+    strange, _ = Tool(tmp_path / "strange", course).visitor().enter()
+    assert drawn(first.text) != drawn(strange.text)
 
 
 def test_no_two_students_of_a_link_have_the_same_variant(tool):
-    seeds = [drawn(tool.visitor().enter(sub=f"s{k}", name=f"S{k}")[0].text) for k in range(12)]
-    records = [tool.course[NAME].variant(seed).given for seed in seeds]
+    pages = [tool.visitor().enter(sub=f"s{k}", name=f"S{k}")[0].text for k in range(12)]
+    records = [variant_on(tool, page).given for page in pages]
     assert len({tuple(one.values()) for one in records}) == 12
 
 
@@ -97,7 +112,7 @@ def test_a_page_speaks_the_language_of_the_launch(tool):
 
 def test_a_sheet_holds_no_answer_and_runs_no_script(tool):
     page, _ = tool.visitor().enter()
-    solution = tool.course[NAME].variant(drawn(page.text)).solution()
+    solution = variant_on(tool, page.text).solution()
     assert not [
         value
         for value in solution.values()
@@ -111,7 +126,7 @@ def test_a_sheet_holds_no_answer_and_runs_no_script(tool):
 
 
 def test_right_answers_have_all_the_points_and_reach_the_gradebook(tool, visitor):
-    page, _ = works(visitor, tool.course)
+    page, _ = works(visitor, tool)
     assert "<b>9</b> / 9 points" in page.text.replace("\u00a0", " ")
     assert tool.sender.send_due() == (1, 0)
     (score,) = tool.platform.scores
@@ -123,9 +138,9 @@ def test_right_answers_have_all_the_points_and_reach_the_gradebook(tool, visitor
 
 def test_marks_are_those_of_the_package(tool, visitor):
     page, path = visitor.enter()
-    answers = right_answers(tool.course, page.text) | {"theta4": "1", "omega4": "2 kg", "rA": "0,1 m"}
+    answers = right_answers(tool, page.text) | {"theta4": "1", "omega4": "2 kg", "rA": "0,1 m"}
     visitor.hand_in(path, page, answers)
-    marking = tool.host.course[NAME].variant(drawn(page.text), "en").grade(answers)
+    marking = variant_on(tool, page.text).in_language("en").grade(answers)
     (made,) = tool.storage.tries(place(NAME))
     assert (made.points, made.out_of) == (marking.points, marking.out_of)
     told = visitor.browser.get(path).text
@@ -138,7 +153,7 @@ def place(name, link="link-1"):
 
 def test_a_form_that_is_sent_twice_counts_once(tool, visitor):
     page, path = visitor.enter()
-    answers = right_answers(tool.course, page.text, wrong=["rA"])
+    answers = right_answers(tool, page.text, wrong=["rA"])
     for _ in range(3):
         assert visitor.hand_in(path, page, answers).status_code == 303
     assert len(tool.storage.tries(place(NAME))) == 1
@@ -148,7 +163,7 @@ def test_a_form_that_is_sent_twice_counts_once(tool, visitor):
 
 def test_what_cannot_be_read_uses_no_try(tool, visitor):
     page, path = visitor.enter(custom={"exercise": NAME, "tries": "1"})
-    answers = right_answers(tool.course, page.text) | {"rA": "hello?", "theta4": 'x" onfocus="<b>'}
+    answers = right_answers(tool, page.text) | {"rA": "hello?", "theta4": 'x" onfocus="<b>'}
     back = visitor.hand_in(path, page, answers)
     assert back.status_code == 422
     assert SAID["unread"] in back.text
@@ -157,7 +172,7 @@ def test_what_cannot_be_read_uses_no_try(tool, visitor):
     assert not tool.storage.tries(place(NAME))
     verdicts = words("en")["feedback"]["verdicts"]
     assert f">{verdicts['correct']}<" not in back.text  # and tells nothing of the others
-    done = visitor.hand_in(path, back, right_answers(tool.course, page.text))
+    done = visitor.hand_in(path, back, right_answers(tool, page.text))
     assert done.status_code == 303
     assert tool.storage.tries(place(NAME))[0].points == 9
 
@@ -184,12 +199,12 @@ def test_a_field_that_is_no_box_is_refused(tool, visitor):
 
 def test_tries_are_limited_where_the_link_says_so(tool, visitor):
     custom = {"exercise": NAME, "tries": "2", "counts": "last", "answers": "after"}
-    page, path = works(visitor, tool.course, custom=custom)
+    page, path = works(visitor, tool, custom=custom)
     assert SAID["again"] in page.text
     sheet = visitor.browser.get(f"{path}?again=1")
     assert SAID["tries_left"]["one"].format(1) in sheet.text
     assert words("en")["feedback"]["right"] not in page.text
-    visitor.hand_in(path, sheet, right_answers(tool.course, sheet.text, wrong=["rA", "swing"]))
+    visitor.hand_in(path, sheet, right_answers(tool, sheet.text, wrong=["rA", "swing"]))
     last = visitor.browser.get(f"{path}?again=1")
     assert SAID["no_try_left"] in last.text
     assert words("en")["feedback"]["right"] in last.text
@@ -201,20 +216,19 @@ def test_tries_are_limited_where_the_link_says_so(tool, visitor):
 
 
 def test_the_best_try_counts_unless_told(tool, visitor):
-    _, path = works(visitor, tool.course)
+    _, path = works(visitor, tool)
     tool.sender.send_due()
     sheet = visitor.browser.get(f"{path}?again=1")
-    visitor.hand_in(path, sheet, right_answers(tool.course, sheet.text, wrong=["rA"]))
+    visitor.hand_in(path, sheet, right_answers(tool, sheet.text, wrong=["rA"]))
     tool.sender.send_due()
     assert [one["scoreGiven"] for one in tool.platform.scores] == [9]
 
 
 def test_what_an_older_try_held_stands_in_the_boxes_again(tool, visitor):
-    _, path = works(visitor, tool.course, wrong=["rA"])
+    _, path = works(visitor, tool, wrong=["rA"])
     sheet = visitor.browser.get(f"{path}?again=1")
     assert all(
-        f'value="{text}"' in sheet.text
-        for text in right_answers(tool.course, sheet.text, wrong=["rA"]).values()
+        f'value="{text}"' in sheet.text for text in right_answers(tool, sheet.text, wrong=["rA"]).values()
     )
 
 
@@ -225,7 +239,7 @@ def test_what_an_older_try_held_stands_in_the_boxes_again(tool, visitor):
 def test_a_score_waits_while_the_platform_does_not_take_it(tool, visitor, down):
     page, path = visitor.enter()
     tool.platform.down = down
-    visitor.hand_in(path, page, right_answers(tool.course, page.text))
+    visitor.hand_in(path, page, right_answers(tool, page.text))
     assert tool.sender.send_due() == (0, 1)
     assert tool.sender.send_due() == (0, 0)  # not at once again
     assert SAID["score_waits"] in visitor.browser.get(path).text.replace("’", "'")
@@ -301,13 +315,13 @@ def test_a_link_without_a_column_has_one_made_once(tool):
 
 
 def test_a_link_that_takes_no_points_sends_none(tool, visitor):
-    page, _ = works(visitor, tool.course, **{f"{AGS}claim/endpoint": None})
+    page, _ = works(visitor, tool, **{f"{AGS}claim/endpoint": None})
     assert SAID["score_none"] in page.text
     assert not tool.storage.scores()
 
 
 def test_a_score_that_was_never_queued_is_found_at_the_next_launch(tool, visitor):
-    works(visitor, tool.course)
+    works(visitor, tool)
     with tool.storage._writing() as file:
         file.execute("DELETE FROM scores")
     tool.visitor().enter()
@@ -338,7 +352,7 @@ MEMBERS = [
 
 
 def test_a_teacher_sees_who_has_what(tool):
-    works(tool.visitor(), tool.course, wrong=["rA"])
+    works(tool.visitor(), tool, wrong=["rA"])
     tool.visitor().enter(sub="zoe", name="Zoé <script>")
     tool.sender.send_due()
     tool.platform.members = MEMBERS
@@ -365,7 +379,7 @@ def test_the_roster_of_a_platform_is_one_that_build_reads(tool, tmp_path):
 
 
 def test_a_class_without_a_roster_shows_who_came(tool):
-    works(tool.visitor(), tool.course)
+    works(tool.visitor(), tool)
     tool.platform.down = 500
     page, _path = tool.visitor().enter(sub="emmy", roles=TEACHER)
     assert "Ada Byron" in page.text
@@ -373,8 +387,8 @@ def test_a_class_without_a_roster_shows_who_came(tool):
 
 
 def test_the_answers_of_a_class_are_graded_by_the_command_line(tool, tmp_path):
-    works(tool.visitor(), tool.course, wrong=["rA"])
-    works(tool.visitor(), tool.course, sub="bob", name="Bob")
+    works(tool.visitor(), tool, wrong=["rA"])
+    works(tool.visitor(), tool, sub="bob", name="Bob")
     teacher = tool.visitor()
     _, path = teacher.enter(sub="emmy", roles=TEACHER)
     for name in ("answers.csv", "issued.json"):
@@ -404,7 +418,7 @@ def test_a_teacher_tries_the_sheet_and_no_points_are_sent(tool):
     teacher = tool.visitor()
     _, path = teacher.enter(sub="emmy", roles=TEACHER)
     sheet = teacher.browser.get(f"{path}/sheet")
-    done = teacher.hand_in(f"{path}/sheet", sheet, right_answers(tool.course, sheet.text))
+    done = teacher.hand_in(f"{path}/sheet", sheet, right_answers(tool, sheet.text))
     assert done.status_code == 200
     assert SAID["preview"].split(".")[0] in done.text
     assert not tool.storage.scores()
@@ -445,7 +459,7 @@ def test_a_link_that_opens_nothing_says_so(tool, custom, why):
 
 
 def test_a_link_whose_content_is_changed_opens_the_new_one(tool, visitor):
-    works(visitor, tool.course)
+    works(visitor, tool)
     page, _ = tool.visitor().enter(custom={"exercise": "grashof"})
     assert "grashof ·" in page.text
     assert SAID["hand_in"] in page.text
@@ -571,8 +585,8 @@ def test_an_assignment_is_one_paper_of_all_its_exercises(tmp_path, course):
     page, path = visitor.enter(custom={"assignment": "week3"})
     assert "Week 3" in page.text
     assert 'name="e1-rA"' in page.text
-    first = right_answers(course, page.text)
-    grashof = course["grashof"].variant(drawn(page.text, "grashof"))
+    first = right_answers(tool, page.text, assignment="week3")
+    grashof = variant_on(tool, page.text, "grashof", "week3")
     answers = {"e1-rA": first["rA"], "e1-theta4": first["theta4"]}
     for part in grashof.parts:
         answers[f"e2-{part.id}"] = written(grashof, part)
@@ -638,9 +652,39 @@ def test_a_roster_that_leads_elsewhere_is_not_followed(tool):
         services.roster(PLATFORM, f"{SITE}/members")
 
 
+@pytest.mark.parametrize(
+    "elsewhere",
+    [
+        "http://169.254.169.254/latest",
+        "http://127.0.0.1:5432/",
+        "https://evil.example.org/x",
+        "http://learn.example.org/",
+    ],
+)
+def test_no_launch_says_where_the_server_sends_a_token_or_asks(elsewhere, tool):
+    """Neither into the network behind it, nor in plain http."""
+    from coursework.lti.services import NotServed
+
+    asked = []
+
+    def answer(request):
+        asked.append(str(request.url))
+        return httpx.Response(200, json={"access_token": "t", "expires_in": 60, "members": []})
+
+    services = Services(httpx.Client(transport=httpx.MockTransport(answer)), tool.keys)
+    with pytest.raises(NotServed, match="origins"):
+        services.roster(PLATFORM, elsewhere)
+    with pytest.raises(NotServed, match="origins"):
+        services._asked(PLATFORM, [], "POST", elsewhere, json={})
+    assert not asked
+    assert services.roster(PLATFORM, "https://frames.example.org/members") == [], (
+        "an origin that the settings name"
+    )
+
+
 def test_a_person_is_forgotten_whole(tool, visitor):
-    _page, path = works(visitor, tool.course)
-    works(tool.visitor(), tool.course, sub="bob", name="Bob")
+    _page, path = works(visitor, tool)
+    works(tool.visitor(), tool, sub="bob", name="Bob")
     assert tool.storage.forget("ada") == 5
     assert visitor.browser.get(path).status_code == 403
     assert [one.person for one in tool.storage.papers(place(NAME))] == ["bob"]

@@ -7,43 +7,17 @@ from datetime import timedelta
 
 import pytest
 from argon2 import PasswordHasher, extract_parameters
+from site_accounts import PASSWORD, invite, is_in, join, sign_in
 from site_people import HOME, MAX, TEACHER, ZOE
 from sqlalchemy import select, update
 
 from coursework.database.accounts import account_by_login
+from coursework.database.people import people
 from coursework.database.tables import account
 from coursework.errors import BadInput
-from coursework.site.frame import cookies
 from coursework.site.frame.cookies import COOKIE, Cookies
 from coursework.site.frame.settings import Entrance
 from coursework.site.people import accounts, passwords
-
-PASSWORD = "a lamp by the window"
-
-
-def invite(a_class, name, role="student"):
-    """Where somebody chooses a password."""
-    with a_class.site.store.begin() as connection:
-        login = f"{name.split()[0].lower()}@example.org"
-        return accounts.invited(a_class.site, connection, a_class.ids[name], login, role).removeprefix(HOME)
-
-
-def join(a_class, name, password=PASSWORD):
-    """A browser of somebody who has just chosen a password."""
-    browser = a_class.browser()
-    reply = browser.fill(invite(a_class, name), {"password": password, "again": password})
-    assert reply.status_code == 303, reply.text
-    return browser
-
-
-def sign_in(a_class, login, password, browser=None):
-    browser = browser or a_class.browser()
-    return browser, browser.fill("/sign-in", {"login": login, "password": password})
-
-
-def is_in(browser):
-    return browser.get("/account").status_code == 200
-
 
 # -------------------------------------------------------------------- invitations
 
@@ -148,19 +122,6 @@ def test_a_password_that_is_kept_in_an_older_way_is_kept_anew(class_of_three):
     assert sign_in(class_of_three, "zoé@example.org", PASSWORD)[1].status_code == 303
 
 
-def test_passwords_are_not_tried_without_end(class_of_three):
-    join(class_of_three, ZOE)
-    told = [sign_in(class_of_three, "zoé@example.org", f"wrong {n}")[1].status_code for n in range(12)]
-    assert told == [401] * 10 + [429] * 2
-    barred = sign_in(class_of_three, "zoé@example.org", PASSWORD)[1]
-    assert barred.status_code == 429
-    assert int(barred.headers["retry-after"]) > 0
-    join(class_of_three, MAX)
-    assert sign_in(class_of_three, "max@example.org", PASSWORD)[1].status_code == 303, (
-        "a neighbour is not barred"
-    )
-
-
 def test_a_class_of_500_behind_one_address_can_sign_in(class_of_three):
     limits = class_of_three.site.limits
     assert not any(limits.asked("sign_in", 0, "192.0.2.7") for _ in range(3 * 500))
@@ -223,28 +184,8 @@ def test_signing_out_everywhere(class_of_three):
     assert not is_in(there)
 
 
-def test_a_session_lasts_while_it_is_used_and_not_for_ever():
-    now = [1e9]
-    jar = Cookies(b"key", lambda: now[0])
-    session = jar.begun(7)
-    cookie = jar.cookie(session)
-    now[0] += cookies.SECONDS - 1
-    found = jar.read(cookie)
-    assert found is not None
-    assert found.person == 7
-    assert jar.is_due(found)
-    renewed = jar.cookie(found)
-    now[0] += 2
-    assert jar.read(cookie) is None
-    assert jar.read(renewed) is not None
-    while now[0] - session.began < cookies.LONGEST:
-        now[0] += cookies.SECONDS - 1
-        renewed = jar.cookie(found)
-    assert jar.read(renewed) is None
-
-
 def test_a_cookie_that_is_not_ours_is_replaced(class_of_three):
-    for odd in ("x", "a.b.c", "é" * 9, Cookies(b"another key").made(class_of_three.ids[TEACHER])):
+    for odd in ("x", "a.b.c", "é" * 9, Cookies(b"another key").anonymous().token, "x" * 43):
         browser = class_of_three.browser()
         reply = browser.get("/sign-in", headers={"cookie": f"{COOKIE}={odd}".encode()})
         assert reply.status_code == 200
@@ -295,34 +236,51 @@ def test_a_login_belongs_to_one_person(class_of_three):
     assert staff.fill("/desk/people", {"do": "some", "person": other}).status_code == 409
 
 
-def test_the_last_instructor_stays(class_of_three):
+def test_the_last_administrator_stays(class_of_three):
     staff = join(class_of_three, TEACHER)
     mine, zoe = (f"/desk/people/{class_of_three.ids[name]}" for name in (TEACHER, ZOE))
-    assert staff.fill(mine, {"do": "role", "role": "student"}).status_code == 409
-    assert staff.fill(zoe, {"do": "role", "role": "instructor"}).status_code == 303
-    assert staff.fill(mine, {"do": "role", "role": "student"}).status_code == 409, "she has no password yet"
+    for role in ("student", "assistant", "instructor"):
+        assert staff.fill(f"{mine}/role", {"role": role}).status_code == 409
+    assert staff.fill(f"{mine}/erase", {"name": TEACHER}).status_code == 409
+    assert staff.fill(f"{zoe}/role", {"role": "administrator"}).status_code == 200
+    assert staff.fill(f"{mine}/role", {"role": "student"}).status_code == 409, "she has no password yet"
     join(class_of_three, ZOE)
-    assert staff.fill(mine, {"do": "role", "role": "student"}).status_code == 303
-    assert staff.get("/desk/people").status_code == 403
+    assert staff.fill(f"{mine}/role", {"role": "student"}).status_code == 303
+    assert staff.get("/desk/people").status_code == 303, "what she may has changed: she signs in anew"
 
 
-def test_a_site_for_others_needs_an_instructor(class_of_three):
+def test_a_site_for_others_needs_an_administrator(class_of_three):
     site = class_of_three.site
-    with pytest.raises(BadInput, match="--instructor"):
-        accounts.check_instructor(site)
-    address = accounts.first_instructor(site, "Head@Example.org").removeprefix(HOME)
-    accounts.check_instructor(site)
+    with pytest.raises(BadInput, match="--administrator"):
+        accounts.check_administrator(site)
+    address = accounts.invited_by_command(site, "Head@Example.org", "instructor").removeprefix(HOME)
+    accounts.check_administrator(site)
     browser = class_of_three.browser()
     browser.fill(address, {"password": PASSWORD, "again": PASSWORD})
-    assert browser.get("/desk/people").status_code == 200
+    assert browser.get("/desk/audit").status_code == 200, "the first of a site administers it"
     class_of_three.at += timedelta(days=400)
-    accounts.check_instructor(site)
+    accounts.check_administrator(site)
+    second = accounts.invited_by_command(site, "second@example.org", "instructor").removeprefix(HOME)
+    browser = class_of_three.browser()
+    browser.fill(second, {"password": PASSWORD, "again": PASSWORD})
+    assert browser.get("/desk/people").status_code == 200
+    assert browser.get("/desk/audit").status_code == 403
+
+
+def test_a_command_lowers_nobody_and_makes_whom_it_names_administrator(class_of_three):
+    site = class_of_three.site
+    join(class_of_three, TEACHER)
+    accounts.invited_by_command(site, "ada@example.org", "instructor")
+    accounts.invited_by_command(site, "max@example.org", "administrator")
+    with site.store.reading() as connection:
+        roles = {one.login: one.role for one in people(connection)}
+    assert roles["ada@example.org"] == roles["max@example.org"] == "administrator"
 
 
 @pytest.mark.parametrize("entrance", [Entrance.LOCAL, Entrance.DEMO])
 def test_without_accounts_nobody_is_asked_for_a_password(class_of_three, entrance):
     class_of_three.site.entrance = entrance
-    accounts.check_instructor(class_of_three.site)
+    accounts.check_administrator(class_of_three.site)
     browser = class_of_three.browser()
     goes = browser.get("/sign-in").headers["location"]
     assert goes == ("/who" if entrance is Entrance.DEMO else "/")

@@ -5,9 +5,9 @@ from urllib.parse import urlsplit
 
 import pytest
 from site_browser import served
-from site_people import ZOE, Class
+from site_people import ZOE, Class, seal_of, signed_in
 
-from coursework.site.frame.cookies import Cookies, cookie_name
+from coursework.site.frame.cookies import cookie_name
 
 MEGABYTE = 1024 * 1024
 
@@ -19,11 +19,10 @@ def class_(tmp_path_factory):
 
 def head(class_, url, path, *more, name=ZOE):
     """The head of a form's request, sealed, as a browser of ``name`` sends it."""
-    cookies = Cookies(class_.site.secret)
-    session = cookies.begun(class_.ids[name])
+    cookie = signed_in(class_.site.store, class_.ids[name])
     lines = (
         f"POST {path} HTTP/1.1", f"Host: {urlsplit(url).netloc}", "Connection: close",
-        f"Cookie: {cookie_name(False)}={cookies.cookie(session)}", f"X-Seal: {cookies.seal(session)}", *more, "", "",
+        f"Cookie: {cookie_name(False)}={cookie}", f"X-Seal: {seal_of(class_.site, cookie)}", *more, "", "",
     )  # fmt: skip
     return "\r\n".join(lines).encode()
 

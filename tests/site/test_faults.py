@@ -8,7 +8,7 @@ import httpx
 import pytest
 from postgres_server import running
 from site_assignments import dealt, right
-from site_people import MAX, ZOE, Class
+from site_people import MAX, ZOE, Class, seal_of, signed_in
 from site_server import Served, kill, until
 from sqlalchemy import select
 
@@ -16,7 +16,7 @@ from coursework.database.deliveries import deliveries, rows_of
 from coursework.database.publication import Publication
 from coursework.database.tables import mark, person
 from coursework.database.tables import progress as entries
-from coursework.site.frame.cookies import Cookies, cookie_name
+from coursework.site.frame.cookies import cookie_name
 
 OPEN = Publication(tries=None)
 CLASS = (ZOE, MAX, "Chloé", "David", "Émilie", "Farid")
@@ -38,11 +38,10 @@ class Students:
         self.url, self.is_over = "", threading.Event()
 
     def hand_in(self, name):
-        cookies = Cookies(self.one.site.secret)
-        session = cookies.begun(self.ids[name])
+        cookie = signed_in(self.one.site.store, self.ids[name])
         headers = {
-            "cookie": f"{cookie_name(False)}={cookies.cookie(session)}",
-            "x-seal": cookies.seal(session),
+            "cookie": f"{cookie_name(False)}={cookie}",
+            "x-seal": seal_of(self.one.site, cookie),
             "accept-language": "fr",
         }
         with httpx.Client(headers=headers, timeout=20, trust_env=False) as client:

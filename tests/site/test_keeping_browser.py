@@ -7,10 +7,10 @@ from dataclasses import replace
 import pytest
 from site_assignments import ASSIGNMENT, CLOSES, dealt
 from site_browser import chromium, context_of, serious, served, too_wide
-from site_people import MAX, ZOE, Class
+from site_people import MAX, ZOE, Class, signed_in
 
 from coursework.database.drafts import drafts
-from coursework.site.frame.cookies import COOKIE, Cookies
+from coursework.site.frame.cookies import COOKIE
 
 KEPT = "is kept|Saved"
 #: One a test: what one typed is not there for another.
@@ -65,7 +65,7 @@ class Device:
         return {name: box.text for name, box in found.items()}
 
     def sign_in(self, name=ZOE):
-        value = Cookies(self.class_.site.secret).made(self.class_.ids[name])
+        value = signed_in(self.class_.site.store, self.class_.ids[name])
         self.context.add_cookies([{"name": COOKIE, "value": value, "domain": "127.0.0.1", "path": "/"}])
 
     def sign_out(self):

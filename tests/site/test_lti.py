@@ -10,6 +10,7 @@ import pytest
 from lti_platform import (
     DEEP,
     LTI,
+    MEMBER,
     PLATFORM,
     SITE,
     TEACHER,
@@ -19,6 +20,7 @@ from lti_platform import (
     _made_keys,
     field,
 )
+from site_accounts import PASSWORD, join
 from site_assignments import ASSIGNMENT, CLOSES, USUAL, dealt, right
 from site_people import MAX, ZOE, Class
 from site_people import TEACHER as ADA
@@ -43,7 +45,7 @@ AT_ONCE_TOLD = replace(USUAL, feedback=AT_ONCE)
 class Linked(Class):
     """A site with a platform in front; its assignment is dealt to Zoé and Max."""
 
-    def __init__(self, folder, publication=AT_ONCE_TOLD):
+    def __init__(self, folder, publication=AT_ONCE_TOLD, platform=PLATFORM):
         super().__init__(f"sqlite:///{folder}/site.db")
         self.platform, self.site.lti = FakePlatform(), folder / "lti"
         keys = KeyFolder(self.site.lti / "keys")
@@ -53,7 +55,7 @@ class Linked(Class):
             self.site,
             self.site.lti,
             self.platform.client,
-            Settings(self.site.lti, f"{TOOL}/lti", (PLATFORM,)),
+            Settings(self.site.lti, f"{TOOL}/lti", (platform,)),
         )
         self.app = application(self.site, self.lti)
         self.number = dealt(self, publication)
@@ -153,7 +155,11 @@ def test_nobody_is_taken_for_another_by_the_name(linked):
         assert f"{ZOE} (stranger)" in issued_of(connection, linked.number).students
 
 
-def test_a_person_of_the_roster_is_known_by_the_one_e_mail(linked):
+VERIFIED = replace(PLATFORM, emails_verified=True)
+
+
+def test_a_person_of_the_roster_is_known_by_the_one_e_mail(tmp_path):
+    linked = Linked(tmp_path, platform=VERIFIED)
     with linked.site.store.begin() as connection:
         connection.execute(
             update(person).where(person.c.id == linked.ids[ZOE]).values(columns={"Email": "zoe@uni.example"})
@@ -169,7 +175,77 @@ def test_a_person_of_the_roster_is_known_by_the_one_e_mail(linked):
         ]
 
 
-def test_no_address_makes_anybody_an_instructor(linked):
+def has_mail(linked, name, mail):
+    with linked.site.store.begin() as connection:
+        mine = person.c.id == linked.ids[name]
+        connection.execute(update(person).where(mine).values(columns={"Email": mail}))
+
+
+def test_an_e_mail_that_anybody_could_have_written_makes_nobody_somebody(linked):
+    """The attacker has an account of their own on the platform, and wrote the victim's address into it."""
+    has_mail(linked, ZOE, "zoe@uni.example")
+    logins = dict(linked.one(account.c.person_id, account.c.login))
+    for number, mail in enumerate(("zoe@uni.example", *logins.values())):
+        linked.enter(sub=f"attacker {number}", name="Mallory", email=mail)
+    tied = {one for (one,) in linked.one(identity.c.person_id)}
+    assert len(tied) == 1 + len(logins)
+    assert not tied & set(linked.ids.values())
+    whos = str(linked.one(person.c.who, person.c.columns))
+    assert whos.count("zoe@uni.example") == 1, "nor is a later roster tied to who came with it"
+
+
+def test_who_has_a_password_is_tied_by_it_alone(tmp_path):
+    linked = Linked(tmp_path, platform=VERIFIED)
+    has_mail(linked, ZOE, "zoe@uni.example")
+    join(linked, ZOE)
+    _, page, _ = linked.enter(name="Zoé", email="zoe@uni.example")
+    assert page.status_code == 403
+    assert not linked.one(identity)
+    place = re.search(r"/connect/[\w.-]+", page.text)[0]
+    assert linked.browser(MAX).get(place).status_code == 403, "another's account cannot be connected there"
+    assert linked.browser(ADA).get(place).status_code == 403
+    assert linked.browser().get(place).status_code == 303
+    zoe = linked.browser(ZOE)
+    assert zoe.fill(place, {"now": "a guess"}).status_code == 422
+    assert not linked.one(identity)
+    assert zoe.get(place + "x").status_code == 410
+    assert zoe.fill(place, {"now": PASSWORD}).status_code == 303
+    assert linked.one(identity.c.person_id) == [(linked.ids[ZOE],)]
+    assert zoe.fill(place, {"now": PASSWORD}).status_code == 410, "once"
+    _, page, _ = linked.enter(name="Zoé", email="zoe@uni.example")
+    assert page.status_code == 200
+
+
+def test_the_staff_sees_who_was_tied_and_separates_them(linked):
+    visitor, _, path = linked.enter()
+    ((ada, _),) = [row for row in linked.one(person.c.id, person.c.name) if row.name == "Ada Byron"]
+    staff = linked.browser(ADA)
+    page = staff.get(f"/desk/people/{ada}").text
+    assert "tied at the first launch" in page
+    number = re.search(r'name="tie" value="(\d+)"', page)[1]
+    other = f"/desk/people/{linked.ids[ZOE]}/separate"
+    assert staff.fill(other, {"tie": number}).status_code == 404
+    assert visitor.browser.get(path).status_code == 200
+    assert staff.fill(f"/desk/people/{ada}/separate", {"tie": number}).status_code == 303
+    assert not linked.one(identity)
+    assert visitor.browser.get(path).status_code in (403, 404), "its sessions ended"
+    with linked.site.store.reading() as connection:
+        assert "separated from a platform" in {one.what for one in noted(connection)}
+    linked.enter()
+    assert linked.one(identity.c.person_id) != [(ada,)]
+
+
+def test_signing_out_everywhere_ends_sessions_in_frames(tmp_path):
+    linked = Linked(tmp_path, platform=VERIFIED)
+    has_mail(linked, ZOE, "zoe@uni.example")
+    visitor, _, path = linked.enter(name="Zoé", email="zoe@uni.example")
+    assert visitor.browser.get(path).status_code == 200
+    linked.browser(ZOE).fill("/account", {"do": "everywhere"})
+    assert visitor.browser.get(path).status_code in (403, 404)
+
+
+def test_no_address_makes_anybody_an_instructor(tmp_path):
+    linked = Linked(tmp_path, platform=VERIFIED)
     logins = dict(linked.one(account.c.person_id, account.c.login))
     linked.enter(email=logins[linked.ids[ADA]])
     assert linked.one(identity.c.person_id)[0][0] != linked.ids[ADA]
@@ -327,6 +403,27 @@ def test_an_instructor_sees_the_class_and_no_person_is_made_of_them(linked):
     assert len(linked.one(person)) == before
 
 
+@pytest.mark.parametrize("role", ["Instructor", "Administrator", "ContentDeveloper", "TeachingAssistant"])
+def test_who_teaches_another_course_of_the_platform_sees_nobody_of_this_one(linked, role):
+    """A link may name any assignment: before, it showed names, points and marks of a class that is not theirs."""
+    hands_in(linked)
+    stated = (
+        [f"{MEMBER}{role}"]
+        if role != "TeachingAssistant"
+        else [f"{MEMBER[:-1]}/Instructor#{role}", TEACHER[0]]
+    )
+    row = linked.points("Ada Byron")
+    linked.platform.members = [{"user_id": "ada", "name": "Ada Byron", "roles": ["Learner"]}]
+    other = {"id": "course-2", "title": "Elsewhere"}
+    _, page, _ = linked.enter(sub="eve", name="Eve", roles=stated, **{f"{LTI}context": other})
+    assert page.status_code == 200
+    assert f"{row.points:g} / {row.out_of:g}" not in text_of(page)
+    _, page, _ = linked.enter(sub="emmy", name="Emmy", roles=stated)
+    assert f"{row.points:g} / {row.out_of:g}" in text_of(page)
+    with linked.site.store.reading() as connection:
+        assert not connection.execute(select(identity).where(identity.c.subject.in_(["eve", "emmy"]))).all()
+
+
 def test_the_staff_sees_which_scores_wait(linked):
     hands_in(linked)
     linked.platform.down = 500
@@ -366,8 +463,7 @@ def test_frames_and_cookies_are_those_of_each_side(linked):
     visitor, page, _ = linked.enter()
     assert f"frame-ancestors {SITE}" in page.headers["content-security-policy"]
     assert "x-frame-options" not in page.headers
-    (cookie,) = [one for one in visitor.browser.cookies.jar if one.name == "lti-session"]
-    assert cookie.path.startswith("/lti/at/")
+    assert {one.name.rpartition("-")[0] for one in visitor.browser.cookies.jar} == {"__Host-lti-at"}
     assert "coursework-session" not in {one.name for one in visitor.browser.cookies.jar}
     own = linked.browser(ZOE).get("/practice")
     assert "frame-ancestors 'none'" in own.headers["content-security-policy"]

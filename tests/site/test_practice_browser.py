@@ -2,7 +2,7 @@
 
 import pytest
 from site_browser import chromium, context_of, serious, served, too_wide
-from site_people import ZOE, Class
+from site_people import ZOE, Class, signed_in
 from site_practising import right_answer
 
 from coursework.site.frame.cookies import COOKIE
@@ -166,9 +166,7 @@ def test_a_session_that_ends_offline_costs_nothing(desk, window):
     page.wait_for_selector("#state >> text=You are signed out.")
     assert page.get_attribute("#state a", "href") == "/sign-in"
     # Signed in anew, in a session of its own: the open page takes its seal over.
-    from coursework.site.frame.cookies import Cookies
-
-    fresh = Cookies(desk[0].site.secret).made(desk[0].ids[ZOE])
+    fresh = signed_in(desk[0].site.store, desk[0].ids[ZOE])
     context.add_cookies([{**{k: cookie[k] for k in ("name", "domain", "path")}, "value": fresh}])
     page.evaluate("window.dispatchEvent(new Event('online'))")
     page.wait_for_selector(SAVED)
@@ -184,9 +182,7 @@ def test_what_one_page_left_is_sent_from_the_course(desk, window):
     page.fill(f"input[name={box}]", "55")
     page.wait_for_selector("#state >> text=You are signed out.")
     page.close()
-    from coursework.site.frame.cookies import Cookies
-
-    fresh = Cookies(desk[0].site.secret).made(desk[0].ids[ZOE])
+    fresh = signed_in(desk[0].site.store, desk[0].ids[ZOE])
     context.add_cookies([{"name": COOKIE, "value": fresh, "domain": "127.0.0.1", "path": "/"}])
     course = context.new_page()
     course.goto(f"{desk[1]}/practice")

@@ -2,13 +2,12 @@
 
 import io
 import json
-import time
 import zipfile
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import pytest
-from site_assignments import CLOSES, OPENS, USUAL, dealt, handed_in
+from site_assignments import CLOSES, FORM, OPENS, USUAL, dealt, dealt_by, handed_in, handed_out
 from site_people import MAX, TEACHER, ZOE
 
 from coursework.database.assignments import issued_content, names
@@ -34,34 +33,11 @@ name = "grashof"
 points = 6
 """
 ROSTER = "student,group\nZoé,1\nMax,2\n".encode()
-FORM = {
-    "opens": "2026-11-23T08:00", "closes": "2026-11-23T12:00", "tries": "2", "sittings": "last", "late": "charge", "late_percent": "12,5",
-    "late_until": "2026-11-25T12:00", "feedback": "closed", "answers": "never",
-}  # fmt: skip
 
 
 @pytest.fixture
 def staff(class_of_three):
     return class_of_three.browser(TEACHER)
-
-
-def dealt_by(one, staff, reply):
-    """The number of the assignment when the dealing that a reply leads to is over."""
-    assert reply.status_code == 303, reply.text
-    token = reply.headers["location"].rpartition("/")[2]
-    until = time.monotonic() + 60
-    while not (found := dealings.dealing(one.site, token)).is_over:
-        assert time.monotonic() < until
-        time.sleep(0.05)
-    assert found.state == "done", found.told
-    return found.number
-
-
-def handed_out(one, staff, data=None, **files):
-    sent = {name: (f"week4.{name}", content) for name, content in files.items()}
-    if "file" in files:
-        sent["file"] = ("week4.toml", files["file"])
-    return staff.fill("/desk/assignments/new", data or {}, files=sent)
 
 
 def content(one, number):

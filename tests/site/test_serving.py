@@ -11,11 +11,15 @@ from pathlib import Path
 
 import httpx
 import pytest
+from site_assignments import dealt, handed_in, right
+from site_people import ZOE, Class
 from site_server import Served, kill, lives, until
 
 from coursework import open_course
 from coursework.cli import run
 from coursework.database.pool import Pooled, pools, put_pooled
+from coursework.database.publication import Publication
+from coursework.database.standing import graded
 from coursework.database.store import Store
 
 needs_processes = pytest.mark.skipif(
@@ -112,6 +116,36 @@ def test_one_process_finds_variants_ahead_and_ends_with_the_first(tmp_path, work
 
 
 @needs_processes
+@pytest.mark.parametrize("workers", [1, 2])
+def test_one_process_marks_is_begun_again_and_ends_with_the_first(tmp_path, workers):
+    with Served(tmp_path, "serve", "--port", "0", "--workers", workers) as site:
+        (marker,) = until(lambda: site.markers)
+        kill(marker)
+        (again,) = until(lambda: not lives(marker) and [one for one in site.markers if one != marker])
+        site.kill()
+        until(lambda: not lives(again))
+
+
+@needs_processes
+def test_what_is_handed_in_is_marked_by_the_process_beside(tmp_path):
+    one = Class(f"sqlite:///{tmp_path}/coursework.db")
+    number = dealt(one, Publication(tries=None))
+    one.site.has_worker = True
+    handed_in(one.browser(ZOE), number, right(one, ZOE))
+
+    def marks():
+        with one.site.store.reading() as connection:
+            return len(graded(connection, number, ZOE))
+
+    assert marks() == 0
+    with Served(tmp_path, "serve", "--port", "0") as site:
+        until(lambda: marks() == 2)
+        assert site.end() == 0
+        assert "Traceback" not in site.log.read_text()
+    one.site.store.close()
+
+
+@needs_processes
 def test_what_finds_variants_ahead_ends_with_a_server_that_ends_cleanly(tmp_path):
     with Served(tmp_path, "serve", "--port", "0") as site:
         (filler,) = until(lambda: site.fillers)
@@ -163,7 +197,7 @@ def test_a_request_under_way_is_answered_before_the_end(tmp_path):
 def test_other_machines_are_served_once_an_instructor_can_come_in(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     address = ("--url", "https://mechanics.example.org")
-    assert "no instructor has an account" in refusal(capsys, "--port", "0", *address)
+    assert "no administrator has an account" in refusal(capsys, "--port", "0", *address)
     assert run(["serve", *address, "--instructor", "ada@example.org"]) == 0
     link = capsys.readouterr().out.strip()
     assert link.startswith("https://mechanics.example.org/invitation/")
@@ -176,7 +210,7 @@ def test_an_address_that_is_told_asks_for_accounts_on_this_machine_too(tmp_path,
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = str(free.getsockname()[1])
     address = ("--port", port, "--url", f"http://127.0.0.1:{port}")
-    assert "no instructor has an account" in refusal(capsys, *address)
+    assert "no administrator has an account" in refusal(capsys, *address)
     assert run(["serve", *address, "--instructor", "ada@example.org"]) == 0
     with Served(tmp_path, "serve", *address) as site:
         assert "/sign-in" in httpx.get(f"{site.url}/desk", trust_env=False, timeout=30).headers["location"]

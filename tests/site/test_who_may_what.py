@@ -1,4 +1,4 @@
-"""Every address of the site, asked for by nobody, a student, another student and an instructor: who may, who may not, and what
+"""Every address of the site, asked for by nobody, a student, another student and an administrator: who may, who may not, and what
 no reply holds. Pages are found in the site's own table; a page that ``site_walk.fillings`` does not know fails."""
 
 import re
@@ -6,8 +6,8 @@ import re
 import pytest
 from site_walk import MAX, TEACHER, ZOE, Filled, Scripts, filled, fillings, text_of
 
+from coursework.database.permissions import Permission, is_of_staff
 from coursework.site.application import PAGES
-from coursework.site.frame.visits import Who
 
 every_page = pytest.mark.parametrize("page", PAGES, ids=[page.path for page in PAGES])
 posting = pytest.mark.parametrize(
@@ -37,7 +37,7 @@ def test_every_address_is_listed_once():
 def test_every_page_falls_under_a_limit(site):
     for page in PAGES:
         site.site.limits.asked(page.limit, 1, "192.0.2.1")
-        assert 0 < page.largest <= 64 * 1024 * 1024
+        assert 0 < page.means.largest <= 64 * 1024 * 1024
 
 
 # ----------------------------------------------------------------------- who may
@@ -46,7 +46,7 @@ def test_every_page_falls_under_a_limit(site):
 @every_page
 def test_nobody_sees_only_what_is_public(site, page):
     reply = site.browser().get(address_of(site, page))
-    if page.who is Who.NOBODY:
+    if page.needs is Permission.PUBLIC:
         assert reply.status_code < BROKEN
     else:
         assert (reply.status_code, reply.headers["location"].partition("?")[0]) == (303, "/sign-in")
@@ -56,7 +56,7 @@ def test_nobody_sees_only_what_is_public(site, page):
 @every_page
 def test_a_student_sees_no_page_of_the_staff(site, page):
     reply = site.browser(ZOE).get(address_of(site, page))
-    if page.who is Who.STAFF:
+    if is_of_staff(page.needs):
         assert reply.status_code == 403
         assert site.browser(ZOE).fill(address_of(site, page)).status_code in (403, 405)
     else:
@@ -66,7 +66,7 @@ def test_a_student_sees_no_page_of_the_staff(site, page):
 
 @every_page
 def test_a_student_sees_nothing_of_another(site, page):
-    if page.who is not Who.SOMEBODY or fillings(site)[page.path].others is None:
+    if page.needs is not Permission.OWN or fillings(site)[page.path].others is None:
         return
     theirs = address_of(site, page, others=True)
     assert site.browser(ZOE).get(theirs).status_code in (403, 404, 405)
@@ -75,7 +75,7 @@ def test_a_student_sees_nothing_of_another(site, page):
 
 
 @every_page
-def test_an_instructor_may(site, page):
+def test_an_administrator_may(site, page):
     reply = site.browser(TEACHER).get(address_of(site, page))
     assert reply.status_code not in (401, 403), reply.text
     assert reply.status_code < BROKEN
@@ -127,7 +127,7 @@ def test_no_link_signs_anybody_in_or_out(site, page, name):
 @posting
 @pytest.mark.parametrize("name", [ZOE, TEACHER])
 def test_no_form_is_taken_without_its_seal(site, page, name):
-    if page.who is Who.STAFF and name == ZOE:
+    if is_of_staff(page.needs) and name == ZOE:
         return
     address, browser = address_of(site, page), site.browser(name)
     seal, others = browser.seal, site.browser(MAX).seal

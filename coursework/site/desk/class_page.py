@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from coursework.database.desk import Stamp, students_since
+from coursework.database.permissions import Permission
 from coursework.gradebook.book import Result
 from coursework.gradebook.columns import own_columns
 from coursework.gradebook.graded import Graded
@@ -17,7 +18,7 @@ from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_at_hand import ClassNow, assignment_of, class_now, class_page_of
 from coursework.site.desk.question_cards import sign_of
-from coursework.site.frame.visits import Page, Reply, Visit, Who
+from coursework.site.frame.visits import Page, Reply, Visit
 
 SORTS = ("name", "total", "waits", "late", "tries")
 
@@ -188,6 +189,6 @@ def _means(now: ClassNow, found: Sequence[Row]) -> list[str]:
 
 
 PAGES = (
-    Page("/desk/{assignment:int}", class_page, Who.STAFF),
-    Page("/desk/{assignment:int}/news", news, Who.STAFF),
+    Page("/desk/{assignment:int}", class_page, Permission.MARKS_READ),
+    Page("/desk/{assignment:int}/news", news, Permission.MARKS_READ),
 )

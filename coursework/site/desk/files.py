@@ -14,6 +14,7 @@ from coursework.database.audit import note
 from coursework.database.deliveries import deliver, deliveries, rows_of
 from coursework.database.desk import decisions_of
 from coursework.database.marking import mark_delivery
+from coursework.database.permissions import Permission
 from coursework.errors import BadInput, CourseworkError
 from coursework.gradebook.book import marks_rows, rejected_rows, summary_rows
 from coursework.gradebook.class_points import SCORES, class_points
@@ -25,15 +26,15 @@ from coursework.gradebook.platform_gradebooks import PLATFORMS, platform_gradebo
 from coursework.gradebook.rows import Rejected, Row, Seen
 from coursework.gradebook.submissions import find, read_file
 from coursework.making.issued import COLUMNS
-from coursework.making.roster import read_roster
+from coursework.making.roster import roster_and_notes
 from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import moment
-from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit, Who
+from coursework.site.frame.budgets import DESK_FILES, read_apart
+from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit
 from coursework.system.tables import SPREADSHEETS, Spreadsheet, csv_file, json_text
 from coursework.system.unzipping import is_zip, unpack
 from coursework.system.zips import zipped
 
-LARGEST = 60 * 1024 * 1024  #: bytes of what is sent at once
 MOST_ROWS = 500_000  #: of what is sent at once
 _NAME = 120  #: bytes of a file's name, the last ones
 _NAMED = 10  #: students that a sentence names
@@ -69,7 +70,7 @@ def answers_in(visit: Visit) -> Reply:
     said = visit.said["files"]
     if not sent:
         raise BadInput(said["none_sent"])
-    rows = _rows(sent, said["too_many"].format(MOST_ROWS))
+    rows = _rows(sent, said["too_many"].format(MOST_ROWS), visit.said["refused"]["too_much"])
     answers = sum(isinstance(one, Row) for one in rows)
     source = ", ".join(file_name(one) for one in sent)[:500]
     with visit.site.store.begin() as connection:
@@ -86,28 +87,30 @@ def answers_in(visit: Visit) -> Reply:
     return files_page(visit, [said["came"].format(answers, marked.marked, lost)])
 
 
-def _rows(sent: Sequence[Upload], too_many: str) -> list[Row | Rejected | Seen]:
-    """The rows of what was sent, the files called as they were sent; ``too_many`` is what is told of more than are taken."""
+def _rows(sent: Sequence[Upload], too_many: str, too_much: str) -> list[Row | Rejected | Seen]:
+    """The rows of what was sent, the files called as they were sent; ``too_many`` and ``too_much`` are what is told of more
+    than is taken, and of what takes too long."""
     with TemporaryDirectory(prefix="coursework-") as made:
         folder = Path(made).resolve()
         for number, one in enumerate(sent):
-            _put(one, folder / str(number))
-        rows = list(islice(_read(folder), MOST_ROWS + 1))
-        if len(rows) > MOST_ROWS:
-            raise BadInput(too_many)
-        return rows
+            own = folder / str(number)
+            own.mkdir()
+            (own / file_name(one)).write_bytes(one.data)
+        rows: list[Row | Rejected | Seen] = read_apart(DESK_FILES, too_much, _rows_in, folder)
+    if len(rows) > MOST_ROWS:
+        raise BadInput(too_many)
+    return rows
 
 
-def _put(one: Upload, folder: Path) -> None:
-    """Write what was sent; an archive is opened."""
-    folder.mkdir()
-    path = folder / file_name(one)
-    path.write_bytes(one.data)
-    if is_zip(one.data) and path.suffix.lower() == ".zip":
-        inside = folder / "zip"
-        inside.mkdir()
-        unpack(path, inside)
-        path.unlink()
+def _rows_in(folder: Path) -> list[Row | Rejected | Seen]:
+    """The rows of the files below a folder, archives opened; one more than are taken where there are more."""
+    for path in sorted(folder.glob("*/*")):
+        if path.suffix.lower() == ".zip" and is_zip(path.read_bytes()[:4]):
+            inside = path.parent / "zip"
+            inside.mkdir()
+            unpack(path, inside)
+            path.unlink()
+    return list(islice(_read(folder), MOST_ROWS + 1))
 
 
 def file_name(one: Upload) -> str:
@@ -119,7 +122,7 @@ def file_name(one: Upload) -> str:
 
 def _read(folder: Path) -> Iterator[Row | Rejected | Seen]:
     for found in find([folder]):
-        rows = [found] if isinstance(found, (Rejected, Seen)) else read_file(found)
+        rows = [found] if isinstance(found, (Rejected, Seen)) else read_file(found, [folder])
         for row in rows:
             yield _called(row, folder)
 
@@ -157,7 +160,7 @@ def roster_in(visit: Visit) -> Reply:
         path = Path(made) / file_name(sent)
         path.write_bytes(sent.data)
         try:
-            students = read_roster(path, told.append)
+            students, told = read_apart(DESK_FILES, visit.said["refused"]["too_much"], roster_and_notes, path)
         except BadInput as fault:
             raise BadInput(str(fault).replace(f"{made}/", "")) from fault
     known = {one.name: now.issued.student(one.name, tuple(one.columns.items())) for one in students}
@@ -223,7 +226,9 @@ def _decided(visit: Visit, now: ClassNow) -> bytes:
 
 def _issued(visit: Visit, now: ClassNow) -> bytes:
     with visit.site.store.reading() as connection:
-        return json_text(issued_content(connection, now.about.id)).encode()
+        # Who only marks needs no secret, and draws no paper that is to come.
+        may_draw = visit.who.may(Permission.ASSIGNMENTS_PUBLISH, now.about.id, "")
+        return json_text(issued_content(connection, now.about.id, secret=may_draw)).encode()
 
 
 def _answers(visit: Visit, now: ClassNow) -> bytes:
@@ -336,9 +341,9 @@ def gradebook(visit: Visit) -> Reply:
         try:
             scored = class_points(folder / "summary.csv", score if score in SCORES else "points")
             most = form.text("most").strip().replace(",", ".")
-            filled = fill(
-                platform, path, form.text("item").strip(), scored, most=float(most) if most else None,
-                zeros=bool(form.text("zeros")),
+            filled = read_apart(
+                DESK_FILES, visit.said["refused"]["too_much"], _filled_in, platform.name, path, form.text("item").strip(), scored,
+                float(most) if most else None, bool(form.text("zeros")),
             )  # fmt: skip
         except ValueError as fault:
             if isinstance(fault, CourseworkError):
@@ -351,6 +356,12 @@ def gradebook(visit: Visit) -> Reply:
     return files_page(visit, told, filled, file_name(sent))
 
 
+def _filled_in(
+    platform: str, path: Path, item: str, scored: Sequence[Any], most: float | None, zeros: bool
+) -> Filled:
+    return fill(platform_gradebook(platform), path, item, scored, most=most, zeros=zeros)
+
+
 def _filled(visit: Visit, filled: Filled | None, name: str) -> Mapping[str, str] | None:
     """A filled gradebook as a link that holds it."""
     if filled is None:
@@ -359,14 +370,31 @@ def _filled(visit: Visit, filled: Filled | None, name: str) -> Mapping[str, str]
 
 
 PAGES = (
-    Page("/desk/{assignment:int}/files", files_page, Who.STAFF),
+    Page("/desk/{assignment:int}/files", files_page, Permission.MARKS_EXPORT),
     Page(
-        "/desk/{assignment:int}/answers", answers_in, Who.STAFF, posts=True, limit="upload", largest=LARGEST
+        "/desk/{assignment:int}/answers",
+        answers_in,
+        Permission.FILES_BRING,
+        posts=True,
+        limit="upload",
+        budget=DESK_FILES,
     ),
-    Page("/desk/{assignment:int}/roster", roster_in, Who.STAFF, posts=True, limit="upload", largest=LARGEST),
     Page(
-        "/desk/{assignment:int}/gradebook", gradebook, Who.STAFF, posts=True, limit="upload", largest=LARGEST
+        "/desk/{assignment:int}/roster",
+        roster_in,
+        Permission.FILES_BRING,
+        posts=True,
+        limit="upload",
+        budget=DESK_FILES,
     ),
-    Page("/desk/{assignment:int}/feedback", feedback, Who.STAFF),
-    Page("/desk/{assignment:int}/files/{file}", table, Who.STAFF),
+    Page(
+        "/desk/{assignment:int}/gradebook",
+        gradebook,
+        Permission.MARKS_EXPORT,
+        posts=True,
+        limit="upload",
+        budget=DESK_FILES,
+    ),
+    Page("/desk/{assignment:int}/feedback", feedback, Permission.MARKS_EXPORT),
+    Page("/desk/{assignment:int}/files/{file}", table, Permission.MARKS_EXPORT),
 )

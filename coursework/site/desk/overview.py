@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import timedelta
 from pathlib import PurePath
 
 from coursework.database.assignments import put_issued
 from coursework.database.audit import note
 from coursework.database.desk import listed
+from coursework.database.permissions import Permission
 from coursework.errors import BadInput, CourseworkError
 from coursework.making.issued import Issued
 from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, called, class_now
 from coursework.site.desk.question_cards import asked, moment
-from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit, Who
-
-LARGEST = 50 * 1024 * 1024  #: bytes of an issued.json
+from coursework.site.frame.budgets import DESK_FILES, read_apart
+from coursework.site.frame.clock import Leap, last_leap
+from coursework.site.frame.moments import length_text, moment_text
+from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit
 
 
 @dataclass(frozen=True)
@@ -36,8 +39,21 @@ def overview(visit: Visit) -> Reply:
     """The assignments, the latest first."""
     with visit.site.store.reading() as connection:
         found = listed(connection)
+        leap = last_leap(connection, visit.at)
     return visit.page(
-        "site_desk", tiles=[_tile(visit, one.id) for one in found], told=visit.query.get("told", "")
+        "site_desk",
+        tiles=[_tile(visit, one.id) for one in found if visit.who.may(Permission.MARKS_READ, one.id, "")],
+        told=visit.query.get("told", ""),
+        clock="" if leap is None else _clock_text(visit, leap),
+    )
+
+
+def _clock_text(visit: Visit, leap: Leap) -> str:
+    """Return what the desk tells of a leap of the server's clock."""
+    which = "clock_held" if leap.held else "clock_back" if leap.seconds < 0 else "clock_followed"
+    length = length_text(timedelta(seconds=abs(leap.seconds)), visit.lang)
+    return str(visit.said["desk"][which]).format(
+        moment_text(leap.at.replace(second=0, microsecond=0), visit.lang), length
     )
 
 
@@ -73,7 +89,9 @@ def bring(visit: Visit) -> Reply:
     file = next(iter(visit.form.files.get("issued", ())), None)
     if file is None:
         raise BadInput(visit.said["desk"]["bring"])
-    issued = Issued.of(file.data, PurePath(file.name).name)
+    issued = read_apart(
+        DESK_FILES, visit.said["refused"]["too_much"], Issued.of, file.data, PurePath(file.name).name
+    )
     for exercise in issued.exercises:
         visit.site.course[exercise]
     with visit.site.store.begin() as connection:
@@ -102,11 +120,11 @@ def figure(visit: Visit) -> Reply:
     drawn = asked(now.course, now.issued, sheet, next(iter(sheet.lines)), visit.lang).handout.figure
     if drawn is None:
         raise Refused("own", 404)
-    return Reply(kind="image/svg+xml", data=drawn.outlined_svg().encode())
+    return Reply(kind="image/svg+xml; charset=utf-8", data=drawn.outlined_svg().encode())
 
 
 PAGES = (
-    Page("/desk", overview, Who.STAFF),
-    Page("/desk/issued", bring, Who.STAFF, posts=True, limit="upload", largest=LARGEST),
-    Page("/desk/{assignment:int}/figure", figure, Who.STAFF),
+    Page("/desk", overview, Permission.DESK),
+    Page("/desk/issued", bring, Permission.FILES_BRING, posts=True, limit="upload", budget=DESK_FILES),
+    Page("/desk/{assignment:int}/figure", figure, Permission.MARKS_READ),
 )

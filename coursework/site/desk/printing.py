@@ -6,12 +6,13 @@ from collections.abc import Iterator, Sequence
 
 from sqlalchemy import Connection
 
+from coursework.database.permissions import Permission
 from coursework.database.publication import places
 from coursework.errors import BadInput
 from coursework.making.booklets import parted
 from coursework.making.students import file_stems
 from coursework.rendering.renderer import renderer_of
-from coursework.site.frame.visits import Page, Reply, Visit, Who
+from coursework.site.frame.visits import Page, Reply, Visit
 from coursework.site.papers.own_paper import OwnPaper, own_paper
 from coursework.site.publication.publishing import assignment_here, holders
 from coursework.system.zips import zipped
@@ -59,4 +60,4 @@ def _printed(visit: Visit, papers: Sequence[OwnPaper], stem: str) -> Iterator[tu
             yield f"{name}.pdf", renderer.papers_pdf([one.paper for one in part])[0]
 
 
-PAGES = (Page("/desk/assignments/{number:int}/sheets", sheets, Who.STAFF, posts=True),)
+PAGES = (Page("/desk/assignments/{number:int}/sheets", sheets, Permission.ASSIGNMENTS_READ, posts=True),)

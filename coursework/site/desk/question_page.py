@@ -7,13 +7,14 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from coursework.database.permissions import Permission
 from coursework.gradebook.waiting import written
 from coursework.marking.mark import Mark
 from coursework.rendering.feedback import verdict_word
 from coursework.rendering.renderer import renderer_of
 from coursework.site.desk.class_at_hand import ClassNow, assignment_of, class_now, class_page_of
 from coursework.site.desk.question_cards import asked, sign_of
-from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+from coursework.site.frame.visits import Page, Refused, Reply, Visit
 from coursework.statistics.captions import Names
 from coursework.statistics.measures import PartStatistics, Statistics, measure
 from coursework.statistics.of_class import marks_of_class
@@ -137,8 +138,8 @@ def statistics(visit: Visit) -> Reply:
 
 
 PAGES = (
-    Page("/desk/{assignment:int}/questions", questions, Who.STAFF),
-    Page("/desk/{assignment:int}/question", question, Who.STAFF),
-    Page("/desk/{assignment:int}/report", statistics, Who.STAFF),
-    Page("/desk/{assignment:int}/report.pdf", statistics, Who.STAFF),
+    Page("/desk/{assignment:int}/questions", questions, Permission.MARKS_READ),
+    Page("/desk/{assignment:int}/question", question, Permission.MARKS_READ),
+    Page("/desk/{assignment:int}/report", statistics, Permission.MARKS_READ),
+    Page("/desk/{assignment:int}/report.pdf", statistics, Permission.MARKS_READ),
 )

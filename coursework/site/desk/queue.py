@@ -12,6 +12,7 @@ from typing import Any
 from coursework.database.audit import note
 from coursework.database.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, Place, decide
 from coursework.database.desk import Made, decided_since, place_of, undoable
+from coursework.database.permissions import Permission
 from coursework.errors import BadInput
 from coursework.gradebook.accepted import points_of
 from coursework.gradebook.waiting import SHOWN_ON_REQUEST, WHY, Group, Waits, written
@@ -26,7 +27,7 @@ from coursework.site.desk.class_at_hand import (
     class_page_of,
 )
 from coursework.site.desk.question_cards import Asked, asked, decided_words, raw_texts, steps
-from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+from coursework.site.frame.visits import Page, Refused, Reply, Visit
 
 REJECTED = "rejected"
 LONGEST = 2000  #: characters of a comment
@@ -383,6 +384,6 @@ def _is_of(members: Sequence[Waits], one: Made) -> bool:
 
 
 PAGES = (
-    Page("/desk/{assignment:int}/queue", queue_page, Who.STAFF, posts=True),
-    Page("/desk/{assignment:int}/queue/watch", watch, Who.STAFF),
+    Page("/desk/{assignment:int}/queue", queue_page, Permission.MARKS_DECIDE, posts=True),
+    Page("/desk/{assignment:int}/queue/watch", watch, Permission.MARKS_DECIDE),
 )

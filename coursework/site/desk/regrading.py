@@ -9,12 +9,13 @@ from typing import Any, NamedTuple
 from coursework.course.course import Course
 from coursework.database.audit import note
 from coursework.database.marking import Change, MarkedNow, mark_new, would_change
+from coursework.database.permissions import Permission
 from coursework.database.states import exercise_state
 from coursework.language.numbers import localise
 from coursework.rendering.feedback import verdict_word
 from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.frame.settings import Site
-from coursework.site.frame.visits import Page, Reply, Visit, Who
+from coursework.site.frame.visits import Page, Reply, Visit
 from coursework.system.tables import SPREADSHEETS, csv_file
 
 _SHOWN = 500  #: changes in the table
@@ -103,6 +104,6 @@ def changes(visit: Visit) -> Reply:
 
 
 PAGES = (
-    Page("/desk/{assignment:int}/regrade", regrade, Who.STAFF, posts=True),
-    Page("/desk/{assignment:int}/changes.csv", changes, Who.STAFF),
+    Page("/desk/{assignment:int}/regrade", regrade, Permission.MARKS_REGRADE, posts=True),
+    Page("/desk/{assignment:int}/changes.csv", changes, Permission.MARKS_REGRADE),
 )

@@ -6,12 +6,13 @@ from coursework.database.audit import note
 from coursework.database.deliveries import deliver
 from coursework.database.desk import Placed, drop_placing, put_placing
 from coursework.database.marking import mark_delivery
+from coursework.database.permissions import Permission
 from coursework.errors import BadInput
 from coursework.gradebook.rows import Collected, Row
 from coursework.site.desk.class_at_hand import ClassNow, RejectedRow, assignment_of, by_whom, class_now
 from coursework.site.desk.files import files_page
 from coursework.site.desk.queue import Filters, shown_card
-from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+from coursework.site.frame.visits import Page, Refused, Reply, Visit
 
 _LONGEST = 500  #: characters of a reason
 
@@ -94,4 +95,4 @@ def _answer(visit: Visit, now: ClassNow, row: RejectedRow) -> Row:
     )
 
 
-PAGES = (Page("/desk/{assignment:int}/rejected", rejected, Who.STAFF, posts=True),)
+PAGES = (Page("/desk/{assignment:int}/rejected", rejected, Permission.MARKS_DECIDE, posts=True),)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from coursework.database.audit import note
+from coursework.database.permissions import Permission
 from coursework.database.scans import TypedRow, name_scanned, picture_scanned, put_typed
 from coursework.errors import BadInput
 from coursework.language.words import words
@@ -20,9 +21,9 @@ from coursework.site.desk import scan_jobs
 from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.files import file_name
 from coursework.site.desk.scans_now import ScansNow, hand_over, scans_now
-from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit, Who
+from coursework.site.frame.budgets import DESK_FILES
+from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit
 
-LARGEST = 60 * 1024 * 1024  #: bytes of what is sent at once
 LONGEST = 4000  #: characters of an answer
 _ID = re.compile(r"[0-9a-f]{16}-\d{4,6}")
 _KEPT = 3600  #: seconds for which a browser may keep a picture
@@ -214,8 +215,22 @@ def _picture(visit: Visit) -> tuple[str, bytes]:
 
 
 PAGES = (
-    Page("/desk/{assignment:int}/scans", scans_page, Who.STAFF, posts=True, limit="upload", largest=LARGEST),
-    Page("/desk/{assignment:int}/scans/queue", cards_page, Who.STAFF, posts=True),
-    Page("/desk/{assignment:int}/scans/picture", picture, Who.STAFF),
-    Page("/desk/{assignment:int}/scans/crop", crop, Who.STAFF),
+    Page(
+        "/desk/{assignment:int}/scans",
+        scans_page,
+        Permission.SCANS_READ,
+        posts=True,
+        limit="upload",
+        budget=DESK_FILES,
+        posting=Permission.SCANS_BRING,
+    ),
+    Page(
+        "/desk/{assignment:int}/scans/queue",
+        cards_page,
+        Permission.SCANS_READ,
+        posts=True,
+        posting=Permission.SCANS_TYPE,
+    ),
+    Page("/desk/{assignment:int}/scans/picture", picture, Permission.SCANS_READ),
+    Page("/desk/{assignment:int}/scans/crop", crop, Permission.SCANS_READ),
 )

@@ -14,7 +14,7 @@ from coursework.database.marking import mark_new
 from coursework.database.scans import pages_scanned, typed_rows
 from coursework.gradebook.rows import Row
 from coursework.scanning.gathering import Answer, Card, Gathered
-from coursework.scanning.kept import ANSWERS, LOST, REFUSED, FileKept, PageKept, Scanned, page_of
+from coursework.scanning.kept import ANSWERS, LOST, REFUSED, FileKept, PageKept, Scanned, page_of, with_copies
 from coursework.scanning.page_reading import Papers
 from coursework.scanning.parts import Joins
 from coursework.scanning.queue import Queue
@@ -59,7 +59,7 @@ class ScansNow:
         """Pages by what they are."""
         found: dict[str, int] = {}
         for one in self.pages:
-            if one.number:
+            if one.number and not one.is_copy:
                 found[one.page.what] = found.get(one.page.what, 0) + 1
         return found
 
@@ -83,14 +83,14 @@ def scans_now(site: Site, number: int) -> ScansNow:
         ("papers that are scanned", number, _stamp(content)), lambda: Papers(site.course, content)
     )
     typed = tuple(Typed(*map(str, row[:7])) for row in told)
-    pages = tuple(
+    pages = with_copies(
         as_told(
             Scanned(FileKept(row.file, row.page.partition("-")[0], 0), row.number, row.page, page_of(row.kept) or _GONE),
             papers, typed, LEAST,
         )
         for row in rows
     )  # fmt: skip
-    return ScansNow(papers, pages, typed)
+    return ScansNow(papers, tuple(pages), typed)
 
 
 def _stamp(content: dict[str, Any]) -> int:

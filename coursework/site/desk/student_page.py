@@ -14,6 +14,7 @@ from typing import Any
 from coursework.database.audit import note
 from coursework.database.decisions import ACCEPTED, GIVEN, KEPT, WITHDRAWN, Happened, Place, decide, history
 from coursework.database.desk import people_of, practised, tries_of
+from coursework.database.permissions import Permission
 from coursework.errors import BadInput
 from coursework.gradebook.accepted import points_of
 from coursework.gradebook.columns import own_columns
@@ -24,7 +25,7 @@ from coursework.making.students import folded
 from coursework.marking.mark import Mark
 from coursework.site.desk.class_at_hand import ClassNow, assignment_of, by_whom, class_now, class_page_of
 from coursework.site.desk.question_cards import Asked, asked, decided_words, moment, sign_of, steps
-from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+from coursework.site.frame.visits import Page, Refused, Reply, Visit
 
 _LONGEST = 2000  #: characters of a comment
 
@@ -220,4 +221,12 @@ def _kind(asked_for: str, points: str, mark: Mark, said: Any) -> tuple[str, floa
     return kinds[asked_for], None
 
 
-PAGES = (Page("/desk/{assignment:int}/student", student_page, Who.STAFF, posts=True),)
+PAGES = (
+    Page(
+        "/desk/{assignment:int}/student",
+        student_page,
+        Permission.MARKS_READ,
+        posts=True,
+        posting=Permission.MARKS_DECIDE,
+    ),
+)

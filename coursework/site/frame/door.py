@@ -6,6 +6,8 @@ import logging
 import time
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
+from datetime import UTC, datetime
 from typing import Any, NamedTuple
 from urllib.parse import urlsplit
 
@@ -17,13 +19,29 @@ from starlette.requests import ClientDisconnect, Request
 from starlette.responses import Response
 
 from coursework.database.people import person_by_id
+from coursework.database.sessions import (
+    LONGEST,
+    TOUCHED,
+    begin_session,
+    end_session,
+    session_of,
+    touch_session,
+)
 from coursework.errors import BadCourse, BadInput, BrokenFunction, UnknownName
 from coursework.language.words import words
-from coursework.site.frame.cookies import SECONDS, Cookies, Session, cookie_name
+from coursework.site.frame.arrivals import arrived
+from coursework.site.frame.attempts import Attempt, Attempts
+from coursework.site.frame.browsers import described
+from coursework.site.frame.budgets import WAITING, Crowded
+from coursework.site.frame.cookies import ANONYMOUS_SECONDS, Cookies, Session, cookie_name, may_be_token
+from coursework.site.frame.devices import DEVICE, DEVICE_SECONDS
 from coursework.site.frame.forms import clean, read_form
+from coursework.site.frame.lanes import Lanes, Run
+from coursework.site.frame.permitting import check_permission, note_export, person_of
+from coursework.site.frame.security_log import FAILED, SIGNED_IN, SIGNED_OUT, event_of, happened, log_events
 from coursework.site.frame.sending import response_of
 from coursework.site.frame.settings import Entrance, Site
-from coursework.site.frame.visits import Form, Page, Person, Refused, Reply, Visit, Who
+from coursework.site.frame.visits import Form, Page, Person, Refused, Reply, Visit
 from coursework.site.people import home
 
 LOG = logging.getLogger("coursework.site")
@@ -32,6 +50,8 @@ _YEAR = 365 * 24 * 3600
 _LOOPBACK = ("127.0.0.1", "localhost", "::1")
 _GREATEST = 2**31 - 1  #: that numbers of a database reach
 _FORWARDED = ("x-forwarded-for", "x-forwarded-host", "forwarded", "x-real-ip")  #: what a proxy in front adds
+_STAFF_WAITING = 1000  #: requests of one of the staff that wait: a page of many pictures asks for all at once
+_CROWDED = 2  #: seconds after which to try again where too many wait
 _AGAIN = 5  #: seconds after which to try again what the database did not take
 
 
@@ -48,8 +68,10 @@ class Door:
     """What every request goes through."""
 
     def __init__(self, site: Site):
-        self.site, self.cookies = site, Cookies(site.secret)
-        self._cookie = cookie_name(site.is_secure)
+        self.site, self.cookies, self._lanes = site, Cookies(site.secret), Lanes(site.store)
+        self._lang_cookie = cookie_name(site.is_secure, _LANG)
+        self._cookie, self._attempts = cookie_name(site.is_secure), Attempts()
+        self._device = cookie_name(site.is_secure, DEVICE)
 
     def answering(self, page: Page) -> Any:
         """The endpoint of a page."""
@@ -73,7 +95,7 @@ class Door:
         return await self._written_down(request, "-", answer)
 
     async def _written_down(self, request: Request, path: str, answer: Callable[[], Any]) -> Response:
-        """What is answered, with a line of the log: which page, never of whom and with what."""
+        """What is answered, with a line of the log: which page, by the number of a person, never with what."""
         begun, why = time.perf_counter(), ""
         try:
             response: Response = await answer()
@@ -84,26 +106,61 @@ class Door:
             response = await run_in_threadpool(self._broken, request)
         took = 1000 * (time.perf_counter() - begun)
         level = logging.ERROR if why else logging.INFO
-        LOG.log(
-            level, "%s %s %d %.0f ms%s", request.method, path, response.status_code, took, why and f" {why}"
-        )
+        person = getattr(request.state, "person", 0)
+        who, why = (f" person {person}" if person else ""), why and f" {why}"
+        LOG.log(level, "%s %s %d %.0f ms%s%s", request.method, path, response.status_code, took, who, why)
+        log_events(request, path, _address(request))
         return response
 
     async def _answer(self, request: Request, page: Page) -> Response:
-        if request.method != "POST":
-            return await run_in_threadpool(self._visited, request, page)
-        comer = await run_in_threadpool(self._let_in, request, page)
+        run = self._lanes.short if page.is_short else self._lanes.usual
+        comer = await run(self._let_in, request, page)
         if isinstance(comer, Response):
             return comer
+        if comer.person is None:
+            return await self._read_and_answered(request, page, comer, run)
+        means, waiting = page.means, _STAFF_WAITING if comer.person.is_staff else WAITING
         try:
-            form = await read_form(request, page.largest)
-        except Refused as why:
-            return await run_in_threadpool(self._refused, request, comer, why)
-        return await run_in_threadpool(self._answered, request, page, comer, form)
+            async with self.site.places.one((comer.person.id, means.name), means.at_once, waiting):
+                return await self._read_and_answered(request, page, comer, run)
+        except Crowded:
+            why = Refused("too_often", 429, _CROWDED)
+            return await run(self._refused, request, comer, why)
 
-    def _visited(self, request: Request, page: Page) -> Response:
-        comer = self._let_in(request, page)
-        return comer if isinstance(comer, Response) else self._answered(request, page, comer, Form())
+    async def _read_and_answered(self, request: Request, page: Page, comer: _Comer, run: Run) -> Response:
+        """The answer to a request whose turn it is; its body is read before it takes a thread."""
+        form, means = Form(), page.means
+        if request.method == "POST":
+            try:
+                form = await read_form(request, means)
+            except Refused as why:
+                return await run(self._refused, request, comer, why)
+        if page.attempt is not None and request.method == "POST":
+            return await self._attempted(request, page, comer, form, run)
+        if not form.files:
+            return await run(self._answered, request, page, comer, form)
+        async with self.site.places.one(means.name, means.readings, _STAFF_WAITING):
+            return await run(self._answered, request, page, comer, form)
+
+    async def _attempted(self, request: Request, page: Page, comer: _Comer, form: Form, run: Run) -> Response:
+        """Answer a form that holds a password, after the waiting that failures before it cost; no thread waits."""
+        attempt = await run(self._attempt, request, page, comer, form)
+        if isinstance(attempt, Response):
+            return attempt
+        try:
+            async with self._attempts.waited(attempt):
+                return await run(self._answered, request, page, comer, form)
+        except Refused as why:
+            return await run(self._refused, request, comer, why)
+
+    def _attempt(self, request: Request, page: Page, comer: _Comer, form: Form) -> Attempt | Response:
+        try:
+            self._check_seal(request, comer.session, form)
+            return page.attempt(self._visit(request, comer, form)) if page.attempt else Attempt()
+        except Refused as why:
+            return self._refused(request, comer, why)
+        except BadInput as fault:
+            return self._refused(request, comer, _mistaken(fault))
 
     def _let_in(self, request: Request, page: Page) -> _Comer | Response:
         """Who asks, where they may; else what they are told. Nothing of a form is read before."""
@@ -120,7 +177,8 @@ class Door:
             self._check_often(request, page, comer)
             if request.method == "POST":
                 self._check_origin(request)
-            _check_role(page, comer.person)
+            posted = request.method == "POST"
+            check_permission(self.site, page, comer.person, request.path_params, posted=posted)
         except Refused as why:
             return self._refused(request, comer, why)
         return comer
@@ -130,7 +188,10 @@ class Door:
         try:
             if visit.posted:
                 self._check_seal(request, comer.session, form)
-            return self._sent(request, comer, page.answer(visit))
+            reply = page.answer(visit)
+            note_export(page, visit, reply)
+            happened(request, FAILED if reply.status == 401 else "", visit.person.id if visit.person else 0)
+            return self._sent(request, comer, reply)
         except Refused as why:
             return self._refused(request, comer, why)
         except UnknownName:
@@ -155,30 +216,42 @@ class Door:
     # -------------------------------------------------------------- who comes
 
     def _comer(self, request: Request) -> _Comer:
-        session = self.cookies.read(request.cookies.get(self._cookie))
-        is_new = session is None
+        cookie = request.cookies.get(self._cookie, "")
+        session, person = self._signed_in(cookie)
+        is_new = session is None and not self.cookies.is_anonymous(cookie)
         if session is None:
-            session = self.cookies.begun(home.owner(self.site) if self.site.entrance is Entrance.LOCAL else 0)
-        person = self._person(session)
-        if person is None and session.person:
-            session, is_new = self.cookies.begun(0), True
+            session = self.cookies.anonymous() if is_new else Session(cookie)
+            person = self._owner() if self.site.entrance is Entrance.LOCAL else None
+        request.state.person = person.id if person else 0
         return _Comer(session, is_new, person, self._lang(request, person))
 
-    def _person(self, session: Session) -> Person | None:
-        if not session.person:
-            return None
+    def _signed_in(self, token: str) -> tuple[Session | None, Person | None]:
+        """Return the session of a token and its person: one indexed read, and a write every few minutes."""
+        if not may_be_token(token):
+            return None, None
+        now = datetime.now(UTC)
         with self.site.store.reading() as connection:
-            row = person_by_id(connection, session.person)
+            row = session_of(connection, token, now)
             self.site.follow(connection)
-        if row is None or max(row.created, row.sessions_from or row.created).timestamp() > session.began:
-            return (
-                None  # erased (another person may have the number by now), or over since the password changed
-            )
-        return Person(row.id, row.name, row.role or "student", row.lang)
+            person = person_of(connection, row) if row is not None else None
+        if row is None:
+            return None, None
+        if now - row.session_seen > TOUCHED:
+            with suppress(BadInput), self.site.store.begin() as connection:  # a full disk refuses no reader
+                touch_session(connection, row.session_id, row.session_created, now)
+        return Session(token, row.session_id), person
+
+    def _owner(self) -> Person | None:
+        """Return who opens the site on their own machine."""
+        number = home.owner(self.site)
+        with self.site.store.reading() as connection:
+            row = person_by_id(connection, number)
+            self.site.follow(connection)
+            return person_of(connection, row) if row is not None else None
 
     def _lang(self, request: Request, person: Person | None) -> str:
         known = self.site.languages
-        asked = [request.cookies.get(_LANG, ""), person.lang if person else ""]
+        asked = [request.cookies.get(self._lang_cookie, ""), person.lang if person else ""]
         asked += [
             one.split(";")[0].strip()[:2].lower()
             for one in request.headers.get("accept-language", "")[:500].split(",")
@@ -187,11 +260,11 @@ class Door:
 
     def _visit(self, request: Request, comer: _Comer, form: Form) -> Visit:
         return Visit(
-            self.site, comer.person, comer.lang, self.site.clock(), clean(request.scope["path"]), dict(request.path_params),
+            self.site, comer.person, comer.lang, arrived(self.site.clock), clean(request.scope["path"]), dict(request.path_params),
             {clean(name): clean(text) for name, text in request.query_params.items()}, form, request.method == "POST",
             self.cookies.seal(comer.session),
             request.headers.get("hx-request") == "true" and request.headers.get("hx-boosted") != "true",
-            _address(request),
+            _address(request), comer.session.id, request.cookies.get(self._device, ""),
         )  # fmt: skip
 
     # ------------------------------------------------------------ whether they may
@@ -231,14 +304,31 @@ class Door:
         response = response_of(request, reply, self.site.is_secure)
         if reply.keep:
             return response
-        session, is_due = comer.session, comer.is_new or self.cookies.is_due(comer.session)
         if reply.signed_in is not None:
-            session, is_due = self.cookies.begun(reply.signed_in), True
-        if is_due:
-            self._set_cookie(response, self._cookie, self.cookies.cookie(session), SECONDS)
+            before = comer.person.id if comer.person else 0
+            happened(request, SIGNED_IN if reply.signed_in else SIGNED_OUT, reply.signed_in or before)
+            token, seconds = self._other_session(request, comer, reply.signed_in)
+            self._set_cookie(response, self._cookie, token, seconds)
+        elif comer.is_new:
+            self._set_cookie(response, self._cookie, comer.session.token, ANONYMOUS_SECONDS)
+        if reply.device:
+            self._set_cookie(response, self._device, reply.device, DEVICE_SECONDS)
         if reply.lang:
-            self._set_cookie(response, _LANG, reply.lang, _YEAR)
+            self._set_cookie(response, self._lang_cookie, reply.lang, _YEAR)
         return response
+
+    def _other_session(self, request: Request, comer: _Comer, person: int) -> tuple[str, int]:
+        """End the session that the browser had. Return the token of a new one, of nobody for 0, and its seconds."""
+        browser = described(request.headers.get("user-agent", ""))
+        if not person and not comer.session.id:
+            return self.cookies.anonymous().token, ANONYMOUS_SECONDS
+        with self.site.store.begin() as connection:
+            if comer.person is not None:
+                end_session(connection, comer.session.id, comer.person.id)
+            if not person:
+                return self.cookies.anonymous().token, ANONYMOUS_SECONDS
+            token = begin_session(connection, person, browser, datetime.now(UTC))
+        return token, int(LONGEST.total_seconds())
 
     def _set_cookie(self, response: Response, name: str, value: str, seconds: int) -> None:
         response.set_cookie(
@@ -246,6 +336,7 @@ class Door:
         )
 
     def _refused(self, request: Request, comer: _Comer, why: Refused) -> Response:
+        happened(request, event_of(why), comer.person.id if comer.person else 0)
         visit = self._visit(request, comer, Form())
         if why.sentence == "sign_in" and not visit.posted and not visit.is_piece:
             return self._sent(request, comer, Reply(goto=home.door_to(visit)))
@@ -266,6 +357,7 @@ class Door:
 
     def _without_person(self, request: Request, why: Refused) -> Response:
         """What is told to whom nothing may be told of anybody, or when nobody can be looked up; no session begins."""
+        happened(request, event_of(why))
         lang = self._lang(request, None)
         visit = Visit(self.site, None, lang, self.site.clock(), "/")
         response = response_of(request, _refusal(visit, why), self.site.is_secure)
@@ -286,15 +378,6 @@ def _mistaken(fault: BadInput) -> Refused:
         LOG.error("the database: %s", "its file is damaged" if damaged else type(fault.__cause__).__name__)
         return Refused("busy", 503, _AGAIN)
     return Refused("mistaken", 422, str(fault))
-
-
-def _check_role(page: Page, person: Person | None) -> None:
-    if page.who is Who.NOBODY:
-        return
-    if person is None:
-        raise Refused("sign_in", 401)
-    if page.who is Who.STAFF and not person.is_staff:
-        raise Refused("role", 403)
 
 
 def _check_path(request: Request) -> None:

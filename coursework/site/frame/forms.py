@@ -3,45 +3,43 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from email.message import Message
+from pathlib import PurePath
+from types import MappingProxyType
 from typing import Any
 
 from starlette.datastructures import UploadFile
 from starlette.exceptions import HTTPException
-from starlette.formparsers import MultiPartException
+from starlette.formparsers import FormParser, MultiPartException, MultiPartParser
 from starlette.requests import Request
 
+from coursework.site.frame.budgets import KILOBYTE, MEGABYTE, Budget
 from coursework.site.frame.visits import Form, Refused, Upload
 
-_FIELDS = 2000  #: of a form
-_FILES = 50
 _TYPED = 1024 * 1024  #: bytes of a form without files, and of a field beside files
 _SECONDS, _RATE = 30.0, 20_000  #: that a form may take: at once, and bytes a second
 _PLAIN, _WITH_FILES = "application/x-www-form-urlencoded", "multipart/form-data"
 
 
-async def read_form(request: Request, largest: int) -> Form:
-    """What a form brings.
+async def read_form(request: Request, budget: Budget) -> Form:
+    """What a form brings; no more of it is read than its budget allows.
 
     Raises
     ------
     Refused
-        It is larger than ``largest`` bytes, does not say how large it is, takes too long, or cannot be read.
+        It is larger than its budget, does not say how large it is, takes too long, or cannot be read.
     """
     size = _size(request)
     if not size:
         return Form()
     kind = _kind(request)
-    most = min(largest, _TYPED) if kind == _PLAIN else largest
+    most = min(budget.largest, _TYPED) if kind == _PLAIN else budget.largest
     if size > most:
         raise Refused("too_large", 413, shown_size(most))
     try:
-        async with (
-            asyncio.timeout(_SECONDS + size / _RATE),
-            request.form(max_fields=_FIELDS, max_files=_FILES, max_part_size=_TYPED) as fields,
-        ):
-            return await _read(fields.multi_items())
+        async with asyncio.timeout(_SECONDS + size / _RATE):
+            return await _read(request, kind, budget)
     except TimeoutError:
         raise Refused("too_slow", 408) from None
     except (MultiPartException, HTTPException, ValueError):
@@ -70,7 +68,41 @@ def _kind(request: Request) -> str:
     return told.get_content_type()
 
 
-async def _read(items: Sequence[tuple[str, Any]]) -> Form:
+async def _read(request: Request, kind: str, budget: Budget) -> Form:
+    pieces, told = request.stream(), request.headers
+    parser: Any
+    if kind == _PLAIN:
+        parser = FormParser(told, pieces, max_fields=budget.fields, max_part_size=_TYPED)
+    else:
+        parser = _Parts(told, pieces, max_files=budget.files, max_fields=budget.fields, max_part_size=_TYPED)
+        parser.by_ending = budget.by_ending
+    sent = await parser.parse()
+    try:
+        return await _form(sent.multi_items(), budget.fields)
+    finally:
+        await sent.close()
+
+
+class _Parts(MultiPartParser):
+    """The parts of a form with files, of which one that is larger than its ending may be ends the reading."""
+
+    by_ending: Mapping[str, int] = MappingProxyType({})
+    _most = _so_far = 0
+
+    def on_headers_finished(self) -> None:
+        super().on_headers_finished()
+        file = self._current_part.file
+        ending = PurePath(file.filename or "").suffix.lower() if file is not None else ""
+        self._most, self._so_far = self.by_ending.get(ending, 0), 0
+
+    def on_part_data(self, data: bytes, start: int, end: int) -> None:
+        self._so_far += end - start
+        if self._most and self._so_far > self._most:
+            raise Refused("too_large", 413, shown_size(self._most))
+        super().on_part_data(data, start, end)
+
+
+async def _form(items: Sequence[tuple[str, Any]], most: int) -> Form:
     texts: dict[str, list[str]] = {}
     files: dict[str, list[Upload]] = {}
     for name, value in items:
@@ -79,7 +111,7 @@ async def _read(items: Sequence[tuple[str, Any]]) -> Form:
                 files.setdefault(clean(name), []).append(Upload(clean(value.filename), await value.read()))
         else:
             texts.setdefault(clean(name), []).append(clean(str(value)))
-    if len(items) > _FIELDS:
+    if len(items) > most:
         raise Refused("bad_request", 400)
     return Form(texts, files)
 
@@ -90,4 +122,4 @@ def clean(text: str) -> str:
 
 
 def shown_size(count: int) -> str:
-    return f"{count // (1024 * 1024)} MB" if count >= 1024 * 1024 else f"{count // 1024} kB"
+    return f"{count // MEGABYTE} MB" if count >= MEGABYTE else f"{count // KILOBYTE} kB"

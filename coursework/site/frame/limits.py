@@ -30,8 +30,6 @@ _ADDRESS = {
     "upload": "300/10minutes",
     "sign_in": "3000/10minutes",
 }
-#: Of passwords that did not fit: for a login from one address, for a login from anywhere, for an address.
-_MISSED = {"here": "10/15minutes", "anywhere": "100/hour", "address": "600/10minutes"}
 
 
 class Limits:
@@ -48,38 +46,11 @@ class Limits:
             return self._count(parse(_PERSON[kind]), kind, f"person {person}")
         return self._count(parse(_ADDRESS[kind]), kind, f"address {network(address)}")
 
-    def missed(self, login: str, address: str) -> None:
-        """A password did not fit."""
-        for item, names in _of_login(login, address):
-            self._limiter.hit(item, *names)
-
-    def barred(self, login: str, address: str) -> int:
-        """Whether too many passwords did not fit."""
-        waits = [
-            0 if self._limiter.test(item, *names) else self._wait(item, names)
-            for item, names in _of_login(login, address)
-        ]
-        return max(waits)
-
-    def fitted(self, login: str, address: str) -> None:
-        """A password did fit: what was mistyped from there before is forgotten."""
-        item, names = _of_login(login, address)[0]
-        self._limiter.clear(item, *names)
-
     def _count(self, item: RateLimitItem, *names: str) -> int:
         return 0 if self._limiter.hit(item, *names) else self._wait(item, names)
 
     def _wait(self, item: RateLimitItem, names: tuple[str, ...]) -> int:
         return max(1, math.ceil(self._limiter.get_window_stats(item, *names).reset_time - time.time()))
-
-
-def _of_login(login: str, address: str) -> list[tuple[RateLimitItem, tuple[str, ...]]]:
-    here = network(address)
-    return [
-        (parse(_MISSED["here"]), ("missed", login, here)),
-        (parse(_MISSED["anywhere"]), ("missed", login)),
-        (parse(_MISSED["address"]), ("missed", here)),
-    ]
 
 
 def network(address: str) -> str:

@@ -14,7 +14,11 @@ from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 
 STATIC = Path(__file__).parents[1] / "static"
-KINDS = {".css": "text/css; charset=utf-8", ".js": "text/javascript; charset=utf-8", ".svg": "image/svg+xml"}
+KINDS = {
+    ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".svg": "image/svg+xml; charset=utf-8",
+}
 
 #: What sheets and pages hold as well, by the name of the file that it is here.
 _OF_SHEETS = {

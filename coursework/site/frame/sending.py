@@ -11,25 +11,15 @@ from starlette.requests import Request
 from starlette.responses import RedirectResponse, Response
 
 from coursework.site.frame.visits import Reply, local
+from coursework.system.headers import security_headers
 
-_HEADERS = {
-    "content-security-policy": "default-src 'none'; img-src 'self' data:; style-src 'self' 'unsafe-inline'; script-src 'self'; "
-    "connect-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors 'none'; manifest-src 'self'",
-    "x-content-type-options": "nosniff",
-    "referrer-policy": "same-origin",
-    "x-frame-options": "DENY",
-    "cross-origin-opener-policy": "same-origin",
-    "cross-origin-resource-policy": "same-origin",
-    "permissions-policy": "camera=(), microphone=(), geolocation=()",
-}
-_HTTPS = {"strict-transport-security": "max-age=31536000"}
 _SMALL = 1000  #: bytes that are sent as they are
 _PACKED = ("text/", "application/json", "image/svg+xml")
 
 
 def response_of(request: Request, reply: Reply, is_secure: bool) -> Response:
     """A reply as it is sent."""
-    headers = {**_HEADERS, **(_HTTPS if is_secure else {})}
+    headers = security_headers(is_secure)
     headers["cache-control"] = f"public, max-age={reply.keep}, immutable" if reply.keep else "no-store"
     if reply.goto and request.headers.get("hx-request") == "true":
         return Response("", 200, {**headers, "hx-redirect": _written(local(reply.goto))})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
+from datetime import datetime
 from enum import Enum
 from functools import cached_property
 from pathlib import Path
@@ -18,6 +18,8 @@ from coursework.course.course import Course
 from coursework.course.folder import course_folder
 from coursework.database.settings import course_taken, secret, take_course
 from coursework.database.store import Store
+from coursework.site.frame.budgets import Places
+from coursework.site.frame.clock import SteadyClock
 from coursework.site.frame.limits import Limits
 from coursework.site.frame.pages import Pages
 from coursework.site.frame.pool import Pool
@@ -38,10 +40,6 @@ class Entrance(Enum):
     ACCOUNTS = "accounts"  #: with a password, or from a platform
 
 
-def _now() -> datetime:
-    return datetime.now(UTC)
-
-
 @dataclass
 class Site:
     """A site: one course, one database."""
@@ -50,13 +48,19 @@ class Site:
     store: Store
     entrance: Entrance = Entrance.LOCAL
     url: str = "http://127.0.0.1:8000"
-    clock: Clock = _now
+    clock: Clock = None  # type: ignore[assignment]  #: one that follows no leap, unless told
     shelf: Shelf = field(default_factory=lambda: Shelf(_VARIANTS))
     limits: Limits = field(default_factory=Limits)
+    places: Places = field(default_factory=Places)
     lti: Path | None = None  #: folder of the platforms from which links lead here
+    has_worker: bool = (
+        False  #: a process beside marks what is handed in; else the request does that handed it in
+    )
     _taken: int = field(init=False)
 
     def __post_init__(self) -> None:
+        if self.clock is None:
+            self.clock = SteadyClock(self.store)
         with self.store.reading() as connection:
             self._taken = course_taken(connection)
 

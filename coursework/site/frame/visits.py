@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from enum import Enum
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from coursework.database.audit import Actor
+from coursework.database.permissions import STAFF, Area, Permission, is_of_staff, may
 from coursework.errors import CourseworkError
 from coursework.language.words import words
+from coursework.site.frame.budgets import DESK, PLAIN, Budget
 
 if TYPE_CHECKING:
     from datetime import datetime
 
+    from coursework.site.frame.attempts import Attempt
     from coursework.site.frame.settings import Site
 
 
@@ -21,14 +24,6 @@ def local(address: str, usual: str = "/") -> str:
     seen = "".join(letter for letter in address if ord(letter) >= 32)  # browsers take no notice of the others
     leads_away = seen.startswith("//") or "\\" in seen.partition("?")[0]
     return seen if seen.startswith("/") and not leads_away else usual
-
-
-class Who(Enum):
-    """Who may ask for a page."""
-
-    NOBODY = "nobody"  #: whoever comes, signed in or not
-    SOMEBODY = "somebody"  #: who is signed in
-    STAFF = "staff"
 
 
 class Refused(CourseworkError):
@@ -44,12 +39,17 @@ class Person(NamedTuple):
 
     id: int
     name: str
-    role: str  #: ``student`` or ``instructor``
+    role: str  #: one of :data:`coursework.database.permissions.ROLES`
     lang: str = ""
+    areas: tuple[Area, ...] = ()  #: in which an assistant works
 
     @property
     def is_staff(self) -> bool:
-        return self.role == "instructor"
+        return self.role in STAFF
+
+    def may(self, permission: str, assignment: int | None = None, group: str | None = None) -> bool:
+        """Return whether the person may do something, in an assignment, to a student of a group, where these are told."""
+        return may(self, Permission(permission), assignment, group)
 
 
 class Upload(NamedTuple):
@@ -77,7 +77,7 @@ class Visit:
     site: Site
     person: Person | None
     lang: str
-    at: datetime  #: UTC
+    at: datetime  #: UTC; of what is sent its arrival, however long it waited
     address: str  #: path, as the browser sees it
     path: Mapping[str, Any] = field(default_factory=dict)  #: what the path's places hold
     query: Mapping[str, str] = field(default_factory=dict)
@@ -86,6 +86,8 @@ class Visit:
     seal: str = ""  #: what a form holds in its field ``_seal``
     is_piece: bool = False  #: a script asks for a piece of the page alone
     came_from: str = ""  #: the address of the machine that asks
+    session: int = 0  #: number of the session; 0 where there is none
+    device: str = ""  #: the device cookie, as it came
 
     @property
     def who(self) -> Person:
@@ -99,6 +101,25 @@ class Visit:
         if self.person is None:
             raise Refused("sign_in", 401)
         return self.person
+
+    @property
+    def actor(self) -> Actor:
+        """Who asks and from where, as the audit records it."""
+        name = self.who.name or str(self.said["site"]["local"])
+        return Actor(name, self.who.id, self.came_from)
+
+    def require(
+        self, permission: Permission, assignment: int | None = None, group: str | None = None
+    ) -> None:
+        """Refuse the request unless the person may do what the form says beyond what its page needs.
+
+        Raises
+        ------
+        Refused
+            They may not.
+        """
+        if not may(self.person, permission, assignment, group):
+            raise Refused("role", 403)
 
     @property
     def said(self) -> Mapping[str, Any]:
@@ -122,16 +143,33 @@ class Reply:
     data: bytes = b""
     file: str = ""  #: its name, where it is to be kept
     keep: int = 0  #: seconds for which a browser may keep it; nothing is kept unless told
+    device: str = ""  #: the device cookie that the browser is to keep
     signed_in: int | None = None  #: who is from now on; 0 for nobody
     lang: str = ""  #: which the browser is to remember
 
 
 class Page(NamedTuple):
-    """An address: who may ask for it, and what answers."""
+    """An address: the permission that it needs, and what answers.
+
+    Where its path names an ``assignment`` or its ``number``, the permission is needed for that assignment.
+    """
 
     path: str
     answer: Callable[[Visit], Reply]
-    who: Who
+    needs: Permission
     posts: bool = False  #: it takes forms
     limit: str = "usual"  #: which of the limits it falls under (:mod:`coursework.site.frame.limits`)
-    largest: int = 256 * 1024  #: bytes of a form that is sent to it
+    budget: Budget | None = None  #: of what is sent to it; who takes forms of students states it
+    is_short: bool = False  #: it stores what is sent and shows nothing: answered before pages are
+    posting: Permission | None = None  #: that a form needs, where it is another one
+    of_staff: Permission | None = None  #: that it needs where its path names a ``person`` of the staff
+    attempt: Callable[[Visit], Attempt] | None = None  #: what a form that holds a password is counted by
+    by_group: bool = (
+        False  #: it shows an assistant the students of their groups alone; else it is for the whole class
+    )
+    noted: str = "exported"  #: how the audit calls a file that the staff takes there
+
+    @property
+    def means(self) -> Budget:
+        """The budget of its requests: the least where none is stated."""
+        return self.budget or (DESK if is_of_staff(self.needs) else PLAIN)

@@ -33,13 +33,22 @@ class Row(NamedTuple):
 
 
 def class_rows(connection: Connection, site: Site, now: ClassNow, visit: Visit, here: set[str]) -> list[Row]:
-    """Who was issued a paper, in the order of the desk's table; of who came from elsewhere than this course, too."""
+    """Return the students of the platform's course, in the order of the desk's table.
+
+    Parameters
+    ----------
+    here
+        What the platform calls those who opened the assignment from this course. Nobody else of the assignment is shown: who
+        teaches a course of the platform teaches no other.
+    """
     people, subjects = people_of(connection, now.about.id), _subjects(connection, visit.launch.issuer)
     charges = Publication.of(now.about.published or {}).late == CHARGE
     scores, found = visit.scores(), []
     for row in class_page.rows(now):
         person = people.get(row.student, 0)
         subject = subjects.get(person, "")
+        if subject not in here:
+            continue
         points = row.points
         if (
             charges

@@ -6,9 +6,10 @@ from typing import Any
 
 from sqlalchemy import Connection, select
 
+from coursework.database.permissions import Permission
 from coursework.database.tables import identity, person
 from coursework.lti.storage import Storage
-from coursework.site.frame.visits import Page, Reply, Visit, Who
+from coursework.site.frame.visits import Page, Reply, Visit
 from coursework.site.lti.scores import number_text
 
 
@@ -39,4 +40,4 @@ def _names(connection: Connection) -> dict[str, str]:
     return {row.subject: row.name for row in connection.execute(found)}
 
 
-PAGES = (Page("/desk/lti", waiting, Who.STAFF),)
+PAGES = (Page("/desk/lti", waiting, Permission.PLATFORMS_READ),)

@@ -10,7 +10,7 @@ from sqlalchemy import Connection, select
 from coursework.database.assignments import issued_content, put_issued
 from coursework.database.audit import note
 from coursework.database.desk import stamp
-from coursework.database.identities import fitting, person_known, take_over, tie
+from coursework.database.identities import fitting, has_password, person_known, take_over, tie
 from coursework.database.people import person_by_who, put_person
 from coursework.database.tables import assignment
 from coursework.making.assignment import Assignment, assignment_of
@@ -20,6 +20,7 @@ from coursework.making.roster import Student
 from coursework.making.students import folded
 from coursework.site.frame.settings import Site
 from coursework.site.frame.visits import Refused
+from coursework.site.lti import connecting
 from coursework.site.publication.dealings import holders
 
 if TYPE_CHECKING:
@@ -55,8 +56,16 @@ def _is_as_told(known: Any, launch: Launch, lang: str) -> bool:
 
 
 def _put(site: Site, connection: Connection, launch: Launch, lang: str) -> None:
-    """Tie the one person of the rosters whom the platform's e-mail or number tells, else a new one."""
+    """Tie the one person of the rosters whom the platform's e-mail or number tells, else a new one.
+
+    Raises
+    ------
+    Refused
+        The one person has a password, which is to be entered once.
+    """
     found = fitting(connection, launch.issuer, launch.email, launch.number)
+    if len(found) == 1 and has_password(connection, found[0].id):
+        raise Refused("connect", 403, connecting.address(site, launch, found[0].id))
     if len(found) == 1:
         number, how = found[0].id, "roster"
     else:
@@ -95,7 +104,8 @@ def deal_to(site: Site, number: int, known: Any, launch: Launch, lang: str) -> N
     """
     for _ in range(_ROUNDS):
         with site.store.reading() as connection:
-            before, stood = issued_content(connection, number), stamp(connection, number).dealt
+            before = issued_content(connection, number, secret=True)
+            stood = stamp(connection, number).dealt
             about = connection.execute(select(assignment).where(assignment.c.id == number)).one()
         if about.asked is None:
             raise Refused("not_dealt", 409)
@@ -108,7 +118,7 @@ def deal_to(site: Site, number: int, known: Any, launch: Launch, lang: str) -> N
                 select(assignment.c.id).where(assignment.c.id == number).with_for_update(key_share=True)
             )
             if stamp(connection, number).dealt == stood:
-                put_issued(connection, content_of(made.issues, asked), about.name)
+                put_issued(connection, content_of(made.issues, asked, made.secret), about.name)
                 told = {"assignment": about.name, "students": 1, "person": known.id}
                 note(connection, site.clock(), platform_name(launch), "late ones added", **told)
                 return

@@ -20,6 +20,7 @@ from coursework.language.words import words
 from coursework.lti.class_list import students
 from coursework.lti.course_host import CourseHost
 from coursework.lti.host import Form, Offer, Reply, Shelf, Visit
+from coursework.lti.launch import Launch
 from coursework.lti.pages import Form as Surrounding
 from coursework.lti.pages import Pages
 from coursework.lti.refusal import Refused as LtiRefused
@@ -29,6 +30,7 @@ from coursework.lti.storage import Score, Storage
 from coursework.lti.wanted import Wanted
 from coursework.making.students import folded
 from coursework.site.desk.class_at_hand import called, class_now
+from coursework.site.frame.arrivals import arrived
 from coursework.site.frame.moments import exact_text, moment_text
 from coursework.site.frame.settings import Site
 from coursework.site.frame.visits import Form as SiteForm
@@ -38,6 +40,7 @@ from coursework.site.lti import people_of_platforms
 from coursework.site.lti.class_in_frame import class_rows, rules_rows
 from coursework.site.lti.scores import assignment_number, score_of
 from coursework.site.papers.assignments import feedback_from
+from coursework.site.papers.being_marked import being_marked
 from coursework.site.papers.feedback import feedback_of
 from coursework.site.papers.handing_in import hand_in
 from coursework.site.papers.own_assignment import State, own_assignment
@@ -128,6 +131,8 @@ class SiteHost:
             "title": said["refused"]["title"], "message": str(sentence).format(*why.parts), "again": "", "action": "",
             "targets": "", "back": "",
         }  # fmt: skip
+        if why.sentence == "connect":
+            names |= {"connect": str(why.parts[0]), "connect_word": said["connect"]["title"]}
         return Reply(self.pages.page("lti_message", visit.lang, names), why.status)
 
     def _shown(self, visit: Visit, number: int) -> Reply:
@@ -165,7 +170,7 @@ class SiteHost:
             site,
             person,
             visit.lang,
-            site.clock(),
+            arrived(site.clock),
             visit.home,
             {"number": number},
             form=form,
@@ -241,7 +246,8 @@ class SiteHost:
         came = said["try_number"].format(last.number, exact_text(last.came, visit.lang))
         receipt = own_visit.said["lti"]["receipt"].format(last.receipt)
         more = [(f"{visit.home}?again=1", said["again"])] if state.may_hand_in else []
-        if state.tells("feedback"):
+        waits = being_marked(own_visit, last.id) if state.tells("feedback") else None
+        if state.tells("feedback") and waits is None:
             told, notes = feedback_of(own_visit, state, own, last)
             notes = [f"{came}. {receipt}", *notes, *self._rules(visit, state), self._sent(visit)]
             form = Surrounding("", "", notes=tuple(notes), more=tuple(more), leave=visit.launch.return_url)
@@ -249,7 +255,7 @@ class SiteHost:
         notes = [
             f"{came}.",
             receipt,
-            feedback_from(own_visit, state),
+            waits.says if waits else feedback_from(own_visit, state),
             *self._rules(visit, state),
             self._sent(visit, state),
         ]
@@ -290,6 +296,12 @@ class SiteHost:
 
     # ------------------------------------------------------------------------ class
 
+    def _came_from(self, launch: Launch) -> set[str]:
+        """Return what the platform calls those who opened the assignment of a launch from the launch's course."""
+        named = Wanted.of(launch.custom).assignment
+        opened = (one for one in self._storage.opened() if one.course == launch.course)
+        return {one.person for one in opened if one.custom.get("assignment", "").strip() == named}
+
     def _class(self, visit: Visit, number: int) -> Reply:
         """The class as the desk has it, to look at; what is decided is decided on the site, by who has an account there."""
         if visit.path:
@@ -298,9 +310,7 @@ class SiteHost:
         members, note = _members(visit, lang)
         with self._site.store.reading() as connection:
             said = published(connection, number)
-            rows = class_rows(
-                connection, self._site, now, visit, {one.person for one in students(members or ())}
-            )
+            rows = class_rows(connection, self._site, now, visit, self._came_from(visit.launch))
         missing = _not_there(members, {folded(row.name) for row in rows}, {row.person for row in rows})
         names = {
             "title": visit.launch.link_title or called(now.about, lang), "context": visit.launch.context_title, "home": visit.home,

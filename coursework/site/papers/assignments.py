@@ -11,22 +11,27 @@ from typing import Any
 
 from coursework.database.deliveries import Delivery
 from coursework.database.drafts import Box, drafts
+from coursework.database.permissions import Permission
 from coursework.database.publication import Phase, places
+from coursework.errors import BadInput
 from coursework.gradebook.by_student import as_students, for_student
 from coursework.gradebook.placing import placed
+from coursework.gradebook.rows import Row
+from coursework.gradebook.submissions import read_rows
 from coursework.making.students import file_stems, folded
 from coursework.rendering.renderer import renderer_of
+from coursework.site.frame.budgets import ANSWER_FILE, BOXES, HAND_IN, MOST_ROWS, read_apart
 from coursework.site.frame.keeping import keep_form, keeper, kept
 from coursework.site.frame.moments import exact_text, length_text, zone_name
-from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit, Who
+from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit
 from coursework.site.papers import handing_in, receipts
+from coursework.site.papers.being_marked import being_marked
 from coursework.site.papers.feedback import charged_text, feedback_of
 from coursework.site.papers.handing_in import IN_A_FILE, ON_THE_PAGE, hand_in, pass_dates, sheet_of
 from coursework.site.papers.own_assignment import State, own_assignment, state_of
 from coursework.site.papers.own_paper import OwnPaper, counts, read_lines
 
 _FILES = (".ipynb", ".json", ".csv")
-_FILE_SIZE = 8 * 1024 * 1024
 _ORDER = (Phase.OPEN, Phase.LATE, Phase.TO_COME, Phase.CLOSED)
 
 
@@ -162,7 +167,10 @@ def take_file(visit: Visit) -> Reply:
         boxes = drafts(connection, visit.who.id, sheet_of(state.place, own))
     if sent is None or _ending(sent) not in _FILES:
         return _shown(visit, state, own, boxes, said["which_file"].format(", ".join(_FILES)), 422)
-    texts, notes = _of_file(visit, own, sent)
+    try:
+        texts, notes = _of_file(visit, own, sent)
+    except BadInput as fault:
+        return _shown(visit, state, own, boxes, str(fault), 422)
     if not any(text.strip() for text in texts.values()):
         return _shown(visit, state, own, boxes, " ".join([said["file_empty"], *notes]), 422)
     return _confirming(visit, state, own, texts, IN_A_FILE, notes)
@@ -174,15 +182,20 @@ def _ending(sent: Upload) -> str:
 
 
 def _of_file(visit: Visit, own: OwnPaper, sent: Upload) -> tuple[dict[str, str], list[str]]:
-    """The answers of a file to the person's own paper, by box, and what is to be known of it."""
-    from coursework.gradebook.rows import Row
-    from coursework.gradebook.submissions import read_file
+    """The answers of a file to the person's own paper, by box, and what is to be known of it.
 
+    Raises
+    ------
+    BadInput
+        The file takes more to be read than it may, or holds more rows than a paper has.
+    """
     said, told = visit.said["assignments"], []
     with tempfile.TemporaryDirectory(prefix="coursework-") as folder:
         path = Path(folder) / f"answers{_ending(sent)}"  # nothing of the name that it came by
         path.write_bytes(sent.data)
-        rows = list(read_file(path))
+        rows = read_apart(ANSWER_FILE, visit.said["refused"]["too_much"], read_rows, path, MOST_ROWS)
+    if rows is None:
+        raise BadInput(said["file_too_long"].format(MOST_ROWS))
     names = {row.student for row in rows if isinstance(row, Row) and row.student}
     if others := sorted(one for one in names if folded(one) != folded(own.student)):
         told.append(said["file_named"].format(", ".join(one[:60] for one in others[:3])))
@@ -234,6 +247,7 @@ def receipt(visit: Visit) -> Reply:
         late=length_text(timedelta(seconds=row.late), visit.lang) if row.late else "",
         charged=charged_text(state.place.own.charged(row.late), visit.lang) if state.place.own.charged(row.late) else "",
         saved=row.source == handing_in.AS_SAVED, feedback_from=feedback_from(visit, state),
+        marking=being_marked(visit, row.id) if state.tells("feedback") else None,
     )  # fmt: skip
 
 
@@ -256,6 +270,8 @@ def feedback(visit: Visit) -> Reply:
     if not state.done:
         raise Refused("nothing_handed_in", 404)
     chosen = _chosen(visit, state)
+    if being_marked(visit, chosen.id) is not None:
+        return Reply(goto=f"{state.address}/receipts/{chosen.receipt}")
     told, notes = feedback_of(visit, state, own, chosen)
     names = own.shown({}, told)
     return visit.page(
@@ -269,20 +285,27 @@ def _chosen(visit: Visit, state: State) -> Delivery:
 
 
 PAGES = (
-    Page("/assignments", listed, Who.SOMEBODY),
-    Page("/assignments/{number:int}", paper, Who.SOMEBODY, posts=True),
-    Page("/assignments/{number:int}/keep", keep, Who.SOMEBODY, posts=True),
-    Page("/assignments/{number:int}/hand-in", confirm, Who.SOMEBODY, posts=True),
+    Page("/assignments", listed, Permission.OWN),
+    Page("/assignments/{number:int}", paper, Permission.OWN, posts=True, budget=BOXES),
+    Page("/assignments/{number:int}/keep", keep, Permission.OWN, posts=True, budget=BOXES, is_short=True),
+    Page(
+        "/assignments/{number:int}/hand-in",
+        confirm,
+        Permission.OWN,
+        posts=True,
+        budget=HAND_IN,
+        is_short=True,
+    ),
     Page(
         "/assignments/{number:int}/file",
         take_file,
-        Who.SOMEBODY,
+        Permission.OWN,
         posts=True,
         limit="upload",
-        largest=_FILE_SIZE,
+        budget=ANSWER_FILE,
     ),
-    Page("/assignments/{number:int}/feedback", feedback, Who.SOMEBODY),
+    Page("/assignments/{number:int}/feedback", feedback, Permission.OWN),
     *receipts.PAGES,
-    Page("/assignments/{number:int}/receipts/{code}", receipt, Who.SOMEBODY),
-    Page("/assignments/{number:int}/{file}", files, Who.SOMEBODY, limit="upload"),
+    Page("/assignments/{number:int}/receipts/{code}", receipt, Permission.OWN),
+    Page("/assignments/{number:int}/{file}", files, Permission.OWN, limit="upload"),
 )

@@ -9,20 +9,24 @@ from __future__ import annotations
 import hashlib
 import json
 import logging
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime
 from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, func, select
+from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import TimeoutError as NoConnection
 
 from coursework.database.deliveries import Delivery, deliver, deliveries, next_number, rows_of, tries_used
 from coursework.database.drafts import drafts
+from coursework.database.jobs import MARK, drop_jobs, put_job
 from coursework.database.marking import mark_delivery
 from coursework.database.people import hold
 from coursework.database.publication import Phase, Place, extensions, places, published, reach
-from coursework.database.tables import dealt, draft, person, variant
+from coursework.database.tables import dealt, delivery, draft, person, variant
 from coursework.errors import CourseworkError
 from coursework.gradebook.rows import Collected, Row
+from coursework.site.frame.clock import is_steady
 from coursework.site.frame.settings import Site
 from coursework.site.frame.visits import Refused
 from coursework.site.papers.own_paper import OwnPaper, Texts, own_paper
@@ -64,13 +68,16 @@ def hand_in(
     with site.store.begin() as connection:
         hold(connection, person_id)
         done = deliveries(connection, place.id, person_id)
-        if number <= len(done):
-            before = done[number - 1]
-            return HandedIn(before, False, not _holds(connection, place, before, paper, texts))
+        before = done[number - 1] if number <= len(done) else None
+        if before is not None:
+            is_same = _holds(connection, place, before, paper, texts)
+            if is_same or before.source != AS_SAVED or not _takes(place, at, site.clock()):
+                return HandedIn(before, False, not is_same)
         if done and _holds(connection, place, done[-1], paper, texts):
             return HandedIn(done[-1], False)  # what stands already costs no try
-        fresh, now = _check(connection, place, person_id, at)
+        fresh, now = _check(connection, place, person_id, at, site.clock(), done)
         made = _deliver(connection, fresh, paper, person_id, texts, now, source)
+        put_job(connection, MARK, place.id, site.clock(), delivery=made.id)
     mark(site, made.id)
     return HandedIn(made, True)
 
@@ -79,15 +86,31 @@ def _holds(connection: Connection, place: Place, made: Delivery, paper: OwnPaper
     return content(rows_of(connection, place.id, made.id)) == content_of(paper, texts)
 
 
-def _check(connection: Connection, place: Place, person_id: int, at: datetime) -> tuple[Place, datetime]:
-    """What the publication says this very moment, and the time that counts, where something is taken at it."""
+def _takes(place: Place, arrived: datetime, clock: datetime) -> bool:
+    assert place.publication is not None
+    return place.own.phase(place.publication.counted(arrived, clock)).takes
+
+
+def _check(
+    connection: Connection,
+    place: Place,
+    person_id: int,
+    arrived: datetime,
+    clock: datetime,
+    done: Sequence[Delivery],
+) -> tuple[Place, datetime]:
+    """Return what the publication says this very moment, and the time that counts, where something is taken at it.
+
+    What was rescued as it closed costs no try of who handed in before that and was waiting for the database still.
+    """
     (fresh,) = places(connection, person_id, place.id)
     if fresh.publication is None:
         raise Refused("own", 404)
-    own, now = fresh.own, fresh.publication.now(at)
+    own, now = fresh.own, fresh.publication.counted(arrived, clock)
     if not own.phase(now).takes:
         raise Refused("not_open", 409)
-    if own.tries is not None and tries_used(connection, place.id, person_id) >= own.tries:
+    rescued = sum(one.source == AS_SAVED for one in done)
+    if own.tries is not None and tries_used(connection, place.id, person_id) - rescued >= own.tries:
         raise Refused("no_try_left", 409)
     return fresh, now
 
@@ -110,9 +133,13 @@ def _deliver(
 
 
 def mark(site: Site, made: int) -> None:
-    """Mark what was handed in. It is kept already: what goes wrong here is marked later."""
+    """Mark what was handed in, where no worker does. It is kept already: what goes wrong here is marked later."""
+    if site.has_worker:
+        return
     try:
         mark_delivery(site.course, site.store, made)
+        with site.store.begin() as connection:
+            drop_jobs(connection, made)
     except Exception as fault:  # who handed in is told so, whatever becomes of the marking
         LOG.error("delivery %d is not marked yet: %s", made, type(fault).__name__)
 
@@ -122,10 +149,10 @@ def rows_for(paper: OwnPaper, texts: Texts, number: int, came: datetime, source:
     origin = Collected(sitting=number, submitted=came.isoformat(timespec="seconds"))
     return [
         Row(
-            paper.student, box.variant.exercise.name, str(box.variant.seed), box.part.id, texts.get(name, ""), source,
-            lang=box.variant.lang, origin=origin,
+            paper.student, one.exercise, str(one.seed), one.part, texts.get(name, ""), source,
+            lang=one.lang, origin=origin,
         )
-        for name, box in paper.boxes.items()
+        for name, one in paper.fields.items()
     ]  # fmt: skip
 
 
@@ -139,8 +166,7 @@ def content(rows: Iterable[Any]) -> list[list[str]]:
 
 def content_of(paper: OwnPaper, texts: Texts) -> list[list[str]]:
     return [
-        [box.variant.exercise.name, str(box.variant.seed), box.part.id, texts.get(name, "")]
-        for name, box in paper.boxes.items()
+        [one.exercise, str(one.seed), one.part, texts.get(name, "")] for name, one in paper.fields.items()
     ]
 
 
@@ -154,36 +180,77 @@ def digest(told: Sequence[Sequence[str]]) -> str:
 
 
 def pass_dates(site: Site, number: int, at: datetime) -> None:
-    """Write down which dates of an assignment have passed; of what was saved as it closed, hand in what is to be."""
+    """Write down which dates of an assignment have passed; of what was saved as it closed, hand in what is to be.
+
+    The worker does this where there is one: no request waits for it, and it is done when nobody asks for a page.
+    """
+    if not site.has_worker:
+        close_passed(site, number, at)
+
+
+def close_passed(
+    site: Site, number: int, at: datetime, failed: Callable[[int, Exception], None] | None = None
+) -> None:
+    """Hand in what was saved and write down the dates that have passed; in this order, so that nothing is forgotten when the
+    process falls between them.
+
+    Parameters
+    ----------
+    at
+        The moment up to which dates have passed.
+    failed
+        Is told of each person whose answers could not be handed in; without it the fault is raised.
+    """
+    if not is_steady(site.clock):
+        return
     with site.store.reading() as connection:
         said = published(connection, number)
         if said is None:
             return
         dates = said.dates(list(extensions(connection, number).values()))
-    passed = [one for one in dates if one < at]
-    if not passed or (said.reached is not None and passed[-1] < said.reached):
-        return
-    with (
-        site.store.begin() as connection
-    ):  # both or nothing: a date that is written down is not looked at again
-        if reach(connection, number, at) and said.takes_saved:
-            hand_in_saved(site, connection, number, at)
+        passed = [one for one in dates if one < at]
+        if not passed or (said.reached is not None and passed[-1] < said.reached):
+            return
+        wrote = who_saved(connection, number) if said.takes_saved else []
+    for person_id in wrote:
+        try:
+            rescue(site, number, person_id, at)
+        except CourseworkError as fault:  # it stands in the boxes still; the others' is handed in
+            if isinstance(fault.__cause__, (DBAPIError, NoConnection)):
+                raise  # the database is away: nobody's was
+            LOG.error("what person %d saved is not handed in: %s", person_id, type(fault).__name__)
+            if failed is not None:
+                failed(person_id, fault)
+        except Exception as fault:
+            if failed is None:
+                raise
+            failed(person_id, fault)
+    with site.store.begin() as connection:
+        reach(connection, number, at)
 
 
-def hand_in_saved(site: Site, connection: Connection, number: int, at: datetime) -> None:
+def who_saved(connection: Connection, number: int) -> list[int]:
+    """Return who has answers in the boxes of an assignment and handed in nothing."""
+    theirs = select(dealt.c.person_id).join(variant).where(variant.c.assignment_id == number)
+    wrote = select(draft.c.person_id).where(draft.c.sheet.like(f"assignment/{number}%"), draft.c.text != "")
+    done = select(delivery.c.person_id).where(
+        delivery.c.assignment_id == number, delivery.c.person_id.is_not(None)
+    )
+    found = theirs.where(dealt.c.person_id.in_(wrote), dealt.c.person_id.not_in(done)).distinct()
+    return list(connection.execute(found.order_by(dealt.c.person_id)).scalars())
+
+
+def rescue(site: Site, number: int, person_id: int, at: datetime) -> Delivery | None:
     """Hand in what stood in the boxes of who handed in nothing, once it closed for them; it is marked later.
 
     It counts as handed in when the last of it was typed: in time, where that was in time.
     """
-    theirs = select(dealt.c.person_id).join(variant).where(variant.c.assignment_id == number)
-    wrote = select(draft.c.person_id).where(draft.c.sheet.like(f"assignment/{number}%"), draft.c.text != "")
-    found = theirs.where(dealt.c.person_id.in_(wrote)).distinct().order_by(dealt.c.person_id)
-    for person_id in list(connection.execute(found).scalars()):
+    with site.store.begin() as connection:
         hold(connection, person_id)
-        try:
-            _saved(site, connection, number, person_id, at)
-        except CourseworkError as fault:  # it stands in the boxes still; the others' is handed in
-            LOG.error("what person %d saved is not handed in: %s", person_id, type(fault).__name__)
+        made = _saved(site, connection, number, person_id, at)
+        if made is not None:
+            put_job(connection, MARK, number, site.clock(), delivery=made.id)
+        return made
 
 
 def _saved(site: Site, connection: Connection, number: int, person_id: int, at: datetime) -> Delivery | None:
@@ -197,7 +264,7 @@ def _saved(site: Site, connection: Connection, number: int, person_id: int, at: 
         connection, site.course, place, person_id, lang if lang in site.languages else site.languages[0]
     )
     boxes = drafts(connection, person_id, sheet_of(place, paper))
-    texts = {name: box.text for name, box in boxes.items() if name in paper.boxes}
+    texts = {name: box.text for name, box in boxes.items() if name in paper.fields}
     if not any(text.strip() for text in texts.values()):
         return None
     of_it = draft.c.person_id == person_id, draft.c.sheet == sheet_of(place, paper)
@@ -220,7 +287,7 @@ def _known(came: Any, otherwise: datetime) -> datetime:
 
 def receipt_called(connection: Connection, code: str, number: int | None = None) -> Any | None:
     """The delivery of a receipt, with its assignment and its person; None where nobody was given it."""
-    from coursework.database.tables import assignment, delivery
+    from coursework.database.tables import assignment
 
     found = (
         select(delivery, assignment.c.name.label("assignment"), person.c.name.label("student"))

@@ -81,7 +81,8 @@ def state_of(visit: Visit, place: Place, connection: Connection) -> State:
     done = deliveries(connection, place.id, visit.who.id)
     ends = last_end(place.publication, list(extensions(connection, place.id).values()))
     used = tries_used(connection, place.id, visit.who.id)
-    return State(place, visit.lang, place.publication.now(visit.at), done, ends, used)
+    now = place.publication.counted(visit.at, visit.site.clock())
+    return State(place, visit.lang, now, done, ends, used)
 
 
 def to_hand_in(visit: Visit) -> list[State]:

@@ -31,6 +31,15 @@ _VARIANTS = 100  #: of one paper
 Texts = Mapping[str, str]  #: what stands in the boxes, by their names
 
 
+class Field(NamedTuple):
+    """A box of the paper, as the record of its variant has it: nothing is drawn to know it."""
+
+    exercise: str
+    seed: int
+    part: str
+    lang: str
+
+
 class Box(NamedTuple):
     """A question of the paper, and where its answer is typed."""
 
@@ -70,9 +79,23 @@ class OwnPaper:
 
     def _variant(self, exercise: str, seed: int) -> Any:
         one, record = self.course[exercise], self.issued.record_of(self.student, exercise, seed)
-        spoken = self.lang if self.lang in one.languages else one.languages[0]
-        whole = {**record, "lang": spoken}
+        whole = {**record, "lang": self._spoken(exercise)}
         return self.shelf.get(("issued", dumps(whole, sort_keys=True)), lambda: one.from_record(whole))
+
+    def _spoken(self, exercise: str) -> str:
+        """The language of an exercise on this paper."""
+        spoken = self.course[exercise].languages
+        return self.lang if self.lang in spoken else spoken[0]
+
+    @cached_property
+    def fields(self) -> dict[str, Field]:
+        """The same boxes by their names, for what is stored and not shown."""
+        found = {}
+        for place, (exercise, seed) in enumerate(self.seeds.items(), 1):
+            record, lang = self.issued.record_of(self.student, exercise, seed), self._spoken(exercise)
+            for part in record["parts"]:
+                found[f"e{place}-{part['id']}"] = Field(exercise, seed, str(part["id"]), lang)
+        return found
 
     @cached_property
     def boxes(self) -> dict[str, Box]:
@@ -109,9 +132,9 @@ class OwnPaper:
         Refused
             A field is no box of the paper, or holds more than anybody types.
         """
-        if strange := [name for name in form.texts if name not in self.boxes and not name.startswith("_")]:
+        if strange := [name for name in form.texts if name not in self.fields and not name.startswith("_")]:
             raise Refused("bad_request", 400, len(strange))
-        found = {name: ", ".join(form.texts.get(name, ())) for name in self.boxes}
+        found = {name: ", ".join(form.texts.get(name, ())) for name in self.fields}
         if any(len(text) > LONGEST for text in found.values()):
             raise Refused("too_large", 413, LONGEST)
         return found

@@ -6,11 +6,16 @@ import json
 from datetime import timedelta
 from typing import Any
 
+from sqlalchemy import Connection
+
+from coursework.database.areas import may_for
 from coursework.database.audit import note
 from coursework.database.deliveries import rows_of
+from coursework.database.desk import people_of
+from coursework.database.permissions import Permission
 from coursework.language.words import words
 from coursework.site.frame.moments import exact_text, length_text, zone_name
-from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+from coursework.site.frame.visits import Page, Refused, Reply, Visit
 from coursework.site.papers.handing_in import content, digest, receipt_called
 
 
@@ -85,7 +90,9 @@ def verify(visit: Visit) -> Reply:
     if code:
         with visit.site.store.begin() as connection:
             row = receipt_called(connection, code)
-            note(connection, visit.at, visit.who.name, "receipt looked up", code=code, found=row is not None)
+            if row is not None and not _is_theirs(visit, connection, row):
+                row = None
+            note(connection, visit.at, visit.actor, "receipt looked up", code=code, found=row is not None)
         told = None if row is None else told_of(visit, row, answers=False)
     names: dict[str, Any] = {"code": code, "row": row, "told": told, "digest": told_digest}
     if row is not None:
@@ -94,7 +101,14 @@ def verify(visit: Visit) -> Reply:
     return visit.page("site_receipt_check", **names)
 
 
+def _is_theirs(visit: Visit, connection: Connection, row: Any) -> bool:
+    """Return whether who asks may look up a receipt of this student."""
+    number, issued_to = row.assignment_id, people_of(connection, row.assignment_id).items()
+    names = [name for name, person in issued_to if person == row.person_id] or [row.student]
+    return any(may_for(connection, visit.who, Permission.RECEIPTS_CHECK, number, name) for name in names)
+
+
 PAGES = (
-    Page("/assignments/{number:int}/receipts/{code}.{ending}", file, Who.SOMEBODY),
-    Page("/desk/receipts", verify, Who.STAFF),
+    Page("/assignments/{number:int}/receipts/{code}.{ending}", file, Permission.OWN),
+    Page("/desk/receipts", verify, Permission.RECEIPTS_CHECK),
 )

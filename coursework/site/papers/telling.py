@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from sqlalchemy import Connection
 
+from coursework.database.permissions import Permission
 from coursework.database.publication import Phase, places
 from coursework.site.frame.visits import Visit
 from coursework.site.papers.own_assignment import state_of
@@ -26,7 +27,7 @@ def all_told(number: int) -> Told:
 
 def told_to(connection: Connection, visit: Visit) -> Callable[[int], Told]:
     """What who asks may be told, by assignment: of one that is not published, nothing."""
-    if visit.who.is_staff:
+    if visit.who.may(Permission.ASSIGNMENTS_READ):
         return all_told
     states = [state_of(visit, one, connection) for one in places(connection, visit.who.id) if one.publication]
     # A mark's sentence may say what is right.

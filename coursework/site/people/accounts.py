@@ -10,25 +10,32 @@ from typing import Any
 from sqlalchemy import Connection
 
 from coursework.database.accounts import (
-    INSTRUCTOR,
     account_by_login,
     account_invited,
     account_of,
-    end_sessions,
-    has_instructor,
+    has_administrator,
     invite,
     set_role,
     set_secret,
     take_up,
 )
-from coursework.database.audit import note
+from coursework.database.audit import OF_ACCOUNTS, Actor, note, noted
+from coursework.database.identities import known_as
 from coursework.database.people import put_person
+from coursework.database.permissions import ADMINISTRATOR, Permission
+from coursework.database.sessions import end_session, end_sessions, sessions_of
 from coursework.errors import BadInput
+from coursework.lti.storage import Storage
+from coursework.site.frame.attempts import Attempt
+from coursework.site.frame.budgets import PLAIN
+from coursework.site.frame.devices import Devices
+from coursework.site.frame.moments import moment_text
 from coursework.site.frame.settings import Entrance, Site
-from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who, local
-from coursework.site.people import home, passwords
+from coursework.site.frame.visits import Page, Refused, Reply, Visit, local
+from coursework.site.people import guessing, passwords
 
 DAYS = 21  #: that an invitation holds
+_HAPPENED = 20  #: lines on what was done with an account
 
 
 def as_login(text: str) -> str:
@@ -47,29 +54,35 @@ def sign_in(visit: Visit) -> Reply:
     if not visit.posted:
         return Reply(goto=after) if visit.person else _sign_in_page(visit, after)
     login, password = as_login(visit.form.text("login")), visit.form.text("password")
-    wait = visit.site.limits.barred(login, visit.came_from)
-    if wait:
-        raise Refused("too_often", 429, wait)
     with visit.site.store.reading() as connection:
         found = account_by_login(connection, login)
     if not passwords.fits(found.secret if found else "", password) or found is None:
-        visit.site.limits.missed(login, visit.came_from)
-        return _sign_in_page(visit, after, login=visit.form.text("login"), missed=True)
-    visit.site.limits.fitted(login, visit.came_from)
+        waits = guessing.missed(visit, login)
+        return _sign_in_page(visit, after, login=visit.form.text("login"), missed=True, waits=waits)
+    guessing.fitted(visit, login)
     if passwords.is_dated(found.secret):
         with visit.site.store.begin() as connection:
             set_secret(connection, found.id, passwords.kept(password))
-    return Reply(goto=after, signed_in=found.person_id)
+    device = Devices(visit.site.secret).after_sign_in(visit.device, login)
+    return Reply(goto=after, signed_in=found.person_id, device=device)
+
+
+def sign_in_attempt(visit: Visit) -> Attempt:
+    """Return what a form of the sign-in page is counted by."""
+    if visit.site.entrance is not Entrance.ACCOUNTS:
+        return Attempt()
+    return guessing.attempt_of(visit, as_login(visit.form.text("login")))
 
 
 def _without_account(visit: Visit) -> Reply:
     if visit.site.entrance is Entrance.DEMO:
         return Reply(goto="/who")
-    return Reply(goto="/", signed_in=home.owner(visit.site))
+    return Reply(goto="/")  # on one's own machine everybody is signed in
 
 
-def _sign_in_page(visit: Visit, after: str, login: str = "", missed: bool = False) -> Reply:
-    return visit.page("site_sign_in", 401 if missed else 200, after=after, login=login, missed=missed)
+def _sign_in_page(visit: Visit, after: str, login: str = "", missed: bool = False, waits: int = 0) -> Reply:
+    told = {"after": after, "login": login, "missed": missed, "waits": waits}
+    return visit.page("site_sign_in", 401 if missed else 200, **told)
 
 
 def sign_out(visit: Visit) -> Reply:
@@ -115,9 +128,11 @@ def invitation(visit: Visit) -> Reply:
         person = take_up(connection, end, secret, visit.at)
         if person is None:
             raise Refused("invitation", 410)
-        end_sessions(connection, person, datetime.now(UTC))
-        note(connection, visit.at, f"person {person}", "invitation taken up", person=person)
-    return Reply(goto="/", signed_in=person)
+        end_sessions(connection, person)
+        by = Actor(found.name, person, visit.came_from)
+        note(connection, visit.at, by, "invitation taken up", person=person)
+    device = Devices(visit.site.secret).after_sign_in(visit.device, found.login)
+    return Reply(goto="/", signed_in=person, device=device)
 
 
 def _invitation_page(visit: Visit, mine: Any, status: int = 200, **told: Any) -> Reply:
@@ -135,53 +150,96 @@ def _chosen(visit: Visit, mine: Any) -> tuple[str, str]:
 
 
 def account(visit: Visit) -> Reply:
-    """What one can change of one's own: the password, and where one is signed in."""
+    """Answer the page of one's own account: the password, and the sessions, which can be ended each and all."""
     with visit.site.store.reading() as connection:
         mine = account_of(connection, visit.who.id)
     if not visit.posted:
         return _account_page(visit, mine)
     if visit.form.text("do") == "everywhere":
-        _end_sessions(visit)
+        with visit.site.store.begin() as connection:
+            end_sessions(connection, visit.who.id)
+            called = known_as(connection, visit.who.id)
+        if visit.site.lti is not None:
+            for issuer, subject in called:
+                Storage(visit.site.lti).end_sessions(subject, issuer)
         return Reply(goto="/", signed_in=0)
+    if "session" in visit.form.texts:
+        return _end_one(visit)
     return _other_password(visit, mine)
+
+
+def account_attempt(visit: Visit) -> Attempt:
+    """Return what a form with the present password is counted by."""
+    if "now" not in visit.form.texts:
+        return Attempt()
+    with visit.site.store.reading() as connection:
+        mine = account_of(connection, visit.who.id)
+    return guessing.attempt_of(visit, mine.login) if mine is not None else Attempt()
+
+
+def _end_one(visit: Visit) -> Reply:
+    """End one of one's own sessions; the present one is signed out."""
+    number = visit.form.text("session")
+    if not (number.isascii() and number.isdecimal() and len(number) < 10):
+        raise Refused("bad_request", 422)
+    if int(number) == visit.session:
+        return Reply(goto="/", signed_in=0)
+    with visit.site.store.begin() as connection:
+        end_session(
+            connection, int(number), visit.who.id
+        )  # one that ended meanwhile is as the person wants it
+    return Reply(goto="/account")
 
 
 def _account_page(visit: Visit, mine: Any, status: int = 200, **told: Any) -> Reply:
     if visit.query.get("changed") and status == 200:
         told["changed"] = True
     has_password = bool(mine and mine.secret) and visit.site.entrance is Entrance.ACCOUNTS
+    with visit.site.store.reading() as connection:
+        sessions = sessions_of(connection, visit.who.id, datetime.now(UTC))
+        happened = noted(connection, _HAPPENED, what=OF_ACCOUNTS, subject=visit.who.id)
+    shown = [
+        (one, moment_text(one.seen, visit.lang), moment_text(one.created, visit.lang)) for one in sessions
+    ]
     return visit.page(
-        "site_account", status, mine=mine, has_password=has_password, shortest=passwords.SHORTEST, **told
-    )
+        "site_account", status, mine=mine, has_password=has_password, sessions=shown, shortest=passwords.SHORTEST,
+        happened=happened, **told,
+    )  # fmt: skip
 
 
 def _other_password(visit: Visit, mine: Any) -> Reply:
     if mine is None or not mine.secret:
         raise Refused("page", 404)
-    if visit.site.limits.barred(mine.login, visit.came_from):
-        raise Refused("too_often", 429, visit.site.limits.barred(mine.login, visit.came_from))
     if not passwords.fits(mine.secret, visit.form.text("now")):
-        visit.site.limits.missed(mine.login, visit.came_from)
+        guessing.missed(visit, mine.login)
         return _account_page(visit, mine, 422, wrong="now")
     secret, wrong = _chosen(visit, mine)
     if wrong:
         return _account_page(visit, mine, 422, wrong=wrong)
     with visit.site.store.begin() as connection:
         set_secret(connection, mine.id, secret)
-    _end_sessions(visit)
+        end_sessions(connection, visit.who.id)
+        note(connection, visit.at, visit.actor, "password changed", person=visit.who.id)
     return Reply(goto="/account?changed=1", signed_in=visit.who.id)
 
 
-def _end_sessions(visit: Visit) -> None:
-    with visit.site.store.begin() as connection:
-        end_sessions(connection, visit.who.id, datetime.now(UTC))
+# ----------------------------------------------------------------- by command
 
 
-# ------------------------------------------------------------- the first instructor
+def invited_by_command(site: Site, login: str, role: str) -> str:
+    """Invite somebody to the staff from the command line.
 
+    Parameters
+    ----------
+    login
+        What they sign in with; of somebody who has an account, or somebody new.
+    role
+        ``administrator`` or ``instructor``. The first instructor of a site is its administrator, and nobody's role is lowered.
 
-def first_instructor(site: Site, login: str) -> str:
-    """Invite an instructor from the command line; gives the address at which they choose a password.
+    Returns
+    -------
+    str
+        The address at which they choose a password.
 
     Raises
     ------
@@ -190,36 +248,61 @@ def first_instructor(site: Site, login: str) -> str:
     """
     told = as_login(login)
     if not told:
-        raise BadInput("--instructor needs a login, such as an e-mail: --instructor ada@example.org")
+        raise BadInput(f"--{role} needs a login, such as an e-mail: --{role} ada@example.org")
     with site.store.begin() as connection:
         found = account_by_login(connection, told)
         person = found.person_id if found else put_person(connection, told, login.strip(), "", {})
-        address = invited(site, connection, person, told, INSTRUCTOR)
-        set_role(connection, person, INSTRUCTOR)
-        note(connection, site.clock(), "command line", "invited", person=person, role=INSTRUCTOR)
+        given = _raised(
+            found.role if found else "", role, is_first=not has_administrator(connection, site.clock())
+        )
+        if found:
+            set_role(connection, person, given)
+        address = invited(site, connection, person, told, given)
+        note(connection, site.clock(), "command line", "invited", person=person, role=given)
     return address
 
 
-def check_instructor(site: Site) -> None:
-    """See to it that somebody can come in to teach.
+def _raised(before: str, role: str, *, is_first: bool) -> str:
+    """Return the role that somebody has from now on."""
+    return ADMINISTRATOR if is_first or ADMINISTRATOR in (before, role) else role
+
+
+def check_administrator(site: Site) -> None:
+    """See to it that somebody can come in to administer.
 
     Raises
     ------
     BadInput
-        The site needs accounts, and no instructor has one.
+        The site needs accounts, and no administrator has one.
     """
     with site.store.reading() as connection:
-        if site.entrance is not Entrance.ACCOUNTS or has_instructor(connection, site.clock()):
+        if site.entrance is not Entrance.ACCOUNTS or has_administrator(connection, site.clock()):
             return
     raise BadInput(
-        "other machines can reach this site, and no instructor has an account: "
-        "'coursework serve --instructor LOGIN' with the same --db and --url prints a link by which one chooses a password"
+        "other machines can reach this site, and no administrator has an account: "
+        "'coursework serve --administrator LOGIN' with the same --db and --url prints a link by which one chooses a password"
     )
 
 
 PAGES = (
-    Page("/sign-in", sign_in, Who.NOBODY, posts=True, limit="sign_in"),
-    Page("/sign-out", sign_out, Who.SOMEBODY, posts=True),
-    Page("/invitation/{token}", invitation, Who.NOBODY, posts=True, limit="sign_in"),
-    Page("/account", account, Who.SOMEBODY, posts=True, limit="sign_in"),
+    Page(
+        "/sign-in",
+        sign_in,
+        Permission.PUBLIC,
+        posts=True,
+        limit="sign_in",
+        budget=PLAIN,
+        attempt=sign_in_attempt,
+    ),
+    Page("/sign-out", sign_out, Permission.OWN, posts=True, budget=PLAIN),
+    Page("/invitation/{token}", invitation, Permission.PUBLIC, posts=True, limit="sign_in", budget=PLAIN),
+    Page(
+        "/account",
+        account,
+        Permission.OWN,
+        posts=True,
+        limit="sign_in",
+        budget=PLAIN,
+        attempt=account_attempt,
+    ),
 )

@@ -5,9 +5,11 @@ from __future__ import annotations
 from urllib.parse import quote
 
 from coursework.database.people import people, person_by_who, put_account, put_person
+from coursework.database.permissions import ADMINISTRATOR, Permission
+from coursework.site.frame.budgets import PLAIN
 from coursework.site.frame.limits import FREE
 from coursework.site.frame.settings import Entrance, Site
-from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who, local
+from coursework.site.frame.visits import Page, Refused, Reply, Visit, local
 
 _YEAR = 365 * 24 * 3600
 
@@ -16,7 +18,7 @@ def first(visit: Visit) -> Reply:
     """Where who comes goes on."""
     if visit.person is None:
         return Reply(goto=door_to(visit))
-    return Reply(goto="/desk" if visit.person.is_staff else "/practice")
+    return Reply(goto="/desk" if visit.person.may(Permission.DESK) else "/practice")
 
 
 def door_to(visit: Visit) -> str:
@@ -64,13 +66,13 @@ def owner(site: Site) -> int:
         return int(known.id)
     with site.store.begin() as connection:
         person = put_person(connection, who="owner", name="", lang="", columns={})
-        put_account(connection, person, login="owner", role="instructor")
+        put_account(connection, person, login="owner", role=ADMINISTRATOR)
     return person
 
 
 PAGES = (
-    Page("/", first, Who.NOBODY),
-    Page("/static/{name}", shared_file, Who.NOBODY, limit=FREE),
-    Page("/language", choose_language, Who.NOBODY, posts=True),
-    Page("/who", choose_person, Who.NOBODY, posts=True),
+    Page("/", first, Permission.PUBLIC),
+    Page("/static/{name}", shared_file, Permission.PUBLIC, limit=FREE),
+    Page("/language", choose_language, Permission.PUBLIC, posts=True, budget=PLAIN),
+    Page("/who", choose_person, Permission.PUBLIC, posts=True, budget=PLAIN),
 )

@@ -9,23 +9,24 @@ from threading import BoundedSemaphore
 from argon2 import PasswordHasher
 from argon2.exceptions import Argon2Error, InvalidHash
 
+from coursework.site.people.common_passwords import is_common
+
 SHORTEST, LONGEST = 10, 200  #: characters
-_DIFFERENT = 5  #: characters that are not alike
 #: One try takes 19 MiB; no more than so many are made at a time by a process, the others wait.
 _HASHER = PasswordHasher(time_cost=2, memory_cost=19 * 1024, parallelism=1)
 _AT_A_TIME = BoundedSemaphore(4)
 
 
 def weakness(password: str, *known: str) -> str:
-    """Why a password will not do: ``short``, ``long``, ``simple``, or ``known`` where it says who one is; nothing where it will."""
+    """Why a password will not do: ``short``, ``long``, ``known`` where it says who one is, or ``common``; nothing where it will."""
     told = _plain(password)
     if len(told) < SHORTEST:
         return "short"
     if len(told) > LONGEST:
         return "long"
-    if len(set(told)) < _DIFFERENT:
-        return "simple"
-    return "known" if any(told.casefold() == _plain(one).casefold() for one in known if one) else ""
+    if any(told.casefold() == _plain(one).casefold() for one in known if one):
+        return "known"
+    return "common" if is_common(told, *known) else ""
 
 
 def kept(password: str) -> str:

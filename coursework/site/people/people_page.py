@@ -1,4 +1,4 @@
-"""The desk's page of people: who is on the site, who may teach, and the invitations by which they come in."""
+"""The desk's page of people: who is on the site, what they may, and the invitations by which they come in."""
 
 from __future__ import annotations
 
@@ -6,27 +6,27 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
+from urllib.parse import urlsplit
 
 from sqlalchemy import Connection
 
-from coursework.database.accounts import (
-    INSTRUCTOR,
-    ROLES,
-    STUDENT,
-    account_by_login,
-    accounts,
-    is_last_instructor,
-    set_role,
-)
-from coursework.database.audit import note
-from coursework.database.people import people, person_by_id, put_person
+from coursework.database.accounts import account_by_login, accounts, is_last_administrator, set_role
+from coursework.database.areas import areas_of, groups_known, put_areas
+from coursework.database.audit import note, noted
+from coursework.database.desk import listed
+from coursework.database.identities import separate, ties_of
+from coursework.database.people import people, person_by_id, person_by_who, put_person
+from coursework.database.permissions import ASSISTANT, ROLES, STAFF, STUDENT, Area, Permission, may, to_invite
+from coursework.lti.storage import Storage
 from coursework.making.identity import EMAIL, LOGIN, plain
 from coursework.making.roster import Student, read_roster
-from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit, Who
+from coursework.site.desk.class_at_hand import called
+from coursework.site.frame.budgets import DESK_FILE, read_apart
+from coursework.site.frame.visits import Page, Refused, Reply, Upload, Visit
 from coursework.site.people.accounts import DAYS, as_login, invited
 from coursework.system.tables import csv_file
 
-_FILES = 4 * 1024 * 1024
+_ANY = "*"  #: of a form: every assignment, or the whole class
 
 
 class Line(NamedTuple):
@@ -52,12 +52,21 @@ class Link(NamedTuple):
 
 
 def everybody(visit: Visit) -> Reply:
-    """Who is on the site; forms of the page invite some of them."""
+    """The people of the site; forms of the page invite some of them."""
     if visit.posted:
         return _invite(visit)
     with visit.site.store.reading() as connection:
         lines = _lines(visit, connection)
-    return visit.page("site_people", lines=lines, added=_count(visit.query.get("added", "")))
+    may_invite = {role: may(visit.who, to_invite(role)) for role in ROLES}
+    return visit.page(
+        "site_people", lines=lines, added=_count(visit.query.get("added", "")), may_invite=may_invite,
+        staff_roles=_staff_roles(visit), left=bool(visit.query.get("left")),
+    )  # fmt: skip
+
+
+def _staff_roles(visit: Visit) -> list[str]:
+    """The roles with which somebody new of the staff can be added."""
+    return [role for role in ROLES if role in STAFF] if visit.who.may(Permission.PEOPLE_INVITE_STAFF) else []
 
 
 def _lines(visit: Visit, connection: Connection) -> list[Line]:
@@ -89,23 +98,30 @@ def _invite(visit: Visit) -> Reply:
     with visit.site.store.begin() as connection:
         lines = _lines(visit, connection)
         if visit.form.text("do").startswith("all"):
-            wanted = {str(one.id) for one in lines if one.state in ("none", "over")}
+            wanted = {
+                str(one.id)
+                for one in lines
+                if one.state in ("none", "over") and may(visit.who, to_invite(one.role))
+            }
         links = [_link(visit, connection, one) for one in lines if str(one.id) in wanted]
-        note(
-            connection,
-            visit.at,
-            visit.who.name,
-            "invited",
-            people=[o.id for o in lines if str(o.id) in wanted],
-        )
     if visit.form.text("do").endswith("file"):
         return Reply(kind="text/csv; charset=utf-8", data=_as_csv(links), file="invitations.csv")
     return visit.page("site_links", links=links, days=DAYS)
 
 
 def _link(visit: Visit, connection: Connection, one: Line) -> Link:
+    """Make a link for somebody whom the person who asks may invite; every link of the site's pages is made here.
+
+    Raises
+    ------
+    Refused
+        They may not, or the login is somebody else's.
+    """
+    visit.require(to_invite(one.role))
     _check_login(connection, one.login, one.id)
-    return Link(one.name, one.login, invited(visit.site, connection, one.id, one.login, one.role))
+    address = invited(visit.site, connection, one.id, one.login, one.role)
+    note(connection, visit.at, visit.actor, "invited", person=one.id, role=one.role)
+    return Link(one.name, one.login, address)
 
 
 def _check_login(connection: Connection, login: str, person: int) -> None:
@@ -123,41 +139,60 @@ def _as_csv(links: Sequence[Link]) -> bytes:
 
 
 def add(visit: Visit) -> Reply:
-    """The people of a roster, or one person by name and login."""
+    """Add the people of a roster, or one person by name and login, as students."""
     uploads = visit.form.files.get("roster", ())
-    students = _of_roster(uploads[0]) if uploads else _of_fields(visit)
-    role = INSTRUCTOR if visit.form.text("role") == INSTRUCTOR and not uploads else STUDENT
+    students = _of_roster(visit, uploads[0]) if uploads else [_of_fields(visit)]
     with visit.site.store.begin() as connection:
         before = {one.id for one in people(connection)}
-        ids = [put_person(connection, s.who, s.name, s.lang, s.columns) for s in students]
-        note(connection, visit.at, visit.who.name, "people added", people=sorted(set(ids) - before))
-        if role == INSTRUCTOR:
-            return _first_link(visit, connection, ids[0])
-    return Reply(goto=f"/desk/people?added={len(set(ids) - before)}")
+        ids = [_put(visit, connection, one) for one in students]
+        new = sorted(set(ids) - before)
+        note(connection, visit.at, visit.actor, "people added", people=new)
+    return Reply(goto=f"/desk/people?added={len(new)}")
 
 
-def _of_roster(upload: Upload) -> list[Student]:
+def _put(visit: Visit, connection: Connection, one: Student) -> int:
+    """Add somebody, or take in what a roster says of somebody who is known; a roster renames nobody of the staff.
+
+    Raises
+    ------
+    Refused
+        It names somebody of the staff, of whom the person who asks may change nothing.
+    """
+    known = person_by_who(connection, one.who)
+    if known is not None and (known.role or STUDENT) in STAFF:
+        visit.require(Permission.PEOPLE_ROLES)
+    return put_person(connection, one.who, one.name, one.lang, one.columns)
+
+
+def _of_roster(visit: Visit, upload: Upload) -> list[Student]:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "roster.csv"
         path.write_bytes(upload.data)
-        return read_roster(path)
+        students: list[Student] = read_apart(DESK_FILE, visit.said["refused"]["too_much"], read_roster, path)
+        return students
 
 
-def _of_fields(visit: Visit) -> list[Student]:
+def _of_fields(visit: Visit) -> Student:
     name, login = " ".join(visit.form.text("name").split())[:200], as_login(visit.form.text("login"))
     if not name or not login:
         raise Refused("bad_request", 422)
-    return [Student(name, "", {"email" if "@" in login else "login": login})]
+    return Student(name, "", {"email" if "@" in login else "login": login})
 
 
-def _first_link(visit: Visit, connection: Connection, person: int) -> Reply:
-    """The invitation of a new instructor, at once."""
-    one = person_by_id(connection, person)
-    line = Line(person, one.name, login_of(one), INSTRUCTOR, "none") if one else None
-    if line is None:
-        raise Refused("own", 404)
-    link = _link(visit, connection, line)
-    set_role(connection, person, INSTRUCTOR)
+def add_staff(visit: Visit) -> Reply:
+    """Add somebody of the staff by name and login, with the link by which they come in."""
+    _posted(visit)
+    one, role = _of_fields(visit), visit.form.text("role")
+    if role not in STAFF:
+        raise Refused("bad_request", 422)
+    with visit.site.store.begin() as connection:
+        person = _put(visit, connection, one)
+        note(connection, visit.at, visit.actor, "people added", people=[person])
+        known = accounts(connection).get(person)
+        if known is not None:
+            raise Refused("login_taken", 409, known.login)
+        line = Line(person, one.name, login_of(person_by_id(connection, person)), role, "none")
+        link = _link(visit, connection, line)
     return visit.page("site_links", links=[link], days=DAYS)
 
 
@@ -165,30 +200,97 @@ def _first_link(visit: Visit, connection: Connection, person: int) -> Reply:
 
 
 def one_person(visit: Visit) -> Reply:
-    """What the staff may do for somebody: invite them again, say what they may, give and erase what is kept of them."""
+    """The page of a person: the account, the role, what can be done for them."""
     with visit.site.store.reading() as connection:
         one = somebody(visit, connection)
         line = _line(visit, one, accounts(connection).get(one.id))
-        last = is_last_instructor(connection, one.id)
-    if not visit.posted:
-        return visit.page("site_person", line=line, last=last, columns=one.columns or {}, roles=ROLES)
+        last = is_last_administrator(connection, one.id)
+        areas = areas_of(connection, one.id)
+        groups = groups_known(connection)
+        assignments = [(about.id, called(about, visit.lang)) for about in listed(connection)]
+        ties = _ties(connection, one.id)
+    return visit.page(
+        "site_person", line=line, last=last, columns=one.columns or {}, roles=ROLES,
+        may_invite=may(visit.who, to_invite(line.role)), groups={**groups, **_gone(areas, groups)},
+        assignments=assignments, areas=areas, any=_ANY, ties=ties,
+    )  # fmt: skip
+
+
+def _gone(areas: Sequence[Area], groups: Any) -> dict[str, str]:
+    """The groups of an assistant that no roster names any more."""
+    return {one.group: one.group for one in areas if one.group is not None and one.group not in groups}
+
+
+def _ties(connection: Connection, person: int) -> list[tuple[Any, str]]:
+    """The accounts of platforms that open the site as a person, and how each was tied."""
+    lines = noted(connection, what=("connected a platform",), subject=person)
+    by_password = {str(line.about.get("platform")) for line in lines}
+    return [
+        (one, "by_password" if urlsplit(one.issuer).hostname in by_password else "by_platform")
+        for one in ties_of(connection, person)
+    ]
+
+
+def separate_tie(visit: Visit) -> Reply:
+    """Separate an account of a platform from a person, and end its sessions."""
+    _posted(visit)
     with visit.site.store.begin() as connection:
-        if visit.form.text("do") == "invite":
-            link = _link(visit, connection, line)
-            note(connection, visit.at, visit.who.name, "invited", people=[line.id])
-            return visit.page("site_links", links=[link], days=DAYS)
-        _other_role(visit, connection, line)
+        one = somebody(visit, connection)
+        gone = separate(connection, one.id, number(visit.form.text("tie")))
+        if gone is None:
+            raise Refused("own", 404)
+        about = {"person": one.id, "platform": urlsplit(gone[0]).hostname or gone[0]}
+        note(connection, visit.at, visit.actor, "separated from a platform", **about)
+    if visit.site.lti is not None:
+        Storage(visit.site.lti).end_sessions(gone[1], gone[0])
+    return Reply(goto=f"/desk/people/{one.id}")
+
+
+def invite_one(visit: Visit) -> Reply:
+    """Make a link by which one person chooses a password."""
+    _posted(visit)
+    with visit.site.store.begin() as connection:
+        one = somebody(visit, connection)
+        link = _link(visit, connection, _line(visit, one, accounts(connection).get(one.id)))
+    return visit.page("site_links", links=[link], days=DAYS)
+
+
+def change_role(visit: Visit) -> Reply:
+    """Give a person another role, and an assistant the groups and assignments that are ticked."""
+    _posted(visit)
+    role = visit.form.text("role")
+    with visit.site.store.begin() as connection:
+        one = somebody(visit, connection)
+        line = _line(visit, one, accounts(connection).get(one.id))
+        if role not in ROLES or not line.has_account:
+            raise Refused("bad_request", 422)
+        if role != line.role and is_last_administrator(connection, line.id):
+            raise Refused("last_administrator", 409)
+        needs_link = set_role(connection, line.id, role)
+        areas = _areas_of_form(visit, connection) if role == ASSISTANT else []
+        put_areas(connection, line.id, areas)
+        about = {"areas": "; ".join(map(_told, areas)) or "–"} if role == ASSISTANT else {}
+        note(connection, visit.at, visit.actor, "role", person=line.id, before=line.role, role=role, **about)
+        link = _link(visit, connection, line._replace(role=role)) if needs_link else None
+    if link is not None:
+        return visit.page("site_links", links=[link], days=DAYS, chooses_anew=True)
     return Reply(goto=f"/desk/people/{line.id}")
 
 
-def _other_role(visit: Visit, connection: Connection, line: Line) -> None:
-    role = visit.form.text("role")
-    if role not in ROLES or not line.has_account:
-        raise Refused("bad_request", 422)
-    if role != INSTRUCTOR and is_last_instructor(connection, line.id):
-        raise Refused("last_instructor", 409)
-    set_role(connection, line.id, role)
-    note(connection, visit.at, visit.who.name, "role", person=line.id, role=role)
+def _areas_of_form(visit: Visit, connection: Connection) -> list[Area]:
+    """The areas that a form ticks: each group in each assignment; nothing where one of the two lists is left empty."""
+    known, groups = {str(one.id): one.id for one in listed(connection)}, groups_known(connection)
+    numbers = visit.form.texts.get("assignment", ())
+    named = visit.form.texts.get("group", ())
+    where = [None] if _ANY in numbers else [known[one] for one in numbers if one in known]
+    before = {area.group for area in areas_of(connection, number(str(visit.path["person"])))}
+    whose = [None] if _ANY in named else [one for one in named if one in groups or one in before]
+    return [Area(assignment, group) for assignment in where for group in whose]
+
+
+def _told(area: Area) -> str:
+    """An area as the audit records it: the assignment's number and the group, ``*`` for every one."""
+    return f"{area.assignment or _ANY} / {_ANY if area.group is None else area.group}"
 
 
 def somebody(visit: Visit, connection: Connection) -> Any:
@@ -214,8 +316,26 @@ def _count(text: str) -> int | None:
     return number(text) if text else None
 
 
+def _posted(visit: Visit) -> None:
+    if not visit.posted:
+        raise Refused("method", 405)
+
+
 PAGES = (
-    Page("/desk/people", everybody, Who.STAFF, posts=True),
-    Page("/desk/people/add", add, Who.STAFF, posts=True, limit="upload", largest=_FILES),
-    Page("/desk/people/{person}", one_person, Who.STAFF, posts=True),
-)
+    Page(
+        "/desk/people", everybody, Permission.PEOPLE_READ, posts=True,
+        posting=Permission.PEOPLE_INVITE_STUDENTS, noted="links taken",
+    ),
+    Page("/desk/people/add", add, Permission.PEOPLE_ADD, posts=True, limit="upload", budget=DESK_FILE),
+    Page("/desk/people/add-staff", add_staff, Permission.PEOPLE_INVITE_STAFF, posts=True),
+    Page("/desk/people/{person}", one_person, Permission.PEOPLE_READ),
+    Page(
+        "/desk/people/{person}/invitation", invite_one, Permission.PEOPLE_INVITE_STUDENTS, posts=True,
+        of_staff=Permission.PEOPLE_INVITE_STAFF,
+    ),
+    Page(
+        "/desk/people/{person}/separate", separate_tie, Permission.PEOPLE_INVITE_STUDENTS, posts=True,
+        of_staff=Permission.PEOPLE_INVITE_STAFF,
+    ),
+    Page("/desk/people/{person}/role", change_role, Permission.PEOPLE_ROLES, posts=True),
+)  # fmt: skip

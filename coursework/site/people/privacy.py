@@ -8,25 +8,28 @@ import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from datetime import datetime
 from typing import Any
+from urllib.parse import urlencode
 
 from sqlalchemy import Connection
 
-from coursework.database.accounts import is_last_instructor
-from coursework.database.audit import note, noted
+from coursework.database.accounts import is_last_administrator
+from coursework.database.audit import Actor, kinds, note, noted
 from coursework.database.belongings import belongings, whose
 from coursework.database.erasing import erase
 from coursework.database.identities import known_as
 from coursework.database.people import people
+from coursework.database.permissions import Permission
 from coursework.language.words import words
 from coursework.lti.storage import Storage
 from coursework.making.students import file_stems
-from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+from coursework.site.frame.visits import Page, Refused, Reply, Visit
 from coursework.site.papers.telling import Told, all_told, told_to
+from coursework.site.people import scrubbing
 from coursework.site.people.people_page import number, somebody
 from coursework.system.tables import csv_text
 
 _READ_ME = {"fr": "LISEZ-MOI.txt", "en": "README.txt"}
-_LINES = 200  #: of the audit on a page
+_LINES = 100  #: of the audit on a page
 
 Rows = Sequence[Mapping[str, Any]]
 
@@ -42,9 +45,8 @@ def own_data(visit: Visit) -> Reply:
 
 def their_data(visit: Visit) -> Reply:
     """All that is kept of somebody, for the staff."""
-    with visit.site.store.begin() as connection:
+    with visit.site.store.reading() as connection:
         one = somebody(visit, connection)
-        note(connection, visit.at, visit.who.name, "data given", person=one.id)
         return _given(visit, connection, one.id, all_told)
 
 
@@ -107,8 +109,8 @@ def erase_person(visit: Visit) -> Reply:
     with visit.site.store.reading() as connection:
         one = somebody(visit, connection)
         who = whose(connection, one.id)
-        if is_last_instructor(connection, one.id):
-            raise Refused("last_instructor", 409)
+        if is_last_administrator(connection, one.id):
+            raise Refused("last_administrator", 409)
         kept = (
             {table: len(rows) for table, rows in belongings(connection, who).items() if rows} if who else {}
         )
@@ -123,15 +125,18 @@ def erase_person(visit: Visit) -> Reply:
             tables=visit.said["data"]["tables"],
         )
     with visit.site.store.begin() as connection:
-        if is_last_instructor(connection, one.id):
-            raise Refused("last_instructor", 409)
+        if is_last_administrator(connection, one.id):
+            raise Refused("last_administrator", 409)
         called = known_as(connection, one.id)
         gone = erase(connection, one.id)
-        by = "" if one.id == visit.who.id else visit.who.name
-        note(connection, visit.at, by, "erased", rows=sum(gone.values()))
+        by = Actor("", 0, visit.came_from) if one.id == visit.who.id else visit.actor
+        note(connection, visit.at, by, "erased", person=one.id, rows=sum(gone.values()))
     if visit.site.lti is not None:
         for issuer, subject in called:
             Storage(visit.site.lti).forget(subject, issuer)
+    if not scrubbing.scrub(visit.site):
+        scrubbing.scrub_until_done(visit.site)
+        return Reply(goto="/desk/people?left=1")
     return Reply(goto="/desk/people")
 
 
@@ -139,13 +144,20 @@ def erase_person(visit: Visit) -> Reply:
 
 
 def audit(visit: Visit) -> Reply:
-    """Who did what, the latest first."""
-    before = number(visit.query.get("before", ""))
+    """Who did what, the latest first, a hundred lines a page; of one person, or of one kind, where the query says so."""
+    asked = {name: visit.query.get(name, "").strip()[:200] for name in ("by", "what", "of")}
+    before, subject = number(visit.query.get("before", "")), number(asked["of"])
     with visit.site.store.reading() as connection:
-        lines = noted(connection, _LINES, before)
+        lines = noted(
+            connection, _LINES, before, by=asked["by"], what=[asked["what"]] if asked["what"] else [],
+            subject=subject or None,
+        )  # fmt: skip
         names = {one.id: (one.name, one.created) for one in people(connection)}
+        known = kinds(connection)
     shown = [(one, _about(one, names)) for one in lines]
-    return visit.page("site_audit", lines=shown, more=lines[-1].id if len(lines) == _LINES else 0)
+    of = names[subject][0] if subject in names else ""
+    more = urlencode({**asked, "before": lines[-1].id}) if len(lines) == _LINES else ""
+    return visit.page("site_audit", lines=shown, more=more, asked=asked, kinds=known, of=of)
 
 
 def _about(line: Any, names: Mapping[int, tuple[str, datetime]]) -> str:
@@ -160,8 +172,10 @@ def _about(line: Any, names: Mapping[int, tuple[str, datetime]]) -> str:
 
 
 PAGES: tuple[Page, ...] = (
-    Page("/account/data", own_data, Who.SOMEBODY, limit="upload"),
-    Page("/desk/people/{person}/data", their_data, Who.STAFF, limit="upload"),
-    Page("/desk/people/{person}/erase", erase_person, Who.STAFF, posts=True),
-    Page("/desk/audit", audit, Who.STAFF),
+    Page("/account/data", own_data, Permission.OWN, limit="upload"),
+    Page(
+        "/desk/people/{person}/data", their_data, Permission.PEOPLE_EXPORT, limit="upload", noted="data given"
+    ),
+    Page("/desk/people/{person}/erase", erase_person, Permission.PEOPLE_ERASE, posts=True),
+    Page("/desk/audit", audit, Permission.AUDIT_READ),
 )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
 from coursework.marking.marking import mark
 from coursework.motion.gauges import EFFECTS
@@ -13,8 +14,9 @@ from coursework.rendering.displayed import DisplayedAnimation
 from coursework.selfstudy.attempt import Checked
 from coursework.selfstudy.store import is_blank
 from coursework.sheets.answer_sheet import answer_sheet
+from coursework.site.frame.budgets import BOXES, PLAIN
 from coursework.site.frame.keeping import kept
-from coursework.site.frame.visits import Page, Refused, Reply, Visit, Who
+from coursework.site.frame.visits import Page, Refused, Reply, Visit
 from coursework.site.papers.own_assignment import to_hand_in
 from coursework.site.practice.begun import begun
 from coursework.site.practice.contents import called, contents, next_of
@@ -233,11 +235,11 @@ def _motion(variant: Any, told: bool) -> dict[str, Any]:
 
 
 PAGES = (
-    Page("/practice", course, Who.SOMEBODY),
-    Page("/practice/{exercise}", exercise, Who.SOMEBODY, posts=True),
-    Page("/practice/{exercise}/{seed}", sheet, Who.SOMEBODY, posts=True),
-    Page("/practice/{exercise}/{seed}/draft", draft, Who.SOMEBODY, posts=True),
-    Page("/practice/{exercise}/{seed}/read", read, Who.SOMEBODY, posts=True),
-    Page("/practice/{exercise}/{seed}/solution", solution, Who.SOMEBODY, posts=True),
-    Page("/practice/{exercise}/{seed}/motion", motion, Who.SOMEBODY),
+    Page("/practice", course, Permission.OWN),
+    Page("/practice/{exercise}", exercise, Permission.OWN, posts=True, budget=PLAIN),
+    Page("/practice/{exercise}/{seed}", sheet, Permission.OWN, posts=True, budget=BOXES),
+    Page("/practice/{exercise}/{seed}/draft", draft, Permission.OWN, posts=True, budget=BOXES),
+    Page("/practice/{exercise}/{seed}/read", read, Permission.OWN, posts=True, budget=BOXES),
+    Page("/practice/{exercise}/{seed}/solution", solution, Permission.OWN, posts=True, budget=PLAIN),
+    Page("/practice/{exercise}/{seed}/motion", motion, Permission.OWN),
 )

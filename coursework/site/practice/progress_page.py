@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import json
-
 from markupsafe import Markup
 
+from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
 from coursework.errors import BadInput
 from coursework.markup import markdown
 from coursework.selfstudy.advice import told_skills
-from coursework.selfstudy.progress import LaterVersion, NotProgress, Progress
+from coursework.selfstudy.progress import LaterVersion, TooLong, read_brought
 from coursework.selfstudy.store import FILE
-from coursework.site.frame.visits import Page, Reply, Visit, Who
+from coursework.site.frame.budgets import PROGRESS_FILE, read_apart
+from coursework.site.frame.visits import Page, Reply, Visit
 from coursework.site.practice.contents import called, contents, next_of
 
-_LARGEST = 4 * 1024 * 1024  #: bytes of a file that is brought
-_MOST = 50_000  #: entries of one
+_MOST = 6_000  #: entries of a file that is brought
+_MOST_KEPT = 30_000  #: entries of a person, with those that are brought
 
 
 def progress(visit: Visit) -> Reply:
@@ -49,16 +49,18 @@ def _brought(visit: Visit, kept: PersonProgress) -> int:
     found = next(iter(visit.form.files.get("file", ())), None)
     if found is None:
         raise BadInput(said["no_file"])
-    try:
-        theirs = Progress.read(found.data.decode("utf-8-sig"))
-        json.dumps([dict(one) for one in theirs], allow_nan=False)
-    except (NotProgress, ValueError):  # no UTF-8, or a number that no database of JSON takes
-        raise BadInput(said["not_progress"].format(found.name)) from None
-    except LaterVersion:
-        raise BadInput(said["later"].format(found.name)) from None
-    if len(theirs) > _MOST:
+    fault, theirs = read_apart(
+        PROGRESS_FILE, visit.said["refused"]["too_much"], read_brought, found.data, _MOST
+    )
+    if fault is LaterVersion:
+        raise BadInput(said["later"].format(found.name))
+    if fault is TooLong:
         raise BadInput(said["too_long"].format(found.name, _MOST))
+    if fault is not None:
+        raise BadInput(said["not_progress"].format(found.name))
     before = len(kept.progress)
+    if before + len(theirs) > _MOST_KEPT:
+        raise BadInput(said["too_long"].format(found.name, max(0, _MOST_KEPT - before)))
     kept.add(theirs)
     kept.refresh()
     return len(kept.progress) - before
@@ -71,6 +73,6 @@ def file(visit: Visit) -> Reply:
 
 
 PAGES = (
-    Page("/progress", progress, Who.SOMEBODY, posts=True, largest=_LARGEST),
-    Page(f"/progress/{FILE}", file, Who.SOMEBODY),
+    Page("/progress", progress, Permission.OWN, posts=True, budget=PROGRESS_FILE),
+    Page(f"/progress/{FILE}", file, Permission.OWN),
 )

@@ -12,6 +12,7 @@ from markupsafe import Markup
 
 from coursework.course.lessons import Lesson, taught_by
 from coursework.database.drafts import Box, drafts
+from coursework.database.permissions import Permission
 from coursework.database.progress import PersonProgress
 from coursework.errors import BadInput, CourseworkError
 from coursework.language.words import words
@@ -74,7 +75,7 @@ class Worksheet:
         self.visit, site = visit, visit.site
         if exercise not in site.course or not re.fullmatch(r"0|[1-9][0-9]{0,15}", seed):
             raise Refused("page", 404)
-        if not visit.who.is_staff and not site.pool.holds(exercise, int(seed)):
+        if not visit.who.may(Permission.PRACTICE_ANY) and not site.pool.holds(exercise, int(seed)):
             raise Refused("own", 404)
         if not site.course.folder.has_solutions:
             raise BadInput(words(visit.lang)["study"]["no_solutions"])

@@ -23,7 +23,7 @@ from coursework.database.tables import assignment
 from coursework.errors import CourseworkError
 from coursework.making.assignment import assignment_of
 from coursework.making.dealing import deal
-from coursework.making.issued import issued_content
+from coursework.making.issued import SECRET, issued_content
 from coursework.making.roster import Student
 from coursework.site.frame.settings import Site
 from coursework.system.processes import processes, workers
@@ -134,16 +134,15 @@ def _dealt(root: str, wanted: Wanted) -> _Outcome:
     course = opened(root, Variant)
     asked = assignment_of(wanted.name, wanted.table, course)
     found = deal(course, asked, wanted.students, [wanted.lang], wanted.before, wanted.make_up)
-    return _Outcome(issued_content(found.issues, asked), found.notes)
+    return _Outcome(issued_content(found.issues, asked, asked.secret or found.secret), found.notes)
 
 
 def _keep(site: Site, wanted: Wanted, found: _Outcome, by: str, what: str) -> int:
     """All of it is issued, or nothing."""
     with site.store.begin() as connection:
         number = put_issued(connection, found.content, wanted.name)
-        connection.execute(
-            update(assignment).where(assignment.c.id == number).values(asked=dict(wanted.table))
-        )
+        asked = {key: value for key, value in wanted.table.items() if key != SECRET}  # it has its own column
+        connection.execute(update(assignment).where(assignment.c.id == number).values(asked=asked))
         note(
             connection, site.clock(), by, what, assignment=wanted.name, students=len(wanted.students),
             make_up=list(wanted.make_up),

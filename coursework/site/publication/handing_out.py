@@ -22,6 +22,7 @@ from coursework.errors import BadInput
 from coursework.making.assignment import FILES, OPTIONS, Assignment, assignment_of, table_of
 from coursework.making.issued import Issued
 from coursework.making.roster import Student, read_roster
+from coursework.site.frame.budgets import DESK_FILE, read_apart
 from coursework.site.frame.visits import Upload, Visit
 from coursework.site.publication.dealings import Wanted
 
@@ -166,7 +167,10 @@ def roster(visit: Visit) -> list[Student]:
             path = Path(folder) / "roster.csv"
             path.write_bytes(sent.data)
             try:
-                return read_roster(path)
+                students: list[Student] = read_apart(
+                    DESK_FILE, visit.said["refused"]["too_much"], read_roster, path
+                )
+                return students
             except BadInput as fault:
                 raise BadInput(str(fault).replace(str(path), "roster.csv")) from None
     return students_with_accounts(visit) if visit.form.text("accounts") else []

@@ -11,8 +11,10 @@ from typing import Any, NamedTuple
 
 from sqlalchemy import Connection, Select, func, select
 
+from coursework.course.secrecy import Secret
 from coursework.database.assignments import issued_content, issued_of, put_issued
 from coursework.database.audit import note
+from coursework.database.permissions import Permission
 from coursework.database.publication import (
     ANSWERS,
     FEEDBACK,
@@ -43,14 +45,14 @@ from coursework.making.dealing import deal
 from coursework.making.issued import Issued
 from coursework.making.issued import issued_content as content_of
 from coursework.making.roster import Student
+from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.moments import exact_text, field_text, from_field, moment_text, zone_name
-from coursework.site.frame.visits import Form, Page, Refused, Reply, Visit, Who
+from coursework.site.frame.visits import Form, Page, Refused, Reply, Visit
 from coursework.site.papers.own_assignment import State, state_of
 from coursework.site.papers.own_paper import OwnPaper, own_paper
 from coursework.site.publication import dealings, handing_out
 from coursework.site.publication.dealings import Wanted
 
-_UPLOAD = 4 * 1024 * 1024
 _NOTED = 30  #: lines of what was done that a page shows
 
 
@@ -366,7 +368,7 @@ def make_up(visit: Visit) -> Reply:
 def _deal_more(visit: Visit, students: Sequence[Student], names: Sequence[str], what: str) -> Reply:
     with visit.site.store.reading() as connection:
         one = assignment_here(visit, connection)
-        content = issued_content(connection, one.id)
+        content = issued_content(connection, one.id, secret=True)
     if one.asked is None:
         return _page(
             visit, one, one.publication or Publication(), problem=visit.said["publishing"]["no_file"]
@@ -392,6 +394,7 @@ def preview(visit: Visit) -> Reply:
         asked,
         [Student(visit.said["publishing"]["nobody"])],
         [handing_out.spoken(visit, asked)],
+        secret=Secret(visit.site.secret[:16]).under("preview"),
     )
     student = made.issues[0].student
     own = OwnPaper(
@@ -457,29 +460,39 @@ def _seen(visit: Visit, one: Handed, state: State, own: OwnPaper, look: str) -> 
 def issued_file(visit: Visit) -> Reply:
     """What was issued, as ``grade`` takes it."""
     with visit.site.store.reading() as connection:
-        content = issued_content(connection, assignment_here(visit, connection).id)
+        number = assignment_here(visit, connection).id
+        # Who may not publish draws no paper that is to come.
+        may_draw = visit.who.may(Permission.ASSIGNMENTS_PUBLISH, number, "")
+        content = issued_content(connection, number, secret=may_draw)
     data = json.dumps(content, ensure_ascii=False, indent=1).encode("utf-8", "backslashreplace")
     return Reply(kind="application/json", data=data, file="issued.json")
 
 
 PAGES = (
-    Page("/desk/assignments", listed, Who.STAFF),
-    Page("/desk/assignments/new", new, Who.STAFF, posts=True, limit="upload", largest=_UPLOAD),
-    Page("/desk/assignments/dealing/{token}", dealing, Who.STAFF),
-    Page("/desk/assignments/{number:int}", shown, Who.STAFF),
-    Page("/desk/assignments/{number:int}/publish", put_out, Who.STAFF, posts=True),
-    Page("/desk/assignments/{number:int}/unpublish", take_back, Who.STAFF, posts=True),
-    Page("/desk/assignments/{number:int}/extend", give_more, Who.STAFF, posts=True),
+    Page("/desk/assignments", listed, Permission.ASSIGNMENTS_READ),
+    Page(
+        "/desk/assignments/new",
+        new,
+        Permission.ASSIGNMENTS_PUBLISH,
+        posts=True,
+        limit="upload",
+        budget=DESK_FILE,
+    ),
+    Page("/desk/assignments/dealing/{token}", dealing, Permission.ASSIGNMENTS_PUBLISH),
+    Page("/desk/assignments/{number:int}", shown, Permission.ASSIGNMENTS_READ),
+    Page("/desk/assignments/{number:int}/publish", put_out, Permission.ASSIGNMENTS_PUBLISH, posts=True),
+    Page("/desk/assignments/{number:int}/unpublish", take_back, Permission.ASSIGNMENTS_PUBLISH, posts=True),
+    Page("/desk/assignments/{number:int}/extend", give_more, Permission.ASSIGNMENTS_PUBLISH, posts=True),
     Page(
         "/desk/assignments/{number:int}/roster",
         add_late,
-        Who.STAFF,
+        Permission.ASSIGNMENTS_PUBLISH,
         posts=True,
         limit="upload",
-        largest=_UPLOAD,
+        budget=DESK_FILE,
     ),
-    Page("/desk/assignments/{number:int}/make-up", make_up, Who.STAFF, posts=True),
-    Page("/desk/assignments/{number:int}/preview", preview, Who.STAFF),
-    Page("/desk/assignments/{number:int}/as/{person:int}", as_somebody, Who.STAFF),
-    Page("/desk/assignments/{number:int}/issued.json", issued_file, Who.STAFF),
+    Page("/desk/assignments/{number:int}/make-up", make_up, Permission.ASSIGNMENTS_PUBLISH, posts=True),
+    Page("/desk/assignments/{number:int}/preview", preview, Permission.ASSIGNMENTS_READ),
+    Page("/desk/assignments/{number:int}/as/{person:int}", as_somebody, Permission.ASSIGNMENTS_READ),
+    Page("/desk/assignments/{number:int}/issued.json", issued_file, Permission.ASSIGNMENTS_READ),
 )

@@ -1,0 +1,120 @@
+"""Arrival of requests: stamped before any queue of threads or locks, since that is the time that counts.
+
+What is sent counts from the moment its last byte arrived, or from the moment its first bytes did where the rest followed within
+:data:`GRACE`: a slow line costs nobody anything, and a body that trickles buys no time beyond that.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Awaitable, Callable, MutableMapping
+from contextvars import ContextVar
+from datetime import datetime, timedelta
+from typing import Any
+
+GRACE = timedelta(seconds=5)  #: in which a body may follow its first bytes
+RECEIVED = "coursework.received"  #: where a server says in a request's state when the last bytes of its connection came
+_AHEAD = 64 * 1024  #: bytes of a body that are taken in before anybody asks for them
+
+Message = MutableMapping[str, Any]
+Receive = Callable[[], Awaitable[Message]]
+Send = Callable[[Message], Awaitable[None]]
+Clock = Callable[[], datetime]
+
+
+class Arrival:
+    """Arrival of one request: its first bytes, and the last ones so far."""
+
+    def __init__(self, clock: Clock, state: MutableMapping[str, Any]):
+        self._clock, self._received = clock, state.get(RECEIVED)
+        self.first = self.last = self._now()
+
+    def more(self) -> None:
+        """Note that more bytes have come."""
+        self.last = self._now()
+
+    @property
+    def counts(self) -> datetime:
+        """The time that counts."""
+        return max(self.first, self.last - GRACE)
+
+    def _now(self) -> datetime:
+        waited = 0.0 if self._received is None else max(0.0, time.monotonic() - self._received[0])
+        return self._clock() - timedelta(seconds=waited)
+
+
+_arrival: ContextVar[Arrival | None] = ContextVar("arrival", default=None)
+
+
+def arrived(clock: Clock) -> datetime:
+    """The time that counts for the request that is answered: its arrival where it sends something, else now."""
+    one = _arrival.get()
+    return clock() if one is None else one.counts
+
+
+class Arrivals:
+    """ASGI middleware that stamps what is sent, and takes in small bodies while the request waits for its turn."""
+
+    def __init__(self, app: Callable[..., Awaitable[None]], clock: Clock):
+        self._app, self._clock = app, clock
+
+    async def __call__(self, scope: MutableMapping[str, Any], receive: Receive, send: Send) -> None:
+        if scope["type"] != "http" or scope["method"] != "POST":
+            await self._app(scope, receive, send)
+            return
+        one = Arrival(self._clock, scope.get("state") or {})
+        token = _arrival.set(one)
+        body = _Body(receive, one)
+        ahead = asyncio.ensure_future(body.read_ahead()) if _is_small(scope) else None
+        try:
+            await self._app(scope, body.receive, send)
+        finally:
+            if ahead is not None:
+                ahead.cancel()
+            _arrival.reset(token)
+
+
+def _is_small(scope: MutableMapping[str, Any]) -> bool:
+    told = {name: value for name, value in scope["headers"] if name in (b"content-length", b"expect")}
+    length = told.get(b"content-length", b"")
+    return b"expect" not in told and length.isdigit() and len(length) < 9 and int(length) <= _AHEAD
+
+
+class _Body:
+    """Body of a request."""
+
+    def __init__(self, receive: Receive, arrival: Arrival):
+        self._receive, self._arrival = receive, arrival
+        self._read: asyncio.Queue[Message | Exception] = asyncio.Queue()
+        self._is_ahead = False
+
+    async def read_ahead(self) -> None:
+        """Take in what comes until it is whole or more than was told."""
+        self._is_ahead, size, is_more = True, 0, True
+        while is_more and size <= _AHEAD:
+            try:
+                message = await self._stamped()
+            except Exception as fault:  # told to who asks for the body
+                self._is_ahead = False
+                self._read.put_nowait(fault)
+                return
+            size += len(message.get("body", b""))
+            is_more = message["type"] == "http.request" and bool(message.get("more_body"))
+            self._is_ahead = is_more and size <= _AHEAD
+            self._read.put_nowait(message)
+
+    async def receive(self) -> Message:
+        """The next piece."""
+        if self._read.empty() and not self._is_ahead:
+            return await self._stamped()
+        found = await self._read.get()
+        if isinstance(found, Exception):
+            raise found
+        return found
+
+    async def _stamped(self) -> Message:
+        message = await self._receive()
+        if message["type"] == "http.request" and message.get("body"):
+            self._arrival.more()
+        return message

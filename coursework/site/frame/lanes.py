@@ -1,0 +1,53 @@
+"""Threads that answer requests: those that store what is sent go before those that show pages, in threads of their own."""
+
+from __future__ import annotations
+
+import asyncio
+import contextvars
+from collections.abc import Awaitable, Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from threading import Lock
+from typing import Any, TypeVar
+
+from starlette.concurrency import run_in_threadpool
+
+from coursework.database.store import CONNECTIONS, Store
+
+_SHORT = 3  #: requests that a process stores at the same time; one where the database takes one writer
+#: Pages that a process makes at the same time: no request uses more than two connections to the database, so that none waits
+#: for one that never comes.
+PAGES_AT_ONCE = CONNECTIONS // 2 - _SHORT
+_PAUSE, _LONGEST = 0.05, 3.0  #: seconds between two looks of a page that waits, and that it waits at most
+
+T = TypeVar("T")
+Run = Callable[..., Awaitable[Any]]  #: calls a function in a thread
+
+
+class Lanes:
+    """Two lanes of threads of one process."""
+
+    def __init__(self, store: Store):
+        self._threads = ThreadPoolExecutor(1 if store.has_one_writer else _SHORT, thread_name_prefix="short")
+        self._lock, self._count = Lock(), 0
+
+    async def short(self, function: Callable[..., T], *told: Any) -> T:
+        """Call a function that takes a few milliseconds, in the order in which requests came."""
+        self._add(1)
+        try:
+            call = partial(contextvars.copy_context().run, function, *told)
+            return await asyncio.get_running_loop().run_in_executor(self._threads, call)
+        finally:
+            self._add(-1)
+
+    async def usual(self, function: Callable[..., T], *told: Any) -> T:
+        """Call a function that may take long, once nothing short waits, or after a moment."""
+        waited = 0.0
+        while self._count and waited < _LONGEST:
+            await asyncio.sleep(_PAUSE)
+            waited += _PAUSE
+        return await run_in_threadpool(function, *told)
+
+    def _add(self, more: int) -> None:
+        with self._lock:
+            self._count += more

@@ -1,0 +1,47 @@
+"""Log of what concerns security: who signed in or out, from where, and what was refused.
+
+A person is a number of the table ``person``; no line holds a name, a login, an answer or a token. Times are those of the log, UTC.
+"""
+
+from __future__ import annotations
+
+import logging
+
+from starlette.requests import Request
+
+from coursework.site.frame.limits import network
+from coursework.site.frame.visits import Refused
+
+LOG = logging.getLogger("coursework.security")
+
+SIGNED_IN, SIGNED_OUT, FAILED = "signed in", "signed out", "sign-in failed"
+_BY_STATUS = {
+    400: "body refused",
+    403: "no permission",
+    408: "body refused",
+    411: "body refused",
+    413: "body refused",
+    415: "body refused",
+    421: "another host",
+    429: "too often",
+}
+_BY_SENTENCE = {"form": "forged form", "own": "no permission", "role": "no permission"}
+
+
+def event_of(why: Refused) -> str:
+    """Return what a refusal is called in the log; "" for one that concerns no security."""
+    return _BY_SENTENCE.get(why.sentence) or _BY_STATUS.get(why.status, "")
+
+
+def happened(request: Request, event: str, person: int = 0) -> None:
+    """Note an event of a request, to be logged with its reply; ``person`` is its number, 0 for nobody."""
+    if event:
+        request.state.events = [*getattr(request.state, "events", ()), (event, person)]
+
+
+def log_events(request: Request, path: str, address: str) -> None:
+    """Write the events of a request, a line each, with the page's path as the table of pages has it."""
+    for event, person in getattr(request.state, "events", ()):
+        level = logging.INFO if event in (SIGNED_IN, SIGNED_OUT) else logging.WARNING
+        who = f"person {person}" if person else "nobody"
+        LOG.log(level, "security: %s, %s %s, %s, from %s", event, request.method, path, who, network(address))

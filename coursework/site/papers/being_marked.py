@@ -1,0 +1,38 @@
+"""Hand-ins that wait for their marks, as their pages tell it."""
+
+from __future__ import annotations
+
+from datetime import timedelta
+from typing import NamedTuple
+
+from coursework.database.jobs import before, job_of
+from coursework.site.frame.moments import length_text
+from coursework.site.frame.visits import Visit
+
+_SOON, _EACH, _LONGEST = (
+    3.0,
+    0.2,
+    60.0,
+)  #: seconds until a page looks again: at least, for each before it, at most
+
+
+class Marking(NamedTuple):
+    """Hand-in that has no marks yet."""
+
+    says: str
+    seconds: int  #: until the page looks again; 0 where that is of no use
+
+
+def being_marked(visit: Visit, delivery: int) -> Marking | None:
+    """Return what is told of a hand-in that waits for its marks; None of one that is marked."""
+    said = visit.said["assignments"]
+    with visit.site.store.reading() as connection:
+        one = job_of(connection, delivery)
+        if one is None or not visit.site.has_worker:
+            return None
+        if one.fault:
+            return Marking(str(said["not_marked"]), 0)
+        seconds = round(min(_LONGEST, _SOON + _EACH * before(connection, one)))
+    return Marking(
+        str(said["being_marked"]).format(length_text(timedelta(seconds=seconds), visit.lang)), seconds
+    )

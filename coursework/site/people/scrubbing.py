@@ -1,0 +1,48 @@
+"""No byte of an erased person stays in the files of the site's databases, also where another process held them at that moment."""
+
+from __future__ import annotations
+
+import logging
+from threading import Event, Thread
+
+from coursework.database.settings import drop_value, put_value, value_of
+from coursework.errors import CourseworkError
+from coursework.lti.storage import Storage
+from coursework.site.frame.settings import Site
+
+LOG = logging.getLogger("coursework.site")
+_LEFT = "bytes left"  #: the setting that stands while something is left
+_AGAIN = 30.0  #: seconds between tries
+
+
+def scrub(site: Site) -> bool:
+    """Rewrite the files without what was deleted. Return False where something is left, which is tried again at the next start."""
+    done = site.store.scrub()
+    if site.lti is not None:
+        done = Storage(site.lti).scrub() and done
+    with site.store.begin() as connection:
+        if done:
+            drop_value(connection, _LEFT)
+        else:
+            put_value(connection, _LEFT, True)
+    return done
+
+
+def is_left(site: Site) -> bool:
+    """Return True while deleted bytes are left in a file."""
+    with site.store.reading() as connection:
+        return bool(value_of(connection, _LEFT))
+
+
+def scrub_until_done(site: Site, stop: Event | None = None) -> None:
+    """Try again, beside the requests, until nothing is left."""
+
+    def work() -> None:
+        while not (stop or Event()).wait(_AGAIN):
+            try:
+                if not is_left(site) or scrub(site):
+                    return
+            except CourseworkError as fault:
+                LOG.error("erased bytes are still in the files: %s", type(fault).__name__)
+
+    Thread(target=work, name="scrub", daemon=True).start()

@@ -1,0 +1,162 @@
+"""Worker of the site: it marks what was handed in and hands in what was saved, beside the requests and from a queue in the
+database.
+
+One process does this for all that answer. It may be killed at any moment: what it had begun is taken again.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+from functools import partial
+
+from sqlalchemy import select
+
+from coursework.database.desk import unmarked
+from coursework.database.jobs import (
+    MARK,
+    RESCUE,
+    Job,
+    done,
+    drop_jobs,
+    job_of,
+    put_back,
+    put_job,
+    take_job,
+    waiting,
+)
+from coursework.database.marking import mark_delivery
+from coursework.database.publication import Publication
+from coursework.database.tables import assignment, extension
+from coursework.errors import CourseworkError
+from coursework.site.frame.settings import Site
+from coursework.site.papers.handing_in import close_passed, rescue
+
+LOG = logging.getLogger("coursework.site")
+#: After a date has passed, until what is in the boxes is handed in: what arrived in time may wait for the database still.
+SETTLES = timedelta(seconds=20)
+_POLL = 0.3  #: seconds between two looks where there is nothing to do
+_DATES = 1.0  #: seconds between two looks at the dates
+#: Marking waits for a moment without a hand-in, so that it takes nothing from a rush; but not for long.
+_QUIET, _LONGEST = timedelta(seconds=0.5), timedelta(seconds=5)
+_LONG_AGO = datetime.min.replace(tzinfo=UTC)
+_AWAY = 2.0  #: seconds before it is tried again where the database is away
+
+
+class Worker:
+    """Worker of one site."""
+
+    def __init__(self, site: Site, name: str):
+        self.site, self.name = site, name
+
+    def run(self) -> None:
+        """Work until the process is told to end."""
+        self._tell_faults(self.take_over)
+        dates = 0.0
+        while True:
+            if time.monotonic() - dates > _DATES:
+                self._tell_faults(self.close)
+                dates = time.monotonic()
+            if not self._tell_faults(self.work_once):
+                time.sleep(_POLL)
+
+    def _tell_faults(self, work: Callable[[], bool | None]) -> bool:
+        try:
+            return bool(work())
+        except CourseworkError as fault:
+            LOG.error("the worker: %s", fault)
+            time.sleep(_AWAY)
+            return False
+
+    def take_over(self) -> None:
+        """Put in the queue what was handed in and is in no queue: a version without a worker took it, or a backup did."""
+        now = self.site.clock()
+        with self.site.store.reading() as connection:
+            numbers = list(connection.execute(select(assignment.c.id)).scalars())
+            left = [(number, made) for number in numbers for made in unmarked(connection, number, now)]
+            left = [(number, made) for number, made in left if job_of(connection, made) is None]
+        if left:
+            with self.site.store.begin() as connection:
+                for number, made in left:
+                    put_job(connection, MARK, number, now, delivery=made)
+
+    # --------------------------------------------------------------------- jobs
+
+    def work_once(self) -> bool:
+        """Do one job; False where there is none to do now."""
+        if not self._is_time():
+            return False
+        with self.site.store.begin() as connection:
+            one = take_job(connection, self.name, self.site.clock())
+        if one is None:
+            return False
+        try:
+            self._do(one)
+        except Exception as fault:
+            self._failed(one, fault)
+        return True
+
+    def _is_time(self) -> bool:
+        now = self.site.clock()
+        with self.site.store.reading() as connection:
+            self.site.follow(connection)
+            count, first, last = waiting(connection)
+        if not count or first is None or last is None:
+            return False
+        is_rush = timedelta(0) <= now - last < _QUIET
+        return not is_rush or now - first > _LONGEST
+
+    def _do(self, one: Job) -> None:
+        if one.kind == MARK and one.delivery is not None:
+            mark_delivery(self.site.course, self.site.store, one.delivery)
+        elif one.kind == RESCUE and one.person is not None:
+            rescue(self.site, one.assignment, one.person, self.site.clock())
+        with self.site.store.begin() as connection:
+            done(connection, one.id)
+            if one.kind == MARK and one.delivery is not None:
+                drop_jobs(connection, one.delivery)
+
+    def _failed(self, one: Job, fault: Exception) -> None:
+        name = type(fault).__name__
+        with self.site.store.begin() as connection:
+            is_over = put_back(connection, one, name)
+        what = f"delivery {one.delivery}" if one.kind == MARK else f"what person {one.person} saved"
+        LOG.error(
+            "%s of assignment %d failed, try %d%s: %s",
+            what,
+            one.assignment,
+            one.tries,
+            " and last" if is_over else "",
+            name,
+        )
+
+    # -------------------------------------------------------------------- dates
+
+    def close(self) -> None:
+        """Write down the dates that have passed, and hand in what was saved."""
+        now = self.site.clock()
+        with self.site.store.reading() as connection:
+            found = connection.execute(
+                select(assignment.c.id, assignment.c.published).where(assignment.c.published.is_not(None))
+            )
+            known = {row.id: Publication.of(row.published) for row in found}
+            more: dict[int, list[datetime]] = {}
+            for row in connection.execute(select(extension.c.assignment_id, extension.c.closes)):
+                more.setdefault(row.assignment_id, []).extend([row.closes] if row.closes else [])
+        for number, said in known.items():
+            at = now - SETTLES if said.takes_saved else now
+            since = said.reached or _LONG_AGO
+            if any(since <= one < at for one in (*said.dates(), *more.get(number, ()))):
+                close_passed(self.site, number, at, partial(self._later, number))
+
+    def _later(self, number: int, person: int, fault: Exception) -> None:
+        """Try again with what somebody saved, and tell the staff where that fails too."""
+        with self.site.store.begin() as connection:
+            put_job(connection, RESCUE, number, self.site.clock(), person=person)
+
+
+def work(site: Site, name: str) -> None:
+    """Work for a site until this process is told to end."""
+    Worker(site, name).run()

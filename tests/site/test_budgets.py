@@ -1,0 +1,286 @@
+"""What one person may make the site do: bodies, files and requests within stated budgets, refused before they are read."""
+
+import json
+import socket
+import threading
+import tracemalloc
+from concurrent.futures import ThreadPoolExecutor
+from urllib.parse import urlencode, urlsplit
+
+import pytest
+from site_assignments import dealt
+from site_browser import served
+from site_people import MAX, ZOE, seal_of, signed_in
+from site_walk import Filled, filled, fillings
+
+from coursework.database.permissions import is_of_staff
+from coursework.gradebook.submissions import read_rows
+from coursework.site.application import PAGES
+from coursework.site.frame.budgets import ANSWER_FILE, HAND_IN, KILOBYTE, MEGABYTE, MOST_ROWS, Crowded, Places
+from coursework.site.frame.cookies import cookie_name
+from coursework.site.papers import assignments
+from coursework.system.processes import Exceeded, Means, confined
+
+STUDENTS = [page for page in PAGES if page.posts and not is_of_staff(page.needs)]
+PATIENCE = 60  #: seconds; a test that waits so long has failed
+HEADER = "student,exercise,seed,part,answer\n"
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    return Filled(f"sqlite:///{tmp_path_factory.mktemp('budgets')}/site.db")
+
+
+# ---------------------------------------------------------------------- the table of budgets
+
+
+def test_each_page_that_takes_something_of_a_student_states_its_budget():
+    assert not [page.path for page in STUDENTS if page.budget is None]
+
+
+def test_no_budget_of_students_is_more_than_is_stated():
+    """Bytes of a body; with files, seconds of a processor and memory of who reads them."""
+    for page in STUDENTS:
+        budget = page.means
+        if not budget.files:
+            assert budget.largest <= 256 * KILOBYTE, page.path
+            continue
+        assert budget.largest <= 2 * MEGABYTE + 4 * KILOBYTE, page.path
+        assert (budget.files, budget.at_once) == (1, 1), page.path
+        assert budget.reading is not None, page.path
+        assert budget.reading.seconds <= 4, page.path
+        assert budget.reading.memory <= 192 * MEGABYTE, page.path
+    assert all(ANSWER_FILE.by_ending[ending] == 256 * KILOBYTE for ending in (".csv", ".json"))
+
+
+def head(class_, url, path, length, kind="application/x-www-form-urlencoded", name=ZOE):
+    """The head of a form's request as a browser of somebody sends it."""
+    cookie = signed_in(class_.site.store, class_.ids[name])
+    lines = (
+        f"POST {path} HTTP/1.1", f"Host: {urlsplit(url).netloc}", f"Content-Type: {kind}", f"Content-Length: {length}",
+        f"Cookie: {cookie_name(False)}={cookie}", f"X-Seal: {seal_of(class_.site, cookie)}", "", "",
+    )  # fmt: skip
+    return "\r\n".join(lines).encode()
+
+
+def answered(url, data):
+    """The first bytes that come back for what was sent, while the line stays open."""
+    parts = urlsplit(url)
+    with socket.create_connection((parts.hostname, parts.port), timeout=PATIENCE) as line:
+        line.sendall(data)
+        return line.recv(65536)
+
+
+def test_what_is_over_a_budget_is_refused_by_its_head_alone(site):
+    """Not a byte of the body is sent: who waits for one never answers."""
+    told = {}
+    with served(site) as url:
+        for page in STUDENTS:
+            address = filled(page.path, fillings(site)[page.path].own)
+            for kind in ("application/x-www-form-urlencoded", "multipart/form-data; boundary=x"):
+                reply = answered(url, head(site, url, address, page.means.largest + 1, kind))
+                told[page.path, kind] = reply.split()[1]
+    assert {place: status for place, status in told.items() if status != b"413"} == {}
+
+
+def bodies(budget):
+    """The worst of each type that a form may have, all within the budget."""
+    room = budget.largest - 1024
+    yield "application/x-www-form-urlencoded", urlencode({"x": "%" * (room // 3 - 10)}).encode()
+    fields = "&".join(f"a{k}=" for k in range(budget.fields))[:room]
+    yield "application/x-www-form-urlencoded", fields.encode()
+    part = b'--x\r\nContent-Disposition: form-data; name="%d"\r\n\r\ny\r\n'
+    several = b"".join(part % k for k in range(budget.fields))[: room - 100]
+    yield "multipart/form-data; boundary=x", several + b"\r\n--x--\r\n"
+    one = b'--x\r\nContent-Disposition: form-data; name="file"; filename="a.ipynb"\r\n\r\n'
+    yield "multipart/form-data; boundary=x", one + b"[" * (room - 200) + b"\r\n--x--\r\n"
+
+
+def test_the_worst_body_within_a_budget_takes_little_memory(site):
+    """As much as a form of its size needs, whatever is in it."""
+    over = []
+    for page in STUDENTS:
+        address = filled(page.path, fillings(site)[page.path].own)
+        for kind, body in bodies(page.means):
+            browser = site.browser(ZOE)
+            headers = {"content-type": kind, "x-seal": browser.seal}
+            browser.post(address, content=body, headers=headers)
+            tracemalloc.start()
+            reply = browser.post(address, content=body, headers=headers)
+            most = tracemalloc.get_traced_memory()[1]
+            tracemalloc.stop()
+            if most > 24 * MEGABYTE or reply.status_code >= 500:
+                over.append((page.path, kind, len(body), most, reply.status_code))
+    assert not over
+
+
+# ------------------------------------------------------------------------------ files
+
+
+def sent(class_, number, name, data, lang="en", who=ZOE):
+    return class_.browser(who, lang).fill(f"/assignments/{number}/file", files={"file": (name, data)})
+
+
+def test_a_table_larger_than_a_paper_is_refused_and_says_how_large_it_may_be(class_of_three):
+    number = dealt(class_of_three)
+    large = (HEADER + "Zoé,grashof,1,part,1\n" * 400_000).encode()
+    for lang, said in (("en", "The most is 2 MB"), ("fr", "Le maximum est 2 MB")):
+        reply = sent(class_of_three, number, "a.csv", large, lang)
+        assert (reply.status_code, said in reply.text) == (413, True)
+    for name in ("a.csv", "A.CSV", "a.json"):
+        reply = sent(class_of_three, number, name, b" " * (256 * KILOBYTE + 1))
+        assert (reply.status_code, "256 kB" in reply.text) == (413, True)
+
+
+def test_more_rows_than_a_paper_has_are_told_in_the_students_language(class_of_three):
+    number = dealt(class_of_three)
+    rows = (HEADER + "Zoé,grashof,1,part,1\n" * (MOST_ROWS + 1)).encode()
+    for lang, said in (("en", f"more than {MOST_ROWS} rows"), ("fr", f"plus de {MOST_ROWS} lignes")):
+        reply = sent(class_of_three, number, "a.csv", rows, lang)
+        assert (reply.status_code, said in reply.text) == (422, True)
+
+
+def test_a_notebook_with_its_figures_is_taken(class_of_three):
+    """An honest file is larger than a table: pictures stand in it."""
+    number = dealt(class_of_three)
+    notebook = class_of_three.browser(ZOE).get(f"/assignments/{number}/notebook.ipynb").json()
+    notebook["cells"].append(
+        {
+            "cell_type": "markdown",
+            "metadata": {},
+            "source": ["![](data:image/png;base64," + "A" * 1_500_000 + ")"],
+        }
+    )
+    reply = sent(class_of_three, number, "mine.ipynb", json.dumps(notebook).encode())
+    assert reply.status_code == 422  # nothing is answered in it
+    assert "holds no answer" in reply.text
+
+
+def test_a_file_that_takes_too_long_is_ended_and_told(class_of_three, monkeypatch):
+    number = dealt(class_of_three)
+    monkeypatch.setattr(assignments, "ANSWER_FILE", ANSWER_FILE._replace(reading=Means(0.0, MEGABYTE)))
+    monkeypatch.setattr(assignments, "read_rows", for_ever)
+    for lang, said in (("en", "too much time"), ("fr", "trop de temps")):
+        reply = sent(class_of_three, number, "a.csv", b"x", lang)
+        assert (reply.status_code, said in reply.text) == (422, True)
+
+
+def test_one_person_uploads_one_file_at_a_time_and_others_are_answered(class_of_three, monkeypatch):
+    """Ten at once took five gigabytes, and every place of the process: another student's page did not come."""
+    number = dealt(class_of_three)
+    at_once, most, lock, go_on = 0, 0, threading.Lock(), threading.Event()
+
+    def slow(*told):
+        nonlocal at_once, most
+        with lock:
+            at_once += 1
+            most = max(most, at_once)
+        go_on.wait(PATIENCE)
+        with lock:
+            at_once -= 1
+        return []
+
+    monkeypatch.setattr(assignments, "_of_file", lambda *told: ({"e1-rA": "1", **dict(slow())}, []))
+    with served(class_of_three) as url, ThreadPoolExecutor(12) as threads:
+        import httpx
+
+        def upload(_):
+            browser = class_of_three.browser(ZOE)
+            cookies = dict(browser.cookies)
+            files = {"file": ("a.csv", HEADER.encode())}
+            return httpx.post(
+                f"{url}/assignments/{number}/file", files=files, cookies=cookies, headers={"x-seal": browser.seal},
+                timeout=PATIENCE, trust_env=False,
+            ).status_code  # fmt: skip
+
+        uploads = [threads.submit(upload, k) for k in range(10)]
+        try:
+            theirs = dict(class_of_three.browser(MAX).cookies)
+            for _ in range(3):
+                page = httpx.get(f"{url}/assignments", cookies=theirs, timeout=PATIENCE / 2, trust_env=False)
+                assert page.status_code == 200
+        finally:
+            go_on.set()
+        assert {one.result() for one in uploads} <= {200, 422}
+    assert most == 1
+
+
+# ------------------------------------------------------------------------ in a process of its own
+
+
+def for_ever(*told):
+    while True:
+        pass
+
+
+def test_what_is_read_apart_is_limited_in_time_and_memory(tmp_path):
+    means = Means(20.0, 64 * MEGABYTE)
+    path = tmp_path / "a.csv"
+    path.write_text(HEADER + "Zoé,grashof,1,part,1\n" * 3)
+    assert [row.answer for row in confined(means, read_rows, path, 5)] == ["1"] * 3
+    with pytest.raises(Exceeded) as fault:
+        confined(means, bytes, 100 * MEGABYTE)
+    assert fault.value.what == "memory"
+    with pytest.raises(Exceeded) as fault:
+        confined(Means(0.0, 64 * MEGABYTE), for_ever)
+    assert fault.value.what == "time"
+
+
+# ---------------------------------------------------------------------------------- places
+
+
+def run_async(job):
+    import asyncio
+
+    return asyncio.run(job())
+
+
+def test_so_many_of_a_key_are_answered_at_once_in_the_order_in_which_they_came():
+    import asyncio
+
+    async def job():
+        places, order, at_once = Places(), [], []
+
+        async def one(k):
+            async with places.one("zoe", 2):
+                at_once.append(len(at_once_now) + 1)
+                at_once_now.add(k)
+                await asyncio.sleep(0.001)
+                at_once_now.discard(k)
+                order.append(k)
+
+        at_once_now: set[int] = set()
+        await asyncio.gather(*(one(k) for k in range(20)))
+        async with places.one("zoe", 1):
+            pass
+        return order, max(at_once)
+
+    order, most = run_async(job)
+    assert (order, most) == (list(range(20)), 2)
+
+
+def test_too_many_that_wait_are_refused_and_who_gives_up_takes_no_place():
+    import asyncio
+
+    async def job():
+        places = Places()
+        async with places.one("zoe", 1):
+            waits = asyncio.create_task(_held(places))
+            await asyncio.sleep(0)
+            with pytest.raises(Crowded):
+                await _held(places)
+            waits.cancel()
+            await asyncio.gather(waits, return_exceptions=True)
+        await asyncio.wait_for(_held(places), PATIENCE)  # the place is free again
+
+    async def _held(places):
+        async with places.one("zoe", 1, waiting=1):
+            return True
+
+    run_async(job)
+
+
+def test_handing_in_waits_for_nothing_else_of_the_same_person():
+    others = {page.means.name for page in PAGES if page.means is not HAND_IN}
+    assert HAND_IN.name not in others
+    assert [page.path for page in PAGES if page.means is HAND_IN] == ["/assignments/{number:int}/hand-in"]

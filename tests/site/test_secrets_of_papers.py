@@ -1,0 +1,110 @@
+"""On the site too nobody draws a paper from public words, and no page or file of a student holds the secret."""
+
+import re
+
+import pytest
+from secret_words import holds, spelled
+from site_assignments import FORM, dealt_by, handed_out
+from site_people import MAX, TEACHER, ZOE, Class
+from sqlalchemy import select
+
+import coursework
+from coursework.database.assignments import issued_content
+from coursework.database.tables import assignment
+
+COURSE = coursework.open_course()
+TOML = (
+    b'title = "Exam"\n\n[[exercises]]\nname = "slotted_mechanism"\n\n[[exercises]]\nname = "closed_chain"\n'
+)
+SECRET = "0b6c5d1f2a9e47388c1fd2b7a4e3905d"
+
+
+def published_on(site, toml=TOML):
+    """Dealt from a file, one who comes late, one who makes up; then published; gives the number."""
+    staff = site.browser(TEACHER)
+    number = dealt_by(site, staff, handed_out(site, staff, file=toml, roster=b"student\nZo\xc3\xa9\n"))
+    late = {"roster": ("class.csv", "student\nZoé\nMax\n".encode())}
+    dealt_by(site, staff, staff.fill(f"/desk/assignments/{number}/roster", {}, files=late))
+    dealt_by(site, staff, staff.fill(f"/desk/assignments/{number}/make-up", {"student": MAX}))
+    assert staff.fill(f"/desk/assignments/{number}/publish", FORM).status_code == 303
+    return number
+
+
+def papers(site, number):
+    with site.site.store.reading() as connection:
+        content = issued_content(connection, number)
+    return {
+        (i["student"], i["record"]["exercise"], i.get("sitting", 1)): i["record"] for i in content["issued"]
+    }
+
+
+def test_no_paper_of_a_site_is_drawn_on_a_site_of_ones_own_nor_by_its_code(tmp_path):
+    ours, hers = (Class(f"sqlite:///{tmp_path / name}.db") for name in ("ours", "hers"))
+    mine, guessed = (papers(site, published_on(site)) for site in (ours, hers))
+    assert mine.keys() == guessed.keys()
+    assert len(mine) == 6
+    assert [p for p in mine if mine[p]["given"] == guessed[p]["given"]] == []
+    assert [p for p, r in mine.items() if COURSE[p[1]].variant(r["seed"]).record["given"] == r["given"]] == []
+
+
+@pytest.mark.parametrize("in_file", [True, False])
+def test_no_page_and_no_file_of_a_student_holds_the_secret(class_of_three, in_file, caplog):
+    number = published_on(class_of_three, f'secret = "{SECRET}"\n'.encode() + TOML if in_file else TOML)
+    with class_of_three.site.store.reading() as connection:
+        row = connection.execute(select(assignment).where(assignment.c.id == number)).one()
+    assert (row.secret == SECRET) == in_file
+    assert "secret" not in row.asked
+    ways = spelled(row.secret)
+    zoe = class_of_three.browser(ZOE)
+    pages = _crawled(
+        zoe, ["/", "/assignments", f"/assignments/{number}", "/account", "/privacy", "/receipts"]
+    )
+    assert {f"/assignments/{number}", "/account"} <= pages.keys()
+    assert [address for address, data in pages.items() if holds(data, ways)] == []
+    assert zoe.get(f"/desk/assignments/{number}/issued.json").status_code in (403, 404)
+    staff = class_of_three.browser(TEACHER)
+    for address in (
+        f"/desk/assignments/{number}",
+        f"/desk/assignments/{number}/preview",
+        "/desk/audit",
+        "/desk",
+    ):
+        assert not holds(staff.get(address).content, ways), address
+    assert holds(staff.get(f"/desk/assignments/{number}/issued.json").content, ways)
+    assert row.secret not in caplog.text
+
+
+def _crawled(browser, addresses):
+    """All that links lead to, from some addresses on; of practice the first page alone."""
+    found, waiting = {}, list(addresses)
+    while waiting:
+        address = waiting.pop().partition("#")[0].partition("?")[0]
+        if address in found or address.startswith(("/static", "/sign-out")) or address.count("/practice/"):
+            continue
+        found[address] = (reply := browser.get(address)).content
+        if "html" in reply.headers.get("content-type", ""):
+            waiting += re.findall(r'(?:href|src|action)="(/[^"/][^"]*|/)"', reply.text)
+    return found
+
+
+def test_a_malformed_secret_is_refused_by_its_line_and_not_quoted(class_of_three):
+    staff = class_of_three.browser(TEACHER)
+    page = handed_out(
+        class_of_three,
+        staff,
+        file=b'secret = "' + SECRET[:-1].encode() + b'"\n' + TOML,
+        roster=b"student\nMax\n",
+    )
+    assert page.status_code == 422
+    assert "line 1: a secret is 32 hexadecimal digits; found 31 characters" in page.text
+    assert SECRET[:20] not in page.text
+
+
+def test_who_marks_and_may_not_publish_has_no_secret(class_of_three):
+    number = published_on(class_of_three, f'secret = "{SECRET}"\n'.encode() + TOML)
+    told = {"role": "assistant", "assignment": "*", "group": "*"}
+    class_of_three.browser(TEACHER).fill(f"/desk/people/{class_of_three.ids[MAX]}/role", told)
+    for name, may in ((TEACHER, True), (MAX, False)):
+        file = class_of_three.browser(name).get(f"/desk/{number}/files/issued.json")
+        assert file.status_code == 200
+        assert (SECRET in file.text) == may
