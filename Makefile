@@ -7,7 +7,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11 python; do \
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo site test test-all test-share test-plain golden docs lint wheel-test clean
+.PHONY: demo site test test-all test-share test-plain golden docs lint wheel wheel-test lock lock-test sbom audit clean
 .DEFAULT_GOAL := demo
 
 # Installed anew when the requirements change; edited code needs no reinstallation.
@@ -88,6 +88,12 @@ docs: $(VENV)/docs-ready  ## The documentation, in build/site
 	$(BIN)/sphinx-build -W --keep-going -q -b html -d build/doctrees build/docs build/site
 	@echo "open build/site/index.html"
 
+# The same sources give the same bytes: dated by the commit, and no file is looked at outside the sources.
+wheel: $(VENV)/ready  ## The wheel, in dist, and its digest
+	SOURCE_DATE_EPOCH=$$(git log -1 --format=%ct 2>/dev/null || echo 1580601600) \
+	$(BIN)/python -m build --quiet --no-isolation --wheel --outdir dist .
+	cd dist && sha256sum *.whl
+
 # What a wheel could lack are files: those who read some are tested from it, of each room.
 IN_THE_WHEEL := authoring/test_examples.py cli course database/test_desk.py database/test_documented.py database/test_store.py \
 	figures language lti/test_settings_keys_and_roles.py making nbgrader/test_course_tree.py platforms/test_exporting.py \
@@ -105,6 +111,39 @@ wheel-test: $(VENV)/ready
 	cp -r tests docs pyproject.toml build/wheel/
 	cd build/wheel && venv/bin/python -P -m pytest -n auto -q -m "not slow" $(IN_THE_WHEEL:%=tests/%)
 	cd build/wheel && venv/bin/coursework demo --out demo
+
+$(VENV)/supply-ready: $(VENV)/ready
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[supply]'
+	touch $(VENV)/supply-ready
+
+# What a server installs, with digests, for each Python and system: all.txt decides each version, the others follow it.
+# The versions that stand there stay while they fit pyproject.toml: make lock UPGRADE=--upgrade takes the newest.
+EXTRAS := accuracy charts cluster lti nbgrader parquet scan
+UPGRADE ?=
+COMPILE = $(BIN)/uv pip compile pyproject.toml --quiet --universal --python-version 3.11 --generate-hashes \
+	--no-emit-index-url --no-emit-find-links --custom-compile-command "make lock" $(UPGRADE)
+
+lock: $(VENV)/supply-ready  ## The lock files, in locks
+	$(COMPILE) --all-extras --output-file locks/all.txt
+	$(COMPILE) --no-annotate --constraints locks/all.txt --extra site --extra lti --output-file locks/site.txt
+	set -e; for extra in $(EXTRAS); do \
+		$(COMPILE) --no-annotate --constraints locks/all.txt --extra $$extra --output-file locks/$$extra.txt; \
+	done
+
+# As on a server: what the lock file names and nothing else, then the wheel, which brings nothing.
+lock-test: wheel  ## The site from its lock file, in an environment of its own
+	rm -rf build/locked
+	$(PYTHON) -m venv build/locked
+	build/locked/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes -r locks/site.txt
+	build/locked/bin/python -m pip install --quiet --disable-pip-version-check --no-deps --no-index dist/*.whl
+	build/locked/bin/python -m pip check
+	cd build/locked && bin/python -P -c "import coursework.site.server, coursework.lti.service" && bin/coursework list | tail -1
+
+sbom: $(VENV)/supply-ready  ## The inventory of what the site installs, in build
+	$(BIN)/python locks/sbom.py locks/site.txt build/site.cdx.json
+
+audit: $(VENV)/supply-ready  ## Known vulnerabilities of what the site installs; asks the package index
+	$(BIN)/pip-audit --require-hashes --disable-pip -r locks/site.txt
 
 lint: $(VENV)/ready
 	$(BIN)/ruff check .

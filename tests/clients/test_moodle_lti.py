@@ -23,6 +23,9 @@ from pathlib import Path
 import pytest
 
 import coursework
+from coursework.lti.storage import Storage
+from coursework.making.assignment import Assignment
+from coursework.making.dealing import keyed
 from coursework.making.roster import read_roster
 
 MOODLE, CHROMIUM = os.environ.get("COURSEWORK_MOODLE", ""), os.environ.get("COURSEWORK_CHROMIUM", "")
@@ -146,13 +149,15 @@ class Person:
             self.page.screenshot(path=str(path), **how)
 
 
-def variant_on(frame):
+def variant_on(site, frame):
+    """The variant of a page, which the secret of the service draws."""
     code = frame.inner_text("header .small >> nth=0")
-    return coursework.open_course()[NAME].variant(int(code.split(" · ")[1]))
+    key = keyed(Storage(site["folder"]).secret(), Assignment(NAME, ()))
+    return coursework.open_course()[NAME].variant(int(code.split(" · ")[1]), secret=key)
 
 
-def answer(frame, wrong=()):
-    variant = variant_on(frame)
+def answer(site, frame, wrong=()):
+    variant = variant_on(site, frame)
     found = variant.solution()
     for part in variant.parts:
         value = found[part.quantity]
@@ -209,7 +214,7 @@ def test_a_link_is_picked_opened_answered_and_graded(site, chromium):
     student = Person(chromium, site, f"{COURSE}_ada")
     frame = student.open(title)
     student.picture("moodle-launch.png")
-    worth = answer(frame, wrong=["theta4"])
+    worth = answer(site, frame, wrong=["theta4"])
     frame.click("text=Hand in my answers")
     student.tool(".told")
     student.picture("moodle-feedback.png")
@@ -221,7 +226,7 @@ def test_a_link_is_picked_opened_answered_and_graded(site, chromium):
     frame = student.tool(".told")
     frame.click("text=Answer again")
     frame = student.tool("form")
-    answer(frame)
+    answer(site, frame)
     frame.click("text=Hand in my answers")
     student.tool(".told")
     best = arrived(site["people"]["ada"], lambda one: one["item"] == title and one["grade"] == 20)
@@ -254,7 +259,7 @@ def test_a_student_reads_french_where_moodle_does(site, chromium):
     frame = bob.tool()
     assert frame.get_attribute("html", "lang") == "fr"
     assert "Remettre mes réponses" in frame.inner_text("main")
-    worth = answer(frame)
+    worth = answer(site, frame)
     frame.click("text=Remettre mes réponses")
     bob.tool(".told")
     grade = arrived(site["people"]["bob"])

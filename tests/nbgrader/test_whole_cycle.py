@@ -26,9 +26,7 @@ import coursework
 from coursework.cli import run
 from coursework.course.answer_keys import answer_keys
 
-pytest.importorskip(
-    "nbgrader.api", reason="nbgrader is not installed: pip install 'mechanism-coursework[nbgrader]'"
-)
+pytest.importorskip("nbgrader.api", reason="nbgrader is not installed: pip install '.[nbgrader]'")
 
 NAME = "slotted_mechanism"
 
