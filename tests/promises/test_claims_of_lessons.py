@@ -1,0 +1,227 @@
+"""What a lesson claims in words, a bound, a count or a condition, is what a computation finds."""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+import numpy as np
+import pytest
+
+from coursework.course.lessons import lesson_file
+from coursework.solids import Chain
+
+CLAIMS = []
+TURN = np.arange(0.25, 360.0, 0.5)
+
+
+def claim(lesson, en, fr):
+    """Register a check of a sentence; ``en`` and ``fr`` are the words that it would make false."""
+
+    def kept(check):
+        CLAIMS.append(pytest.param(lesson, {"en": en, "fr": fr}, check, id=f"{lesson}-{check.__name__}"))
+        return check
+
+    return kept
+
+
+@pytest.mark.parametrize(("lesson", "said", "check"), CLAIMS)
+def test_a_claim_of_a_lesson_is_true(course, lesson, said, check):
+    for lang, words in said.items():
+        text = re.sub(r"\s+", " ", lesson_file(course.folder, lesson, lang).read_text("utf-8"))
+        assert words in text, lang
+    check(course)
+
+
+def changes_of_sign(values):
+    return int((np.sign(values) != np.sign(np.roll(values, 1))).sum())
+
+
+# -- accuracy ----------------------------------------------------------------------------------------------
+
+
+def corner(gamma):
+    """How far along a line its crossing with another may be off, both lines being off by 1."""
+    along, normal = np.array([1.0, 0.0]), np.array([0.0, 1.0])
+    other = np.array([-np.sin(gamma), np.cos(gamma)])
+    corners = [np.linalg.solve([normal, other], shifts) for shifts in product((-1, 1), repeat=2)]
+    return max(abs(at @ along) for at in corners)
+
+
+@claim("accuracy", r"\delta\cot\frac{\gamma}{2}$ along either", r"\delta\cot\frac{\gamma}{2}$ près le long")
+def both_lines_count(course):
+    for gamma in np.radians([16.0, 40.0, 80.0, 90.0]):
+        assert corner(gamma) == pytest.approx(1 / np.tan(gamma / 2))
+
+
+@claim("accuracy", "off by seven times as much as its lines", "peut atteindre sept fois celle de ses droites")
+def at_16_degrees_seven_times(course):
+    assert round(corner(np.radians(16.0))) == 7
+
+
+@claim("accuracy", "exact for a parabola: what it misses begins with the third", "dérivée troisième de")
+def the_error_of_a_centred_difference_goes_with_the_square_of_the_step(course):
+    bars = {"r1": 100.0, "r2": 50.0, "r3": 70.0, "r4": 80.0, "mode": "open", "omega2": 1.0, "alpha2": 0.0}
+    solve = course["four_bar_motion"].solve
+    right = solve(**bars, theta2=120.0, only="omega3")["omega3"]
+
+    def error(step):
+        before, after = (solve(**bars, theta2=120.0 + s, only="theta3")["theta3"] for s in (-step, step))
+        return (after - before) / (2 * step) - right
+
+    assert error(1.0) / error(0.1) == pytest.approx(100, rel=0.01)
+
+
+@claim("accuracy", "divides by the length $r_A$ instead", "divise, lui, par la longueur $r_A$")
+def a_slotted_mechanism_is_ill_conditioned_where_the_block_is_near_the_pivot(course):
+    def gain(theta2):
+        sizes = {"r1": 100.0, "theta1": 90.0, "r2": 99.0, "omega2": 1.0, "alpha2": 0.0}
+        found = course["slotted_mechanism"].solve(**sizes, theta2=theta2, only=("rA", "omega4"))
+        return found["rA"], abs(found["omega4"])
+
+    (near, fast), (far, slow) = gain(-90.0), gain(90.0)
+    assert near == pytest.approx(1.0)
+    assert fast / slow == pytest.approx(far / near)
+
+
+@claim(
+    "accuracy", "added alone to the load, changes the mean", "ajouté seul à la charge, change le couple moyen"
+)
+def alone_with_the_load_only_friction_changes_the_mean_torque(course):
+    load = mean_torque(course, "load")
+    assert abs(mean_torque(course, "load", "gravity") - load) < 1e-9
+    assert abs(mean_torque(course, "load", "inertia") - load) < 1e-9
+    assert mean_torque(course, "load", "friction") > load + 0.1
+
+
+# -- slider_crank_analysis ---------------------------------------------------------------------------------
+
+ENGINE = {"r2": 60.0, "r3": 180.0, "e": 20.0, "omega2": 10.0, "alpha2": 0.0}
+
+
+@claim("slider_crank_analysis", "at four crank angles here", "pour quatre angles de la manivelle, ici")
+def the_rod_forgotten_in_the_velocity_of_the_piston_does_no_harm_at_four_angles(course):
+    speed = course["slider_crank"].solve(**ENGINE, theta2=TURN, only="r1_dot")["r1_dot"]
+    assert changes_of_sign(speed + 60 * 10 * np.sin(np.radians(TURN))) == 4
+
+
+@claim(
+    "slider_crank_analysis",
+    "A long rod makes the two ends alike",
+    "Une bielle longue rend les deux bouts semblables",
+)
+def the_longer_the_rod_the_more_alike_are_the_accelerations_at_both_ends(course):
+    solve = course["slider_crank"].solve
+    for r3 in (120.0, 240.0, 2400.0):
+        in_line = ENGINE | {"r3": r3, "e": 0.0}
+        outer, inner = (solve(**in_line, theta2=at, only="r1_ddot")["r1_ddot"] for at in (0.0, 180.0))
+        assert abs(outer) / abs(inner) == pytest.approx((r3 + 60) / (r3 - 60))
+
+
+# -- mechanical_advantage_and_dead_points ------------------------------------------------------------------
+
+MACHINE = {
+    "r2": 60.0, "r3": 200.0, "e": 0.0, "alpha2": 0.0, "s3": 0.4, "F": -200.0, "f": 0.1,
+    "m3": 1.2, "J3": 0.004, "m4": 0.8, "J2": 0.002,
+}  # fmt: skip
+
+
+def mean_torque(course, *effects, omega2=30.0):
+    asked = MACHINE | {"omega2": omega2, "theta2": np.arange(0.0, 360.0)}
+    return float(
+        np.mean(course["slider_crank_torque"].solve(**asked, only="torque", effects=effects)["torque"])
+    )
+
+
+@claim(
+    "mechanical_advantage_and_dead_points",
+    "*as long as nothing rubs*, never",
+    "*tant que rien ne frotte*, jamais",
+)
+def weights_and_inertia_change_the_mean_torque_by_friction_alone(course):
+    everything = ("load", "gravity", "inertia")
+    for omega2 in (30.0, 120.0):
+        assert abs(mean_torque(course, *everything, omega2=omega2) - mean_torque(course, "load")) < 1e-9
+    rubbing = mean_torque(course, "load", "friction")
+    assert mean_torque(course, "load", "friction", "inertia", omega2=120.0) > 2 * rubbing
+    assert mean_torque(course, "load", "friction", "inertia", omega2=60.0) < rubbing, "less, or more"
+
+
+@claim(
+    "mechanical_advantage_and_dead_points",
+    "if Grashof's rule is strictly met",
+    "si la loi de Grashof est strictement vérifiée",
+)
+def coupler_and_rocker_come_into_line_in_a_whole_turn_at_a_change_point_only(course):
+    def flattest(**bars):
+        found = course["four_bar_motion"].solve(
+            **bars, mode="open", omega2=1.0, alpha2=0.0, theta2=180.0 - 1e-6, only=("theta3", "theta4")
+        )
+        return abs(np.sin(np.radians(found["theta4"] - found["theta3"])))
+
+    assert flattest(r1=100.0, r2=50.0, r3=70.0, r4=80.0) < 1e-6
+    assert flattest(r1=100.0, r2=49.0, r3=70.0, r4=80.0) > 0.1
+
+
+@claim(
+    "mechanical_advantage_and_dead_points",
+    "never longer than the shorter of $DB$ and $DP$",
+    "jamais la plus courte des longueurs $DB$ et $DP$",
+)
+def the_arm_of_a_jack_is_greatest_where_it_is_perpendicular_to_the_shorter(course):
+    DP, DB = abs(45 - 55j), 95.0  # those of the figure
+    opened = np.radians(np.linspace(1, 179, 1781))
+    jack = np.sqrt(DB**2 + DP**2 - 2 * DB * DP * np.cos(opened))
+    arm = DB * DP * np.sin(opened) / jack
+    assert arm.max() == pytest.approx(DP, rel=1e-4)
+    at = np.argmax(arm)
+    assert DP**2 + jack[at] ** 2 == pytest.approx(DB**2, rel=0.01), "a right angle at P"
+
+
+# -- grashof_and_coupler_curves ----------------------------------------------------------------------------
+
+
+@claim("grashof_and_coupler_curves", "at least one of the two triangles", "l'un au moins des deux triangles")
+def both_triangles_of_a_parallelogram_and_of_a_kite_are_flat(course):
+    for r1, r2, r3, r4 in ((100, 50, 100, 50), (100, 50, 50, 100), (100, 50, 70, 80)):
+        flat = [AC in (r3 + r4, abs(r3 - r4)) for AC in (r1 + r2, abs(r1 - r2))]
+        assert flat.count(True) == (1 if (r1, r2, r3, r4) == (100, 50, 70, 80) else 2)
+
+
+@claim(
+    "grashof_and_coupler_curves",
+    "A coupler point of a crank-rocker is taken at $B$",
+    "Un point de bielle d'un manivelle-balancier est pris en $B$",
+)
+def the_end_of_the_coupler_goes_round_a_circle_in_a_double_crank(course):
+    def swing(**bars):
+        found = course["four_bar_positions"].solve(**bars, theta2=TURN, only="theta4_open")["theta4_open"]
+        return np.ptp(np.unwrap(found, period=360))
+
+    assert swing(r1=60.0, r2=140.0, r3=180.0, r4=200.0) > 355
+    assert swing(r1=200.0, r2=60.0, r3=180.0, r4=140.0) < 90
+
+
+# -- chains_of_bodies --------------------------------------------------------------------------------------
+
+
+@claim(
+    "chains_of_bodies",
+    "the offsets along $z$ must add up to nothing",
+    "la somme des décalages selon $z$ doit être nulle",
+)
+def a_slider_crank_in_space_asks_for_two_angles_and_one_offset(course):
+    def joint(kind, axis, point, between):
+        return {"joint": kind, "axis": axis, "normal": axis, "point": point, "between": between}
+
+    z = (0, 0, 1)
+    pivots = [joint("revolute", z, (0, 0, 0), (0, 1)), joint("revolute", z, (20, 40, 0), (1, 2))]
+    ends = joint("revolute", z, (120, 10, 0), (2, 3)), joint("prismatic", (1, 0, 0), (120, 10, 0), (3, 0))
+    plane = Chain([*pivots, *ends], inputs=1, outputs=3)
+    assert (plane.m, plane.h) == (1, 3)
+    lost = np.eye(6)[[0, 1, 5]]  # the rotations about x and y, the translation along z
+    twists = np.array(
+        [[*z, *np.cross(p, z)] for p in ((0, 0, 0), (20, 40, 0), (120, 10, 0))] + [[0, 0, 0, 1, 0, 0]]
+    )
+    assert np.allclose(lost @ twists.T, 0)
+    assert np.linalg.matrix_rank(twists) == 3
