@@ -1,0 +1,5 @@
+"""Entry point of ``python -m coursework``."""
+
+from coursework.cli import main
+
+main()
