@@ -299,6 +299,14 @@ _PATIENT = 6.0  #: seconds of waiting for each second of a processor, on a machi
 _STARTS = 20.0  #: seconds in which a process has started
 
 
+_waited = threading.local()
+
+
+def processor_time() -> float:
+    """Return the seconds of a processor that this thread took, with those of the confined processes for which it waited."""
+    return time.thread_time() + float(getattr(_waited, "seconds", 0.0))
+
+
 class Means(NamedTuple):
     """Limits of a process: seconds of a processor, and bytes of memory beyond those with which it starts."""
 
@@ -346,7 +354,8 @@ def confined(means: Means, function: Callable[..., Any], *told: Any) -> Any:
             process.start()
         answer.close()
         try:
-            is_done, value = _answered(answers, process, means)
+            is_done, value, seconds = _answered(answers, process, means)
+            _waited.seconds = getattr(_waited, "seconds", 0.0) + seconds
         finally:
             process.kill()
             process.join()
@@ -356,19 +365,19 @@ def confined(means: Means, function: Callable[..., Any], *told: Any) -> Any:
     raise value
 
 
-def _answered(answers: Connection, process: BaseProcess, means: Means) -> tuple[bool, Any]:
-    """Return whether the function gave something, and what it gave or raised."""
+def _answered(answers: Connection, process: BaseProcess, means: Means) -> tuple[bool, Any, float]:
+    """Return whether the function gave something, what it gave or raised, and the seconds of a processor that this took."""
     if not wait([answers], _STARTS + _PATIENT * means.seconds):
-        return False, Exceeded("time")
+        return False, Exceeded("time"), means.seconds
     try:
-        is_done, value = pickle.loads(answers.recv_bytes(means.memory))
-        return is_done, value
+        is_done, value, seconds = pickle.loads(answers.recv_bytes(means.memory))
+        return is_done, value, seconds
     except EOFError:  # it was ended: by its own limit of time, or for want of memory
         process.join(_PATIENCE)
         by_time = process.exitcode == -getattr(signal, "SIGXCPU", 0)
-        return False, Exceeded("time" if by_time else "memory")
+        return False, Exceeded("time" if by_time else "memory"), means.seconds
     except OSError:  # the answer is larger than all that it may take
-        return False, Exceeded("memory")
+        return False, Exceeded("memory"), means.seconds
 
 
 def _do_confined(answer: Connection, means: Means, sent: bytes) -> None:
@@ -378,14 +387,15 @@ def _do_confined(answer: Connection, means: Means, sent: bytes) -> None:
     function, told = pickle.loads(sent)  # with what it imports, which is not counted
     unlimited = _limit(means)
     try:
-        given = pickle.dumps((True, function(*told)))
+        given = pickle.dumps((True, function(*told), time.process_time()))
     except MemoryError:
         unlimited()
-        given = pickle.dumps((False, Exceeded("memory")))
+        given = pickle.dumps((False, Exceeded("memory"), time.process_time()))
     except CourseworkError as fault:
-        given = pickle.dumps((False, fault))
+        given = pickle.dumps((False, fault, time.process_time()))
     except Exception as fault:  # its message may hold an answer
-        given = pickle.dumps((False, CourseworkError(f"{type(fault).__name__} in {function.__name__}")))
+        fault = CourseworkError(f"{type(fault).__name__} in {function.__name__}")
+        given = pickle.dumps((False, fault, time.process_time()))
     unlimited()
     answer.send_bytes(given)
 

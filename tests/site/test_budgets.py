@@ -1,25 +1,31 @@
 """What one person may make the site do: bodies, files and requests within stated budgets, refused before they are read."""
 
 import json
+import re
 import socket
 import threading
+import time
 import tracemalloc
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from urllib.parse import urlencode, urlsplit
 
 import pytest
-from site_assignments import dealt
+from site_assignments import dealt, right
 from site_browser import served
-from site_people import MAX, ZOE, seal_of, signed_in
+from site_people import MAX, TEACHER, ZOE, seal_of, signed_in
 from site_walk import Filled, filled, fillings
 
 from coursework.database.permissions import is_of_staff
 from coursework.gradebook.submissions import read_rows
 from coursework.site.application import PAGES
-from coursework.site.frame.budgets import ANSWER_FILE, HAND_IN, KILOBYTE, MEGABYTE, MOST_ROWS, Crowded, Places
+from coursework.site.frame.budgets import ANSWER_FILE, HAND_IN, KILOBYTE, MEGABYTE, MOST_ROWS
 from coursework.site.frame.cookies import cookie_name
+from coursework.site.frame.limits import ADDRESS, AT_ONCE, BACK, PERSON
 from coursework.site.papers import assignments
-from coursework.system.processes import Exceeded, Means, confined
+from coursework.system.allowances import Allowances
+from coursework.system.places import Crowded, Places
+from coursework.system.processes import Exceeded, Means, confined, processor_time
 
 STUDENTS = [page for page in PAGES if page.posts and not is_of_staff(page.needs)]
 PATIENCE = 60  #: seconds; a test that waits so long has failed
@@ -112,6 +118,93 @@ def test_the_worst_body_within_a_budget_takes_little_memory(site):
             if most > 24 * MEGABYTE or reply.status_code >= 500:
                 over.append((page.path, kind, len(body), most, reply.status_code))
     assert not over
+
+
+# ------------------------------------------------------------------------- processor time
+
+
+def spend(class_, kind, name=ZOE):
+    class_.site.limits.took(kind, class_.ids[name], AT_ONCE + 12 * BACK)
+
+
+def test_who_took_much_of_a_processor_waits_and_nobody_else(class_of_three):
+    spend(class_of_three, "usual")
+    for lang, said in (("en", "Wait 12 seconds"), ("fr", "Attendez 12 secondes")):
+        reply = class_of_three.browser(ZOE, lang).get("/practice")
+        assert (reply.status_code, reply.headers["retry-after"], said in reply.text) == (429, "12", True)
+    assert class_of_three.browser(MAX).get("/practice").status_code == 200
+
+
+def test_who_took_much_of_a_processor_still_answers_and_hands_in_a_paper(class_of_three):
+    """For papers one has an allowance apart; saving and handing in are refused to nobody even where that is spent."""
+    number = dealt(class_of_three)
+    texts = right(class_of_three, ZOE)
+    browser = class_of_three.browser(ZOE)
+    spend(class_of_three, "usual")
+    assert browser.fill(f"/assignments/{number}", texts).status_code == 200
+    for kind in ("paper", "hand_in", "upload"):
+        spend(class_of_three, kind)
+    assert browser.get(f"/assignments/{number}").status_code == 429
+    name, text = next(iter(texts.items()))
+    assert browser.fill(f"/assignments/{number}/keep", {f"text.{name}": text}).status_code == 200
+    reply = browser.fill(f"/assignments/{number}/hand-in", {**texts, "_number": "1"})
+    assert (reply.status_code, "/receipts/" in reply.headers["location"]) == (303, True)
+
+
+def test_the_staff_has_no_allowance_to_spend(class_of_three):
+    spend(class_of_three, "usual", TEACHER)
+    assert class_of_three.browser(TEACHER).get("/practice").status_code == 200
+
+
+def test_each_page_of_a_student_is_counted_by_what_it_takes_of_a_processor(site, monkeypatch):
+    """Refusals too; what a process beside takes for it counts as well."""
+    took = []
+    monkeypatch.setattr(
+        site.site.limits, "took", lambda kind, person, seconds: took.append((kind, person, seconds))
+    )
+    pages = [page for page in PAGES if not is_of_staff(page.needs)]
+    for page in pages:
+        site.browser(ZOE).get(filled(page.path, fillings(site)[page.path].own))
+    assert [kind for kind, _, _ in took] == [page.limit for page in pages]
+    assert {person for _, person, _ in took} == {site.ids[ZOE]}
+    assert all(seconds > 0 for _, _, seconds in took)
+    before = processor_time()
+    confined(Means(20.0, 64 * MEGABYTE), spin, 0.5)
+    assert processor_time() - before >= 0.5
+
+
+def spin(seconds):
+    end = time.process_time() + seconds
+    while time.process_time() < end:
+        pass
+
+
+def test_the_documentation_states_the_limits():
+    page = (Path(__file__).resolve().parents[2] / "docs/privacy.md").read_text("utf-8")
+    rows = re.findall(r"^\| `(\w+)`: [^|]+\| (\d+) ([^|]+) \| (\d+) ([^|]+) \|$", page, re.MULTILINE)
+    spans = {"a minute": "/minute", "in 10 minutes": "/10minutes"}
+    told = {name: (f"{own}{spans[span]}", f"{all_}{spans[of]}") for name, own, span, all_, of in rows}
+    assert told == {name: (PERSON[name], ADDRESS[name]) for name in PERSON}
+    assert f"{AT_ONCE:.0f} seconds of a processor at once, and {BACK} in each second" in page
+
+
+def test_what_is_spent_comes_back():
+    now = [0.0]
+    found = Allowances(30.0, 0.125, lambda: now[0])
+    assert found.wait("zoe") == 0
+    found.spend("zoe", 29.0)
+    assert found.wait("zoe") == 0
+    found.spend("zoe", 3.0)
+    assert (found.wait("zoe"), found.wait("max")) == (16, 0)
+    now[0] = 15.0
+    assert found.wait("zoe") == 1
+    now[0] = 17.0
+    assert found.wait("zoe") == 0
+    now[0] = 10_000.0
+    found.spend("zoe", 29.0)  # no more comes back than was spent
+    assert found.wait("zoe") == 0
+    found.spend("zoe", 1.0)
+    assert found.wait("zoe") > 0
 
 
 # ------------------------------------------------------------------------------ files

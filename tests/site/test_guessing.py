@@ -12,9 +12,9 @@ from sqlalchemy import select, update
 
 from coursework.database.tables import failure
 from coursework.site.frame import attempts
-from coursework.site.frame.attempts import Attempt, Attempts, Track
+from coursework.site.frame.attempts import Attempt, Attempts, TooMany, Track
 from coursework.site.frame.devices import DEVICE, Devices
-from coursework.site.frame.visits import Refused
+from coursework.site.frame.limits import ADDRESS
 from coursework.site.people import passwords
 from coursework.site.people.common_passwords import is_common
 
@@ -166,6 +166,21 @@ def test_a_form_without_its_token_counts_and_waits_nothing(class_of_three, waits
         assert connection.execute(select(failure)).all() == []
 
 
+def test_who_asks_without_end_shuts_no_known_browser_out(class_of_three):
+    """All pages of signing in that one address has were asked for: a browser that signed in before has its own."""
+    known = join(class_of_three, ZOE)
+    known.fill("/sign-out")
+    limits, most = class_of_three.site.limits, int(ADDRESS["sign_in"].partition("/")[0])
+    while not limits.asked("sign_in", 0, "testclient"):
+        most -= 1
+    assert most in range(10)  # those of this test are among them
+    assert class_of_three.browser().get("/sign-in").status_code == 429
+    assert sign_in(class_of_three, LOGIN, PASSWORD, known)[1].status_code == 303
+    forged = class_of_three.browser()
+    forged.cookies.set(DEVICE, "x" + known.cookies[DEVICE])
+    assert forged.get("/sign-in").status_code == 429
+
+
 # ------------------------------------------------------------------- many at once
 
 
@@ -184,8 +199,8 @@ def test_many_guesses_at_once_are_no_faster_and_fill_nothing(monkeypatch):
         try:
             async with known.waited(Attempt((of,), {})):
                 await gate.wait()
-        except Refused as why:
-            return why.status
+        except TooMany:
+            return 429
         return 0
 
     async def all_of_them():

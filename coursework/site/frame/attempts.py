@@ -15,7 +15,7 @@ from collections.abc import AsyncIterator, Mapping, Sequence
 from contextlib import asynccontextmanager
 from typing import NamedTuple
 
-from coursework.site.frame.visits import Refused
+from coursework.errors import CourseworkError
 
 
 class Track(NamedTuple):
@@ -39,6 +39,14 @@ class Attempt(NamedTuple):
     failures: Mapping[str, int] = {}
 
 
+class TooMany(CourseworkError):
+    """As many attempts of the same kind wait as may; ``seconds`` until one may try again."""
+
+    def __init__(self, seconds: int):
+        self.seconds = seconds
+        super().__init__(f"too many attempts at once; {seconds} s")
+
+
 class Attempts:
     """Attempts under way in this process. Used in the event loop alone, which needs no lock."""
 
@@ -51,13 +59,13 @@ class Attempts:
 
         Raises
         ------
-        Refused
+        TooMany
             Too many of the same kind wait already.
         """
         counted = {one: attempt.failures.get(one.key, 0) + self._under_way[one.key] for one in attempt.tracks}
         seconds = max((one.seconds(count) for one, count in counted.items()), default=0.0)
         if seconds and any(self._under_way[one.key] >= one.most for one in attempt.tracks):
-            raise Refused("too_often", 429, math.ceil(seconds))
+            raise TooMany(math.ceil(seconds))
         keys = [one.key for one in attempt.tracks]
         self._under_way.update(keys)
         try:

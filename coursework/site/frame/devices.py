@@ -29,6 +29,10 @@ class Devices:
         name, logins = self._read(cookie)
         return name if self.digest("device", login)[:_LENGTH] in logins else ""
 
+    def name(self, cookie: str) -> str:
+        """Return the name of a browser in which somebody signed in before; an empty text for any other."""
+        return self._read(cookie)[0]
+
     def after_sign_in(self, cookie: str, login: str) -> str:
         """Return the cookie of a browser that has just signed in."""
         name, logins = self._read(cookie)

@@ -30,11 +30,10 @@ from coursework.database.sessions import (
 from coursework.errors import BadCourse, BadInput, BrokenFunction, UnknownName
 from coursework.language.words import words
 from coursework.site.frame.arrivals import arrived
-from coursework.site.frame.attempts import Attempt, Attempts
+from coursework.site.frame.attempts import Attempt, Attempts, TooMany
 from coursework.site.frame.browsers import described
-from coursework.site.frame.budgets import WAITING, Crowded
 from coursework.site.frame.cookies import ANONYMOUS_SECONDS, Cookies, Session, cookie_name, may_be_token
-from coursework.site.frame.devices import DEVICE, DEVICE_SECONDS
+from coursework.site.frame.devices import DEVICE, DEVICE_SECONDS, Devices
 from coursework.site.frame.forms import clean, read_form
 from coursework.site.frame.lanes import Lanes, Run
 from coursework.site.frame.permitting import check_permission, note_export, person_of
@@ -43,6 +42,8 @@ from coursework.site.frame.sending import response_of
 from coursework.site.frame.settings import Entrance, Site
 from coursework.site.frame.visits import Form, Page, Person, Refused, Reply, Visit
 from coursework.site.people import home
+from coursework.system.places import WAITING, Crowded
+from coursework.system.processes import processor_time
 
 LOG = logging.getLogger("coursework.site")
 _LANG = "coursework-lang"  #: the cookie of the language that somebody chose
@@ -150,8 +151,8 @@ class Door:
         try:
             async with self._attempts.waited(attempt):
                 return await run(self._answered, request, page, comer, form)
-        except Refused as why:
-            return await run(self._refused, request, comer, why)
+        except TooMany as fault:
+            return await run(self._refused, request, comer, Refused("too_often", 429, fault.seconds))
 
     def _attempt(self, request: Request, page: Page, comer: _Comer, form: Form) -> Attempt | Response:
         try:
@@ -184,7 +185,7 @@ class Door:
         return comer
 
     def _answered(self, request: Request, page: Page, comer: _Comer, form: Form) -> Response:
-        visit = self._visit(request, comer, form)
+        visit, begun = self._visit(request, comer, form), processor_time()
         try:
             if visit.posted:
                 self._check_seal(request, comer.session, form)
@@ -204,6 +205,9 @@ class Door:
         except IntegrityError:  # somebody else wrote the same at the same time: nothing of this was kept
             LOG.error("the database: two wrote the same at once")
             return self._refused(request, comer, Refused("busy", 503, _AGAIN))
+        finally:
+            if comer.person is not None:
+                self.site.limits.took(page.limit, comer.person.id, processor_time() - begun)
 
     def _lost(self, request: Request, why: Refused) -> Response:
         try:
@@ -277,8 +281,15 @@ class Door:
             raise Refused("forwarded", 421)
 
     def _check_often(self, request: Request, page: Page, comer: _Comer) -> None:
-        person = comer.person.id if comer.person else 0
-        wait = self.site.limits.asked(page.limit, person, _address(request))
+        """A page is not asked for too often, and those before it did not take too much of a processor.
+
+        What stores and shows nothing, handing in among it, is refused to nobody for what they did before.
+        """
+        person, limits = comer.person.id if comer.person else 0, self.site.limits
+        browser = "" if person else Devices(self.site.secret).name(request.cookies.get(self._device, ""))
+        wait = limits.asked(page.limit, person, _address(request), browser)
+        if comer.person is not None and not comer.person.is_staff and not page.is_short:
+            wait = max(wait, limits.owed(page.limit, person))
         if wait:
             raise Refused("too_often", 429, wait)
 

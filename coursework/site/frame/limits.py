@@ -1,12 +1,11 @@
-"""How often something may be asked, counted in memory by each process.
+"""How often something may be asked, and how much of a processor it may take, counted in memory by each process.
 
-A whole class may stand behind one address: who is signed in is counted by person, and an address alone only where nobody is
-known yet.
+A whole class may stand behind one address: who is signed in is counted by person, a browser that signed in before by itself, and
+an address alone only where nothing else is known.
 """
 
 from __future__ import annotations
 
-import ipaddress
 import math
 import time
 
@@ -14,22 +13,28 @@ from limits import RateLimitItem, parse
 from limits.storage import MemoryStorage
 from limits.strategies import MovingWindowRateLimiter
 
+from coursework.system.allowances import Allowances, network
+
 FREE = "free"  #: a class without a limit: files that all pages share
 
-#: Of a person who is signed in, by the class of a page.
-_PERSON = {
+#: Of a person who is signed in, and of a browser that signed in before, by the class of a page.
+PERSON = {
     "usual": "600/minute",
-    "check": "120/minute",
+    "paper": "600/minute",
+    "hand_in": "120/10minutes",
     "upload": "300/10minutes",
     "sign_in": "60/10minutes",
 }
 #: Of an address, while nobody is signed in.
-_ADDRESS = {
+ADDRESS = {
     "usual": "6000/minute",
-    "check": "600/minute",
+    "paper": "6000/minute",
+    "hand_in": "6000/minute",
     "upload": "300/10minutes",
     "sign_in": "3000/10minutes",
 }
+#: Seconds of a processor that a person has at once for the pages of each class, and that come back in a second.
+AT_ONCE, BACK = 30.0, 0.1
 
 
 class Limits:
@@ -37,30 +42,28 @@ class Limits:
 
     def __init__(self) -> None:
         self._limiter = MovingWindowRateLimiter(MemoryStorage())
+        self._processor = Allowances(AT_ONCE, BACK)
 
-    def asked(self, kind: str, person: int, address: str) -> int:
-        """A page of a class is asked for by somebody, or by nobody (0) from an address."""
+    def asked(self, kind: str, person: int, address: str, browser: str = "") -> int:
+        """A page of a class is asked for by somebody, or by nobody (0) from an address, in a browser that signed in before."""
         if kind == FREE:
             return 0
         if person:
-            return self._count(parse(_PERSON[kind]), kind, f"person {person}")
-        return self._count(parse(_ADDRESS[kind]), kind, f"address {network(address)}")
+            return self._count(parse(PERSON[kind]), kind, f"person {person}")
+        if browser:
+            return self._count(parse(PERSON[kind]), kind, f"browser {browser}")
+        return self._count(parse(ADDRESS[kind]), kind, f"address {network(address)}")
+
+    def took(self, kind: str, person: int, seconds: float) -> None:
+        """Count seconds of a processor that a page took."""
+        self._processor.spend((kind, person), seconds)
+
+    def owed(self, kind: str, person: int) -> int:
+        """Return the seconds until somebody may have a page of a class, as far as pages before it took of a processor."""
+        return self._processor.wait((kind, person))
 
     def _count(self, item: RateLimitItem, *names: str) -> int:
         return 0 if self._limiter.hit(item, *names) else self._wait(item, names)
 
     def _wait(self, item: RateLimitItem, names: tuple[str, ...]) -> int:
         return max(1, math.ceil(self._limiter.get_window_stats(item, *names).reset_time - time.time()))
-
-
-def network(address: str) -> str:
-    """What is counted as one: an address, or the 64 bits of a network of the newer kind, of which a machine has all."""
-    try:
-        found = ipaddress.ip_address(address)
-    except ValueError:
-        return address
-    if isinstance(found, ipaddress.IPv6Address):
-        if found.ipv4_mapped is not None:
-            return str(found.ipv4_mapped)
-        return str(ipaddress.ip_network((found, 64), strict=False))
-    return address

@@ -9,8 +9,8 @@ import logging
 
 from starlette.requests import Request
 
-from coursework.site.frame.limits import network
 from coursework.site.frame.visits import Refused
+from coursework.system.allowances import network
 
 LOG = logging.getLogger("coursework.security")
 

@@ -18,12 +18,12 @@ from coursework.course.course import Course
 from coursework.course.folder import course_folder
 from coursework.database.settings import course_taken, secret, take_course
 from coursework.database.store import Store
-from coursework.site.frame.budgets import Places
 from coursework.site.frame.clock import SteadyClock
 from coursework.site.frame.limits import Limits
 from coursework.site.frame.pages import Pages
 from coursework.site.frame.pool import Pool
 from coursework.site.frame.shelf import Shelf
+from coursework.system.places import Places
 
 _VARIANTS = (
     1200  #: that are kept at hand: variants with the keys by which they are marked, and what is drawn of them

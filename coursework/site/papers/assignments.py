@@ -285,14 +285,23 @@ def _chosen(visit: Visit, state: State) -> Delivery:
 
 
 PAGES = (
-    Page("/assignments", listed, Permission.OWN),
-    Page("/assignments/{number:int}", paper, Permission.OWN, posts=True, budget=BOXES),
-    Page("/assignments/{number:int}/keep", keep, Permission.OWN, posts=True, budget=BOXES, is_short=True),
+    Page("/assignments", listed, Permission.OWN, limit="paper"),
+    Page("/assignments/{number:int}", paper, Permission.OWN, posts=True, limit="paper", budget=BOXES),
+    Page(
+        "/assignments/{number:int}/keep",
+        keep,
+        Permission.OWN,
+        posts=True,
+        limit="paper",
+        budget=BOXES,
+        is_short=True,
+    ),
     Page(
         "/assignments/{number:int}/hand-in",
         confirm,
         Permission.OWN,
         posts=True,
+        limit="hand_in",
         budget=HAND_IN,
         is_short=True,
     ),
@@ -304,8 +313,8 @@ PAGES = (
         limit="upload",
         budget=ANSWER_FILE,
     ),
-    Page("/assignments/{number:int}/feedback", feedback, Permission.OWN),
+    Page("/assignments/{number:int}/feedback", feedback, Permission.OWN, limit="paper"),
     *receipts.PAGES,
-    Page("/assignments/{number:int}/receipts/{code}", receipt, Permission.OWN),
+    Page("/assignments/{number:int}/receipts/{code}", receipt, Permission.OWN, limit="paper"),
     Page("/assignments/{number:int}/{file}", files, Permission.OWN, limit="upload"),
 )

@@ -109,6 +109,6 @@ def _is_theirs(visit: Visit, connection: Connection, row: Any) -> bool:
 
 
 PAGES = (
-    Page("/assignments/{number:int}/receipts/{code}.{ending}", file, Permission.OWN),
+    Page("/assignments/{number:int}/receipts/{code}.{ending}", file, Permission.OWN, limit="paper"),
     Page("/desk/receipts", verify, Permission.RECEIPTS_CHECK),
 )

@@ -7,8 +7,8 @@ from datetime import UTC, datetime
 from coursework.database.failures import add_failure, failures_of, forget_failures
 from coursework.site.frame.attempts import Attempt, Track
 from coursework.site.frame.devices import Devices
-from coursework.site.frame.limits import network
 from coursework.site.frame.visits import Visit
+from coursework.system.allowances import network
 
 
 def tracks_of(visit: Visit, login: str) -> tuple[Track, ...]:
