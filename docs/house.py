@@ -22,7 +22,8 @@ def rooms() -> dict[str, set[str]]:
     """The rooms that each room imports from."""
     needs: dict[str, set[str]] = {}
     for path in PACKAGE.rglob("*.py"):
-        if {"skeleton", "examples", "_course"} & set(path.parts) or path == PACKAGE / "__init__.py":
+        outside = path in (PACKAGE / "__init__.py", PACKAGE / "__main__.py")
+        if outside or {"skeleton", "examples", "_course"} & set(path.parts):
             continue
         room = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
         found = needs.setdefault(room, set())
