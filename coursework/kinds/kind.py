@@ -115,6 +115,9 @@ class Kind(ABC):
         True  #: feedback calls it so too; else by the number of the question
     )
     box: ClassVar[str] = "usual"  #: room for the answer: usual, wide, line, lines, blank, millimetre
+    columns: ClassVar[
+        tuple[str, ...]
+    ] = ()  #: letters before their units, where a question may ask in another order
     prediction: ClassVar[str] = (
         ""  #: how it is predicted before it is computed: quadrant, guess, size; nothing for not at all
     )

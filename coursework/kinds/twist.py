@@ -8,6 +8,7 @@ class Twist(Torsor):
     name = "twist"
     unit = "mm/s"
     form = TWIST
+    columns = ("ω", "v")  # the plane one has its velocity first
 
     def of_resultant(self, unit: str) -> str:
         return "rad/s"

@@ -24,6 +24,7 @@ from coursework.quantities.formula_latex import (
 from coursework.quantities.graph import plain_scalar
 from coursework.sheets.drawings import solution_figure, stated_polygons
 from coursework.sheets.handout import handout
+from coursework.sheets.placed import placed_points
 from coursework.sheets.sheet import Answer, AnswerSheet, Remark, Step
 
 if TYPE_CHECKING:
@@ -115,7 +116,7 @@ def _step(
     exercise = variant.exercise
     function = exercise.solution.graph.node(name).function
     section = text.sections.get(name)
-    value = _value_latex(variant, name, found)
+    value = _value_latex(variant, name, placed_points(variant).get(name, found))
     try:
         formula = formula_in_symbols(function, symbols)
         substitution = formula_latex(function, numbers) if formula and value else ""
@@ -234,10 +235,14 @@ def answer_text(variant: Variant, part: Part, values: Mapping[str, Any]) -> str:
     value = values[part.quantity]
     if said := part.sort.words(value, partial(variant.called, part)):
         return said
-    latex = _value_latex(variant, part.quantity, value)
+    placed = placed_points(variant)
+    latex = _value_latex(variant, part.quantity, placed.get(part.quantity, value))
     if not latex:
         raise BadStatement(f"{variant.exercise.name}: the answer to {part.id} cannot be printed")
-    return f"${latex}$"
+    said = f"${latex}$"
+    return (
+        engine_words(variant.lang)["solution"]["instance"].format(said) if part.quantity in placed else said
+    )
 
 
 def _margin(variant: Variant, part: Part) -> str:
