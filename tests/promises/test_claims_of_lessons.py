@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from coursework.course.lessons import lesson_file
-from coursework.solids import Chain
+from coursework.solids import Chain, in_series
 
 CLAIMS = []
 TURN = np.arange(0.25, 360.0, 0.5)
@@ -225,3 +225,149 @@ def a_slider_crank_in_space_asks_for_two_angles_and_one_offset(course):
     )
     assert np.allclose(lost @ twists.T, 0)
     assert np.linalg.matrix_rank(twists) == 3
+
+
+@claim(
+    "chains_of_bodies", "slides along it and turns about it, which makes two", "ce qui fait deux mobilités"
+)
+def between_an_annular_and_a_cylindrical_joint_of_one_axis_there_are_two_internal_motions(course):
+    joints = [
+        {"joint": kind, "axis": (1, 0, 0), "normal": (1, 0, 0), "point": (0, 0, 0), "between": (0, 1)}
+        for kind in ("annular", "cylindrical")
+    ]
+    assert in_series(joints).m_internal == 2
+
+
+# -- mobility_and_groups, several_loops --------------------------------------------------------------------
+
+
+@claim(
+    "mobility_and_groups",
+    "unless a loop is made of slides only",
+    "à moins qu'une boucle ne soit faite que de glissières",
+)
+def two_wedges_have_a_varying_parameter_more_than_moving_bodies(course):
+    directions = np.array([[1.0, 0.0], [np.cos(0.4), np.sin(0.4)], [0.0, 1.0]])  # ground, slope, guide
+    slides = [
+        {"between": ends, "kind": "prismatic", "at": f"S{k}"}
+        for k, ends in enumerate(([1, 2], [2, 3], [3, 1]))
+    ]
+    count = course["mobility"].solve(joints=slides, only=("n", "gamma", "w"))
+    assert (count["n"], count["w"]) == (2, 0)
+    assert len(directions) - np.linalg.matrix_rank(directions) == 1, "they move"
+
+
+@claim(
+    "several_loops",
+    "does have $n = 6$, $\\gamma = 2$ and $w = 2$",
+    "a bien $n = 6$, $\\gamma = 2$ et $w = 2$",
+)
+def a_plate_taken_for_two_bars_passes_the_check_of_unknowns(course):
+    def count(*pivots):
+        joints = [{"between": list(one), "kind": "revolute", "at": f"J{k}"} for k, one in enumerate(pivots)]
+        return course["mobility"].solve(joints=joints, only=("n", "gamma", "w"))
+
+    plate = count((1, 2), (2, 3), (3, 4), (4, 1), (4, 5), (5, 6), (6, 1))
+    assert plate == {"n": 5, "gamma": 2, "w": 1}
+    two_bars = count((1, 2), (2, 3), (3, 4), (4, 1), (7, 1), (7, 5), (5, 6), (6, 1))
+    assert two_bars == {"n": 6, "gamma": 2, "w": 2}
+    assert two_bars["n"] - 2 * two_bars["gamma"] == two_bars["w"]
+
+
+# -- positions ---------------------------------------------------------------------------------------------
+
+
+@claim("positions", r"The doubt of $\num{0.19}°$", r"Le doute de $\num{0.19}°$")
+def at_a_right_angle_the_direction_of_the_coupler_is_off_by_the_error_of_the_other_radius(course):
+    r3, r4, error = 90.0, 70.0, 0.3
+    bars = {"r1": float(np.hypot(r3, r4)) + 30, "r2": 30.0, "theta2": 0.0}
+
+    def theta3(longer, wider):
+        solve = course["four_bar_positions"].solve
+        return solve(**bars, r3=r3 + longer, r4=r4 + wider, only="theta3_open")["theta3_open"]
+
+    off = [abs(theta3(*shifts) - theta3(0, 0)) for shifts in product((-error, error), repeat=2)]
+    assert round(max(off), 2) == 0.19
+
+
+# -- quick_returns -----------------------------------------------------------------------------------------
+
+
+def offset_ratio(mu):
+    """The largest time ratio of offset slider-cranks whose transmission angle stays above ``mu``."""
+    reach = np.cos(np.radians(mu))  # (r2 + e) / r3
+    r2 = np.linspace(0.01, 0.99, 9801) * reach
+    e = reach - r2
+    r2, e = r2[e < 1 - r2], e[e < 1 - r2]
+    lean = np.degrees(np.arcsin(e / (1 - r2)) - np.arcsin(e / (1 + r2))).max()
+    return (180 + lean) / (180 - lean)
+
+
+@claim("quick_returns", r"$Q$ does not exceed $\num{1.29}$", r"$Q$ ne dépasse pas $\num{1.29}$")
+def an_offset_slider_crank_that_transmits_well_returns_no_quicker(course):
+    assert round(offset_ratio(40.0), 2) == 1.29
+
+
+@claim(
+    "quick_returns",
+    r"down to $30^\circ$ it reaches $\num{1.45}$",
+    r"jusqu'à $30^\circ$, il atteint $\num{1.45}$",
+)
+def an_offset_slider_crank_that_transmits_badly_returns_quicker(course):
+    assert round(offset_ratio(30.0), 2) == 1.45
+
+
+@claim("quick_returns", r"to $\num{1.32}$ with $40^\circ", r"jusqu'à $\num{1.32}$ avec $40^\circ")
+def a_crank_rocker_that_transmits_well_returns_no_quicker(course):
+    r2, r3, r4 = (
+        axis.ravel()
+        for axis in np.meshgrid(
+            np.linspace(0.05, 0.6, 111), np.linspace(0.2, 1.2, 121), np.linspace(0.6, 1.6, 101)
+        )
+    )
+    bars = np.array([np.ones_like(r2), r2, r3, r4])
+    turns = (r2 == bars.min(0)) & (2 * (r2 + bars.max(0)) < bars.sum(0))
+    r2, r3, r4 = r2[turns], r3[turns], r4[turns]
+    cosines = [(r3**2 + r4**2 - AC**2) / (2 * r3 * r4) for AC in (1 - r2, 1 + r2)]
+    well = np.abs(cosines).max(0) <= np.cos(np.radians(40.0))
+    r2, r3, r4 = r2[well], r3[well], r4[well]
+    at = [np.degrees(np.arccos((1 + OB**2 - r4**2) / (2 * OB))) for OB in (r3 - r2, r3 + r2)]
+    apart = abs(at[0] - at[1]).max()
+    assert 1.31 < (180 + apart) / (180 - apart) < 1.325
+
+
+@claim(
+    "quick_returns",
+    "over more than half of it the speed stays within a tenth",
+    "sur plus de la moitié, sa vitesse reste à moins d'un dixième",
+)
+def the_ram_of_the_shaper_is_nearly_as_fast_as_ever_over_half_of_its_working_stroke(course):
+    machine = {"r1": 210.0, "r2": 105.0, "r4": 420.0, "r5": 165.0, "h": 450.0, "omega2": 9.42}
+    speed = course["quick_return_shaper"].solve(**machine, theta2=TURN, only="v_C")["v_C"]
+    working = -speed[speed < 0]
+    assert working[working > 0.9 * working.max()].sum() > working.sum() / 2
+
+
+# -- slider_crank_analysis, the six-bar linkage ------------------------------------------------------------
+
+
+@claim(
+    "slider_crank_analysis",
+    "With an offset both ends are still at $r_3 + r_2$",
+    "les deux bouts sont toujours à $r_3 + r_2$",
+)
+def the_ends_of_the_stroke_are_as_far_from_the_crank_s_pivot_with_an_offset(course):
+    r1 = course["slider_crank"].solve(**ENGINE, theta2=np.linspace(0, 360, 36001), only="r1")["r1"]
+    assert np.hypot(r1.max(), 20.0) == pytest.approx(240, abs=1e-4)
+    assert np.hypot(r1.min(), 20.0) == pytest.approx(120, abs=1e-4)
+
+
+@claim(
+    "slider_crank_analysis", "the two roots $r_6$ are then one", "les deux racines $r_6$ se confondent alors"
+)
+def a_rod_shorter_than_the_rocker_comes_upright(course):
+    r4, r5 = 130.0, 100.0
+    theta4 = np.arcsin(r5 / r4)
+    roots = np.roots([1, -2 * r4 * np.cos(theta4), r4**2 - r5**2])
+    assert np.ptp(roots.real) < 1e-3
+    assert r4 * np.cos(theta4) == pytest.approx(roots[0].real), "B is straight above P"
