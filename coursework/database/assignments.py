@@ -269,6 +269,9 @@ def issued_content(
     columns = about.columns
     if person_id is not None:
         items = _items(connection, number, dealt.c.person_id == person_id)
+        if items and not about.is_pool:
+            theirs = {item["student"] for item in items}
+            columns = {name: own for name, own in columns.items() if name in theirs}
     elif student is not None:
         items = _items(connection, number, dealt.c.student == student)
     elif students and about.has_roster and not about.is_pool:

@@ -23,6 +23,7 @@ from coursework.database.tables import (
     mark,
     marking,
     person,
+    prepared,
     progress,
     rejected,
     scanned,
@@ -40,6 +41,7 @@ _HIDDEN = {
     "delivery": {"digest"},
     "progress": {"digest"},
     "marking": {"state"},
+    "prepared": {"state", "head", "body"},  # the paper may be to come; it is told with ``dealt``
 }
 
 
@@ -109,6 +111,7 @@ def conditions(connection: Connection, who: Whose) -> dict[str, tuple[Table, Col
         "dealt": (dealt, or_(dealt.c.person_id == who.person, dealt.c.id.in_(_dealt(connection, who)))),
         "extension": (extension, extension.c.person_id == who.person),
         "draft": (draft, draft.c.person_id == who.person),
+        "prepared": (prepared, prepared.c.person_id == who.person),
         "progress": (progress, progress.c.person_id == who.person),
         "identity": (identity, identity.c.person_id == who.person),
         "session": (session, session.c.person_id == who.person),

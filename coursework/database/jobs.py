@@ -13,7 +13,7 @@ from sqlalchemy import Connection, delete, func, insert, or_, select, update
 
 from coursework.database.tables import job
 
-MARK, RESCUE = "mark", "rescue"
+MARK, RESCUE, PREPARE = "mark", "rescue", "prepare"
 MOST_TRIES = 3
 _LEASE = timedelta(minutes=2)  #: after which another worker takes what one has begun
 
@@ -22,7 +22,7 @@ class Job(NamedTuple):
     """A piece of work."""
 
     id: int
-    kind: str  #: ``mark``: a delivery; ``rescue``: what a person saved before an assignment closed
+    kind: str  #: ``mark``: a delivery; ``rescue``: what a person saved before an assignment closed; ``prepare``: a person's page
     assignment: int
     delivery: int | None
     person: int | None
@@ -31,6 +31,7 @@ class Job(NamedTuple):
     made: datetime
 
 
+_HANDED_IN = job.c.kind != PREPARE
 _COLUMNS = (
     job.c.id,
     job.c.kind,
@@ -64,8 +65,8 @@ def put_job(
 
 
 def waiting(connection: Connection) -> tuple[int, datetime | None, datetime | None]:
-    """The number of jobs that are not given up, and when the first and the last of them were added."""
-    found = select(func.count(), func.min(job.c.id), func.max(job.c.id)).where(job.c.fault == "")
+    """The number of hand-ins that wait and are not given up, and when the first and the last of them were added."""
+    found = select(func.count(), func.min(job.c.id), func.max(job.c.id)).where(job.c.fault == "", _HANDED_IN)
     count, first, last = connection.execute(found).one()
     ends = {
         row.id: row.made
@@ -74,14 +75,20 @@ def waiting(connection: Connection) -> tuple[int, datetime | None, datetime | No
     return int(count), ends.get(first), ends.get(last)
 
 
+def is_any(connection: Connection) -> bool:
+    """Whether any job is not given up."""
+    return connection.execute(select(job.c.id).where(job.c.fault == "").limit(1)).first() is not None
+
+
 def take_job(connection: Connection, worker: str, at: datetime) -> Job | None:
-    """Take the first job that nobody works at, and count the try; None where there is none.
+    """Take the first job that nobody works at, and count the try; None where there is none. Pages are prepared last.
 
     A job that was begun :data:`MOST_TRIES` times is given up: it killed its worker.
     """
     while True:
         is_free = or_(job.c.until.is_(None), job.c.until < at, job.c.worker == worker)
-        found = select(*_COLUMNS).where(job.c.fault == "", is_free).order_by(job.c.tries, job.c.id).limit(1)
+        in_order = _HANDED_IN.desc(), job.c.tries, job.c.id
+        found = select(*_COLUMNS).where(job.c.fault == "", is_free).order_by(*in_order).limit(1)
         row = connection.execute(found.with_for_update(skip_locked=True)).first()
         if row is None:
             return None
@@ -113,7 +120,8 @@ def put_back(connection: Connection, one: Job, fault: str) -> bool:
 
 
 def give_up(connection: Connection, number: int, fault: str) -> None:
-    """Keep a job as one that nobody tries any more."""
+    """Keep a job as one that nobody tries any more; a page is made when it is asked for."""
+    connection.execute(delete(job).where(job.c.id == number, ~_HANDED_IN))
     connection.execute(update(job).where(job.c.id == number).values(fault=fault, worker="", until=None))
 
 
@@ -127,7 +135,7 @@ def job_of(connection: Connection, delivery: int) -> Job | None:
 
 def before(connection: Connection, one: Job) -> int:
     """The number of jobs that come before one."""
-    found = select(func.count()).where(job.c.fault == "", job.c.id < one.id)
+    found = select(func.count()).where(job.c.fault == "", job.c.id < one.id, _HANDED_IN)
     return int(connection.execute(found).scalar_one())
 
 

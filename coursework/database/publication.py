@@ -214,6 +214,15 @@ def publish(connection: Connection, number: int, publication: Publication | None
     connection.execute(update(assignment).where(assignment.c.id == number).values(published=told))
 
 
+def is_over(connection: Connection, number: int, clock: datetime) -> bool:
+    """Whether nobody can hand in any more, or nobody can yet since it is not published."""
+    said = published(connection, number)
+    if said is None:
+        return True
+    ends = last_end(said, list(extensions(connection, number).values()))
+    return ends is not None and ends < said.now(clock)
+
+
 def _charging(publication: Publication | None) -> tuple[object, ...]:
     """What bears on the points that are taken off of late hand-ins."""
     if publication is None or publication.late != CHARGE:

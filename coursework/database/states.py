@@ -1,4 +1,4 @@
-"""The state that a sheet was marked by: what is the same gives the same marks, what differs is marked anew."""
+"""The states that a sheet was marked by and a page was made in: what is the same gives the same, what differs is done anew."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ ENGINE = (
     "kinds model.py solution.py course marking gradebook/class_marking.py"
 ).split()
 
+_TEMPLATES = "/templates"  #: no exercise is called so
 _known: WeakKeyDictionary[Course, dict[str, str]] = WeakKeyDictionary()
 
 
@@ -42,6 +43,32 @@ def engine_state() -> str:
     found = [_PACKAGE / name for name in ENGINE]
     files = (p for place in found for p in ([place] if place.is_file() else place.rglob("*")))
     return _of_files(_PACKAGE, (p for p in files if p.suffix in (".py", ".toml")))
+
+
+def page_state(course: Course, exercises: Iterable[str], *told: Any) -> str:
+    """Digest of all that the page of a paper hangs on: what is ``told``, its exercises, the templates and the whole package."""
+    how = package_state(), _templates_state(course), *(exercise_state(course, one) for one in exercises)
+    return sha256("\0".join((*how, json.dumps(told, sort_keys=True))).encode()).hexdigest()
+
+
+@cache
+def package_state() -> str:
+    """Digest of all of the package's own files."""
+    return _of_files(_PACKAGE, (p for p in _PACKAGE.rglob("*") if p.suffix in (".py", ".toml")))
+
+
+def _templates_state(course: Course) -> str:
+    """Digest of a course's templates and settings, as they were when the open course was first asked."""
+    own = _known.setdefault(course, {})
+    if _TEMPLATES not in own:
+        folder = course.folder
+        settings = folder.root / "exercises" / "course.toml"
+        found = [_of_files(folder.root, [settings] if settings.is_file() else [])]
+        found += [
+            _of_files(place, place.rglob("*.j2")) for place in folder.template_folders if place.is_dir()
+        ]
+        own[_TEMPLATES] = "\0".join(found)
+    return own[_TEMPLATES]
 
 
 def _of_files(root: Path, files: Iterable[Path]) -> str:

@@ -7,6 +7,7 @@ their order.
 
 from __future__ import annotations
 
+import zlib
 from datetime import UTC, datetime
 from typing import Any
 
@@ -20,6 +21,7 @@ from sqlalchemy import (
     ForeignKey,
     Index,
     Integer,
+    LargeBinary,
     MetaData,
     String,
     Table,
@@ -68,6 +70,19 @@ class Words(TypeDecorator[str]):
         if value is None or (value.isascii() and "\0" not in value):
             return value
         return value.replace("\0", "␀").encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+class Packed(TypeDecorator[str]):
+    """A long text, compressed: a page takes a fifth."""
+
+    impl = LargeBinary
+    cache_ok = True
+
+    def process_bind_param(self, value: str | None, dialect: Any) -> bytes | None:
+        return None if value is None else zlib.compress(value.encode("utf-8", "backslashreplace"))
+
+    def process_result_value(self, value: Any, dialect: Any) -> str | None:
+        return None if value is None else zlib.decompress(value).decode("utf-8")
 
 
 Json = JSON(none_as_null=True)
@@ -413,6 +428,21 @@ draft = Table(
     UniqueConstraint("person_id", "sheet", "box"),
 )
 
+#: The page of a paper, made before the assignment opens, without what somebody typed (:mod:`coursework.database.prepared`).
+prepared = Table(
+    "prepared",
+    METADATA,
+    _key(),
+    _of("assignment"),
+    _of("person", index=True),
+    Column("lang", Words, nullable=False),
+    Column("state", String(64), nullable=False),  #: digest of all that the page depends on
+    Column("head", Packed, nullable=False),
+    Column("body", Packed, nullable=False),
+    UniqueConstraint("assignment_id", "person_id", "lang"),
+    info={"derived": True},
+)
+
 #: Other dates or tries for one person; the last stands.
 extension = Table(
     "extension",
@@ -427,13 +457,13 @@ extension = Table(
     Column("made", Moment, nullable=False),
 )
 
-#: Work that a worker does beside the requests: hand-ins to mark, what was saved to be handed in once it closed. A row goes
-#: with its work; one with a ``fault`` is given up, and somebody has to look at it.
+#: Work that a worker does beside the requests: hand-ins to mark, what was saved to be handed in once it closed, pages to
+#: prepare. A row goes with its work; one with a ``fault`` is given up, and somebody has to look at it.
 job = Table(
     "job",
     METADATA,
     _key(),
-    Column("kind", String(16), nullable=False),  #: mark, rescue
+    Column("kind", String(16), nullable=False),  #: mark, rescue, prepare
     _of("assignment", index=True),
     _of("delivery", null=True, index=True),
     _of("person", null=True, index=True),

@@ -1,5 +1,5 @@
-"""Worker of the site: it marks what was handed in and hands in what was saved, beside the requests and from a queue in the
-database.
+"""Worker of the site: it marks what was handed in, hands in what was saved and prepares pages that will be opened, beside the
+requests and from a queue in the database.
 
 One process does this for all that answer. It may be killed at any moment: what it had begun is taken again.
 """
@@ -17,10 +17,12 @@ from sqlalchemy import select
 from coursework.database.desk import unmarked
 from coursework.database.jobs import (
     MARK,
+    PREPARE,
     RESCUE,
     Job,
     done,
     drop_jobs,
+    is_any,
     job_of,
     put_back,
     put_job,
@@ -32,7 +34,9 @@ from coursework.database.publication import Publication
 from coursework.database.tables import assignment, extension
 from coursework.errors import CourseworkError
 from coursework.site.frame.settings import Site
+from coursework.site.frame.shelf import Shelf
 from coursework.site.papers.handing_in import close_passed, rescue
+from coursework.site.papers.opening import prepare, prepare_soon
 
 LOG = logging.getLogger("coursework.site")
 #: After a date has passed, until what is in the boxes is handed in: what arrived in time may wait for the database still.
@@ -42,6 +46,9 @@ _DATES = 1.0  #: seconds between two looks at the dates
 #: Marking waits for a moment without a hand-in, so that it takes nothing from a rush; but not for long.
 _QUIET, _LONGEST = timedelta(seconds=0.5), timedelta(seconds=5)
 _LONG_AGO = datetime.min.replace(tzinfo=UTC)
+_VARIANTS = 100  #: that are at hand: several students may have the same
+_RECENT = timedelta(days=1)
+_PUBLISHED = select(assignment.c.id, assignment.c.published).where(assignment.c.published.is_not(None))
 _AWAY = 2.0  #: seconds before it is tried again where the database is away
 
 
@@ -50,10 +57,12 @@ class Worker:
 
     def __init__(self, site: Site, name: str):
         self.site, self.name = site, name
+        self._variants = Shelf(_VARIANTS)
 
     def run(self) -> None:
         """Work until the process is told to end."""
         self._tell_faults(self.take_over)
+        self._tell_faults(self.prepare_all)
         dates = 0.0
         while True:
             if time.monotonic() - dates > _DATES:
@@ -82,6 +91,16 @@ class Worker:
                 for number, made in left:
                     put_job(connection, MARK, number, now, delivery=made)
 
+    def prepare_all(self) -> None:
+        """Have pages looked at that will be opened soon or were opened a moment ago: a new version or course may make them
+        otherwise. Of what opened before, each is made anew when it is asked for."""
+        now = self.site.clock()
+        with self.site.store.begin() as connection:
+            for row in connection.execute(_PUBLISHED).all():
+                opens = Publication.of(row.published).opens
+                if opens is not None and opens > now - _RECENT:
+                    prepare_soon(self.site, connection, row.id)
+
     # --------------------------------------------------------------------- jobs
 
     def work_once(self) -> bool:
@@ -99,12 +118,15 @@ class Worker:
         return True
 
     def _is_time(self) -> bool:
-        now = self.site.clock()
+        now, course = self.site.clock(), self.site.course
         with self.site.store.reading() as connection:
             self.site.follow(connection)
             count, first, last = waiting(connection)
+            has_jobs = is_any(connection)
+        if self.site.course is not course:
+            self.prepare_all()
         if not count or first is None or last is None:
-            return False
+            return has_jobs
         is_rush = timedelta(0) <= now - last < _QUIET
         return not is_rush or now - first > _LONGEST
 
@@ -113,6 +135,8 @@ class Worker:
             mark_delivery(self.site.course, self.site.store, one.delivery)
         elif one.kind == RESCUE and one.person is not None:
             rescue(self.site, one.assignment, one.person, self.site.clock())
+        elif one.kind == PREPARE and one.person is not None:
+            prepare(self.site, one.assignment, one.person, self.site.clock(), self._variants)
         with self.site.store.begin() as connection:
             done(connection, one.id)
             if one.kind == MARK and one.delivery is not None:
@@ -122,7 +146,11 @@ class Worker:
         name = type(fault).__name__
         with self.site.store.begin() as connection:
             is_over = put_back(connection, one, name)
-        what = f"delivery {one.delivery}" if one.kind == MARK else f"what person {one.person} saved"
+        what = {
+            MARK: f"delivery {one.delivery}",
+            RESCUE: f"what person {one.person} saved",
+            PREPARE: f"the page of person {one.person}",
+        }[one.kind]
         LOG.error(
             "%s of assignment %d failed, try %d%s: %s",
             what,
@@ -138,10 +166,7 @@ class Worker:
         """Write down the dates that have passed, and hand in what was saved."""
         now = self.site.clock()
         with self.site.store.reading() as connection:
-            found = connection.execute(
-                select(assignment.c.id, assignment.c.published).where(assignment.c.published.is_not(None))
-            )
-            known = {row.id: Publication.of(row.published) for row in found}
+            known = {row.id: Publication.of(row.published) for row in connection.execute(_PUBLISHED)}
             more: dict[int, list[datetime]] = {}
             for row in connection.execute(select(extension.c.assignment_id, extension.c.closes)):
                 more.setdefault(row.assignment_id, []).extend([row.closes] if row.closes else [])

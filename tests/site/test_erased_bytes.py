@@ -11,7 +11,7 @@ from sqlalchemy import JSON, Boolean, Double, Integer, String, insert, select, u
 
 from coursework.database.belongings import conditions, whose
 from coursework.database.store import Store
-from coursework.database.tables import METADATA, Moment, Words, person
+from coursework.database.tables import METADATA, Moment, Packed, Words, person
 from coursework.lti.launch import Launch
 from coursework.lti.roles import Role
 from coursework.lti.storage import Paper, Score, Storage, Try
@@ -34,7 +34,7 @@ def value_of(table, column, ids, site):
         return ZOE if column.name == "student" else "zoé"
     if isinstance(column.type, JSON):
         return {"told": [planted(table, column.name)]}
-    if isinstance(column.type, (String, Words)):
+    if isinstance(column.type, (String, Words, Packed)):
         return planted(table, column.name)
     kinds = ((Moment, site.at), (Boolean, False), (Double, 1.0), (Integer, 1))
     return next(value for kind, value in kinds if isinstance(column.type, kind))

@@ -7,11 +7,13 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from datetime import timedelta
 from pathlib import Path
-from typing import Any
+
+from markupsafe import Markup
 
 from coursework.database.deliveries import Delivery
 from coursework.database.drafts import Box, drafts
 from coursework.database.permissions import Permission
+from coursework.database.prepared import prepared_pieces
 from coursework.database.publication import Phase, places
 from coursework.errors import BadInput
 from coursework.gradebook.by_student import as_students, for_student
@@ -28,6 +30,7 @@ from coursework.site.papers import handing_in, receipts
 from coursework.site.papers.being_marked import being_marked
 from coursework.site.papers.feedback import charged_text, feedback_of
 from coursework.site.papers.handing_in import IN_A_FILE, ON_THE_PAGE, hand_in, pass_dates, sheet_of
+from coursework.site.papers.opening import filled_in, made
 from coursework.site.papers.own_assignment import State, own_assignment, state_of
 from coursework.site.papers.own_paper import OwnPaper, counts, read_lines
 
@@ -61,25 +64,30 @@ def paper(visit: Visit) -> Reply:
         return _read_back(visit, state, own)
     if not state.may_hand_in and state.done:
         return Reply(goto=f"{state.address}/receipts/{state.done[-1].receipt}")
-    with visit.site.store.reading() as connection:
-        boxes = drafts(connection, visit.who.id, sheet_of(state.place, own))
-    return _shown(visit, state, own, boxes)
+    return _shown(visit, state, own)
 
 
 def _shown(
-    visit: Visit, state: State, own: OwnPaper, boxes: Mapping[str, Box], problem: str = "", status: int = 200
+    visit: Visit,
+    state: State,
+    own: OwnPaper,
+    boxes: Mapping[str, Box] | None = None,
+    problem: str = "",
+    status: int = 200,
 ) -> Reply:
-    texts = {name: box.text for name, box in boxes.items() if name in own.boxes}
-    form = keeper(visit, f"{state.address}/keep", sheet_of(state.place, own), boxes)
+    """The paper with what is kept of it in its boxes, or with other ``boxes`` where they are told."""
+    number, who, sheet = state.place.id, visit.who.id, sheet_of(state.place, own)
+    with visit.site.store.reading() as connection:
+        stands = drafts(connection, who, sheet) if boxes is None else boxes
+        found = prepared_pieces(connection, number, who, own.lang, own.state)
+    pieces = found or made(visit.site, number, who, own, keeps=state.phase.takes)
+    form = keeper(visit, f"{state.address}/keep", sheet, stands)
+    texts = {name: box.text for name, box in stands.items() if name in own.fields}
     return visit.page(
         "site_assignment", status, state=state, form=form, versions=form["data-keep-versions"], problem=problem,
-        look="", back="", zone=zone_name(visit.at), **_without_clash(own.shown(texts)),
+        look="", back="", zone=zone_name(visit.at), paper_head=Markup(pieces.head),
+        paper_body=Markup(filled_in(pieces.body, texts)),
     )  # fmt: skip
-
-
-def _without_clash(names: dict[str, Any]) -> dict[str, Any]:
-    """The names of a paper's template that are not those of the site's page."""
-    return {name: value for name, value in names.items() if name not in ("visit", "person", "said", "seal")}
 
 
 def keep(visit: Visit) -> Reply:
@@ -88,7 +96,7 @@ def keep(visit: Visit) -> Reply:
         raise Refused("method", 405)
     state, own = own_assignment(visit)
     sheet = sheet_of(state.place, own)
-    return kept(visit, sheet, own.boxes, lambda name, text: own.read(name, text).says, state.may_hand_in)
+    return kept(visit, sheet, own.fields, lambda name, text: own.read(name, text).says, state.may_hand_in)
 
 
 def _read_back(visit: Visit, state: State, own: OwnPaper) -> Reply:
@@ -163,16 +171,14 @@ def take_file(visit: Visit) -> Reply:
     if not state.may_hand_in:
         return _too_late(visit, state)
     sent = next(iter(visit.form.files.get("file", ())), None)
-    with visit.site.store.reading() as connection:
-        boxes = drafts(connection, visit.who.id, sheet_of(state.place, own))
     if sent is None or _ending(sent) not in _FILES:
-        return _shown(visit, state, own, boxes, said["which_file"].format(", ".join(_FILES)), 422)
+        return _shown(visit, state, own, None, said["which_file"].format(", ".join(_FILES)), 422)
     try:
         texts, notes = _of_file(visit, own, sent)
     except BadInput as fault:
-        return _shown(visit, state, own, boxes, str(fault), 422)
+        return _shown(visit, state, own, None, str(fault), 422)
     if not any(text.strip() for text in texts.values()):
-        return _shown(visit, state, own, boxes, " ".join([said["file_empty"], *notes]), 422)
+        return _shown(visit, state, own, None, " ".join([said["file_empty"], *notes]), 422)
     return _confirming(visit, state, own, texts, IN_A_FILE, notes)
 
 
@@ -273,9 +279,8 @@ def feedback(visit: Visit) -> Reply:
     if being_marked(visit, chosen.id) is not None:
         return Reply(goto=f"{state.address}/receipts/{chosen.receipt}")
     told, notes = feedback_of(visit, state, own, chosen)
-    names = own.shown({}, told)
     return visit.page(
-        "site_assignment_feedback", state=state, notes=notes, delivery=chosen, **_without_clash(names)
+        "site_assignment_feedback", state=state, notes=notes, delivery=chosen, **own.shown(told)
     )
 
 

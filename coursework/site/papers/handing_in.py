@@ -22,7 +22,8 @@ from coursework.database.drafts import drafts
 from coursework.database.jobs import MARK, drop_jobs, put_job
 from coursework.database.marking import mark_delivery
 from coursework.database.people import hold
-from coursework.database.publication import Phase, Place, extensions, places, published, reach
+from coursework.database.prepared import drop_prepared
+from coursework.database.publication import Phase, Place, extensions, is_over, places, published, reach
 from coursework.database.tables import dealt, delivery, draft, person, variant
 from coursework.errors import CourseworkError
 from coursework.gradebook.rows import Collected, Row
@@ -227,6 +228,8 @@ def close_passed(
             failed(person_id, fault)
     with site.store.begin() as connection:
         reach(connection, number, at)
+        if is_over(connection, number, at):
+            drop_prepared(connection, number)
 
 
 def who_saved(connection: Connection, number: int) -> list[int]:

@@ -93,7 +93,7 @@ def to_hand_in(visit: Visit) -> list[State]:
     return [one for one in found if one.may_hand_in and not one.done]
 
 
-def own_place(visit: Visit) -> Place:
+def own_place(visit: Visit, connection: Connection) -> Place:
     """The assignment that is asked for, where it is published and the person was issued a paper of it.
 
     Raises
@@ -101,10 +101,7 @@ def own_place(visit: Visit) -> Place:
     Refused
         There is none such: nobody is told which of it is wanting.
     """
-    number = int(visit.path["number"])
-    pass_dates(visit.site, number, visit.at)
-    with visit.site.store.reading() as connection:
-        found = places(connection, visit.who.id, number)
+    found = places(connection, visit.who.id, int(visit.path["number"]))
     if len(found) != 1 or found[0].publication is None:
         raise Refused("own", 404)
     return found[0]
@@ -112,8 +109,9 @@ def own_place(visit: Visit) -> Place:
 
 def own_assignment(visit: Visit) -> tuple[State, OwnPaper]:
     """Where it stands, and the paper; nothing of it before it opens."""
-    place = own_place(visit)
+    pass_dates(visit.site, int(visit.path["number"]), visit.at)
     with visit.site.store.reading() as connection:
+        place = own_place(visit, connection)
         state = state_of(visit, place, connection)
         if state.phase is Phase.TO_COME:
             raise Refused("not_yet", 409, state.moment(place.own.opens))

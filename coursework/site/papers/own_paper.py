@@ -12,7 +12,9 @@ from sqlalchemy import Connection, select
 
 from coursework.course.course import Course
 from coursework.database.assignments import issued_content
+from coursework.database.prepared import Pieces
 from coursework.database.publication import Place
+from coursework.database.states import page_state
 from coursework.database.tables import assignment
 from coursework.gradebook.feedback_sheets import heading_of
 from coursework.making.assignment import text_in
@@ -22,7 +24,7 @@ from coursework.rendering import papers
 from coursework.rendering.environment import render
 from coursework.rendering.html import environment_of
 from coursework.sheets.paper import FeedbackPaper, Heading, Paper
-from coursework.site.frame.keeping import LONGEST, held
+from coursework.site.frame.keeping import LONGEST
 from coursework.site.frame.shelf import Shelf
 from coursework.site.frame.visits import Form, Refused
 from coursework.site.papers.read_back import ReadBack, read_back
@@ -55,11 +57,22 @@ class OwnPaper:
     """What a student was issued: a variant of each exercise, in one language."""
 
     course: Course[Any]
-    issued: Issued
+    content: Mapping[str, Any]  #: what ``issued.json`` says of it
     student: str
     lang: str
     instructions: Mapping[str, str]
     shelf: Shelf = field(default_factory=lambda: Shelf(_VARIANTS))  #: where its variants are at hand
+
+    @cached_property
+    def issued(self) -> Issued:
+        return Issued(self.content, "what was issued")
+
+    @cached_property
+    def state(self) -> str:
+        """Digest of all that its page depends on but what is typed."""
+        exercises = {str(item["record"]["exercise"]) for item in self.content["issued"]}
+        told = self.content, self.student, self.lang, dict(self.instructions)
+        return page_state(self.course, sorted(exercises), *told)
 
     @cached_property
     def seeds(self) -> Mapping[str, int]:
@@ -139,14 +152,15 @@ class OwnPaper:
             raise Refused("too_large", 413, LONGEST)
         return found
 
-    def shown(self, texts: Texts, told: FeedbackPaper | None = None) -> dict[str, Any]:
-        """The names that the page of a paper sees, with texts in its boxes; or of what was said of it."""
-        one = told or self.paper
+    def pieces(self) -> Pieces:
+        """The pieces of its page, with nothing in its boxes."""
+        names, env = self.shown(self.paper), environment_of(self.course.folder.template_folders, self.lang)
+        return Pieces(render(env, "_paper_head.html.j2", names), render(env, "_paper_body.html.j2", names))
+
+    def shown(self, one: Paper | FeedbackPaper) -> dict[str, Any]:
+        """The names that the page of a paper, or of what was said of it, sees."""
         env = environment_of(self.course.folder.template_folders, self.lang)
-        filled = {name: held(text) for name, text in texts.items() if text}
-        files = [{"filled": filled}] * len(papers.sheets_of(one))
-        names = papers.context(one, "html.j2", partial(render, env), files)
-        return {**names, "image": papers.image, "keeping": ""}
+        return {**papers.context(one, "html.j2", partial(render, env)), "image": papers.image, "keeping": ""}
 
 
 def own_paper(
@@ -163,7 +177,7 @@ def own_paper(
     told = asked.get("instructions") or {}
     instructions = {"": told} if isinstance(told, str) else told
     kept = Shelf(_VARIANTS) if shelf is None else shelf
-    return OwnPaper(course, Issued(content, place.name), place.student, lang, instructions, kept)
+    return OwnPaper(course, content, place.student, lang, instructions, kept)
 
 
 def read_lines(paper: OwnPaper, texts: Texts) -> list[tuple[Box, str, ReadBack]]:

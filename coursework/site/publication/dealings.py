@@ -26,6 +26,7 @@ from coursework.making.dealing import deal
 from coursework.making.issued import SECRET, issued_content
 from coursework.making.roster import Student
 from coursework.site.frame.settings import Site
+from coursework.site.papers.opening import prepare_soon
 from coursework.system.processes import processes, workers
 
 _ALONE = 40  #: papers of exercises that are dealt before a process has started
@@ -143,6 +144,7 @@ def _keep(site: Site, wanted: Wanted, found: _Outcome, by: str, what: str) -> in
         number = put_issued(connection, found.content, wanted.name)
         asked = {key: value for key, value in wanted.table.items() if key != SECRET}  # it has its own column
         connection.execute(update(assignment).where(assignment.c.id == number).values(asked=asked))
+        prepare_soon(site, connection, number)
         note(
             connection, site.clock(), by, what, assignment=wanted.name, students=len(wanted.students),
             make_up=list(wanted.make_up),

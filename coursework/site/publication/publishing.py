@@ -9,12 +9,14 @@ from dataclasses import replace
 from datetime import datetime
 from typing import Any, NamedTuple
 
+from markupsafe import Markup
 from sqlalchemy import Connection, Select, func, select
 
 from coursework.course.secrecy import Secret
 from coursework.database.assignments import issued_content, issued_of, put_issued
 from coursework.database.audit import note
 from coursework.database.permissions import Permission
+from coursework.database.prepared import drop_prepared
 from coursework.database.publication import (
     ANSWERS,
     FEEDBACK,
@@ -48,6 +50,7 @@ from coursework.making.roster import Student
 from coursework.site.frame.budgets import DESK_FILE
 from coursework.site.frame.moments import exact_text, field_text, from_field, moment_text, zone_name
 from coursework.site.frame.visits import Form, Page, Refused, Reply, Visit
+from coursework.site.papers.opening import prepare_soon
 from coursework.site.papers.own_assignment import State, state_of
 from coursework.site.papers.own_paper import OwnPaper, own_paper
 from coursework.site.publication import dealings, handing_out
@@ -259,6 +262,7 @@ def put_out(visit: Visit) -> Reply:
     with visit.site.store.begin() as connection:
         publish(connection, one.id, publication)
         say_sittings(connection, one.id, sittings)
+        prepare_soon(visit.site, connection, one.id)
         _noting(visit, connection, one, "assignment published", **publication.as_json(), sittings=sittings)
     return _back(one)
 
@@ -314,6 +318,7 @@ def take_back(visit: Visit) -> Reply:
     with visit.site.store.begin() as connection:
         one = assignment_here(visit, connection)
         publish(connection, one.id, None)
+        drop_prepared(connection, one.id)
         _noting(visit, connection, one, "assignment unpublished")
     return _back(one)
 
@@ -340,6 +345,7 @@ def give_more(visit: Visit) -> Reply:
     more = Extension(told.closes, told.tries, reason, visit.who.name, visit.at)
     with visit.site.store.begin() as connection:
         extend(connection, one.id, holder.person, more)
+        prepare_soon(visit.site, connection, one.id, holder.person)
         closes = told.closes.isoformat() if told.closes else ""
         _noting(visit, connection, one, "extension", student=holder.student, closes=closes, tries=told.tries)
     return _back(one)
@@ -399,7 +405,7 @@ def preview(visit: Visit) -> Reply:
     student = made.issues[0].student
     own = OwnPaper(
         visit.site.course,
-        Issued(content_of(made.issues, asked), one.name),
+        content_of(made.issues, asked),
         student,
         visit.lang,
         asked.instructions,
@@ -446,14 +452,10 @@ def as_somebody(visit: Visit) -> Reply:
 
 
 def _seen(visit: Visit, one: Handed, state: State, own: OwnPaper, look: str) -> Reply:
-    names = {
-        name: value
-        for name, value in own.shown({}).items()
-        if name not in ("visit", "person", "said", "seal")
-    }
+    pieces = own.pieces()
     return visit.page(
         "site_assignment", state=state, form={}, versions="{}", problem="", look=look, zone=zone_name(visit.at),
-        back=f"/desk/assignments/{one.id}", **names,
+        back=f"/desk/assignments/{one.id}", paper_head=Markup(pieces.head), paper_body=Markup(pieces.body),
     )  # fmt: skip
 
 

@@ -1,0 +1,72 @@
+"""Pages of papers, made once before an assignment opens, and shared by all processes. No dump holds them: they are made again."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from typing import NamedTuple
+
+from sqlalchemy import ColumnElement, Connection, delete, insert, literal, select
+from sqlalchemy.dialects import postgresql, sqlite
+
+from coursework.database.jobs import PREPARE
+from coursework.database.tables import Moment, dealt, job, person, prepared, variant
+
+
+class Pieces(NamedTuple):
+    """The pieces of a page that hold a paper, as HTML, with nothing typed in its boxes."""
+
+    head: str
+    body: str
+
+
+def prepared_state(connection: Connection, number: int, person_id: int, lang: str) -> str:
+    """Return the state of a page that is kept; empty where none is."""
+    found = select(prepared.c.state).where(*_key(number, person_id, lang))
+    return str(connection.execute(found).scalar() or "")
+
+
+def prepared_pieces(
+    connection: Connection, number: int, person_id: int, lang: str, state: str
+) -> Pieces | None:
+    """Return a page as it was made in this very state; None where there is none such."""
+    found = select(prepared.c.head, prepared.c.body).where(
+        *_key(number, person_id, lang), prepared.c.state == state
+    )
+    row = connection.execute(found).first()
+    return None if row is None else Pieces(row.head, row.body)
+
+
+def put_prepared(
+    connection: Connection, number: int, person_id: int, lang: str, state: str, pieces: Pieces
+) -> None:
+    """Keep a page, in place of that of another state."""
+    make = postgresql.insert if connection.dialect.name == "postgresql" else sqlite.insert
+    now = {"state": state, **pieces._asdict()}
+    added = make(prepared).values(assignment_id=number, person_id=person_id, lang=lang, **now)
+    unique = ["assignment_id", "person_id", "lang"]
+    connection.execute(added.on_conflict_do_update(index_elements=unique, set_=now))
+
+
+def drop_prepared(connection: Connection, number: int) -> None:
+    """Delete the pages of an assignment that nobody fills in any more, and what waits to make them."""
+    connection.execute(delete(prepared).where(prepared.c.assignment_id == number))
+    connection.execute(delete(job).where(job.c.assignment_id == number, job.c.kind == PREPARE))
+
+
+def prepare_later(connection: Connection, number: int, at: datetime, person_id: int | None = None) -> None:
+    """Add a job for each person who was issued a paper of an assignment, or for one, unless it waits already."""
+    theirs = select(dealt.c.person_id).join(variant).where(variant.c.assignment_id == number)
+    waits = select(job.c.person_id).where(
+        job.c.assignment_id == number, job.c.kind == PREPARE, job.c.until.is_(None)
+    )
+    wanted = select(literal(PREPARE), literal(number), person.c.id, literal(at, Moment)).where(
+        person.c.id.in_(theirs), person.c.id.not_in(waits)
+    )
+    if person_id is not None:
+        wanted = wanted.where(person.c.id == person_id)
+    columns = [job.c.kind, job.c.assignment_id, job.c.person_id, job.c.made]
+    connection.execute(insert(job).from_select(columns, wanted.order_by(person.c.id)))
+
+
+def _key(number: int, person_id: int, lang: str) -> tuple[ColumnElement[bool], ...]:
+    return prepared.c.assignment_id == number, prepared.c.person_id == person_id, prepared.c.lang == lang

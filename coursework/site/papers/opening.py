@@ -1,0 +1,93 @@
+"""The page of a paper when it is opened: pieces that were prepared, with what somebody typed put in their boxes."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from contextlib import suppress
+from datetime import datetime
+from functools import partial
+from html import escape, unescape
+
+from sqlalchemy import Connection, select
+from sqlalchemy.exc import IntegrityError
+
+from coursework.database.prepared import Pieces, prepare_later, prepared_state, put_prepared
+from coursework.database.publication import Phase, is_over, places
+from coursework.database.tables import person
+from coursework.errors import BadInput
+from coursework.site.frame.keeping import held
+from coursework.site.frame.settings import Site
+from coursework.site.frame.shelf import Shelf
+from coursework.site.papers.own_paper import OwnPaper, Texts, own_paper
+
+_BOX = re.compile(r"<(?:input|textarea)\b[^>]*>")
+_ATTRIBUTE = re.compile(r' ([a-z-]+)="([^"]*)"')
+_AFTER_NAME = re.compile(r' name="[^"]*"(?: class="[^"]*")?')
+_AFTER_VALUE = re.compile(r' value="[^"]*"')
+
+
+def made(site: Site, number: int, person_id: int, own: OwnPaper, *, keeps: bool) -> Pieces:
+    """Make the pieces of a page, and keep them where that is told.
+
+    A database that takes nothing refuses no reader, and of who was erased meanwhile nothing is kept.
+    """
+    pieces = own.pieces()
+    if keeps:
+        with suppress(BadInput, IntegrityError), site.store.begin() as connection:
+            put_prepared(connection, number, person_id, own.lang, own.state, pieces)
+    return pieces
+
+
+def prepare_soon(site: Site, connection: Connection, number: int, person_id: int | None = None) -> None:
+    """Have the pages of an assignment made, or that of one person, before they are opened, where a worker does that."""
+    if site.has_worker and not is_over(connection, number, site.clock()):
+        prepare_later(connection, number, site.clock(), person_id)
+
+
+def prepare(site: Site, number: int, person_id: int, at: datetime, shelf: Shelf | None = None) -> int:
+    """Make the page of a person's paper, where it is published and not closed, and return how many were made.
+
+    It is made in the person's language; in each of the site's where nobody knows theirs.
+    """
+    count = 0
+    for lang in _langs(site, person_id):
+        with site.store.reading() as connection:
+            found = places(connection, person_id, number)
+            place = found[0] if len(found) == 1 else None
+            if place is None or place.publication is None:
+                return count
+            if place.own.phase(place.publication.now(at)) is Phase.CLOSED:
+                return count
+            own = own_paper(connection, site.course, place, person_id, lang, shelf)
+            stands = prepared_state(connection, number, person_id, lang)
+        if stands != own.state:
+            made(site, number, person_id, own, keeps=True)
+            count += 1
+    return count
+
+
+def _langs(site: Site, person_id: int) -> tuple[str, ...]:
+    with site.store.reading() as connection:
+        told = connection.execute(select(person.c.lang).where(person.c.id == person_id)).scalar()
+    return (told,) if told in site.languages else site.languages
+
+
+def filled_in(body: str, texts: Texts) -> str:
+    """Return the body of a page with texts in its boxes, by their names."""
+    stands = {name: held(text) for name, text in texts.items() if text}
+    return _BOX.sub(partial(_filled, stands), body) if stands else body
+
+
+def _filled(stands: Mapping[str, list[str]], found: re.Match[str]) -> str:
+    tag = found[0]
+    own = dict(_ATTRIBUTE.findall(tag))
+    texts = stands.get(unescape(own.get("name", "")))
+    if texts is None:
+        return tag
+    if tag.startswith("<textarea"):
+        return f"{tag}\n{escape(texts[0])}"
+    if own.get("type") in ("radio", "checkbox"):
+        is_held = unescape(own.get("value", "")) in texts
+        return _AFTER_VALUE.sub(lambda told: f"{told[0]} checked", tag, count=1) if is_held else tag
+    return _AFTER_NAME.sub(lambda told: f'{told[0]} value="{escape(texts[0])}"', tag, count=1)
