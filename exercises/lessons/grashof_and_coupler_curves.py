@@ -423,7 +423,7 @@ STRAIGHT = (
 
 
 def straight_line():
-    """Hoeken's linkage: for half a turn of the crank, P goes along a line, nearly, and nearly at one speed."""
+    """Hoecken's linkage: for half a turn of the crank, P goes along a line, nearly, and nearly at one speed."""
     bars, AP, beta = STRAIGHT
     curve = closed(_coupler_point(bars, AP, beta, FINE))
     found = []

@@ -150,7 +150,10 @@ def test_who_lost_points_is_told_another_variant_and_the_lesson_and_who_lost_non
     variant = COURSE[NAMES[0]].variant(lost.practice.seed)
     assert variant.given != COURSE[NAMES[0]].variant(5).given
     lesson = lost.practice.lessons[0]
-    assert (lesson.name, lesson.title) == ("accelerations", "Accelerations: derive once more, and Coriolis")
+    assert (lesson.name, lesson.title) == (
+        "accelerations",
+        "Accelerations: differentiate once more, and Coriolis",
+    )
     assert [section.split(".")[0] for section in lesson.sections] == ["6", "7", "9"]
     french = marked_paper(tmp_path, issued_file(), rows, "fr").sheets[0].practice
     assert french.seed == lost.practice.seed
