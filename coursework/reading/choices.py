@@ -67,6 +67,9 @@ _LETTER_IN_REMARK = re.compile(
     re.I | re.S,
 )
 _IN_BRACKETS = re.compile(r"\(([^()]+)\)\s*\.?")
+_CALL = re.compile(
+    r"[a-z]\(\s*\w{1,6}\s*\)\s*\.?", re.I
+)  #: a formula, ``f(x)``, ``f(theta)``: no letter and its remark
 
 
 def _on_lettered(text: str, choices: Choices, letters: Letters) -> list[str]:
@@ -96,7 +99,7 @@ def _said_with_letters(text: str, choices: Choices, letters: Letters) -> list[st
         if said := _said(found["said"], choices, letters):
             return _together(keys, said)
         if (remark := _IN_BRACKETS.fullmatch(found["said"])) and not names_any(remark[1], choices):
-            return keys  # b (r2 < r1)
+            return [] if _CALL.fullmatch(text) else keys  # b (r2 < r1)
         if found["bracket"] or found["mark"]:
             return []
     if found := _BEHIND.fullmatch(text):

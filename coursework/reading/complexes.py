@@ -12,7 +12,7 @@ import numpy as np
 from coursework.language.numbers import MINUS
 from coursework.reading.digits import Amount, in_unit
 from coursework.reading.expressions import plain_expression
-from coursework.reading.numbers import read_amounts, target_unit, without_name
+from coursework.reading.numbers import read_amounts, refuse_no_number, target_unit, without_name
 from coursework.reading.reading import MOST_TURNS, Reading, Stop, reading_of, text_of
 from coursework.reading.spelling import shorten
 from coursework.reading.units import Unit, plain_unit
@@ -72,6 +72,7 @@ def spelled(value: complex, digits: int = 7) -> str:
 
 def _read(plain: str, text: Any, target: Unit) -> Reading:
     plain = without_name(plain)
+    refuse_no_number(plain, target)
     polar = _polar(plain, target)
     if polar is not None:
         values, echo, given = polar

@@ -32,8 +32,10 @@ _RAISED = str.maketrans("0123456789+-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁺⁻")
 
 # --- numbers ----------------------------------------------------------------------------
 
-#: Digits with one honest reading; three of them after a comma may have two.
-_PLAIN = re.compile(r"\s*([+-]?[0-9]+(?:\.[0-9]+|,(?:[0-9]{1,2}|[0-9]{4,}))?(?:[eE][+-]?[0-9]+)?)\s*")
+#: Digits with one honest reading; three of them after a comma may have two. Those of a telephone number have none.
+_PLAIN = re.compile(
+    r"\s*(?!0[1-9][0-9]{7}|\+[0-9]{10})([+-]?[0-9]+(?:\.[0-9]+|,(?:[0-9]{1,2}|[0-9]{4,}))?(?:[eE][+-]?[0-9]+)?)\s*"
+)
 match_plain = _PLAIN.fullmatch
 
 _GROUPED = r"""

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from coursework.reading.expressions import plain_expression
-from coursework.reading.reading import Reading, bare_value, reading_of, text_of
+from coursework.reading.reading import Reading, Stop, bare_value, reading_of, text_of
 from coursework.reading.spelling import plain_spelling, shorten
 from coursework.reading.trees import Expression, Operation
 from coursework.reading.vocabulary import INVERSE, MAX_LENGTH, Unreadable, Value
@@ -172,6 +172,9 @@ def read_equation(text: Any, variables: Iterable[str]) -> Reading:
 
     def read(plain: str) -> Reading:
         plain = plain.rstrip(" .;,")
-        return Reading(text, "read", (_parsed_once(plain, tuple(variables)),), (plain,))
+        equation = _parsed_once(plain, tuple(variables))
+        if not equation.variables:  # 0 = 0: nothing is said of the statement's symbols
+            raise Stop("not_a_number", plain)
+        return Reading(text, "read", (equation,), (plain,))
 
     return reading_of(text, read)

@@ -41,7 +41,7 @@ from coursework.reading.scales import is_of_paper, restated
 from coursework.reading.spelling import shorten
 from coursework.reading.trees import Expression, Operation, without_idle
 from coursework.reading.units import Unit, parse_unit, plain_unit
-from coursework.reading.vocabulary import MAX_LENGTH, Unreadable
+from coursework.reading.vocabulary import FUNCTIONS, MAX_LENGTH, Unreadable
 
 _MAX_INTEGER = 10**15
 NAME = re.compile(r"(?:[^\W\d_]|[\\|‖])[^=≈≃:]{0,39}?\s*(?:=|≈|≃|:)\s*(?=\S)")
@@ -63,7 +63,7 @@ def without_name(text: str) -> str:
     if named := NAME.match(text):
         if says_value(named[0]):
             raise Stop("two_values", text)
-        if _ELSEWHERE.search(named[0]):
+        if _ELSEWHERE.search(named[0]) or _is_equation(named[0]):
             raise Stop("not_a_number", text)
         text = text[named.end() :]
     text = _ABOUT.sub("", text, count=1) if _ABOUT.match(text) else text
@@ -83,6 +83,34 @@ _ELSEWHERE = re.compile(
     r"|temps restant|time left)(?![^\W\d_])(?!\s+[A-Z]\b)",
     re.I,
 )
+
+
+#: What is set equal to a number without being a name: an equation, a function of x, a sine or a square of a symbol.
+_NO_QUANTITY = re.compile(
+    r"[eé]q(?:n|uation)?s?\.?\s*\(?[0-9]*\)?\s*[=:]|[fgh]\s*\(\s*[a-z]\s*\)\s*=|y\s*\(\s*x\s*\)\s*="
+    r"|\\?(?:sin|cos|tan|exp|ln|log)(?![a-z])(?:\^\(?[0-9]\)?)?\s*[({]?\s*(?!pi\b)[^\W\d][^=(){}+*/]*[)}]?\s*="
+    r"|[^\W\d_]\w*\s*(?:\^|\*\*)\s*\(?[23]\)?\s*=",
+    re.I,
+)
+_WORKS = re.compile(r"[-+*/^]")  #: what a formula has, and a name seldom
+
+
+def _is_equation(name: str) -> bool:
+    """Whether what stands before an equals sign makes an equation of it: ``f(x) =``, ``cos(t) =``, ``sin(t)^2 + cos(t)^2 =``."""
+    if _NO_QUANTITY.match(name):
+        return True
+    left = name.rstrip(" =≈≃:")
+    if not _WORKS.search(left):
+        return False
+    symbols = tuple(sorted({*re.findall(r"[^\W\d_]\w*", left)} - {*FUNCTIONS, "pi", "e"}))
+    with suppress(Unreadable):
+        formula = plain_expression(left, symbols)
+        values = [
+            formula.evaluate({symbol: 0.3 + k * n for n, symbol in enumerate(symbols, 1)})
+            for k in (0.2, 0.31)
+        ]
+        return bool(formula.variables) and abs(values[0] - values[1]) < 1e-9  # it says nothing of its symbols
+    return False
 
 
 def says_value(name: str) -> bool:
@@ -275,6 +303,25 @@ _PROPORTION = re.compile(r"([+-]?\s*[0-9]+(?:[.,][0-9]+)?)\s*:\s*([0-9]+(?:[.,][
 RATIO = parse_unit("1").dimension
 
 
+#: Dates, times of the day and telephone numbers: ``2026-12-04``, ``04/12/26``, ``12/04``, ``14:30``, ``06 12 34 56 78``.
+_CALENDAR = re.compile(
+    r"(?:19|20)[0-9]{2}([-/.])(?:0[1-9]|1[0-2])\1(?:0[1-9]|[12][0-9]|3[01])"
+    r"|[0-3]?[0-9]([-/.])[0-3]?[0-9]\2(?:19|20)[0-9]{2}"
+    r"|[0-3][0-9]/[0-3][0-9]/[0-9]{2}|(?=.*(?<![0-9])0[1-9])[0-3][0-9]([-/])[0-3][0-9](?:\3[0-9]{2})?"
+    r"|(?:(?:[01][0-9]|2[0-3]):[0-5][0-9]|[0-9]:0[0-9])(?::[0-5][0-9])?"
+    r"|(?:\+[0-9]{2} ?[0-9]|0[1-9])(?:[ .-]?[0-9]{2}){4}"
+)
+_LETTER = re.compile(r"[+-]?\s*(?:(e)|pi|π)", re.I)
+
+
+def refuse_no_number(text: str, target: Unit) -> None:
+    """Stop at a date, a time, a telephone number, and at a letter alone: ``e``, and ``π`` but where an angle or a rate of one is asked."""
+    letter = _LETTER.fullmatch(text)
+    is_angle = target.is_angle or "rad" in target.text
+    if _CALENDAR.fullmatch(text) or (letter and (letter[1] or not is_angle)):
+        raise Stop("not_a_number", text)
+
+
 _PAIR = re.compile(
     r"[(\[{]\s*[+-]?[0-9]+\s*,\s*0+\s*[)\]}]"
 )  #: ``(0,0)`` is a point; who writes 0 writes no bracket and comma
@@ -368,9 +415,8 @@ def _written_twice(text: str, target: Unit, thousands: bool) -> list[Amount] | N
     pieces = _EQUALS.split(text)
     if len(pieces) != 2 or not all(pieces):
         return None
-    if pieces[0] == pieces[1] and _NOUGHT.fullmatch(
-        pieces[0]
-    ):  # 0 = 0 holds whatever is asked: it states nothing
+    is_idle = pieces[0] == pieces[1] and _NOUGHT.fullmatch(pieces[0])  # 0 = 0 holds whatever is asked
+    if is_idle or any(map(_PAIR.fullmatch, pieces)):
         raise Stop("not_a_number", text)
     other, end = (_way(piece, target, thousands) for piece in pieces)
     if not (amounts := _agreeing(end, other, target)):
@@ -500,6 +546,7 @@ def read_number(text: Any, unit: str, *, thousands: bool = True, proportions: bo
         return Reading(text, "unreadable", code="two_values", found=shorten(" ".join(text.split())))
 
     def read(plain: str) -> Reading:
+        refuse_no_number(plain, target)
         texts = restated(plain, unit) if is_of_paper(unit) else (plain,)
         amounts = [a for one in texts for a in read_amounts(one, target, thousands, proportions)]
         return _from_amounts(text, amounts)
