@@ -38,6 +38,7 @@ from coursework.errors import BadCourse, CourseworkError, nearest, unknown
 from coursework.mechanics.statement import Mechanism
 from coursework.quantities.error_kinds import PRICES
 from coursework.quantities.graph import Graph, Node, Replacement
+from coursework.quantities.in_radians import in_radians
 from coursework.quantities.loops import Loop, quantities, stated
 from coursework.reading.units import check_unit
 
@@ -361,6 +362,11 @@ class Solution:
     @cached_property
     def _mistaken_graphs(self) -> dict[str, Graph]:
         return {n: self.graph.replacing(m.replacement) for n, m in self.mistakes.items()}
+
+    @cached_property
+    def in_radians(self) -> Graph:
+        """The graph as a calculator that is set to radians works it out."""
+        return in_radians(self.graph)
 
     @cached_property
     def residual_graph(self) -> Graph:

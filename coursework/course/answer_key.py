@@ -164,6 +164,30 @@ class Key:
         variant = self.variant
         return ErrorValues(variant.exercise, self._quantities, variant.used, variant.effects, 1)
 
+    @cached_property
+    def in_radians(self) -> dict[str, float]:
+        """By quantity, what comes out of a calculator that is set to radians, where that is a number."""
+        found = {}
+        for quantity in self._quantities:
+            with suppress(CourseworkError):
+                graph, used = self.solution.in_radians, self.variant.used
+                value = plain_scalar(graph.evaluate((quantity,), used, self.variant.effects)[quantity])
+                if isinstance(value, (int, float)) and exists(value):
+                    found[quantity] = float(value)
+        return found
+
+    def followed_in_radians(self, quantity: str, own: Mapping[str, Any]) -> float | None:
+        """What comes out of a calculator that is set to radians from a student's own earlier answers, where that is a number."""
+        before = {q: v for q, v in own.items() if q != quantity}
+        with suppress(CourseworkError):
+            given = {**self.variant.used, **before}
+            value = plain_scalar(
+                self.solution.in_radians.evaluate((quantity,), given, self.variant.effects)[quantity]
+            )
+            if isinstance(value, (int, float)) and exists(value):
+                return float(value)
+        return None
+
     def followed(self, part: Part, own: Mapping[str, Any], wrong: Collection[str]) -> Any:
         """What a right method gives from a student's own earlier answers, or None.
 

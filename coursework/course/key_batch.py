@@ -94,6 +94,16 @@ class Batch:
         return found
 
     @cached_property
+    def in_radians(self) -> dict[str, list]:
+        """Columns of what a calculator that is set to radians gives."""
+        graph, effects = self.exercise.solution.in_radians, self.exercise.spec.effects
+        found: dict[str, list] = {}
+        for quantity in self.quantities:
+            with suppress(CourseworkError):
+                found |= self._rows(graph.evaluate((quantity,), self.given, effects))
+        return found
+
+    @cached_property
     def error_values(self) -> ErrorValues:
         """What usual errors make of the asked quantities."""
         effects = self.exercise.spec.effects
@@ -159,6 +169,12 @@ class _KeyOfBatch(Key):
             own = {q: columns[q][self._index] for q in self.reference if q in columns}
             found[name] = {q: value for q, value in own.items() if exists(value)}
         return found
+
+    @cached_property
+    def in_radians(self) -> dict[str, float]:
+        columns = self._batch.in_radians
+        values = {q: columns[q][self._index] for q in self._quantities if q in columns}
+        return {q: float(v) for q, v in values.items() if isinstance(v, (int, float)) and exists(v)}
 
     def _other_values(self, quantity: str) -> list[Any]:
         columns = self._batch.other_cases.get(quantity, ())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -11,6 +11,8 @@ from coursework.course.answer_key import Key, Slip
 from coursework.course.asked import Asked
 from coursework.course.error_values import TAKEN, UsualError
 from coursework.marking.attempts import Sheet, is_attempt
+from coursework.marking.calculator import fitting as fitting_in_radians
+from coursework.marking.calculator import values_in_radians
 from coursework.marking.usual import (
     Fit,
     last_digit,
@@ -52,6 +54,13 @@ class Before:
     shown: set[str] = field(default_factory=set)  #: verdicts that explain earlier answers
     read: list[tuple[Part, Reading]] = field(default_factory=list)  #: numbers, whole ones too, and choices
     paid: dict[str, str] = field(default_factory=dict)  #: by error, the part whose answer paid for it
+    in_radians: bool = False  #: the sheet shows a calculator that is set to radians
+
+    def take_right(self, part: Part, reading: Reading, place: int) -> None:
+        """Take in a right answer to a part that stands in another box."""
+        self.right.add(part.quantity)
+        if part.sort.is_followed:
+            self.own[part.quantity] = reading.values[place]
 
     def take(
         self, key: Key, part: Part, reading: Reading, place: int, verdict: str, matches: Sequence[str]
@@ -107,13 +116,15 @@ class Explanation(NamedTuple):
 
     @property
     def rank(self) -> tuple[bool, bool, bool, int]:
-        """The lowest is named: what is likely, what follows, what is close; the author's before the engine's; from afar
-        the author's only where it is close."""
+        """The lowest is named: what is likely, what follows, what is close; what the whole sheet shows; the author's before
+        the engine's; a sign before what was made elsewhere; from afar the author's only where it is close."""
         kind, far = self.verdict.partition(":")[0], not self.is_here
         if kind == "mistake":
-            order = 0 if self.is_here else 1 if self.is_close else 4
+            order = 1 if self.is_here else 3 if self.is_close else 6
+        elif self.error is None:
+            order = {"slip:all_degrees": 0, "slip:sign": 2}.get(self.verdict, 4)
         else:
-            order = (3 if self.error else 2) + 2 * far
+            order = 7 if far else 5
         return not self.is_likely, kind != "follow_through", not self.is_close, order
 
 
@@ -195,13 +206,14 @@ def _explanations(
     width = key.envelope.get(quantity, 0.0)
     reference = key.reference[quantity]
     if part.sort.follows and before.wrong and not (part.sort.is_exact and before.sheet.is_guessed):
-        expected = key.followed(judged_by, before.own, before.wrong)
-        room = width
-        if part.sort.is_number:  # rounding on the way, and that of the answer itself
-            room = max(width, key.half_width(judged_by)) + max(last_digit(part, v) for v in reading.values)
-        fit = None if expected is None else _fitting(part, reading.values, expected, None, room)
+        fit = fits_followed(key, part, reading, judged_by, before.own, before.wrong)
         if fit is not None and not _is_constant(key, judged_by, reading.values[fit[0]], before):
             yield Explanation("follow_through", *fit)
+    if part.sort.is_number and (before.in_radians or ALL_DEGREES in before.paid):
+        for value in values_in_radians(key, quantity, before.own):
+            if (place := fitting_in_radians(key, part, reading, value)) is not None:
+                yield Explanation("slip:all_degrees", place, 0.0, traces=(ALL_DEGREES,))
+                break
     for name, value in key.wrong_ways(quantity):
         along = key.reference.get(judged_by.along)
         if judged_by.along:
@@ -228,6 +240,23 @@ def _explanations(
         ):
             seen.add("other_case")
             yield Explanation("slip:other_case", *fit)
+
+
+def fits_followed(
+    key: Key,
+    part: Part,
+    reading: Reading,
+    judged_by: Part,
+    own: Mapping[str, Any],
+    wrong: Collection[str],
+) -> tuple[int, float] | None:
+    """Which reading of an answer is what a right method gives from earlier answers, ``wrong`` ones among them, and how far
+    from it in half-widths."""
+    expected = key.followed(judged_by, own, wrong)
+    room = key.envelope.get(judged_by.quantity, 0.0)
+    if part.sort.is_number:  # rounding on the way, and that of the answer itself
+        room = max(room, key.half_width(judged_by)) + max(last_digit(part, v) for v in reading.values)
+    return None if expected is None else _fitting(part, reading.values, expected, None, room)
 
 
 _FEW_WRONG = 2  #: earlier answers that are wrong, from which one more error is looked for

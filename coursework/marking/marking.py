@@ -18,8 +18,10 @@ from coursework.errors import WrongValue, unknown
 from coursework.language.words import words
 from coursework.marking.answers import read
 from coursework.marking.attempts import sheet_of
+from coursework.marking.calculator import is_in_radians
+from coursework.marking.exchanged import Exchange, exchanged
 from coursework.marking.explaining import Before, nearest_reading
-from coursework.marking.feedback import Said, echo, say, say_not_read
+from coursework.marking.feedback import Said, echo, part_name, questions, say, say_not_read
 from coursework.marking.judges import best_judged
 from coursework.marking.loop_judge import loop_verdicts
 from coursework.marking.mark import Mark, Marking, made_mark
@@ -63,6 +65,14 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     target = _targets(variant, readings, key)
     together = loop_verdicts(variant, readings)
     before = Before(sheet=sheet_of(asked, readings, known, key))
+    alone = [i for i, p in asked.items() if i not in known and not p.judge and i not in together]
+    nearest_of = {i: nearest_reading(asked[i], readings[i], key, asked[target[i]]) for i in alone}
+    wrong = {i: readings[i] for i, (_, gap) in nearest_of.items() if gap > 1 and target[i] == i}
+    elsewhere: dict[str, Exchange] = {}
+    if len(wrong) > 1:
+        elsewhere = exchanged(variant, wrong, is_guessed=before.sheet.is_guessed)
+        left = ((asked[i], reading) for i, reading in wrong.items() if i not in elsewhere)
+        before.in_radians = is_in_radians(key, left)
     marks, no_scale = {}, set()
     waiting: dict[str, dict[str, frozenset[str]]] = {}
     for i, part in asked.items():
@@ -73,6 +83,10 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
         judged_by, reading = asked[target[i]], readings[i]
         if part.judge and i not in together:
             together |= best_judged(variant, part.judge, readings, before.own, before.wrong)
+        if i in elsewhere and before.sheet.has_work:
+            marks[i] = _mark_exchanged(variant, key, part, elsewhere[i], marks)
+            before.take_right(elsewhere[i].part, elsewhere[i].reading, elsewhere[i].place)
+            continue
         if i in together:
             nearest = together[i].reading, math.inf
             tellers = (p for j, p in asked.items() if j in marks and j not in no_scale)
@@ -84,7 +98,7 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
                 read_as = echo(marks[i].read_as, variant.lang)
                 marks[i] = marks[i]._replace(told=(say(variant, part, "scale", read=read_as),))
         else:
-            nearest = nearest_reading(part, reading, key, judged_by)
+            nearest = nearest_of.get(i) or nearest_reading(part, reading, key, judged_by)
             marks[i] = _mark_part(variant, key, part, reading, judged_by, nearest, before)
         before.take(key, judged_by, reading, nearest[0], marks[i].verdict, marks[i].matches)
     marks = signs_counted_once(variant, marks, key.rules.follow_through)
@@ -122,6 +136,26 @@ def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dic
         if score > best_score:
             best, best_score = target, score
     return best
+
+
+def _mark_exchanged(
+    variant: Variant, key: Key, part: Part, exchange: Exchange, marks: Mapping[str, Mark]
+) -> Mark:
+    """The mark of an answer that stands in the box of another: the exchange is paid for where it is first met."""
+    other, reading = exchange.part, exchange.reading
+    read_as, read = shown_as(variant, other, reading, exchange.place)
+    made = partial(made_mark, variant, part, reading)
+    pieces = {
+        "read": read,
+        "other": part_name(variant, other),
+        "where": questions(variant, [other.id], "and"),
+    }
+    matches = ("slip:exchanged",)
+    if other.id in marks:
+        said = say(variant, part, "exchanged_again", **pieces)
+        return made("follow_through", key.rules.follow_through, read_as, said, matches)
+    share = key.rules.share("exchanged")
+    return made("slip:exchanged", share, read_as, say(variant, part, "slip_exchanged", **pieces), matches)
 
 
 def _mark_part(

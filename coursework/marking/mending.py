@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from coursework.course.answer_key import Key
+from coursework.course.asked import Asked
 from coursework.language.words import listed, quoted, words
-from coursework.marking.explaining import Before, Explanation, alternatives, explained
+from coursework.marking.explaining import Before, Explanation, alternatives, explained, fits_followed
 from coursework.marking.feedback import Said, echo, questions, say, symbol
 from coursework.marking.mark import Mark, made_mark
 from coursework.marking.usual import NAMED, whys
 from coursework.markup.markdown import plain_line
 from coursework.model import Part
+from coursework.quantities.usual_errors import ALL_DEGREES
 from coursework.reading.reading import Reading
 
 if TYPE_CHECKING:
@@ -50,11 +52,10 @@ def mark_wrong(
         for trace in (trace for e in named for trace in e.traces):
             before.paid.setdefault(trace, part.id)
         least = _right_share(key, part, reading.values[index], judged_by) if part.sort.share_stands else 0.0
-        shares = {
-            e.verdict: max(least, _share(key, e, in_other_case="slip:other_case" in matches)) for e in named
-        }
+        shares = {e.verdict: max(least, _share(key, e, matches)) for e in named}
         verdict = max(shares, key=shares.__getitem__)  # where nothing tells which, the one that costs least
-        said = _told(variant, part, judged_by, named, read, before)
+        earlier = _followed_from(key, part, reading, judged_by, before) if _follows(named) else ()
+        said = _told(variant, part, judged_by, named, read, earlier)
         return made(verdict, shares[verdict], read_as, said, matches)
     value, reference = reading.values[index], key.reference[judged_by.quantity]
     share = _right_share(key, part, value, judged_by)
@@ -94,10 +95,13 @@ def _named(found: Sequence[Explanation], before: Before) -> list[Explanation]:
     return named if len(named) <= NAMED else []
 
 
-def _share(key: Key, explanation: Explanation, *, in_other_case: bool) -> float:
+def _share(key: Key, explanation: Explanation, matches: Collection[str]) -> float:
     kind, _, name = explanation.verdict.partition(":")
     if kind == "follow_through":
+        in_other_case = "slip:other_case" in matches
         return min(key.rules.follow_through, key.rules.other_case if in_other_case else 1.0)
+    if name == ALL_DEGREES and "slip:radians" in matches:  # the angle itself is right, in radians
+        return max(key.rules.share(name), key.rules.share("radians"))
     return key.rules.share(name) if kind == "slip" else key.price(name)
 
 
@@ -107,12 +111,11 @@ def _told(
     judged_by: Part,
     named: Sequence[Explanation],
     read: str,
-    before: Before,
+    earlier: Sequence[str],
 ) -> Said:
     kind, _, name = named[0].verdict.partition(":")
     tell = partial(say, variant, part, read=read)
     if kind == "follow_through":
-        earlier = [p.id for p in _asked_above(variant, judged_by.quantity, before.wrong)]
         if not earlier:
             return tell("follow_through")
         return tell("follow_through_from", earlier=questions(variant, earlier, "and"))
@@ -127,6 +130,23 @@ def _told(
         why, is_one = whys(variant, errors, judged_by.quantity)
         return tell("usual_error" if is_one else "usual_errors", why=why)
     return tell(f"slip_{name}")
+
+
+def _follows(named: Sequence[Explanation]) -> bool:
+    return named[0].verdict == "follow_through"
+
+
+def _followed_from(key: Key, part: Part, reading: Reading, judged_by: Part, before: Before) -> list[str]:
+    """The parts whose wrong answers an answer follows from: without one of them it would be another."""
+    asked = _asked_above(key.variant, judged_by.quantity, before.wrong)
+    quantities = [p.quantity for p in asked]
+    left = list(before.wrong)
+    for quantity in quantities if len(quantities) > 1 else ():
+        others = [q for q in left if q != quantity]
+        own = {q: v for q, v in before.own.items() if q not in before.wrong or q in others}
+        if fits_followed(key, part, reading, judged_by, own, others) is not None:
+            left = others
+    return [p.id for p in asked if p.quantity in left]
 
 
 def _told_wrong(variant: Variant, part: Part, read: str, before: Before) -> Said:
@@ -146,7 +166,7 @@ def _told_wrong(variant: Variant, part: Part, read: str, before: Before) -> Said
     return say(variant, part, sentence, read=read, list=listed(told, variant.lang))
 
 
-def _asked_above(variant: Variant, quantity: str, among: set[str]) -> list[Part]:
+def _asked_above(variant: Asked, quantity: str, among: set[str]) -> list[Part]:
     """The nearest parts that a quantity is computed from, of some quantities, in the order of the sheet."""
     graph = variant.exercise.solution.graph.textbook
     met: set[str] = set()

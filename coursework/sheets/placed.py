@@ -43,7 +43,7 @@ def _moved(
     values: dict[str, np.ndarray], drawings: list[list[str]], width: float, height: float
 ) -> dict[str, np.ndarray]:
     """The points of drawings, one below the other in a box."""
-    found = {}
+    found: dict[str, np.ndarray] = {}
     share = height / max(len(drawings), 1)
     for place, points in enumerate(reversed(drawings)):
         corners = np.array([values[i] for i in points])

@@ -1,0 +1,74 @@
+"""The functions of a solution as a calculator that is set to radians works them out.
+
+They are the same functions, with other things behind the names that they use: sine, cosine and tangent take the number of
+degrees for radians, and inverse functions give radians, which are written down as they come.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import FunctionType, ModuleType, SimpleNamespace
+from typing import Any
+
+from coursework import degrees
+from coursework.quantities.graph import Graph
+
+_RADIAN = 57.29577951308232  #: degrees
+
+
+def _taking(function: Callable[..., Any]) -> Callable[..., Any]:
+    """A function whose last argument is an angle."""
+    return lambda *values: function(*values[:-1], values[-1] * _RADIAN)
+
+
+def _giving(function: Callable[..., Any]) -> Callable[..., Any]:
+    return lambda *values: function(*values) / _RADIAN
+
+
+_IN_RADIANS: Mapping[str, Callable[..., Any]] = {
+    **{name: _taking(getattr(degrees, name)) for name in ("sin", "cos", "tan", "polar")},
+    **{name: _giving(getattr(degrees, name)) for name in ("asin", "acos", "atan", "atan2", "angle")},
+    "from_radians": lambda theta: theta,
+}
+
+
+def in_radians(graph: Graph) -> Graph:
+    """Return the textbook way through a graph, worked out on a calculator that is set to radians."""
+    calculator = _Calculator()
+    return graph.textbook.mapped(calculator.function)
+
+
+class _Calculator:
+    """Functions of a course, each made once."""
+
+    def __init__(self) -> None:
+        self._spaces: dict[int, dict[str, Any]] = {}
+
+    def function(self, function: Any) -> Any:
+        if not isinstance(function, FunctionType):
+            return function
+        space = self._space(function.__globals__, _package(function.__module__))
+        made = FunctionType(
+            function.__code__, space, function.__name__, function.__defaults__, function.__closure__
+        )
+        made.__kwdefaults__ = function.__kwdefaults__
+        return made
+
+    def _space(self, names: dict[str, Any], package: str) -> dict[str, Any]:
+        if id(names) not in self._spaces:
+            space = self._spaces[id(names)] = dict(names)
+            space |= {name: self._seen(value, package) for name, value in names.items()}
+        return self._spaces[id(names)]
+
+    def _seen(self, value: Any, package: str) -> Any:
+        if value is degrees:
+            return SimpleNamespace(**{**vars(degrees), **_IN_RADIANS})
+        home = getattr(value, "__module__", None) or ""
+        if home == degrees.__name__ and callable(value):
+            return _IN_RADIANS.get(value.__name__, value)
+        is_own = isinstance(value, FunctionType) and _package(home) == package
+        return self.function(value) if is_own and not isinstance(value, ModuleType) else value
+
+
+def _package(home: str | None) -> str:
+    return (home or "").partition(".")[0]
