@@ -364,8 +364,8 @@ class Solution:
         return {n: self.graph.replacing(m.replacement) for n, m in self.mistakes.items()}
 
     @cached_property
-    def in_radians(self) -> Graph:
-        """The graph as a calculator that is set to radians works it out."""
+    def in_radians(self) -> tuple[Graph, ...]:
+        """The graph as a calculator that is set to radians works it out: :func:`~coursework.quantities.in_radians.in_radians`."""
         return in_radians(self.graph)
 
     @cached_property

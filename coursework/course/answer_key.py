@@ -165,28 +165,18 @@ class Key:
         return ErrorValues(variant.exercise, self._quantities, variant.used, variant.effects, 1)
 
     @cached_property
-    def in_radians(self) -> dict[str, float]:
+    def in_radians(self) -> dict[str, list[float]]:
         """By quantity, what comes out of a calculator that is set to radians, where that is a number."""
-        found = {}
-        for quantity in self._quantities:
-            with suppress(CourseworkError):
-                graph, used = self.solution.in_radians, self.variant.used
-                value = plain_scalar(graph.evaluate((quantity,), used, self.variant.effects)[quantity])
-                if isinstance(value, (int, float)) and exists(value):
-                    found[quantity] = float(value)
-        return found
+        return {q: list(self.followed_in_radians(q, {})) for q in self._quantities}
 
-    def followed_in_radians(self, quantity: str, own: Mapping[str, Any]) -> float | None:
-        """What comes out of a calculator that is set to radians from a student's own earlier answers, where that is a number."""
-        before = {q: v for q, v in own.items() if q != quantity}
-        with suppress(CourseworkError):
-            given = {**self.variant.used, **before}
-            value = plain_scalar(
-                self.solution.in_radians.evaluate((quantity,), given, self.variant.effects)[quantity]
-            )
-            if isinstance(value, (int, float)) and exists(value):
-                return float(value)
-        return None
+    def followed_in_radians(self, quantity: str, own: Mapping[str, Any]) -> Iterator[float]:
+        """The same from a student's own earlier answers."""
+        given = {**self.variant.used, **{q: v for q, v in own.items() if q != quantity}}
+        for graph in self.solution.in_radians:
+            with suppress(CourseworkError):
+                value = plain_scalar(graph.evaluate((quantity,), given, self.variant.effects)[quantity])
+                if is_real(value):
+                    yield float(value)
 
     def followed(self, part: Part, own: Mapping[str, Any], wrong: Collection[str]) -> Any:
         """What a right method gives from a student's own earlier answers, or None.
@@ -302,6 +292,11 @@ def with_other_cases(exercise: CourseExercise[Any], given: Mapping[str, Any]) ->
             one, other = spec.choices
             exchanged = np.where(np.asarray(given[name]) == one, other, one)
             yield {**given, name: exchanged if exchanged.ndim else str(exchanged)}
+
+
+def is_real(value: Any) -> bool:
+    """Whether a value is a finite real number."""
+    return isinstance(value, (int, float)) and math.isfinite(value)
 
 
 def exists(value: Any) -> bool:

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from coursework.course.answer_key import Key, envelopes, exists, with_other_cases
+from coursework.course.answer_key import Key, envelopes, exists, is_real, with_other_cases
 from coursework.course.asked import Asked
 from coursework.course.error_values import ErrorValues, UsualError
 from coursework.course.exercise import CourseExercise
@@ -94,13 +94,15 @@ class Batch:
         return found
 
     @cached_property
-    def in_radians(self) -> dict[str, list]:
-        """Columns of what a calculator that is set to radians gives."""
-        graph, effects = self.exercise.solution.in_radians, self.exercise.spec.effects
-        found: dict[str, list] = {}
-        for quantity in self.quantities:
-            with suppress(CourseworkError):
-                found |= self._rows(graph.evaluate((quantity,), self.given, effects))
+    def in_radians(self) -> dict[str, list[list]]:
+        """By quantity, columns of what a calculator that is set to radians gives."""
+        effects = self.exercise.spec.effects
+        found: dict[str, list[list]] = {q: [] for q in self.quantities}
+        for graph in self.exercise.solution.in_radians:
+            for quantity, columns in found.items():
+                with suppress(CourseworkError):
+                    values = self._rows(graph.evaluate((quantity,), self.given, effects))
+                    columns.append(values[quantity])
         return found
 
     @cached_property
@@ -171,10 +173,10 @@ class _KeyOfBatch(Key):
         return found
 
     @cached_property
-    def in_radians(self) -> dict[str, float]:
+    def in_radians(self) -> dict[str, list[float]]:
         columns = self._batch.in_radians
-        values = {q: columns[q][self._index] for q in self._quantities if q in columns}
-        return {q: float(v) for q, v in values.items() if isinstance(v, (int, float)) and exists(v)}
+        rows = {q: [column[self._index] for column in columns[q]] for q in self._quantities}
+        return {q: [float(v) for v in row if is_real(v)] for q, row in rows.items()}
 
     def _other_values(self, quantity: str) -> list[Any]:
         columns = self._batch.other_cases.get(quantity, ())

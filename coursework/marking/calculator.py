@@ -23,31 +23,34 @@ def is_in_radians(key: Key, wrong: Iterable[tuple[Part, Reading]]) -> bool:
     numbers = [(p, r) for p, r in wrong if p.sort.is_number and r.status == "read"]
     if len(numbers) < SEVERAL:
         return False
-    values = key.in_radians
-    shown = [
-        p for p, r in numbers if p.quantity in values and fitting(key, p, r, values[p.quantity]) is not None
-    ]
-    return len(shown) >= SEVERAL and any(not _is_told_in_radians(key, p) for p in shown)
+    shown = {
+        p.quantity: value
+        for p, r in numbers
+        for value in key.in_radians[p.quantity]
+        if fitting(key, p, r, value) is not None
+    }
+    directions = {p.quantity for p, _ in numbers if p.sort.turn}
+    return len(shown) >= SEVERAL and any(
+        q not in directions or not _is_told_in_radians(key, q, value) for q, value in shown.items()
+    )
 
 
-def _is_told_in_radians(key: Key, part: Part) -> bool:
-    value = math.radians(key.reference[part.quantity])
-    return bool(part.sort.turn) and abs(key.in_radians[part.quantity] - value) <= _SHARE * abs(value)
+def _is_told_in_radians(key: Key, quantity: str, value: float) -> bool:
+    right = math.radians(key.reference[quantity])
+    return abs(value - right) <= _SHARE * abs(right)
 
 
-def values_in_radians(key: Key, quantity: str, own: Mapping[str, Any]) -> Iterable[float]:
+def values_in_radians(key: Key, quantity: str, own: Mapping[str, Any]) -> list[float]:
     """What such a calculator gives of a quantity: all the way, and from the student's own earlier answers."""
-    values = (key.in_radians.get(quantity), key.followed_in_radians(quantity, own))
-    return [value for value in values if value is not None]
+    return [*key.in_radians[quantity], *key.followed_in_radians(quantity, own)]
 
 
 def fitting(key: Key, part: Part, reading: Reading, value: float) -> int | None:
-    """The first of an answer's readings that is this value, if any is. It is no direction: 0.2 radians are not 1 degree."""
+    """The first of an answer's readings that is this value, if any is; of a direction the number: 0.2 radians are not 1°."""
     reference = key.reference[part.quantity]
-    if part.sort.turn:
+    width = key.half_width(part) * (min(abs(value / reference), 1.0) if reference else 1.0)
+    if part.sort.turn and abs(value) <= 2 * math.pi:
         width = _SHARE * abs(value)
-    else:
-        width = key.half_width(part) * (min(abs(value / reference), 1.0) if reference else 1.0)
     for place, answer in enumerate(reading.values):
         if answer and abs(answer - value) <= max(width, last_digit(part, answer)):
             return place

@@ -70,9 +70,10 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
     wrong = {i: readings[i] for i, (_, gap) in nearest_of.items() if gap > 1 and target[i] == i}
     elsewhere: dict[str, Exchange] = {}
     if len(wrong) > 1:
-        elsewhere = exchanged(variant, wrong, is_guessed=before.sheet.is_guessed)
-        left = ((asked[i], reading) for i, reading in wrong.items() if i not in elsewhere)
-        before.in_radians = is_in_radians(key, left)
+        before.in_radians = is_in_radians(key, ((asked[i], reading) for i, reading in wrong.items()))
+        if not before.in_radians or len(wrong) == 2:
+            elsewhere = exchanged(variant, wrong, is_guessed=before.sheet.is_guessed)
+            before.in_radians = before.in_radians and not elsewhere
     marks, no_scale = {}, set()
     waiting: dict[str, dict[str, frozenset[str]]] = {}
     for i, part in asked.items():

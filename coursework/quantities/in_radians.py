@@ -1,7 +1,7 @@
 """The functions of a solution as a calculator that is set to radians works them out.
 
 They are the same functions, with other things behind the names that they use: sine, cosine and tangent take the number of
-degrees for radians, and inverse functions give radians, which are written down as they come.
+degrees for radians, and inverse functions give radians, which are written down as they come, or converted first.
 """
 
 from __future__ import annotations
@@ -25,23 +25,29 @@ def _giving(function: Callable[..., Any]) -> Callable[..., Any]:
     return lambda *values: function(*values) / _RADIAN
 
 
-_IN_RADIANS: Mapping[str, Callable[..., Any]] = {
-    **{name: _taking(getattr(degrees, name)) for name in ("sin", "cos", "tan", "polar")},
+_TAKING: Mapping[str, Callable[..., Any]] = {
+    name: _taking(getattr(degrees, name)) for name in ("sin", "cos", "tan", "polar")
+}
+_AS_THEY_COME: Mapping[str, Callable[..., Any]] = {
+    **_TAKING,
     **{name: _giving(getattr(degrees, name)) for name in ("asin", "acos", "atan", "atan2", "angle")},
     "from_radians": lambda theta: theta,
 }
 
 
-def in_radians(graph: Graph) -> Graph:
-    """Return the textbook way through a graph, worked out on a calculator that is set to radians."""
-    calculator = _Calculator()
-    return graph.textbook.mapped(calculator.function)
+def in_radians(graph: Graph) -> tuple[Graph, ...]:
+    """Return the textbook way through a graph, worked out on a calculator that is set to radians: by who writes the angles
+    that come out as they come, and by who converts them to degrees."""
+    return tuple(
+        graph.textbook.mapped(_Calculator(functions).function) for functions in (_AS_THEY_COME, _TAKING)
+    )
 
 
 class _Calculator:
     """Functions of a course, each made once."""
 
-    def __init__(self) -> None:
+    def __init__(self, functions: Mapping[str, Callable[..., Any]]) -> None:
+        self._functions = functions
         self._spaces: dict[int, dict[str, Any]] = {}
 
     def function(self, function: Any) -> Any:
@@ -62,10 +68,10 @@ class _Calculator:
 
     def _seen(self, value: Any, package: str) -> Any:
         if value is degrees:
-            return SimpleNamespace(**{**vars(degrees), **_IN_RADIANS})
+            return SimpleNamespace(**{**vars(degrees), **self._functions})
         home = getattr(value, "__module__", None) or ""
         if home == degrees.__name__ and callable(value):
-            return _IN_RADIANS.get(value.__name__, value)
+            return self._functions.get(value.__name__, value)
         is_own = isinstance(value, FunctionType) and _package(home) == package
         return self.function(value) if is_own and not isinstance(value, ModuleType) else value
 

@@ -38,20 +38,28 @@ WITH_ANGLES = [n for n in COURSE.names if with_angles(n)]
 # --------------------------------------------------------------- a calculator in radians
 
 
-IN_RADIANS = {
-    "sin": np.sin, "cos": np.cos, "tan": np.tan, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
-    "atan2": np.arctan2, "angle": np.angle, "from_radians": lambda theta: theta,
+TAKING = {
+    "sin": np.sin, "cos": np.cos, "tan": np.tan,
     "polar": lambda length, theta: length * np.exp(1j * np.asarray(theta)),
 }  # fmt: skip
-KNOWN = {getattr(degrees, name): function for name, function in IN_RADIANS.items()}
+GIVING = {
+    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "atan2": np.arctan2, "angle": np.angle,
+    "from_radians": lambda theta: theta,
+}  # fmt: skip
+
+
+#: Roots that are approached step by step: in radians they lead anywhere.
+APPROACHED = {"theta_rise", "theta_fall"}
 
 
 def worked_in_radians(variant, monkeypatch, *, converts):
     """The answers of a student whose calculator is in radians: each step from the ones that were written, to five digits.
 
-    Within the solutions every function of degrees is exchanged for that of radians; who ``converts`` writes and types
-    degrees for the angles that come out.
+    Within the solutions functions of degrees are exchanged for those of radians; who ``converts`` writes the angles that
+    come out in degrees, and types them so.
     """
+    functions = TAKING if converts else TAKING | GIVING
+    known = {getattr(degrees, name): function for name, function in functions.items()}
     graph = variant.exercise.solution.graph.textbook
     quantities = {p.quantity: p for p in measured(variant)}
     values, answers = dict(variant.used), {}
@@ -59,8 +67,8 @@ def worked_in_radians(variant, monkeypatch, *, converts):
         homes = {f.__module__ for f in (graph.node(n).function for n in graph.names)}
         for module in [sys.modules[n] for n in homes if "solutions" in n.split(".")]:
             for name, value in list(vars(module).items()):
-                if callable(value) and value in KNOWN:
-                    patch.setattr(module, name, KNOWN[value])
+                if callable(value) and value in known:
+                    patch.setattr(module, name, known[value])
         for quantity, part in quantities.items():
             try:
                 value = graph.evaluate((quantity,), values, variant.effects)[quantity]
@@ -68,8 +76,8 @@ def worked_in_radians(variant, monkeypatch, *, converts):
                 continue  # the calculator says error
             if isinstance(value, complex) or not np.isfinite(value):
                 continue
-            if converts and part.unit == "deg" and value != variant.key.reference[quantity]:
-                value = math.degrees(value)
+            if not value or quantity in APPROACHED:
+                continue  # from nought nothing follows
             answers[part.id] = significant(float(value), 5)
             values[quantity] = float(answers[part.id])
     return answers
@@ -83,3 +91,78 @@ def test_a_calculator_in_radians_throughout_costs_one_question(name, converts, m
         marking = variant.grade(answers)
         lost = [i for i in answers if marking[i].points < marking[i].out_of]
         assert len(lost) <= 1, [(i, answers[i], marking[i].verdict, marking[i].feedback) for i in lost]
+
+
+def test_one_answer_in_radians_is_not_a_calculator():
+    """Both angles are right, told in radians; the rest is right in degrees."""
+    for variant in distinct_variants(COURSE["four_bar_motion"], 0, 4, "en"):
+        right = {p.id: variant.key.reference[p.quantity] for p in measured(variant)}
+        told = {i: math.radians(right[i]) for i in ("theta3", "theta4")}
+        marking = variant.grade({**right, **told})
+        assert marking["theta3"].verdict == "slip:radians"
+        assert marking["theta4"].verdict == "follow_through"
+
+
+# ----------------------------------------------------------------------- exchanged boxes
+
+
+def apart(variant, one, other):
+    """Whether each value would be wrong in the box of the other."""
+    reference = variant.key.reference
+    return all(
+        p.sort.distance(p, reference[q.quantity], reference[p.quantity], None, variant.key.half_width(p)) > 1
+        for p, q in ((one, other), (other, one))
+    )
+
+
+@pytest.mark.parametrize("name", NUMERIC)
+def test_two_exchanged_boxes_are_found_and_counted_once(name):
+    """In any pair of boxes, all other answers right: the first pays, the second and what follows do not."""
+    (variant,) = distinct_variants(COURSE[name], 3, 1, "en")
+    if COURSE[name].spec.either_order:
+        return  # there an exchange may be right
+    right = {p.id: significant(float(variant.key.reference[p.quantity]), 5) for p in measured(variant)}
+    pairs = [pair for pair in combinations(measured(variant), 2) if apart(variant, *pair)]
+    for one, other in pairs[:: max(1, len(pairs) // 12)]:
+        marking = variant.grade({**right, one.id: right[other.id], other.id: right[one.id]})
+        said = [(marking[p.id].verdict, marking[p.id].points / marking[p.id].out_of) for p in (one, other)]
+        assert said == [("slip:exchanged", PRICES["exchanged"]), ("follow_through", 1.0)], (one.id, other.id)
+        assert {marking[i].verdict for i in right if i not in (one.id, other.id)} <= {"correct"}
+
+
+def test_an_exchange_is_found_whatever_units_are_written():
+    (variant,) = distinct_variants(COURSE["slotted_mechanism"], 0, 1, "en")
+    right = variant.solution()
+    marking = variant.grade(
+        {"rA_dot": f"{right['omega4']:.5g} rad/s", "omega4": f"{right['rA_dot']:.5g} mm/s"}
+    )
+    assert {marking[i].verdict for i in ("rA_dot", "omega4")} == {"slip:exchanged", "follow_through"}
+    assert "exchanged" in marking["omega4"].feedback
+
+
+def test_wrong_counts_are_no_exchange_where_others_are_wrong():
+    (variant,) = distinct_variants(COURSE["planar_chain"], 0, 1, "en")
+    right = {p.id: int(variant.key.reference[p.quantity]) for p in variant.parts if p.kind == "integer"}
+    one, other = next((a, b) for a, b in combinations(right, 2) if right[a] != right[b])
+    swapped = {**right, one: right[other], other: right[one]}
+    assert {variant.grade(swapped)[i].verdict for i in (one, other)} == {"slip:exchanged", "follow_through"}
+    third = next(i for i in right if i not in (one, other))
+    marking = variant.grade({**swapped, third: right[third] + 1})
+    assert "slip:exchanged" not in {marking[i].verdict for i in (one, other)}
+
+
+# ------------------------------------------------------------------------ the likelier cause
+
+
+@pytest.mark.parametrize("name", NUMERIC)
+def test_an_opposite_sign_is_told_as_such_or_as_a_mistake_about_this_very_quantity(name):
+    """Each number alone on its sheet: nothing that was made elsewhere goes before its sign."""
+    for variant in distinct_variants(COURSE[name], 0, 3, "en"):
+        for part in measured(variant):
+            value = variant.key.reference[part.quantity]
+            mark = variant.grade({part.id: significant(-value, 5)})[part.id]
+            kind, _, mistake = mark.verdict.partition(":")
+            is_here = (
+                kind == "mistake" and part.quantity in variant.exercise.solution.mistakes[mistake].targets
+            )
+            assert mark.verdict in ("slip:sign", "correct", "slip:other_case") or is_here, (part.id, mark)
