@@ -9,9 +9,17 @@ class Refused(CourseworkError, PermissionError):
     """A request is refused.
 
     ``why`` names the sentence in ``[lti.refused]`` of each language; ``detail`` is for the log alone, and holds neither
-    an answer nor a token. ``again`` are the parameters by which the platform is asked once more, in a new window.
+    an answer nor a token. ``again`` are the parameters by which the platform is asked once more, in a new window, ``wait`` the
+    seconds until one may try again.
     """
 
-    def __init__(self, why: str, status: int = 400, detail: str = "", again: dict[str, str] | None = None):
+    def __init__(
+        self,
+        why: str,
+        status: int = 400,
+        detail: str = "",
+        again: dict[str, str] | None = None,
+        wait: int = 0,
+    ):
         super().__init__(f"{why}: {detail}" if detail else why)
-        self.why, self.status, self.detail, self.again = why, status, detail, again
+        self.why, self.status, self.detail, self.again, self.wait = why, status, detail, again, wait

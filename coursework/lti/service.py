@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import asyncio
 import hashlib
 import hmac
+import json
 import logging
 import re
 import time
@@ -38,11 +40,21 @@ from coursework.lti.services import SCORE, Member, NotServed, Services
 from coursework.lti.settings import Platform, Settings, origin
 from coursework.lti.storage import Storage, Waiting
 from coursework.lti.tokens import verified
+from coursework.system.allowances import Allowances, network
 from coursework.system.headers import Guarded, security_headers
+from coursework.system.places import Crowded, Places
+from coursework.system.processes import processor_time
 
 LOG = logging.getLogger("coursework.lti")
-_LARGEST = 256 * 1024  #: bytes of a form
+LARGEST = 256 * 1024  #: bytes of a form
 _FIELDS = 400  #: of a form
+_FORM_SECONDS, _RATE = 30.0, 20_000  #: that a form may take: at once, and bytes a second
+AT_ONCE = 2  #: requests of one person that are answered at once; the others wait
+#: Requests that a person, or an address where nobody is known, may make at once, and that come back in a second.
+PERSONS, ADDRESSES = (600.0, 10.0), (6000.0, 100.0)
+#: Seconds of a processor of a student, likewise; for what is sent apart from what is looked at.
+PROCESSOR = (30.0, 0.1)
+_AGAIN = 2  #: seconds after which to try again where too many wait
 _ROSTER_SECONDS = 60.0  #: that a roster is kept
 _SECONDS = 8.0  #: that a platform has to answer
 
@@ -92,7 +104,7 @@ def service(
     is_secure = settings.url.startswith("https:")
     app.add_middleware(Guarded, is_secure=lambda: is_secure, frames=settings.frames)
     app.router.redirect_slashes = False  # it would lead to whatever host a request names
-    app.state.sender = desk.sender
+    app.state.sender, app.state.processor = desk.sender, desk.processor
     return app
 
 
@@ -126,6 +138,9 @@ class _Service:
         self._secret = self.keys.secret
         self._login = Login(settings, self._secret, clock)
         self._rosters: dict[str, tuple[float, list[Member]]] = {}
+        self._places = Places()
+        self._asked = {"person": Allowances(*PERSONS), "address": Allowances(*ADDRESSES)}
+        self.processor = Allowances(*PROCESSOR)
 
     # ------------------------------------------------------------------ answering
 
@@ -135,8 +150,7 @@ class _Service:
         async def answer(request: Request) -> Response:
             begun = time.perf_counter()
             try:
-                form = await _form(request) if request.method == "POST" else {}
-                response = await run_in_threadpool(work, request, form)
+                response = await self._in_turn(request, work)
                 why = ""
             except Refused as fault:
                 response, why = await run_in_threadpool(self.refused, request, fault), str(fault)
@@ -157,6 +171,54 @@ class _Service:
             return response
 
         return answer
+
+    async def _in_turn(self, request: Request, work: Callable[[Request, Told], Response]) -> Response:
+        """Do the work once fewer requests of the same person are under way; no thread waits for that.
+
+        Raises
+        ------
+        Refused
+            The person, or the address where nobody is known, asks too often.
+        """
+        launch = await run_in_threadpool(self._launch_of, request)
+        if launch is None:
+            self._count("address", network(request.client.host if request.client else ""))
+            return await run_in_threadpool(work, request, await _form(request))
+        who = json.dumps([launch.issuer, launch.person])
+        self._count("person", who)
+        key = who, request.method == "POST"
+        if launch.role is Role.STUDENT and (wait := self.processor.wait(key)):
+            raise Refused("too_often", 429, f"{wait} s", wait=wait)
+        try:
+            async with self._places.one(who, AT_ONCE):
+                form = await _form(request)
+                return await run_in_threadpool(self._charged, key, work, request, form)
+        except Crowded:
+            raise Refused("too_often", 429, "too many at once", wait=_AGAIN) from None
+
+    def _launch_of(self, request: Request) -> Launch | None:
+        """Return the launch of the session that an address names, of this browser; None where it names none."""
+        name = request.path_params.get("session")
+        if name is None:
+            return None
+        request.state.launch = launch = self.storage.launch(
+            name, request.cookies.get(session_cookie(name, self.settings.url))
+        )
+        return launch
+
+    def _count(self, kind: str, key: str) -> None:
+        if wait := self._asked[kind].wait(key):
+            raise Refused("too_often", 429, f"{wait} s", wait=wait)
+        self._asked[kind].spend(key, 1.0)
+
+    def _charged(
+        self, key: tuple[str, bool], work: Callable[[Request, Told], Response], request: Request, form: Told
+    ) -> Response:
+        begun = processor_time()
+        try:
+            return work(request, form)
+        finally:
+            self.processor.spend(key, processor_time() - begun)
 
     def _guard(self, response: Response, request: Request) -> None:
         """Add the security headers: a platform that is known may show the page in a frame."""
@@ -180,7 +242,10 @@ class _Service:
             "targets": " ".join(dict.fromkeys(origin(p.auth_url) for p in self.settings.platforms)),
             "back": "",
         }
-        return Response(self.pages.page("lti_message", lang, names), fault.status, media_type="text/html")
+        after = {"Retry-After": str(fault.wait)} if fault.wait else None
+        return Response(
+            self.pages.page("lti_message", lang, names), fault.status, after, media_type="text/html"
+        )
 
     async def no_page(self, request: Request, fault: HTTPException) -> Response:
         why = "method" if fault.status_code == 405 else "page"
@@ -245,7 +310,7 @@ class _Service:
 
     def page(self, request: Request, form: Told) -> Response:
         name = request.path_params["session"]
-        launch = self.storage.launch(name, request.cookies.get(session_cookie(name, self.settings.url)))
+        launch = request.state.launch
         visit = self._visit(launch, name, request)
         if request.method == "POST":
             self._check_seal(request, visit, form)
@@ -390,24 +455,30 @@ class _Service:
 
 
 async def _form(request: Request) -> dict[str, list[str]]:
-    """The fields of a form: of one kind, of bounded size and number.
+    """The fields of a form: of one kind, of bounded size and number, sent within a time. None of a request that sends none.
 
     Raises
     ------
     Refused
-        It is larger, or of another kind.
+        It is larger, takes longer, or is of another kind.
     """
+    if request.method != "POST":
+        return {}
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind != "application/x-www-form-urlencoded":
         raise Refused("bad_request", 415, f"a form of kind {kind[:60]!r}")
     told = request.headers.get("content-length", "")
-    if told.isascii() and told.isdecimal() and (len(told) > 15 or int(told) > _LARGEST):
+    if told.isascii() and told.isdecimal() and (len(told) > 15 or int(told) > LARGEST):
         raise Refused("too_large", 413, "a form")
     data = b""
-    async for piece in request.stream():
-        data += piece
-        if len(data) > _LARGEST:
-            raise Refused("too_large", 413, "a form")
+    try:
+        async with asyncio.timeout(_FORM_SECONDS + LARGEST / _RATE):
+            async for piece in request.stream():
+                data += piece
+                if len(data) > LARGEST:
+                    raise Refused("too_large", 413, "a form")
+    except TimeoutError:
+        raise Refused("bad_request", 408, "a form that takes too long") from None
     try:
         pairs = parse_qsl(
             data.decode("ascii"), keep_blank_values=True, max_num_fields=_FIELDS, errors="strict"

@@ -11,17 +11,25 @@ from pathlib import Path
 from urllib.parse import urlencode, urlsplit
 
 import pytest
+from lti_platform import SITE
 from site_assignments import dealt, right
 from site_browser import served
+from site_linked import Linked
 from site_people import MAX, TEACHER, ZOE, seal_of, signed_in
+from site_server import until
 from site_walk import Filled, filled, fillings
 
 from coursework.database.permissions import is_of_staff
 from coursework.gradebook.submissions import read_rows
+from coursework.lti import service
+from coursework.lti.host import Reply
+from coursework.lti.service import AT_ONCE as LINKS_AT_ONCE
+from coursework.lti.service import LARGEST, PROCESSOR
 from coursework.site.application import PAGES
 from coursework.site.frame.budgets import ANSWER_FILE, HAND_IN, KILOBYTE, MEGABYTE, MOST_ROWS
 from coursework.site.frame.cookies import cookie_name
 from coursework.site.frame.limits import ADDRESS, AT_ONCE, BACK, PERSON
+from coursework.site.lti.site_host import SiteHost
 from coursework.site.papers import assignments
 from coursework.system.allowances import Allowances
 from coursework.system.places import Crowded, Places
@@ -129,9 +137,11 @@ def spend(class_, kind, name=ZOE):
 
 def test_who_took_much_of_a_processor_waits_and_nobody_else(class_of_three):
     spend(class_of_three, "usual")
-    for lang, said in (("en", "Wait 12 seconds"), ("fr", "Attendez 12 secondes")):
+    for lang, said in (("en", "Wait {} seconds"), ("fr", "Attendez {} secondes")):
         reply = class_of_three.browser(ZOE, lang).get("/practice")
-        assert (reply.status_code, reply.headers["retry-after"], said in reply.text) == (429, "12", True)
+        after = reply.headers["retry-after"]
+        assert (reply.status_code, said.format(after) in reply.text) == (429, True)
+        assert 1 <= int(after) <= 12
     assert class_of_three.browser(MAX).get("/practice").status_code == 200
 
 
@@ -317,6 +327,123 @@ def test_what_is_read_apart_is_limited_in_time_and_memory(tmp_path):
     with pytest.raises(Exceeded) as fault:
         confined(Means(0.0, 64 * MEGABYTE), for_ever)
     assert fault.value.what == "time"
+
+
+# ---------------------------------------------------------------------- links of learning platforms
+
+
+@pytest.fixture
+def linked(tmp_path):
+    return Linked(tmp_path)
+
+
+def link_addresses(linked, path):
+    """Every address of the service that takes something, with a session of a student."""
+    session = path.removeprefix("/lti/at/")
+    taking = [route for route in linked.lti.routes if "POST" in (route.methods or ())]
+    found = [
+        "/lti" + re.sub(r"\{session\}", session, re.sub(r"\{path:path\}", "more", r.path)) for r in taking
+    ]
+    assert {f"/lti/{one}" for one in ("login", "launch")} <= set(found)
+    return found
+
+
+def test_what_is_over_the_budget_of_a_link_is_refused_by_its_head_alone(linked):
+    visitor, _, path = linked.enter()
+    cookies = "; ".join(f"{one.name}={one.value}" for one in visitor.browser.cookies.jar)
+    told = {}
+    with served(linked) as url:
+        for address in link_addresses(linked, path):
+            lines = (
+                f"POST {address} HTTP/1.1", f"Host: {urlsplit(url).netloc}", "Content-Type: application/x-www-form-urlencoded",
+                f"Content-Length: {LARGEST + 1}", f"Cookie: {cookies}", "", "",
+            )  # fmt: skip
+            told[address] = answered(url, "\r\n".join(lines).encode()).split()[1]
+    assert set(told.values()) == {b"413"}
+
+
+def test_the_worst_body_of_a_link_takes_little_memory(linked):
+    visitor, _, path = linked.enter()
+    kind, room, over = {"content-type": "application/x-www-form-urlencoded"}, LARGEST - 1024, []
+    worst = urlencode({"x": "%" * (room // 3)}), "&".join(f"a{k}=" for k in range(40_000))[:room], "a" * room
+    for address in link_addresses(linked, path):
+        for body in worst:
+            visitor.browser.post(address, content=body, headers=kind)
+            tracemalloc.start()
+            reply = visitor.browser.post(address, content=body, headers=kind)
+            most = tracemalloc.get_traced_memory()[1]
+            tracemalloc.stop()
+            if most > 24 * MEGABYTE or reply.status_code not in (400, 403, 413):
+                over.append((address, body[:20], most, reply.status_code))
+    assert not over
+
+
+def test_of_one_person_by_a_link_two_requests_are_answered_at_once(linked, monkeypatch):
+    """Also where the person opened the link twice."""
+    under_way, most, lock, go_on = set(), 0, threading.Lock(), threading.Event()
+
+    def slow(self, visit):
+        nonlocal most
+        with lock:
+            under_way.add(threading.get_ident())
+            most = max(most, len(under_way))
+        go_on.wait(PATIENCE)
+        with lock:
+            under_way.discard(threading.get_ident())
+        return Reply("")
+
+    pages = [linked.enter() for _ in range(2)]
+    monkeypatch.setattr(SiteHost, "show", slow)
+    with served(linked) as url, ThreadPoolExecutor(12) as threads:
+        import httpx
+
+        def asked(k):
+            visitor, _, path = pages[k % 2]
+            cookies = dict(visitor.browser.cookies)
+            return httpx.get(url + path, cookies=cookies, timeout=PATIENCE, trust_env=False).status_code
+
+        many = [threads.submit(asked, k) for k in range(10)]
+        try:
+            until(lambda: len(under_way) >= LINKS_AT_ONCE)
+            mine = dict(linked.browser(MAX).cookies)
+            page = httpx.get(f"{url}/assignments", cookies=mine, timeout=PATIENCE / 2, trust_env=False)
+            assert page.status_code == 200
+        finally:
+            go_on.set()
+        assert {one.result() for one in many} == {200}
+    assert most == LINKS_AT_ONCE
+
+
+def test_who_took_much_of_a_processor_by_a_link_waits_and_still_hands_in(linked):
+    visitor, page, path = linked.enter(name="Ada Byron")
+    who = json.dumps([SITE, "ada"])
+    other, _, theirs = linked.enter(sub="max", name="Max")
+    linked.lti.state.processor.spend((who, False), PROCESSOR[0] + 12 * PROCESSOR[1])
+    for lang, said in (("en", "asked too often"), ("fr", "Trop de demandes")):
+        reply = visitor.browser.get(path, headers={"accept-language": lang})
+        assert (reply.status_code, said in reply.text) == (429, True)
+        assert 1 <= int(reply.headers["retry-after"]) <= 30
+    assert other.browser.get(theirs).status_code == 200
+    assert visitor.hand_in(path, page, linked.right("Ada Byron")).status_code == 303
+    linked.lti.state.processor.spend((who, True), PROCESSOR[0])
+    assert visitor.hand_in(path, page, {}).status_code == 429
+
+
+def test_each_page_of_a_link_is_counted_by_what_it_takes_of_a_processor(linked):
+    visitor, page, path = linked.enter()
+    spent = linked.lti.state.processor._spent
+    assert {is_sent: seconds > 0 for (_, is_sent), (seconds, _) in spent.items()} == {False: True}
+    visitor.hand_in(path, page, {})
+    assert {is_sent: seconds > 0 for (_, is_sent), (seconds, _) in spent.items()} == {False: True, True: True}
+
+
+def test_links_that_are_opened_without_end_are_refused(tmp_path, monkeypatch):
+    """By an address, where nobody is known yet; who is in is counted by person."""
+    monkeypatch.setattr(service, "ADDRESSES", (5.5, 0.001))
+    linked = Linked(tmp_path)
+    visitor, _, path = linked.enter()  # a login and a launch
+    assert [visitor.browser.get("/lti/login").status_code for _ in range(6)] == [403] * 4 + [429] * 2
+    assert visitor.browser.get(path).status_code == 200
 
 
 # ---------------------------------------------------------------------------------- places

@@ -2,8 +2,7 @@
 
 import html
 import re
-import shutil
-from dataclasses import asdict, replace
+from dataclasses import replace
 from datetime import timedelta
 
 import pytest
@@ -14,93 +13,22 @@ from lti_platform import (
     PLATFORM,
     SITE,
     TEACHER,
-    TOOL,
-    FakePlatform,
-    Visitor,
-    _made_keys,
     field,
 )
 from site_accounts import PASSWORD, join
-from site_assignments import ASSIGNMENT, CLOSES, USUAL, dealt, right
-from site_people import MAX, ZOE, Class
+from site_assignments import CLOSES, USUAL
+from site_linked import AT_ONCE_TOLD, Linked
+from site_people import MAX, ZOE
 from site_people import TEACHER as ADA
 from sqlalchemy import func, select, update
 
 from coursework.database.assignments import issued_of
 from coursework.database.audit import noted
 from coursework.database.decisions import GIVEN, Place, decide
-from coursework.database.publication import AT_ONCE, CHARGE, NEVER, publish
-from coursework.database.tables import account, assignment, delivery, identity, person
+from coursework.database.publication import CHARGE, NEVER
+from coursework.database.tables import account, delivery, identity, person
 from coursework.errors import BadInput
-from coursework.lti.keys import KeyFolder
-from coursework.lti.settings import Settings
-from coursework.site.application import application
-from coursework.site.desk.class_at_hand import class_now
-from coursework.site.desk.class_page import rows
-from coursework.site.lti.mount import mounted, settings_of
-
-AT_ONCE_TOLD = replace(USUAL, feedback=AT_ONCE)
-
-
-class Linked(Class):
-    """A site with a platform in front; its assignment is dealt to Zoé and Max."""
-
-    def __init__(self, folder, publication=AT_ONCE_TOLD, platform=PLATFORM):
-        super().__init__(f"sqlite:///{folder}/site.db")
-        self.platform, self.site.lti = FakePlatform(), folder / "lti"
-        keys = KeyFolder(self.site.lti / "keys")
-        shutil.copytree(_made_keys(), keys.folder)
-        self.platform.tool_keys = lambda: keys.public
-        self.lti = mounted(
-            self.site,
-            self.site.lti,
-            self.platform.client,
-            Settings(self.site.lti, f"{TOOL}/lti", (platform,)),
-        )
-        self.app = application(self.site, self.lti)
-        self.number = dealt(self, publication)
-        with self.site.store.begin() as connection:
-            connection.execute(update(assignment).values(asked=_table()))
-
-    def visitor(self):
-        return Visitor(self.app, self.platform, "/lti")
-
-    def enter(self, visitor=None, **changed):
-        visitor = visitor or self.visitor()
-        page, path = visitor.enter(**{"custom": {"assignment": "week3"}, **changed})
-        return visitor, page, path
-
-    def right(self, name):
-        with self.site.store.reading() as connection:
-            self.issued = issued_of(connection, self.number)
-        return right(self, name)
-
-    def points(self, name):
-        return next(row for row in rows(class_now(self.site, self.number)) if row.student == name)
-
-    def one(self, *columns):
-        with self.site.store.reading() as connection:
-            return connection.execute(select(*columns)).all()
-
-    def sent(self):
-        self.lti.state.sender.send_due()
-        return self.platform.scores
-
-    def publish(self, publication):
-        with self.site.store.begin() as connection:
-            publish(connection, self.number, publication)
-
-
-def _table():
-    """The assignment as its file says it."""
-    exercises = [
-        {"name": one.name, **({"parts": list(one.parts)} if one.parts else {})}
-        for one in ASSIGNMENT.exercises
-    ]
-    return {
-        "title": dict(ASSIGNMENT.title), "instructions": dict(ASSIGNMENT.instructions), "exercises": exercises,
-        "mark": asdict(ASSIGNMENT.mark),
-    }  # fmt: skip
+from coursework.site.lti.mount import settings_of
 
 
 @pytest.fixture
