@@ -6,9 +6,12 @@ from collections.abc import Mapping
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from coursework.kinds.nearness import gaps
 from coursework.marking.answers import read
-from coursework.marking.explaining import nearest_reading
+from coursework.marking.explaining import CLOSE, nearest_reading
+from coursework.marking.usual import nearness
 from coursework.model import Part
 from coursework.reading.reading import Reading
 
@@ -40,13 +43,40 @@ def exchanged(variant: Variant, wrong: Mapping[str, Reading], *, is_guessed: boo
             continue
         if not (_is_near(variant, wrong[one.id], other) and _is_near(variant, wrong[other.id], one)):
             continue
+        if any(_is_explained(variant, p, wrong[p.id]) for p in (one, other)):
+            continue
         first, second = read(variant, other, wrong[one.id].text), read(variant, one, wrong[other.id].text)
         place, gap = nearest_reading(other, first, key, other)
         its_place, its_gap = nearest_reading(one, second, key, one)
-        if max(gap, its_gap) <= 1:
+        if gap > 1 or its_gap > 1:
+            continue
+        if _is_close(variant, other, first.values[place], gap) and _is_close(
+            variant, one, second.values[its_place], its_gap
+        ):
             found[one.id] = Exchange(other, first, place)
             found[other.id] = Exchange(one, second, its_place)
     return found
+
+
+def _is_close(variant: Variant, part: Part, value: object, gap: float) -> bool:
+    """Whether an answer is what the other box asks, as far as its digits tell: of near values some are near by chance."""
+    if not part.sort.is_scalar or part.sort.is_exact:
+        return gap <= 1
+    return gap <= nearness(part, variant.key, part, value, CLOSE)
+
+
+def _is_explained(variant: Variant, part: Part, reading: Reading) -> bool:
+    """Whether the opposite sign or a known mistake gives an answer where it stands: that is likelier."""
+    reference = variant.key.reference[part.quantity]
+    width = variant.key.envelope.get(part.quantity, 0.0)
+    others = [value for _, value in variant.key.wrong_ways(part.quantity)]
+    if part.sort.is_number:
+        others.append(-reference)
+    return any(
+        part.sort.distance(part, value, other, None, width) <= 1
+        for value in reading.values
+        for other in others
+    )
 
 
 def _may_be(part: Part, reading: Reading) -> bool:
@@ -68,5 +98,6 @@ def _is_near(variant: Variant, reading: Reading, other: Part) -> bool:
         )
     width = key.half_width(other) + 1e-9 * abs(reference)
     return any(
-        isinstance(v, (float, int)) and gaps(v, reference, other.sort.turn) <= width for v in reading.values
+        isinstance(v, (float, int)) and gaps(np.asarray(v), reference, other.sort.turn) <= width
+        for v in reading.values
     )

@@ -20,7 +20,7 @@ from coursework.marking.answers import read
 from coursework.marking.attempts import sheet_of
 from coursework.marking.calculator import is_in_radians
 from coursework.marking.exchanged import Exchange, exchanged
-from coursework.marking.explaining import Before, nearest_reading
+from coursework.marking.explaining import Before, fits_followed, nearest_reading
 from coursework.marking.feedback import Said, echo, part_name, questions, say, say_not_read
 from coursework.marking.judges import best_judged
 from coursework.marking.loop_judge import loop_verdicts
@@ -74,7 +74,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
         if not before.in_radians or len(wrong) == 2:
             elsewhere = exchanged(variant, wrong, is_guessed=before.sheet.is_guessed)
             before.in_radians = before.in_radians and not elsewhere
-    marks, no_scale = {}, set()
+    marks: dict[str, Mark] = {}
+    no_scale: set[str] = set()
     waiting: dict[str, dict[str, frozenset[str]]] = {}
     for i, part in asked.items():
         if i in known:
@@ -84,6 +85,8 @@ def mark(variant: Variant, answers: Mapping[str, Any], known: Mapping[str, str] 
         judged_by, reading = asked[target[i]], readings[i]
         if part.judge and i not in together:
             together |= best_judged(variant, part.judge, readings, before.own, before.wrong)
+        if i in elsewhere and elsewhere[i].part.id not in marks and _follows(key, part, reading, before):
+            del elsewhere[elsewhere[i].part.id], elsewhere[i]
         if i in elsewhere and before.sheet.has_work:
             marks[i] = _mark_exchanged(variant, key, part, elsewhere[i], marks)
             before.take_right(elsewhere[i].part, elsewhere[i].reading, elsewhere[i].place)
@@ -137,6 +140,15 @@ def _targets(variant: Variant, readings: Mapping[str, Reading], key: Key) -> dic
         if score > best_score:
             best, best_score = target, score
     return best
+
+
+def _follows(key: Key, part: Part, reading: Reading, before: Before) -> bool:
+    """Whether an answer follows from earlier ones where it stands."""
+    return (
+        reading.status == "read"
+        and bool(before.wrong)
+        and fits_followed(key, part, reading, part, before.own, before.wrong) is not None
+    )
 
 
 def _mark_exchanged(

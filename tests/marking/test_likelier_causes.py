@@ -115,6 +115,13 @@ def apart(variant, one, other):
     )
 
 
+def is_explained(variant, part, value):
+    """Whether the opposite sign or a known mistake gives a value where it stands."""
+    key = variant.key
+    others = [-key.reference[part.quantity], *(v for _, v in key.wrong_ways(part.quantity))]
+    return any(part.sort.distance(part, value, v, None, key.half_width(part)) <= 1 for v in others)
+
+
 @pytest.mark.parametrize("name", NUMERIC)
 def test_two_exchanged_boxes_are_found_and_counted_once(name):
     """In any pair of boxes, all other answers right: the first pays, the second and what follows do not."""
@@ -124,6 +131,9 @@ def test_two_exchanged_boxes_are_found_and_counted_once(name):
     right = {p.id: significant(float(variant.key.reference[p.quantity]), 5) for p in measured(variant)}
     pairs = [pair for pair in combinations(measured(variant), 2) if apart(variant, *pair)]
     for one, other in pairs[:: max(1, len(pairs) // 12)]:
+        ends = ((one, float(right[other.id])), (other, float(right[one.id])))
+        if any(is_explained(variant, part, value) for part, value in ends):
+            continue
         marking = variant.grade({**right, one.id: right[other.id], other.id: right[one.id]})
         said = [(marking[p.id].verdict, marking[p.id].points / marking[p.id].out_of) for p in (one, other)]
         assert said == [("slip:exchanged", PRICES["exchanged"]), ("follow_through", 1.0)], (one.id, other.id)
