@@ -92,21 +92,23 @@ def counted(number: int, noun: str) -> str:
 def closest(name: str, known: Iterable[str]) -> str | None:
     """Return the known name that may have been meant, whatever its case and accents; None where none is near.
 
-    Of a name of several words each word must be near one of the other's, so that nobody is offered a namesake.
+    Of a name of several words each word must be near one of the other's, so that nobody is offered a namesake; a
+    word of one letter or digit says too little.
     """
     import difflib
 
-    plain: dict[str, str] = {}
+    plain: dict[str, list[str]] = {}
     for one in known:
-        plain.setdefault(_unaccented(one), one)
+        plain.setdefault(_unaccented(one), []).append(one)
     sought = _unaccented(name)
-    if sought in plain:
-        return plain[sought]
-    near = difflib.get_close_matches(sought, plain, n=3, cutoff=_NEAR)
-    return next((plain[one] for one in near if _words_are_near(sought, one)), None)
+    near = [sought] if sought in plain else difflib.get_close_matches(sought, plain, n=3, cutoff=_NEAR_SYMBOL)
+    found = next((plain[one] for one in near if _words_are_near(sought, one)), [])
+    return max(found, key=lambda one: difflib.SequenceMatcher(None, name, one).ratio(), default=None)
 
 
-_NEAR = 0.6  #: of two names, twice the letters in common over the letters of both
+#: Of two names, twice the letters in common over the letters of both; of symbols, whose letters are few, at least.
+_NEAR, _NEAR_SYMBOL = 0.6, 0.5
+_SYMBOL = 3  #: letters of a symbol at most
 
 
 def _unaccented(name: str) -> str:
@@ -121,8 +123,9 @@ def _words_are_near(sought: str, known: str) -> bool:
 
     words, others = sought.split(), known.split()
     if min(len(words), len(others)) < 2:
-        return True
-    return all(difflib.get_close_matches(word, others, n=1, cutoff=_NEAR) for word in words)
+        least = _NEAR_SYMBOL if len(sought) <= _SYMBOL else _NEAR
+        return difflib.SequenceMatcher(None, sought, known).ratio() >= least
+    return all(len(word) == 1 or difflib.get_close_matches(word, others, n=1, cutoff=_NEAR) for word in words)
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

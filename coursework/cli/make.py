@@ -182,8 +182,6 @@ def build(
             f"the roster says the language of {own} of its {counted(len(students), 'student')}, which counts; "
             f"--lang {','.join(langs)} is for those of whom it says none"
         )
-    if roster:
-        notes.append(for_practice(langs[0]))
     tell(notes)
     shared_by_cluster(context, cluster)
     written = build_files(
@@ -207,6 +205,8 @@ def build(
         issued_langs=() if _is_untold(context, "langs") else langs,
         keep=keeping(context, db, name or out.resolve().name, course.folder.root.name),
     )
+    if roster:
+        tell([for_practice(langs[0])])
     away = "handouts/ to give away, " if set(formats) - {"nbgrader"} else ""
     click.echo(f"{counted(written, 'file')} in {out}: {away}issued.json and answers.csv to keep")
     if course.folder.has_solutions:

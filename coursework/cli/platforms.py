@@ -159,6 +159,8 @@ def export(
         _check_folder(out, drawn)
     with progress_bar("exporting", len(made.files)) as advance:
         notes += write_tree(out, made.files, advance, anew=overwrite)
+    if not is_assignment(wanted.exercises):
+        notes.append(for_practice(langs[0]))
     tell(notes)
     for line in lines:
         click.echo(line)
@@ -236,7 +238,6 @@ def _drawn(course: Course[Any], wanted: _Wanted, students: Sequence[Student], ou
     count = wanted.variants or len(students)
     if not is_assignment(wanted.exercises):
         names = exercise_names(course, wanted.exercises)
-        tell([for_practice(wanted.langs[0])])
         return of_exercises(course, names, count or _VARIANTS, wanted.seed, wanted.langs, wanted.parts)
     assignment, langs = _assignment(course, wanted)
     if assignment.versions and count > assignment.versions:

@@ -22,10 +22,17 @@ def by_letters(found: Sequence[str], part: Stated, asking: Asking) -> str:
 def share_of_named(named: Set[str], right: Set[str], count: int) -> float:
     """Return the share of the points that ``named`` cases earn, of ``count`` cases of which some are ``right``.
 
-    Each right case earns its share. Each wrong one costs as much, and so much at least that naming all cases earns nothing.
-    The share is never below 0.
+    Each right case earns its share, each wrong one costs as :func:`cost_of_wrong` says. The share is never below 0.
     """
     if not right:
         return 0.0
-    cost = max(1 / len(right), 1 / max(1, count - len(right)))
+    cost = cost_of_wrong(len(right), count)
     return max(0.0, len(named & right) / len(right) - cost * len(named - right))
+
+
+def cost_of_wrong(right: int, count: int) -> float:
+    """Return the share that a wrong case costs, of ``count`` cases of which ``right`` are right.
+
+    It is what a right case earns, and so much at least that naming all cases earns nothing.
+    """
+    return 1 / min(right, max(1, count - right))

@@ -13,6 +13,7 @@ from typing import Any
 from coursework.course.answer_key import Key
 from coursework.course.variant import Variant
 from coursework.kinds.choices import cases_of
+from coursework.kinds.ticks import cost_of_wrong
 from coursework.language.numbers import plain, settled, significant
 from coursework.marking.explaining import CLOSE
 from coursework.marking.mark import Mark
@@ -276,7 +277,8 @@ def _options(variant: Variant, key: Key, question: Question, part: Part) -> Iter
     for case, label in question.choices:
         letter = letters.get(case, "")
         if right:
-            yield Option(case, letter, label, (1 if case in right else -1) / len(right))
+            share = 1 / len(right) if case in right else -cost_of_wrong(len(right), len(question.choices))
+            yield Option(case, letter, label, share)
             continue
         made = marked_alone(variant, part, case)
         says = "" if made.verdict == "correct" else made.says

@@ -7,7 +7,9 @@ from collections import Counter
 from datetime import UTC, datetime, timedelta
 
 import pytest
-from sqlalchemy import text
+from alembic import command
+from alembic.config import Config
+from sqlalchemy import inspect, text
 from stored_class import content
 
 import coursework
@@ -32,7 +34,7 @@ from coursework.database.dump import dump, restore
 from coursework.database.erasing import erase
 from coursework.database.marking import mark_delivery, mark_new
 from coursework.database.publication import CHARGE, Extension, Publication, extend, publish, say_sittings
-from coursework.database.store import Store
+from coursework.database.store import _MIGRATIONS, Store
 from coursework.database.tables import METADATA
 from coursework.gradebook.book import summary_rows
 from coursework.gradebook.rows import Collected, Rejected, Row
@@ -263,9 +265,11 @@ def test_what_was_dumped_is_computed_anew(lived, tmp_path):
 def test_an_old_database_is_computed_when_it_is_opened(lived):
     url = lived.store.url
     with lived.store.engine.begin() as connection:
-        for name in DERIVED:
-            connection.execute(text(f"DROP TABLE {name}"))
-        connection.execute(text("UPDATE alembic_version SET version_num = '0002'"))
+        config = Config()
+        config.set_main_option("script_location", str(_MIGRATIONS))
+        config.attributes["connection"] = connection
+        command.downgrade(config, "0002")
+        assert not {*DERIVED} & {*inspect(connection).get_table_names()}
     opened = Store(url)
     with opened.reading() as connection:
         assert outstanding(connection)[lived.number] >= len(NAMES)
