@@ -32,7 +32,7 @@ def test_every_damaged_row_is_reported_and_nothing_else_is_lost(built, cli, tmp_
         {**first, "seed": "999"},
         {**first, "seed": "seven"},
         {**first, "part": "rB"},
-        {**first, "exercise": "slotted"},
+        {**first, "exercise": "slotted_mecanism"},
         {**first, "exercise": "zz"},
         {**first, "student": ""},
         first,

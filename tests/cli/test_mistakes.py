@@ -76,8 +76,8 @@ def test_a_users_mistake_is_one_line_and_status_2(cli, tmp_path, monkeypatch, ar
 @pytest.mark.parametrize(
     ("roster", "told"),
     [
-        ("", "column named student"),
-        ("nome\nAnn\n", "column named student"),
+        ("", "--columns name=1"),
+        ("nome\nAnn\n", "--columns name=1"),
         ("student\n", "names no student"),
         ("student\nAnn\nann\n", "line 2"),
         ("student\nJosé\nJose\u0301\n", "stands on line 2 already"),

@@ -65,7 +65,7 @@ def test_every_question_has_its_box(written, name, lang):
     assert item.label in "".join(around)
     assert not re.search(r"[{}]", "".join(around))
     least = min(posed.points for posed in item.questions)
-    scale = next(n for n in (1, 2, 4) if (n * least).is_integer())  # weights are whole numbers
+    scale = next(n for n in (1, 2, 4) if float(n * least).is_integer())  # weights are whole numbers
     for posed, box in zip(item.questions, boxes, strict=True):
         assert box.weight == (0 if posed.kind == COLLECTED else scale * posed.points)
         if posed.kind == NUMBER:

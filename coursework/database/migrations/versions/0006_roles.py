@@ -43,9 +43,8 @@ def downgrade() -> None:
     for role, before in lowered.items():
         op.execute(accounts.update().where(accounts.c.role == role).values(role=before))
     op.drop_index(op.f("ix_audit_subject"), "audit")
-    with op.batch_alter_table("audit") as changed:
-        for name in ("address", "subject", "actor"):
-            changed.drop_column(name)
+    for name in ("address", "subject", "actor"):
+        op.drop_column("audit", name)
     with op.batch_alter_table("area") as changed:
         changed.drop_index(changed.f("ix_area_person_id"))
     op.drop_table("area")
