@@ -13,15 +13,19 @@ from sqlalchemy import update
 
 from coursework import open_course
 from coursework.cli.demo_site import TEACHER, demo_database
+from coursework.database.accounts import account_of, set_secret
 from coursework.database.assignments import names
 from coursework.database.deliveries import deliver, deliveries
-from coursework.database.people import people
+from coursework.database.people import people, put_account
 from coursework.database.store import Store
 from coursework.database.tables import person
 from coursework.gradebook.rows import Rejected
+from coursework.lti.launch import Launch
+from coursework.lti.roles import Role
 from coursework.site.application import application
 from coursework.site.frame.settings import Entrance, Site
-from coursework.site.people import accounts
+from coursework.site.lti.connecting import address as connecting_address
+from coursework.site.people import accounts, passwords
 
 STUDENT, OTHER = "David O'Neil", "Émilie Lefèvre"
 EXERCISE = "slotted_mechanism"
@@ -45,6 +49,9 @@ class Lived(Class):
             self.receipt = deliveries(connection, self.done, self.ids[STUDENT])[-1].receipt
         with self.site.store.begin() as connection:  # the student reads in the browser's language
             connection.execute(update(person).where(person.c.id == self.ids[STUDENT]).values(lang=""))
+            put_account(connection, self.ids[STUDENT], login="david@example.org", role="student")
+            mine = account_of(connection, self.ids[STUDENT])
+            set_secret(connection, mine.id, passwords.kept("a password of the demonstration"))
         self.seed = self._practised()
         self.question = self.site.course[EXERCISE].name, "rA"
         row = {"student": OTHER, "answer": "12", "exercise": EXERCISE, "seed": "1", "part": "rA"}
@@ -80,6 +87,7 @@ def shown(site: Lived) -> list[Shown]:
     issued = f"/desk/assignments/{site.now}"
     first = f"/desk/assignments/{site.done}"
     question = urlencode({"exercise": site.question[0], "part": site.question[1]})
+    launch = Launch("https://moodle.example", "client", "1", "57", STUDENT, Role.STUDENT, "link")
     students = (
         ("/practice", "/practice"),
         (practice, sheet),
@@ -91,6 +99,7 @@ def shown(site: Lived) -> list[Shown]:
         (f"{paper}/feedback", f"{done}/feedback"),
         (f"{paper}/receipts/{{code}}", f"{done}/receipts/{site.receipt}"),
         ("/account", "/account"),
+        ("/connect/{token}", connecting_address(site.site, launch, own).removeprefix(site.site.url)),
     )
     of_class = "/desk/{assignment:int}"
     staff = (
@@ -136,7 +145,8 @@ NO_PAGES = frozenset(
         "/", "/language", "/who", "/sign-out", "/account/data", "/static/{name}", "/practice/{exercise}", "/practice/{exercise}/{seed}/draft",
         "/practice/{exercise}/{seed}/read", "/progress/progress.json", "/assignments/{number:int}/keep", "/assignments/{number:int}/hand-in",
         "/assignments/{number:int}/file", "/assignments/{number:int}/{file}", "/assignments/{number:int}/receipts/{code}.{ending}", "/desk/issued",
-        "/desk/people/add", "/desk/people/{person}/data", "/desk/assignments/dealing/{token}", "/desk/{assignment:int}/figure",
+        "/desk/people/add", "/desk/people/add-staff", "/desk/people/{person}/data",
+        *(f"/desk/people/{{person}}/{end}" for end in ("invitation", "role", "separate")), "/desk/assignments/dealing/{token}", "/desk/{assignment:int}/figure",
         "/desk/{assignment:int}/queue/watch", "/desk/{assignment:int}/news", "/desk/{assignment:int}/report.pdf", "/desk/{assignment:int}/answers",
         "/desk/{assignment:int}/roster", "/desk/{assignment:int}/gradebook", "/desk/{assignment:int}/feedback", "/desk/{assignment:int}/rejected",
         "/desk/{assignment:int}/changes.csv", "/desk/{assignment:int}/files/{file}", "/desk/{assignment:int}/scans/picture",

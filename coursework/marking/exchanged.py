@@ -10,7 +10,7 @@ import numpy as np
 
 from coursework.kinds.nearness import gaps
 from coursework.marking.answers import read
-from coursework.marking.explaining import CLOSE, nearest_reading
+from coursework.marking.explaining import CLOSE, fits_followed, nearest_reading
 from coursework.marking.usual import nearness
 from coursework.model import Part
 from coursework.reading.reading import Reading
@@ -30,7 +30,8 @@ class Exchange(NamedTuple):
 def exchanged(variant: Variant, wrong: Mapping[str, Reading], *, is_guessed: bool) -> dict[str, Exchange]:
     """Return by part the other part whose box its answer stands in, of answers that are not right where they stand.
 
-    Counts and cases exchange by chance: of counts a pair is meant where no other count is wrong, of cases never.
+    Counts and cases exchange by chance. Of counts a pair is meant where no other count is wrong and the later one does
+    not follow from the earlier; of cases never.
     """
     key, asked = variant.key, {p.id: p for p in variant.parts if p.id in wrong}
     parts = [p for p in asked.values() if _may_be(p, wrong[p.id])]
@@ -40,6 +41,8 @@ def exchanged(variant: Variant, wrong: Mapping[str, Reading], *, is_guessed: boo
         if one.id in found or other.id in found or one.sort.is_exact != other.sort.is_exact:
             continue
         if one.sort.is_exact and (is_guessed or len(counts) > 2):
+            continue
+        if one.sort.is_exact and _goes_on(variant, one, wrong[one.id], other, wrong[other.id]):
             continue
         if not (_is_near(variant, wrong[one.id], other) and _is_near(variant, wrong[other.id], one)):
             continue
@@ -79,6 +82,16 @@ def _is_explained(variant: Variant, part: Part, reading: Reading) -> bool:
     )
 
 
+def _goes_on(variant: Variant, first: Part, wrong: Reading, part: Part, reading: Reading) -> bool:
+    """Return whether an answer follows from an earlier wrong one, each in its own box."""
+    if not first.sort.is_followed or wrong.status != "read" or reading.status != "read":
+        return False
+    return any(
+        fits_followed(variant.key, part, reading, part, {first.quantity: value}, {first.quantity}) is not None
+        for value in wrong.values
+    )
+
+
 def _may_be(part: Part, reading: Reading) -> bool:
     sort = part.sort
     if part.judge or sort.is_open or sort.is_text or sort.has_few_values:
@@ -92,8 +105,9 @@ def _is_near(variant: Variant, reading: Reading, other: Part) -> bool:
         return other.sort.is_number
     reference, key = variant.key.reference[other.quantity], variant.key
     if not other.sort.is_scalar:
+        along = key.reference.get(other.along)
         return all(
-            not isinstance(v, (str, float, int)) and other.sort.distance(other, v, reference) <= 1
+            not isinstance(v, (str, float, int)) and other.sort.distance(other, v, reference, along) <= 1
             for v in reading.values
         )
     width = key.half_width(other) + 1e-9 * abs(reference)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import itertools
 import re
 
 import pytest
@@ -131,19 +132,25 @@ def test_the_same_item_in_both_languages_judges_alike(name):
 
 
 def test_several_right_ones_share_the_points(tmp_path):
-    """Each right case gives its share, each wrong one takes as much; what has no number, or a person marks, is collected."""
+    """Each right case gives its share, each wrong one takes as much, and all together give nothing.
+
+    Answers without a number, and those that a person marks, are collected.
+    """
     course = coursework.open_course(write_course(tmp_path))
     variant = course[course.names[0]].variant(1, "en")
     kinds = {}
     for posed, part in zip(item(variant, "pool").questions, variant.parts, strict=True):
         kinds[part.id] = posed.kind
         if posed.kind == CHOICES:
-            right = [option for option in posed.options if option.share > 0]
-            assert {abs(option.share) for option in posed.options} == {1 / len(right)}
-            named = [posed.options[0], posed.options[1]]
-            answer = ", ".join(option.case for option in named)
-            share = max(0.0, sum(option.share for option in named))
-            assert earned(variant, part, answer)[0] == pytest.approx(share)
+            right = [option.share for option in posed.options if option.share > 0]
+            wrong = [-option.share for option in posed.options if option.share < 0]
+            assert right == [1 / len(right)] * len(right)
+            assert wrong == [max(1 / len(right), 1 / len(wrong))] * len(wrong)
+            for count in range(1, len(posed.options) + 1):
+                for named in itertools.combinations(posed.options, count):
+                    answer = ", ".join(option.case for option in named)
+                    share = max(0.0, sum(option.share for option in named))
+                    assert earned(variant, part, answer)[0] == pytest.approx(share), answer
     assert kinds["true_of_it"] == CHOICES
     assert {kinds[one] for one in ("Z", "I", "drops", "M", "why", "sketch")} == {COLLECTED}
 

@@ -71,6 +71,7 @@ WHO = {
     },
     "/desk/people": (INSTRUCTORS, INSTRUCTORS), "/desk/people/add": (INSTRUCTORS, INSTRUCTORS),
     "/desk/people/{person}": (INSTRUCTORS, None), "/desk/people/{person}/invitation": (INSTRUCTORS, INSTRUCTORS),
+    "/desk/people/{person}/separate": (INSTRUCTORS, INSTRUCTORS), "/connect/{token}": (STUDENTS, STUDENTS),
     **{f"/desk/people{end}": (ADMINISTRATORS, ADMINISTRATORS) for end in ("/add-staff", "/{person}/role", "/{person}/erase")},
     "/desk/people/{person}/data": (ADMINISTRATORS, None), "/desk/audit": (ADMINISTRATORS, None),
 }  # fmt: skip
