@@ -42,7 +42,7 @@ def study(
     folder: str | Path = ".",
     clock: Callable[[], datetime] | None = None,
 ) -> StudySession:
-    """A study session of an exercise.
+    """Return a study session of an exercise.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ def worked(
     parts: Sequence[str] = (),
     course: str | Path | None = None,
 ) -> Worked:
-    """A variant of an exercise as a worked example, as a notebook's cell shows it.
+    """Return a variant of an exercise as a worked example, as a notebook's cell shows it.
 
     Parameters
     ----------
@@ -181,7 +181,7 @@ class Variant(numbers.Variant):
         return handout(self, student)
 
     def answer_sheet(self, student: str = "", *, polygons: bool = True) -> AnswerSheet:
-        """The handout with its answers and worked solution."""
+        """Return the handout with its answers and worked solution."""
         from coursework.sheets.answer_sheet import answer_sheet
 
         return answer_sheet(self, student, polygons=polygons)
@@ -193,7 +193,7 @@ class Variant(numbers.Variant):
         return study_sheet(self, student)
 
     def polygons(self) -> tuple[DisplayedConstruction, ...]:
-        """The velocity and acceleration polygons that the solution states, drawn to scale.
+        """Return the velocity and acceleration polygons that the solution states, drawn to scale.
 
         None where it states none, and none in which nothing moves.
 
@@ -207,14 +207,15 @@ class Variant(numbers.Variant):
         return displayed_polygons(self)
 
     def animation(self, effects: Sequence[str] = (), count: int = 72) -> DisplayedAnimation:
-        """The mechanism over the cycle of its driver; see :class:`~coursework.motion.animation.Animation`."""
+        """Return the mechanism over the cycle of its driver; see
+        :class:`~coursework.motion.animation.Animation`."""
         from coursework.rendering.displayed import DisplayedAnimation
 
         return DisplayedAnimation(self, effects, count)
 
 
 def show_motion(variant: numbers.Variant, effects: Sequence[str] = (), count: int = 72) -> DisplayedAnimation:
-    """A variant's mechanism in motion: as the last line of a notebook's cell, it is shown moving."""
+    """Return a variant's mechanism in motion: as the last line of a notebook's cell, it is shown moving."""
     from coursework.rendering.displayed import DisplayedAnimation
 
     return DisplayedAnimation(variant, effects, count)

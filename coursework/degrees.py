@@ -21,7 +21,8 @@ def _is_scalar(*values: Any) -> bool:
 
 
 def _digits_of(*values: Any) -> Any:
-    """The mpmath context of the first number that has one: it computes with as many digits as it is told."""
+    """Return the mpmath context of the first number that has one: it computes with as many digits as it is
+    told."""
     for value in values:
         context = getattr(value, "context", None)
         if context is not None:
@@ -35,7 +36,7 @@ def _floating(values: Any) -> np.ndarray:
 
 
 def _sine_of_quarters(theta: Angle, quarters: int) -> Angle:
-    """Sine of ``theta + 90 quarters``, the quarters of a turn taken out exactly first."""
+    """Return the sine of ``theta + 90 quarters``, the quarters of a turn taken out exactly first."""
     if isinstance(theta, (float, int)):
         if not math.isfinite(theta):
             return math.nan
@@ -58,27 +59,28 @@ def _sine_of_quarters(theta: Angle, quarters: int) -> Angle:
 
 
 def sin(theta: Angle) -> Angle:
-    """Sine of an angle in degrees."""
+    """Return the sine of an angle in degrees."""
     return _sine_of_quarters(theta, 0)
 
 
 def cos(theta: Angle) -> Angle:
-    """Cosine of an angle in degrees."""
+    """Return the cosine of an angle in degrees."""
     return _sine_of_quarters(theta, 1)
 
 
 def tan(theta: Angle) -> Angle:
-    """Tangent of an angle in degrees; infinite at odd multiples of 90 in arrays, an error on a scalar."""
+    """Return the tangent of an angle in degrees; infinite at odd multiples of 90 in arrays, an error on a
+    scalar."""
     return sin(theta) / cos(theta)
 
 
 def polar(length: Any, theta: Angle) -> Any:
-    """The vector ``length e^{i theta}`` as a complex number."""
+    """Return the vector ``length e^{i theta}`` as a complex number."""
     return length * (cos(theta) + 1j * sin(theta))
 
 
 def angle(vector: Any) -> Angle:
-    """Direction of a complex vector, in (-180, 180]: by its quadrant, never by a quotient."""
+    """Return the direction of a complex vector, in (-180, 180]: by its quadrant, never by a quotient."""
     if _is_scalar(vector):
         found = math.degrees(cmath.phase(vector))
         return 180.0 if found == -180.0 else found
@@ -90,7 +92,7 @@ def angle(vector: Any) -> Angle:
 
 
 def atan2(y: Any, x: Any) -> Angle:
-    """Direction of the vector (x, y), in (-180, 180]."""
+    """Return the direction of the vector (x, y), in (-180, 180]."""
     if _is_scalar(y, x):
         found = math.degrees(math.atan2(y, x))
         return 180.0 if found == -180.0 else found
@@ -102,17 +104,17 @@ def atan2(y: Any, x: Any) -> Angle:
 
 
 def atan(x: Any) -> Angle:
-    """Arctangent, in (-90, 90): loses the quadrant of a quotient."""
+    """Return arctangent, in (-90, 90): loses the quadrant of a quotient."""
     return _inverse("atan", x)
 
 
 def asin(x: Any) -> Angle:
-    """Arcsine, in [-90, 90]."""
+    """Return arcsine, in [-90, 90]."""
     return _inverse("asin", x)
 
 
 def acos(x: Any) -> Angle:
-    """Arccosine, in [0, 180]."""
+    """Return arccosine, in [0, 180]."""
     return _inverse("acos", x)
 
 
@@ -126,13 +128,13 @@ def _inverse(name: str, x: Any) -> Angle:
 
 
 def from_radians(theta: Any) -> Angle:
-    """Degrees of an angle in radians; (-pi, pi] becomes (-180, 180]."""
+    """Return the degrees of an angle in radians; (-pi, pi] becomes (-180, 180]."""
     mp = _digits_of(theta)
     return theta * (180.0 / math.pi) if mp is None else mp.degrees(theta)
 
 
 def sqrt(x: Any) -> Any:
-    """Square root; NaN below zero in arrays, an error on a scalar."""
+    """Return the square root; NaN below zero in arrays, an error on a scalar."""
     if _is_scalar(x):
         return math.sqrt(x)
     mp = _digits_of(x)
@@ -140,7 +142,7 @@ def sqrt(x: Any) -> Any:
 
 
 def wrap(theta: Angle) -> Angle:
-    """The same direction in (-180, 180]."""
+    """Return the same direction in (-180, 180]."""
     if _is_scalar(theta):
         rest = math.remainder(theta, 360.0)
         return 180.0 if rest == -180.0 else rest

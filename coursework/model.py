@@ -71,7 +71,7 @@ def drawn(
     nonzero: bool = False,
     shown: bool = True,
 ) -> GivenSpec:
-    """A quantity drawn on the grid of multiples of ``step`` in [low, high].
+    """Return a quantity drawn on the grid of multiples of ``step`` in [low, high].
 
     A bound may be a function of quantities declared before it; its parameters name them. ``positive``
     says whether a request may only give positive values; unless told, it follows from a positive
@@ -88,12 +88,12 @@ def drawn(
 
 
 def fixed(value: float, *, unit: str = "1") -> GivenSpec:
-    """A quantity with the same value in every variant; a request may give it another."""
+    """Return a quantity with the same value in every variant; a request may give it another."""
     return GivenSpec(unit, default=value)
 
 
 def chosen(*choices: str, shown: bool = True) -> GivenSpec:
-    """A quantity drawn among named cases, all equally likely; ``shown`` is that of :func:`drawn`."""
+    """Return a quantity drawn among named cases, all equally likely; ``shown`` is that of :func:`drawn`."""
     return GivenSpec("1", choices=tuple(choices), shown=shown)
 
 
@@ -228,11 +228,11 @@ class Part:
         return found
 
     def half_width(self, reference: float) -> float:
-        """The largest accepted distance from a reference, in the part's unit."""
+        """Return the largest accepted distance from a reference, in the part's unit."""
         return max(self.atol, self.rtol * abs(reference))
 
     def is_asked(self, given: Mapping[str, Any]) -> bool:
-        """Whether a variant with these given values asks the part; so too when they do not tell."""
+        """Return whether a variant with these given values asks the part; so too when they do not tell."""
         if self.when is None:
             return True
         names = _parameters(self.when)
@@ -259,7 +259,8 @@ def loop_equations(
     usual: Sequence[str] = (),
     points: float = 1,
 ) -> tuple[Part, ...]:
-    """The equations that close a loop of the solution, as parts: projections on x and y, and the complex form.
+    """Return the equations that close a loop of the solution, as parts: projections on x and y, and the
+    complex form.
 
     ``symbols`` are what a student may write; with ``rates`` and ``second_rates`` the derivatives of the
     closure are parts as well: ``loop_1_x_dot``, ``loop_1_x_ddot``. All are asked by request, but the forms that are
@@ -399,11 +400,11 @@ class Exercise:
         return {} if self.tells is None else self.tells(*[given[n] for n in _parameters(self.tells)])
 
     def part(self, part_id: str) -> Part | None:
-        """The part of this id, or None."""
+        """Return the part of this id, or None."""
         return next((p for p in self.parts if p.id == part_id), None)
 
     def symbol(self, name: str) -> str:
-        """LaTeX of a quantity."""
+        """Return LaTeX of a quantity."""
         return self.symbols.get(name) or symbol_of(name)
 
 
@@ -418,7 +419,7 @@ _GREEK = (
 
 @lru_cache(maxsize=4096)
 def symbol_of(name: str) -> str:
-    r"""LaTeX of a public name: ``theta4`` -> ``\theta_4``, ``rA_dot`` -> ``\dot{r}_A``.
+    r"""Return LaTeX of a public name: ``theta4`` -> ``\theta_4``, ``rA_dot`` -> ``\dot{r}_A``.
 
     >>> symbol_of("theta3_open")
     '\\theta_{3,\\mathrm{open}}'

@@ -147,17 +147,17 @@ class Case:
     effects: tuple[str, ...] | None = None
 
     def under(self, *effects: str) -> Case:
-        """The same under these effects, or under none."""
+        """Return the same under these effects, or under none."""
         return Case(self.values, effects)
 
     def gives(self, **expected: Any) -> tuple[Any, ...]:
-        """The case as ``KNOWN`` lists it, with what is known to come out."""
+        """Return the case as ``KNOWN`` lists it, with what is known to come out."""
         case = (self.values, expected)
         return case if self.effects is None else (*case, self.effects)
 
 
 def given(**values: Any) -> Case:
-    """A known case by its given values; ``KNOWN`` reads as a list of sentences::
+    """Return a known case by its given values; ``KNOWN`` reads as a list of sentences::
 
     KNOWN = (
         given(r1=200, r2=100, theta2=90).gives(rA=300, theta4=90),
@@ -216,7 +216,7 @@ class Moving:
     coriolis: Any = None
 
     def over(self, count: int) -> Moving:
-        """The same as arrays of ``count`` instants."""
+        """Return the same as arrays of ``count`` instants."""
         values = (self.position, self.velocity, self.acceleration, self.coriolis)
         return Moving(*(v if v is None else np.broadcast_to(v, (count,)).astype(complex) for v in values))
 
@@ -324,7 +324,7 @@ class Solution:
         )
 
     def judge(self, name: str) -> Callable[..., Any]:
-        """The judge that parts name.
+        """Return the judge that parts name.
 
         Raises
         ------
@@ -336,17 +336,17 @@ class Solution:
         return self.judges[name]
 
     def mistaken(self, name: str) -> Graph:
-        """The graph with one named mistake in it."""
+        """Return the graph with one named mistake in it."""
         if name not in self.mistakes:
             raise unknown("mistake", name, self.mistakes, f"solution {self.name}")
         return self._mistaken_graphs[name]
 
     def reached(self, name: str) -> frozenset[str]:
-        """The quantities that a named mistake can change."""
+        """Return the quantities that a named mistake can change."""
         return self._reached[name]
 
     def depending_on(self, quantity: str) -> frozenset[str]:
-        """The quantities that change with one."""
+        """Return the quantities that change with one."""
         if quantity not in self._dependants:
             self._dependants[quantity] = self.graph.textbook.descendants((quantity,))
         return self._dependants[quantity]
@@ -420,7 +420,8 @@ def _effects(source: str, module: ModuleType, graph: Graph) -> Mapping[str, tupl
 
 
 def _belongs(function: Any, module: ModuleType) -> bool:
-    """Whether a function is the module's own, or comes from a module that solutions share: ``_strokes``."""
+    """Return whether a function is the module's own, or comes from a module that solutions share:
+    ``_strokes``."""
     home = getattr(function, "__module__", None) or ""
     if home == module.__name__:
         return True
@@ -430,8 +431,8 @@ def _belongs(function: Any, module: ModuleType) -> bool:
 
 
 def _hidden(functions: Mapping[str, Callable[..., Any]], module: ModuleType) -> dict[str, Callable[..., Any]]:
-    """Functions of hidden names that quantities take as parameters: the module's, or those that stand beside
-    a shared quantity."""
+    """Return the functions of hidden names that quantities take as parameters: the module's, or those that
+    stand beside a shared quantity."""
     found: dict[str, Callable[..., Any]] = {}
     waiting = list(functions.values())
     while waiting:

@@ -36,7 +36,7 @@ class Closure:
     def jacobian(
         self, values: Mapping[str, Any], cos: Function = np.cos, sin: Function = np.sin
     ) -> list[list[Any]]:
-        """Rows as :meth:`gaps`, a column an unknown."""
+        """Return the rows as :meth:`gaps`, a column an unknown."""
         rows = []
         for loop in self.loops:
             of_x = dict.fromkeys(self.unknowns, 0.0)
@@ -53,7 +53,7 @@ class Closure:
         return rows
 
     def newton(self, known: Mapping[str, Any], start: Sequence[Any], steps: int) -> list[Any]:
-        """The unknowns after a number of Newton steps, on arrays, real or complex."""
+        """Return the unknowns after a number of Newton steps, on arrays, real or complex."""
         x = list(start)
         for _ in range(steps):
             values = {**known, **dict(zip(self.unknowns, x, strict=True))}
@@ -70,7 +70,7 @@ class Closure:
 
 
 def _solved(matrix: list[list[Any]], right: list[Any]) -> list[Any]:
-    """Many small linear systems: two unknowns by Cramer's rule, more by elimination."""
+    """Return many small linear systems: two unknowns by Cramer's rule, more by elimination."""
     if len(right) == 2:
         (a, b), (c, d) = matrix
         inverse = 1.0 / (a * d - b * c)

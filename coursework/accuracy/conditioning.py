@@ -36,7 +36,7 @@ def unavoidable(
 def _moved(
     reference: Reference, given: Mapping[str, Any], datum: str, values: Mapping[str, Any]
 ) -> dict[str, float]:
-    """Change of each quantity per relative change of one datum; nothing where it has none beside."""
+    """Return the change of each quantity per relative change of one datum; nothing where it has none beside."""
     mp = reference.mp
     exact = mp.mpf(float(given[datum]))
     in_degrees = reference.exercise.units.get(datum) == "deg"
@@ -50,7 +50,7 @@ def _moved(
 
 
 def difference(reference: Reference, name: str, value: Any, right: Any) -> Any:
-    """One value less another; of angles modulo a turn."""
+    """Return one value less another; of angles modulo a turn."""
     apart = value - right
     if reference.exercise.units.get(name) == "deg":
         apart -= 360 * reference.mp.nint(apart / 360)

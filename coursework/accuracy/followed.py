@@ -33,7 +33,7 @@ class Arithmetic:
         self.mp: Any = None  #: the context of mpmath, of many digits
 
     def __call__(self, name: str, *values: Any) -> Any:
-        """A function of followed or plain numbers; truths come out plain, numbers followed."""
+        """Return a function of followed or plain numbers; truths come out plain, numbers followed."""
         if name not in self.functions:
             raise NotFollowed(f"np.{name} is not followed")
         plain = [_plain(v) for v in values]
@@ -182,7 +182,7 @@ for _dunder, _name in _DUNDERS.items():
 
 
 def of_arrays(tape: Tape | None = None) -> Arithmetic:
-    """Plain arrays, whatever numpy does with them."""
+    """Return plain arrays, whatever numpy does with them."""
     names = (
         "add subtract multiply true_divide divide power square reciprocal remainder negative positive absolute fabs sign "
         "sqrt exp log log10 sin cos tan arctan2 arcsin arccos arctan hypot degrees radians deg2rad rad2deg conjugate floor "
@@ -195,7 +195,7 @@ def of_arrays(tape: Tape | None = None) -> Arithmetic:
 
 
 def _sinpi(turns: Any) -> Any:
-    """Sine of so many half turns, whole half turns taken out first."""
+    """Return the sine of so many half turns, whole half turns taken out first."""
     whole = np.rint(turns)
     sign = 1.0 - 2.0 * np.mod(whole, 2.0)
     return sign * np.sin((turns - whole) * math.pi)
@@ -205,7 +205,7 @@ def _sinpi(turns: Any) -> Any:
 
 
 def of_many_digits(digits: int, tape: Tape | None = None) -> Arithmetic:
-    """One number at a time in so many decimal digits; floats stand for exactly themselves."""
+    """Return one number at a time in so many decimal digits; floats stand for exactly themselves."""
     import mpmath
 
     mp = mpmath.MPContext()
@@ -250,7 +250,8 @@ def _truth(value: Any) -> bool:
 
 
 def _exact(mp: Any, value: Any) -> Any:
-    """A plain number of a formula as the many-digit number that is meant; pi and its simple parts as themselves."""
+    """Return a plain number of a formula as the many-digit number that is meant; pi and its simple parts as
+    themselves."""
     if hasattr(value, "context") or isinstance(value, (str, bool)):
         return value
     if isinstance(value, np.ndarray):

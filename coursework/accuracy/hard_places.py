@@ -74,7 +74,7 @@ class HardPlace:
         return bool(self.tuned)
 
     def at(self, distance: float, aside: float = 0.0) -> dict[str, Any]:
-        """The given values so far away, in parts of the scale; negative on the other side.
+        """Return the given values so far away, in parts of the scale; negative on the other side.
 
         ``aside`` is how far off what is tuned lies, in parts of its own value: there the solutions come near and pass.
         """
@@ -85,7 +85,7 @@ class HardPlace:
     def approach(
         self, distances: Sequence[float] = DISTANCES, aside: float = 0.0
     ) -> Iterator[dict[str, Any]]:
-        """Both sides in turn, from far to near."""
+        """Yield both sides in turn, from far to near."""
         for distance in distances:
             for side in self.sides:
                 yield self.at(side * distance, aside)
@@ -104,7 +104,7 @@ class HardPlace:
 
 
 def hard_places(exercise: CourseExercise, wanted: Sequence[str], most: int = _MOST) -> tuple[HardPlace, ...]:
-    """The hard places of some quantities, those that lose most first.
+    """Return the hard places of some quantities, those that lose most first.
 
     None where the formulas cannot be followed, beyond vanishing lengths.
     """
@@ -185,13 +185,13 @@ class Terrain:
         ) * 2
 
     def turns(self, name: str) -> bool:
-        """Whether an angle may be any, not one of a triangle."""
+        """Return whether an angle may be any, not one of a triangle."""
         least, largest = self._drawn[name]
         driver = self.exercise.spec.driver
         return largest - least >= 180 or least < 0 or (driver is not None and name == driver.angle)
 
     def _is_size(self, name: str) -> bool:
-        """Whether it is always positive, and no angle: a length, a mass."""
+        """Return whether it is always positive, and no angle: a length, a mass."""
         return self.unit(name) != "deg" and self._drawn[name][0] > 0
 
     @property
@@ -217,7 +217,7 @@ class Terrain:
     # ------------------------------------------------------------------ margins
 
     def margins(self, given: Mapping[str, Any], wanted: Sequence[str]) -> Margins:
-        """Every margin on the way to some quantities, at each place of arrays of one shape."""
+        """Return every margin on the way to some quantities, at each place of arrays of one shape."""
         shape = np.broadcast_shapes(*(np.shape(v) for v in given.values()))
         self._notes.clear()
         found: Margins = {}
@@ -326,7 +326,8 @@ class Terrain:
         return found
 
     def relative(self, given: Mapping[str, Any]) -> Margins:
-        """The margins that vary, in parts of their usual size; of those that vanish together the first."""
+        """Return the margins that vary, in parts of their usual size; of those that vanish together the
+        first."""
         keys = self.distinct
         margins = self.margins(given, tuple(dict.fromkeys(name for name, _, _ in keys if name != _LOOPS)))
         return {key: margins[key] / self.usual[key] for key in keys if key in margins}
@@ -343,7 +344,7 @@ class Terrain:
 
 
 def _vanish_together(a: np.ndarray, b: np.ndarray) -> bool:
-    """Whether two margins have the same zeros, by what they are at random places."""
+    """Return whether two margins have the same zeros, by what they are at random places."""
     both = np.isfinite(a) & np.isfinite(b)
     if both.sum() < 0.9 * max(np.isfinite(a).sum(), np.isfinite(b).sum()):
         return False
@@ -383,7 +384,7 @@ def _arrays(base: Mapping[str, Any], count: int) -> dict[str, Any]:
 
 
 def _alike(spots: Sequence[_Spot]) -> list[list[_Spot]]:
-    """Spots that one call can compute: those whose choices are the same."""
+    """Return the spots that one call can compute: those whose choices are the same."""
     groups: dict[Any, list[_Spot]] = {}
     for spot in spots:
         groups.setdefault(tuple(v for v in spot.given.values() if isinstance(v, str)), []).append(spot)
@@ -391,7 +392,7 @@ def _alike(spots: Sequence[_Spot]) -> list[list[_Spot]]:
 
 
 def _together(spots: Sequence[_Spot], shape: tuple[int, ...] = ()) -> dict[str, Any]:
-    """The given values of many spots as arrays, a row a spot."""
+    """Return the given values of many spots as arrays, a row a spot."""
     found: dict[str, Any] = {}
     for name, value in spots[0].given.items():
         if isinstance(value, str):
@@ -405,7 +406,7 @@ def _together(spots: Sequence[_Spot], shape: tuple[int, ...] = ()) -> dict[str, 
 def _own_margins(
     terrain: Terrain, spots: Sequence[_Spot], given: Mapping[str, Any], shape: tuple[int, ...]
 ) -> np.ndarray:
-    """The margin of each spot at its own row of places."""
+    """Return the margin of each spot at its own row of places."""
     flat = {n: v if isinstance(v, str) else v.ravel() for n, v in given.items()}
     margins = terrain.relative(flat)
     none = np.full(shape, np.nan)
@@ -433,7 +434,7 @@ def _crossings(terrain: Terrain) -> list[_Spot]:
 
 
 def _bisected(terrain: Terrain, spots: Sequence[_Spot], low: np.ndarray, high: np.ndarray) -> Iterator[_Spot]:
-    """The spots at their zeros; none where a margin has a pole."""
+    """Yield the spots at their zeros; none where a margin has a pole."""
     given = _together(spots)
 
     def values(at: np.ndarray) -> np.ndarray:
@@ -479,7 +480,8 @@ def _touching(terrain: Terrain, base: Mapping[str, Any], moved: str, tuned: str)
 
 
 def _near_touch(m: np.ndarray) -> list[tuple[int, int]]:
-    """Places of a plane where an extremum along the rows is about to vanish, or vanishes, from row to row."""
+    """Return the places of a plane where an extremum along the rows is about to vanish, or vanishes, from row
+    to row."""
     found = []
     with np.errstate(all="ignore"):
         for least in (True, False):
@@ -500,7 +502,7 @@ def _near_touch(m: np.ndarray) -> list[tuple[int, int]]:
 
 
 def _zoomed(terrain: Terrain, spots: Sequence[_Spot]) -> Iterator[_Spot]:
-    """The spots as exactly as doubles tell them: the plane around each, finer and finer."""
+    """Yield the spots as exactly as doubles tell them: the plane around each, finer and finer."""
     levels, points = np.linspace(-1, 1, 5), np.linspace(-1, 1, 9)
     shape = len(levels), len(points)
     y, x = (np.array([s.given[name] for s, name in pairs]) for pairs in _pairs(spots))
@@ -540,7 +542,7 @@ def _is_inside(value: float, limits: tuple[float, float]) -> bool:
 
 
 def _short(value: float, apart: float) -> float:
-    """A value that is known no better than this: the shortest decimal nearby, of at most six places."""
+    """Return a value that is known no better than this: the shortest decimal nearby, of at most six places."""
     for places in range(7):
         if abs(round(value, places) - value) <= apart:
             return round(value, places) + 0.0
@@ -548,7 +550,7 @@ def _short(value: float, apart: float) -> float:
 
 
 def _best_extremum(plane: np.ndarray) -> tuple[int, float]:
-    """The row whose extremum along it is nearest to nought, and where on it that is, from -1 to 1."""
+    """Return the row whose extremum along it is nearest to nought, and where on it that is, from -1 to 1."""
     best, place = np.inf, (plane.shape[0] // 2, 0.0)
     last = plane.shape[1] - 1
     for row, values in enumerate(plane):
@@ -570,7 +572,7 @@ def _best_extremum(plane: np.ndarray) -> tuple[int, float]:
 
 
 def _vanishing(terrain: Terrain) -> list[_Spot]:
-    """A length as small as one likes beside the others; an angle of a triangle that is flat."""
+    """Return a length as small as one likes beside the others; an angle of a triangle that is flat."""
     base = terrain.bases[0]
     flat = [n for n in terrain.angles if not terrain.turns(n)]
     ends = [(n, 0.0) for n in (*terrain.sizes, *flat)] + [(n, 180.0) for n in flat]
@@ -578,7 +580,7 @@ def _vanishing(terrain: Terrain) -> list[_Spot]:
 
 
 def _merged(terrain: Terrain, found: Sequence[_Spot]) -> list[HardPlace]:
-    """One place for all that vanishes there; for one sort of place, what is found first."""
+    """Return one place for all that vanishes there; for one sort of place, what is found first."""
     by_place: dict[Any, list[_Spot]] = {}
     for zero in found:
         where = tuple(

@@ -105,7 +105,7 @@ def subject_of(exercise: CourseExercise) -> Subject:
 
 
 def measure(exercise: CourseExercise, *, quick: bool = False) -> Iterator[Row]:
-    """Rows as they are measured.
+    """Yield the rows as they are measured.
 
     Raises
     ------
@@ -226,7 +226,7 @@ class _Trial:
 
 
 def right_values(subject: Subject, places: Places, wanted: Sequence[str]) -> dict[str, list[Any]]:
-    """The reference at each place; None where there is no value."""
+    """Return the reference at each place; None where there is no value."""
     rows = [subject.reference.at(place) for place in one_by_one(places)]
     return {name: [row[name] for row in rows] for name in wanted}
 
@@ -246,7 +246,7 @@ def _computed(way: Way, places: Places) -> Values:
 def usual_sizes(
     subject: Subject, wanted: Sequence[str], reference: Mapping[str, Sequence[Any]]
 ) -> dict[str, float]:
-    """The usual size of each quantity; of an angle a radian."""
+    """Return the usual size of each quantity; of an angle a radian."""
     sizes = {}
     for name in wanted:
         values = [abs(float(v)) for v in reference[name] if v is not None]
@@ -261,7 +261,8 @@ def compare(
     reference: Mapping[str, Sequence[Any]],
     scales: Mapping[str, float],
 ) -> tuple[float | None, int, int]:
-    """The largest error, at how many places an answer lacks that there is, and at how many there is one."""
+    """Return the largest error, at how many places an answer lacks that there is, and at how many there is
+    one."""
     count = _count(found, reference)
     errors = np.zeros(count)
     exists = np.zeros(count, dtype=bool)
@@ -284,7 +285,8 @@ def compare(
 def unavoidable_of(
     subject: Subject, places: Places, reference: Mapping[str, Sequence[Any]], scales: Mapping[str, float]
 ) -> float:
-    """The largest error that the last digits of the data make by themselves, counted as all errors are."""
+    """Return the largest error that the last digits of the data make by themselves, counted as all errors
+    are."""
     largest = 0.0
     for i, place in enumerate(one_by_one(places)):
         values = {name: reference[name][i] for name in scales if reference[name][i] is not None}
@@ -305,7 +307,7 @@ def _count(found: Mapping[str, Any], reference: Mapping[str, Sequence[Any]]) -> 
 
 
 def _difference(value: Any, right: Any, whole: bool) -> float:
-    """|value - right|, modulo a turn for an angle; NaN where there is no value."""
+    """Return |value - right|, modulo a turn for an angle; NaN where there is no value."""
     context = right.context
     if value is None:
         return math.nan

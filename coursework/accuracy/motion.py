@@ -55,7 +55,7 @@ Method = Callable[[Scene, float, float, bool], Iterator[Run]]
 
 
 def by_tolerance(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
-    """The scene's own integration, at each relative tolerance."""
+    """Yield the scene's own integration, at each relative tolerance."""
     driver = scene.driver
     # A quick look takes a few; with friction each digit costs so much that it stops halfway.
     rubs = FRICTION in scene.effects
@@ -70,7 +70,8 @@ def by_tolerance(scene: Scene, effort: float, duration: float, quick: bool) -> I
 
 
 def by_steps(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
-    """The classical Runge-Kutta method at equal steps, the mechanism computed anew at each of its four stages."""
+    """Yield the classical Runge-Kutta method at equal steps, the mechanism computed anew at each of its four
+    stages."""
     counts = (50, 100, 200, 400, 800)
     most = len(counts) if not quick else 2 if FRICTION in scene.effects else 3
     rate = _Acceleration(scene, effort)
@@ -79,7 +80,8 @@ def by_steps(scene: Scene, effort: float, duration: float, quick: bool) -> Itera
 
 
 def by_table(scene: Scene, effort: float, duration: float, quick: bool) -> Iterator[Run]:
-    """The same at fine steps, the coefficients of the motion from a table of the cycle by Fourier interpolation."""
+    """Yield the same at fine steps, the coefficients of the motion from a table of the cycle by Fourier
+    interpolation."""
     for nodes in (32, 64) if quick else (16, 32, 64, 128):
         start = clock()
         rate = _Tabulated(_Acceleration(scene, effort), nodes)
@@ -96,8 +98,8 @@ METHODS: tuple[Method, ...] = (by_tolerance, by_steps, by_table)
 
 
 def motion_rows(exercise: CourseExercise, study: Study, quick: bool) -> Iterator[MotionRow]:
-    """Every method at each of its settings, in rounds: without friction against the energy integral, with friction against the
-    tightest tolerance there is."""
+    """Yield every method at each of its settings, in rounds: without friction against the energy integral,
+    with friction against the tightest tolerance there is."""
     assert study.motion is not None
     motion = study.motion
     given = {**study.given, **motion.given}
@@ -208,7 +210,7 @@ class EnergyIntegral:
         return pulls[1] - pulls[0]
 
     def time(self, start: float, end: float) -> Any:
-        """Seconds from one angle to another, in degrees and not reduced."""
+        """Return the seconds from one angle to another, in degrees and not reduced."""
         start, end = self._radians(start), self._radians(end)
 
         def slowness(angle: Any) -> Any:
@@ -300,7 +302,7 @@ class _Tabulated:
 def runge_kutta(
     rate: Callable[[np.ndarray], np.ndarray], start: np.ndarray, duration: float, steps: int
 ) -> np.ndarray:
-    """The state at the end of so many equal steps of the classical method of fourth order."""
+    """Return the state at the end of so many equal steps of the classical method of fourth order."""
     state, h = np.array(start, dtype=float), duration / steps
     for _ in range(steps):
         first = rate(state)

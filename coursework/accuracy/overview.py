@@ -61,7 +61,7 @@ class Line:
 
 
 def overview(exercise: CourseExercise, *, quick: bool = False) -> Line | None:
-    """The line of an exercise; None where it asks for no number.
+    """Return the line of an exercise; None where it asks for no number.
 
     Raises
     ------
@@ -113,7 +113,7 @@ class _Survey:
         )
 
     def _hard(self, scales: dict[str, float]) -> dict[str, Any]:
-        """The largest errors over all hard places, and the place where the solver's is largest."""
+        """Return the largest errors over all hard places, and the place where the solver's is largest."""
         found: dict[str, Any] = {}
         for place in self.subject.hard:
             own = self._at(place, dict.fromkeys(scales, 0.0) if place.kind == VANISHING else scales)
@@ -144,7 +144,8 @@ class _Survey:
         }
 
     def _is_same_case(self, name: str, solver: dict[str, Any], reference: dict[str, list[Any]]) -> bool:
-        """Whether the formula is of the case that the solver finds: so far off, at the farthest place, no rounding is."""
+        """Return whether the formula is of the case that the solver finds: so far off, at the farthest place,
+        no rounding is."""
         first = {name: reference[name][:1]}
         error, failed, count = compare(
             self.subject,
@@ -157,7 +158,8 @@ class _Survey:
     def _beyond(
         self, places: Places, reference: dict[str, list[Any]], names: Sequence[str], solver: dict[str, Any]
     ) -> float:
-        """The largest of the solver's errors, each in eight times what is unavoidable where it is made."""
+        """Return the largest of the solver's errors, each in eight times what is unavoidable where it is
+        made."""
         worst = 0.0
         for i, place in enumerate(one_by_one(places)):
             doubtful = {}
@@ -194,7 +196,7 @@ class _Survey:
 
 
 def _entry(values: Any, i: int) -> Any:
-    """One entry of an answer, as an array of one."""
+    """Return one entry of an answer, as an array of one."""
     import numpy as np
 
     if values is None:

@@ -24,7 +24,7 @@ _MOTION_LIMITS = (1e-3, 1e-6)
 
 
 def report(course: Course, rows: Sequence[Row], lang: str) -> Report:
-    """A section an exercise and kind of quantity, in the order of the rows."""
+    """Return a section an exercise and kind of quantity, in the order of the rows."""
     said = words(lang)["accuracy"]
     sections = []
     kinds = {POSITION: "positions", RATE: "rates", ACCELERATION: "accelerations", OTHER: "others"}
@@ -141,7 +141,7 @@ def _read_motion(rows: Sequence[Row], where: str, said: Words) -> list[str]:
 
 
 def _data(subject: Subject, said: Words, lang: str) -> str:
-    """The data of both kinds of places."""
+    """Return the data of both kinds of places."""
     lines = [said["generic_variants"]]
     if subject.driver:
         shown = {n: v for n, v in subject.base.items() if n != subject.driver}
@@ -166,7 +166,7 @@ def _value(subject: Subject, name: str, value: Any, lang: str) -> str:
 
 
 def told_place(subject: Subject, place: HardPlace, said: Words, lang: str) -> str:
-    """A hard place in words: what comes near what, and what vanishes there."""
+    """Return a hard place in words: what comes near what, and what vanishes there."""
     unit = subject.exercise.units.get(place.moved, "1")
     tuned = ""
     if place.tuned:
@@ -260,7 +260,7 @@ def _read_rates(rows: Rows, said: Words) -> list[str]:
 
 
 def _series(rows: Sequence[Row], said: Words, across: Any) -> dict[str, tuple[list[float], list[float]]]:
-    """Points by family, those of one family joined."""
+    """Return the points by family, those of one family joined."""
     found: dict[str, tuple[list[float], list[float]]] = {}
     for row in rows:
         name = said["series"].get(row.family) or _method(row, said)
@@ -273,7 +273,7 @@ def _series(rows: Sequence[Row], said: Words, across: Any) -> dict[str, tuple[li
 def charts_of(
     points: Mapping[str, Any], heading: str, horizontal: str, said: Words, *, digits: bool = False
 ) -> tuple[Chart, ...]:
-    """The chart, where charts can be drawn."""
+    """Return the chart, where charts can be drawn."""
     if lacking():
         return ()
     svg = scatter(points, heading, horizontal, said["error"], whole=digits).decode("utf-8")
@@ -281,7 +281,7 @@ def charts_of(
 
 
 def _table(rows: Rows, said: Words) -> Table:
-    """A line a method, both kinds of places side by side."""
+    """Return a line a method, both kinds of places side by side."""
     by_method: dict[str, dict[str, Row]] = {}
     for row in rows.rows:
         by_method.setdefault(row.method, {})[row.place] = row
@@ -317,13 +317,13 @@ def _paid(row: Row | None, rows: Rows, said: Words) -> str:
 
 
 def _set(row: Row) -> float:
-    """The setting of a method that has one."""
+    """Return the setting of a method that has one."""
     assert row.setting is not None
     return row.setting
 
 
 def _measured(row: Row) -> float:
-    """The error of a method that has answers."""
+    """Return the error of a method that has answers."""
     assert row.max_error is not None
     return row.max_error
 
@@ -346,7 +346,7 @@ def _method(row: Row, said: Words) -> str:
 
 
 def _setting(value: float) -> str:
-    """A setting as plain text, in charts too: powers of ten by their exponent."""
+    """Return a setting as plain text, in charts too: powers of ten by their exponent."""
     if value >= 1:
         return f"{value:g}"
     exponent = round(-math.log10(value))
@@ -354,7 +354,7 @@ def _setting(value: float) -> str:
 
 
 def number(value: float, unit: str = "1", lang: str = "en", digits: int = 2) -> str:
-    """A figure of these pages as inline Markdown."""
+    """Return a figure of these pages as inline Markdown."""
     shown = unit_text(unit, lang)
     space = "" if shown in ("", "°") else "\N{NO-BREAK SPACE}"
     if 10 <= value < 1e4 and digits == 2:

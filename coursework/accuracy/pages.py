@@ -22,7 +22,7 @@ _HALF = 8
 
 
 def overview_report(course: Course, lines: Sequence[Line], without: Sequence[str], lang: str) -> Report:
-    """A row an exercise: digits, times, where it is hardest, what vouches for the reference."""
+    """Return a row an exercise: digits, times, where it is hardest, what vouches for the reference."""
     said = words(lang)["accuracy"]
     told = said["overview"]
     right = [line for line in lines if not line.wrong and line.quantities]
@@ -213,7 +213,8 @@ def _paper_line(first: str, row: PaperRow, told: Words) -> tuple[str, ...]:
 
 
 def _by_exercise(course: Course, rows: Sequence[PaperRow], digits: int, told: Words, lang: str) -> Table:
-    """A line an exercise: wronged by a plain margin at each number of digits, then what the course's margin does."""
+    """Return a line an exercise: wronged by a plain margin at each number of digits, then what the course's
+    margin does."""
     kept = [d for d in dict.fromkeys(row.digits for row in rows) if d != PLAIN]
     heads = (
         told["exercise"],

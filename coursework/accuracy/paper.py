@@ -61,7 +61,7 @@ class PaperRow:
 
 
 def on_paper(exercise: CourseExercise, variants: int, digits: Sequence[int] = DIGITS) -> list[PaperRow]:
-    """The rows of one exercise: the plain margin first; none where it asks for no number."""
+    """Return the rows of one exercise: the plain margin first; none where it asks for no number."""
     parts = [p for p in exercise.spec.parts if p.kind in ("number", "angle") and p.has_margin]
     parts = [p for p in parts if p.quantity in numbers_of(exercise)]
     if not parts:
@@ -91,7 +91,7 @@ class _Room:
         return {n: np.broadcast_to(np.asarray(v, dtype=float), (self.count,)) for n, v in found.items()}
 
     def _mistaken(self) -> list[dict[str, np.ndarray]]:
-        """The answers of who makes each named mistake, and goes on rightly."""
+        """Return the answers of who makes each named mistake, and goes on rightly."""
         found = []
         for name in self.exercise.solution.mistakes:
             try:
@@ -157,7 +157,7 @@ class _Room:
 
 
 def total(rows: Sequence[PaperRow]) -> list[PaperRow]:
-    """All exercises together, a row a number of digits."""
+    """Return all exercises together, a row a number of digits."""
     found = {}
     for digits in dict.fromkeys(row.digits for row in rows):
         own = [row for row in rows if row.digits == digits]

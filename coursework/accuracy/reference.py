@@ -69,7 +69,7 @@ class Reference:
     # ------------------------------------------------------------------- values
 
     def at(self, given: Mapping[str, Any]) -> dict[str, Any]:
-        """The wanted quantities as numbers of mpmath; None for one that does not exist there."""
+        """Return the wanted quantities as numbers of mpmath; None for one that does not exist there."""
         try:
             values = self.numbers(given, self.wanted)
         except _FAILURES:  # of what is pinned
@@ -77,7 +77,7 @@ class Reference:
         return {n: self._number(values.get(n)) for n in self.wanted}
 
     def numbers(self, given: Mapping[str, Any], names: Sequence[str]) -> dict[str, Any]:
-        """Quantities by name, followed numbers; what does not exist is left out."""
+        """Return the quantities by name, followed numbers; what does not exist is left out."""
         start = self._start(given)
         try:
             return self.graph.evaluate(names, start, self.effects)
@@ -144,7 +144,7 @@ class Reference:
         self.lacking = tuple(n for n in self.asked if n in lacking)
 
     def _is_step(self, name: str, known: Mapping[str, Any]) -> bool:
-        """Whether no small change of a datum moves a quantity."""
+        """Return whether no small change of a datum moves a quantity."""
         graph = self.exercise.solution.graph
         try:
             own = graph.evaluate((name,), known, self.effects)[name]
@@ -204,7 +204,7 @@ class Reference:
     def _terms(
         self, v: Any, rates: Mapping[str, tuple[str, str]], values: Mapping[str, Any], order: int
     ) -> list[Any]:
-        """The parts of a vector's derivative, complex."""
+        """Return the parts of a vector's derivative, complex."""
         mp = self.mp
 
         def rate(name: Any, k: int) -> Any:
@@ -270,5 +270,5 @@ class Reference:
 
 
 def twinned(graph: Graph) -> Graph:
-    """The same graph with the core's functions replaced by their twins."""
+    """Return the same graph with the core's functions replaced by their twins."""
     return graph.mapped(Twinned())

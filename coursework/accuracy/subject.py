@@ -30,7 +30,8 @@ Places = dict[str, Any]  #: given values: arrays of one shape, texts
 
 
 def numbers_of(exercise: CourseExercise) -> tuple[str, ...]:
-    """The asked quantities that are numbers with digits; none of an exercise whose solution is not written yet.
+    """Return the asked quantities that are numbers with digits; none of an exercise whose solution is not
+    written yet.
 
     Raises
     ------
@@ -96,7 +97,7 @@ class Subject:
         return {n: rates[n] for n in self.unknowns} if all(n in rates for n in self.unknowns) else {}
 
     def quantities(self, what: str) -> tuple[str, ...]:
-        """The quantities of one sort, as far as there are right values of them."""
+        """Return the quantities of one sort, as far as there are right values of them."""
         if what == POSITION and self.unknowns:
             chosen = self.unknowns
         elif what == RATE and self.rate_of:
@@ -149,13 +150,13 @@ class Subject:
 
 
 def one_by_one(places: Places) -> list[dict[str, Any]]:
-    """Each place by itself."""
+    """Return each place by itself."""
     count = max((np.size(v) for v in places.values() if np.ndim(v)), default=1)
     return [{n: (v if np.ndim(v) == 0 else v[i]) for n, v in places.items()} for i in range(count)]
 
 
 def together(rows: list[dict[str, Any]]) -> Places:
-    """Many places as arrays; what is a text in all of them stays one where it is the same."""
+    """Return many places as arrays; what is a text in all of them stays one where it is the same."""
     found: Places = {}
     for name, first in rows[0].items():
         values = [row[name] for row in rows]

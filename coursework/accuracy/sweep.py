@@ -54,7 +54,7 @@ def misses(
 
 
 def _after_turns(reference: Reference) -> Iterator[Miss]:
-    """After whole turns of an angle, a place is what it was."""
+    """Yield the after whole turns of an angle, a place is what it was."""
     terrain = Terrain(reference.exercise, reference.wanted)
     base = terrain.bases[0]
     for name in terrain.angles:
@@ -104,9 +104,9 @@ def _along(
 
 
 def _is_judged(reference: Reference, name: str, given: Mapping[str, Any], distance: float) -> bool:
-    """Whether the solver says in words that the quantity does not exist there, or whether a last bit decides it: so near to
-    the place, an answer that exists when it is asked for alone may be just out of reach when it is asked for with others.
-    """
+    """Return whether the solver says in words that the quantity does not exist there, or whether a last bit
+    decides it: so near to the place, an answer that exists when it is asked for alone may be just out of
+    reach when it is asked for with others."""
     known = reference.exercise.intake.values(given)
     try:
         alone = reference.exercise.solution.graph.evaluate((name,), known, reference.effects)[name]
@@ -120,7 +120,7 @@ def _largest(right: Any) -> float:
 
 
 def _has_lengths(reference: Reference, given: Mapping[str, Any]) -> bool:
-    """Whether no given quantity that must be positive is not."""
+    """Return whether no given quantity that must be positive is not."""
     specs = reference.exercise.spec.given
     return all(given[n] > 0 for n, s in specs.items() if s.positive and n in given)
 
@@ -132,7 +132,7 @@ def _off(reference: Reference, name: str, value: float, right: Any) -> float:
 
 
 def solved(reference: Reference, places: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
-    """The solver's own answers, all places in one call."""
+    """Return the solver's own answers, all places in one call."""
     exercise = reference.exercise
     known = [{**exercise.intake.defaults, **given} for given in places]
     given = {

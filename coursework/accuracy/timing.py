@@ -37,13 +37,14 @@ class Times:
 
 
 def is_busy(times: Iterable[Any]) -> bool:
-    """Whether so many times spread widely that the machine had other work, and no time can be compared."""
+    """Return whether so many times spread widely that the machine had other work, and no time can be
+    compared."""
     spreads = [(t.high - t.low) / t.median for t in times if t.median]
     return bool(spreads) and sum(spread > WIDE for spread in spreads) >= MANY * len(spreads)
 
 
 def overlap(a: Any, b: Any) -> bool:
-    """Whether two times cannot be told apart: their quartiles overlap, or they are nearly the same."""
+    """Return whether two times cannot be told apart: their quartiles overlap, or they are nearly the same."""
     fast, slow = sorted((a, b), key=lambda t: t.median)
     return slow.low <= fast.high or slow.median < ALIKE * fast.median
 
@@ -51,7 +52,7 @@ def overlap(a: Any, b: Any) -> bool:
 def interleaved(
     calls: Sequence[Callable[[], Any]], at_least: float, budget: float = math.inf, rounds: int = _ROUNDS
 ) -> list[Times]:
-    """The times of some calls, each repeated within a round for ``at_least`` so many seconds.
+    """Return the times of some calls, each repeated within a round for ``at_least`` so many seconds.
 
     Every call has at least three rounds; one that takes longer than ``budget`` in all has no more than these.
     """
@@ -76,6 +77,6 @@ def interleaved(
 
 
 def times_of(samples: Sequence[float]) -> Times:
-    """Median and quartiles of some measurements, seconds."""
+    """Return the median and quartiles of some measurements, seconds."""
     low, median, high = (float(np.quantile(samples, part)) for part in (0.25, 0.5, 0.75))
     return Times(median, low, high, len(samples))

@@ -19,7 +19,8 @@ from coursework.kinematics.dyads import side_of
 
 
 def _degrees_of(angle: Any) -> Any:
-    """A heading in degrees; the start of what lies between two directions is exact in many digits anyway."""
+    """Return a heading in degrees; the start of what lies between two directions is exact in many digits
+    anyway."""
     if not isinstance(angle, Degrees):
         raise TypeError("a twin takes angles in degrees")
     return angle.angle

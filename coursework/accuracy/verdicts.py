@@ -20,7 +20,7 @@ Words = Mapping[str, Any]
 
 
 def cheapest(rows: Iterable[Row]) -> list[Row]:
-    """The rows whose times cannot be told from the shortest, shortest first."""
+    """Return the rows whose times cannot be told from the shortest, shortest first."""
     by_time = sorted(rows, key=lambda row: row.median)
     return [row for row in by_time if overlap(by_time[0], row)]
 
@@ -36,7 +36,7 @@ class Rows:
         return sorted(found, key=lambda r: (r.setting is not None, r.setting))
 
     def answered(self, family: str, place: str = GENERIC) -> list[Row]:
-        """Those that have an answer somewhere, and so an error."""
+        """Return those that have an answer somewhere, and so an error."""
         return [r for r in self.of(family, place) if r.max_error is not None]
 
     def one(self, family: str, place: str = GENERIC) -> Row | None:
@@ -44,7 +44,8 @@ class Rows:
         return found[0] if found else None
 
     def within(self, limit: float, places: Sequence[str]) -> list[Row]:
-        """The generic rows of the ways that keep below a limit at all of these places; references left out."""
+        """Return the generic rows of the ways that keep below a limit at all of these places; references left
+        out."""
         found = []
         for row in self.rows:
             if row.place != places[0] or row.family in _REFERENCES:
@@ -57,7 +58,7 @@ class Rows:
 
     @property
     def is_busy(self) -> bool:
-        """Whether the machine had other work while these were timed."""
+        """True if the machine had other work while these were timed."""
         return is_busy(row for row in self.rows if row.place != HARD and row.family not in _REFERENCES)
 
     @property
@@ -94,13 +95,14 @@ def _answers(rows: Rows, said: Words, name: Any, limit: float) -> list[tuple[str
 
 
 def _cheaper_at_generic_places(rows: Rows, limit: float, best: Sequence[Row]) -> list[Row]:
-    """Ways that would do at generic places alone, clearly cheaper than the best that do everywhere."""
+    """Return the ways that would do at generic places alone, clearly cheaper than the best that do
+    everywhere."""
     generic = cheapest(rows.within(limit, (GENERIC,)))
     return [] if {row.method for row in best} & {row.method for row in generic} else generic
 
 
 def listed(rows: Sequence[Row], said: Words, name: Any) -> str:
-    """Methods by name: in an order of their own, since their times are no order."""
+    """Return the methods by name: in an order of their own, since their times are no order."""
     return _and(sorted(f"*{name(row)}*" for row in rows), said)
 
 
@@ -116,7 +118,8 @@ def paid_after(row: Row, stable: Row | None) -> float | None:
 
 
 def halves(rows: Sequence[Row]) -> bool:
-    """Whether each step of Newton's method halves the error and no more, as it does where two solutions meet."""
+    """Return whether each step of Newton's method halves the error and no more, as it does where two
+    solutions meet."""
     return len(rows) > 1 and all(
         a.max_error and b.max_error and 0.3 < b.max_error / a.max_error < 0.7 for a, b in pairwise(rows)
     )

@@ -47,8 +47,8 @@ class Way:
 
 
 def ways(subject: Subject, what: str, fixed: Mapping[str, Any] | None) -> Iterator[Way]:
-    """Every way to the quantities of one sort; those that need a ``fixed`` mechanism, without its driver's angle, only where
-    there is one."""
+    """Yield every way to the quantities of one sort; those that need a ``fixed`` mechanism, without its
+    driver's angle, only where there is one."""
     bench = _Bench(subject, what)
     if what == POSITION:
         yield bench.in_precision("single", np.float32)
@@ -139,7 +139,7 @@ class _Turning:
         return float(self.fixed[self.subject.speed])
 
     def table(self, nodes: int) -> Callable[[Places], Values]:
-        """Cubic Hermite interpolation over the turn, from values and slopes at equidistant nodes."""
+        """Return the cubic Hermite interpolation over the turn, from values and slopes at equidistant nodes."""
         from scipy.interpolate import CubicHermiteSpline
 
         # Half a step off the quarters of the turn, where a rate may not exist, and one more at either end.
@@ -181,7 +181,7 @@ class _Turning:
         return self.subject.closure
 
     def _start(self, angle: np.ndarray) -> list[np.ndarray]:
-        """The unknowns at the nearest of the nodes: what somebody knows who moves in steps."""
+        """Return the unknowns at the nearest of the nodes: what somebody knows who moves in steps."""
         nodes, found = self._nodes
         nearest = np.rint((angle - nodes[0]) / (360 / NODES)).astype(int) % NODES
         return [np.broadcast_to(found[name], nodes.shape)[nearest] for name in self.subject.unknowns]
@@ -218,7 +218,7 @@ class _Turning:
         return compute
 
     def _one_by_one(self, solve: Callable[..., np.ndarray | None]) -> Callable[[Places], Values]:
-        """A library's solver, which takes one configuration at a time."""
+        """Return a library's solver, which takes one configuration at a time."""
         closure = self._loops
 
         def compute(places: Places) -> Values:
@@ -261,7 +261,7 @@ class _Turning:
     # -------------------------------------------------------------------- rates
 
     def differences(self, step: float) -> Callable[[Places], Values]:
-        """Central differences of the stable positions."""
+        """Return the central differences of the stable positions."""
         width, rates = math.degrees(step), self.subject.rate_of
 
         def compute(places: Places) -> Values:
@@ -278,7 +278,8 @@ class _Turning:
         return compute
 
     def complex_step(self) -> Callable[[Places], Values]:
-        """The imaginary part of the closed loops at an imaginary step: a derivative without a difference.
+        """Return the imaginary part of the closed loops at an imaginary step: a derivative without a
+        difference.
 
         The loops are closed at the angle itself, so that one step of Newton's method gives all of the first order; a
         second one would only bring in the rounding that the first one left.

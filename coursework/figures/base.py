@@ -35,7 +35,7 @@ class Element:
     @classmethod
     @lru_cache(maxsize=128)
     def _told(cls) -> tuple[tuple[str, str], ...]:
-        """The name of each value and its type, as written."""
+        """Return the name of each value and its type, as written."""
         return tuple((item.name, str(item.type)) for item in fields(cls))
 
     def _checked(self, name: str, kind: str) -> object:
@@ -52,7 +52,7 @@ class Element:
         return value
 
     def settled(self, decimals: int) -> Element:
-        """The element with its points and numbers rounded to so many decimals."""
+        """Return the element with its points and numbers rounded to so many decimals."""
         told = {name: getattr(self, name) for name, _ in self._told()}
         changed = {
             name: new for name, old in told.items() if repr(new := _rounded(old, decimals)) != repr(old)
@@ -60,11 +60,11 @@ class Element:
         return replace(self, **changed) if changed else self
 
     def reach(self) -> tuple[complex, ...]:
-        """Points that bound the element."""
+        """Return the points that bound the element."""
         return tuple(z for name, _ in self._told() for z in _points(getattr(self, name)))
 
     def bars(self) -> Bars:
-        """Segments of the links, which labels and supports of pins keep away from."""
+        """Return the segments of the links, which labels and supports of pins keep away from."""
         return ()
 
     def draw(self, paper: Paper) -> None:

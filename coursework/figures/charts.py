@@ -48,7 +48,7 @@ def curves(
     units: Mapping[str, str],
     title: str,
 ) -> bytes:
-    """Curves over one variable, a panel for each unit, as SVG; the same data give the same bytes."""
+    """Return the curves over one variable, a panel for each unit, as SVG; the same data give the same bytes."""
     pyplot = _pyplot()
     by_unit: dict[str, list[str]] = {}
     for name in columns:
@@ -74,7 +74,7 @@ def curves(
 
 
 def _without_jumps(degrees: np.ndarray) -> np.ndarray:
-    """The line of a direction is cut where it passes from 180 to -180."""
+    """Return the line of a direction is cut where it passes from 180 to -180."""
     values = np.array(degrees, dtype=float)
     values[1:][np.abs(np.diff(degrees)) > 180] = np.nan
     return values
@@ -110,7 +110,7 @@ def _fit_title(figure: Any, panel: Any) -> None:
 
 
 def _lines(text: str, fits: Callable[[str], bool]) -> list[str]:
-    """A text on lines that fit; a word longer than a line is cut."""
+    """Return a text on lines that fit; a word longer than a line is cut."""
     lines = [""]
     for word in text.split(" "):
         longer, rest = f"{lines[-1]} {word}".strip(), word
@@ -135,7 +135,8 @@ def scatter(
     joined: bool = True,
     whole: bool = False,
 ) -> bytes:
-    """Named series of points on two logarithmic axes, as SVG; ``whole`` numbers stand on a plain axis."""
+    """Return the named series of points on two logarithmic axes, as SVG; ``whole`` numbers stand on a plain
+    axis."""
     pyplot = _pyplot()
     marks = "osD^v<>Px*hp+d"
     with pyplot.rc_context(STYLE):
@@ -152,7 +153,7 @@ def scatter(
 
 
 def formula_label(tex: str, otherwise: str) -> str:
-    """A formula as a label of a chart; a plain text where the charts' own typesetter cannot set it."""
+    """Return a formula as a label of a chart; a plain text where the charts' own typesetter cannot set it."""
     _pyplot()
     from matplotlib.mathtext import MathTextParser
 
@@ -171,17 +172,17 @@ _UNDRAWN = re.compile(
 
 
 def drawable_label(text: str) -> str:
-    """The text with a square for each character that the charts' font does not draw."""
+    """Return the text with a square for each character that the charts' font does not draw."""
     return _UNDRAWN.sub("\N{WHITE SQUARE}", text)
 
 
 def plain_label(text: str) -> str:
-    """A text as a label of a chart: its dollars are dollars."""
+    """Return a text as a label of a chart: its dollars are dollars."""
     return text.replace("$", r"\$")
 
 
 def bars(rows: Sequence[tuple[str, float, str]], title: str, horizontal: str, full: float = 0.0) -> bytes:
-    """Horizontal bars, the first at the top, as SVG.
+    """Return the horizontal bars, the first at the top, as SVG.
 
     A row is a label, a length, and what is written at the bar's end; the axis reaches ``full``, or a
     little beyond the longest bar.
@@ -216,7 +217,7 @@ def _whole_ticks(axis: Any, full: float) -> None:
 def histogram(
     counts: Sequence[int], edges: Sequence[float], title: str, horizontal: str, vertical: str
 ) -> bytes:
-    """Counts between edges, one edge more than counts, as SVG; each count stands on its column."""
+    """Return the counts between edges, one edge more than counts, as SVG; each count stands on its column."""
     pyplot = _pyplot()
     with pyplot.rc_context(STYLE):
         figure, panel = pyplot.subplots(figsize=(6.6, 2.9), layout="constrained")

@@ -137,7 +137,7 @@ def _gusset(paper: Paper, before: complex, corner: complex, after: complex) -> N
 
 
 def link(p: complex, q: complex, *more: complex, label: str | None = None, weld: bool = False) -> bar:
-    """A bar from pin ``p`` to pin ``q``.
+    """Return a bar from pin ``p`` to pin ``q``.
 
     With more points, a plate (a tinted polygon) whose corners are the points; or, with
     ``weld``, one bent bar through them, its corners made rigid by a small gusset.
@@ -234,7 +234,8 @@ def _sides(points: tuple[complex, ...]) -> Bars:
 
 
 def _hole(points: tuple[complex, ...], box: tuple[float, float]) -> tuple[complex, ...]:
-    """Corners of a gap in the hatching for a label, where the polygon is widest; none if it fits nowhere."""
+    """Return the corners of a gap in the hatching for a label, where the polygon is widest; none if it fits
+    nowhere."""
     from coursework.figures.placing import distance, within
 
     half = complex(box[0] / 2 + 1, box[1] / 2 + 1)
@@ -260,7 +261,8 @@ def _hole(points: tuple[complex, ...], box: tuple[float, float]) -> tuple[comple
 def _hatching(
     outlines: tuple[tuple[complex, ...], ...], way: complex, spacing: float
 ) -> list[tuple[complex, complex]]:
-    """Segments of parallel lines inside a polygon with holes, by the even-odd rule in the lines' own axes."""
+    """Return the segments of parallel lines inside a polygon with holes, by the even-odd rule in the lines'
+    own axes."""
     sides = [(a * way.conjugate(), b * way.conjugate()) for points in outlines for a, b in _sides(points)]
     low, high = min(a.imag for a, _ in sides), max(a.imag for a, _ in sides)
     segments = []
@@ -276,7 +278,7 @@ def _hatching(
 
 
 def _by_two(cuts: list[float]) -> list[tuple[float, float]]:
-    """A line enters and leaves: cuts go by two."""
+    """Return a line enters and leaves: cuts go by two."""
     return list(zip(cuts[::2], cuts[1::2], strict=True))
 
 

@@ -79,7 +79,7 @@ class _Layout:
         return written(lines, texts, self.size_mm, lettering)
 
     def letters(self, count: int | None) -> tuple[Letters, ...]:
-        """The letters of the labels of the first elements."""
+        """Return the letters of the labels of the first elements."""
         return tuple(one for element, one in self._letters if count is None or element < count)
 
     @cached_property
@@ -175,7 +175,8 @@ class Figure:
         raise WrongValue(f"a paper box of {self.paper_mm} mm is too small for this figure's labels")
 
     def _grown(self, layout: _Layout, size: complex, refused: float) -> _Layout:
-        """A layout that fits, grown into what its labels have shown to be left, below a scale that was refused."""
+        """Return a layout that fits, grown into what its labels have shown to be left, below a scale that was
+        refused."""
         for _ in range(_GROWTHS):
             symbols = layout.high - layout.low - layout.scale * size
             wider = min(self._fitting(size, symbols), (layout.scale + refused) / 2)
@@ -200,7 +201,8 @@ class Figure:
         return settled(min(scales))
 
     def _drawn(self, scale: float) -> tuple[Paper, list[int], list[int]]:
-        """Ink and wishes for labels at a scale; and the element, by its place, that each comes from."""
+        """Return the ink and wishes for labels at a scale; and the element, by its place, that each comes
+        from."""
         from coursework.figures.paper import Paper
 
         low, high = self._extent
@@ -227,7 +229,8 @@ class Figure:
         return _Layout(scale, ink, labels, *corners, tuple(drew), tuple(named))
 
     def fitted(self, width: float, height: float) -> Figure:
-        """The figure laid out for a room of so many mm: the bars shrink or grow, the letters keep their size.
+        """Return the figure laid out for a room of so many mm: the bars shrink or grow, the letters keep
+        their size.
 
         A box told by the author is not exceeded, and a figure with a scale of its own stays as it is. So does
         one whose symbols and labels alone are larger than the room: who prints it makes it smaller as a whole.
@@ -254,7 +257,7 @@ class Figure:
         return {}
 
     def beginning(self, count: int) -> Beginning:
-        """The first elements of the figure, each where it is in the whole and in the same frame.
+        """Return the first elements of the figure, each where it is in the whole and in the same frame.
 
         So a construction is shown step by step, laid out once.
         """
@@ -271,7 +274,7 @@ class Figure:
         return self._layout.size_mm
 
     def labels(self) -> tuple[LabelBox, ...]:
-        """The boxes of the labels as placed."""
+        """Return the boxes of the labels as placed."""
         corner = self._layout.corner
         return tuple(
             LabelBox(
@@ -285,25 +288,25 @@ class Figure:
         )
 
     def svg(self) -> str:
-        """The drawing as SVG, in mm, labels as text."""
+        """Return the drawing as SVG, in mm, labels as text."""
         from coursework.figures.writing import as_text
 
         return self._layout.svg(None, as_text)
 
     def outlined_svg(self) -> str:
-        """The same with labels as outlines: looks the same on a machine without the font."""
+        """Return the same with labels as outlines: looks the same on a machine without the font."""
         from coursework.figures.writing import as_outlines
 
         return self._layout.svg(None, as_outlines)
 
     def bare_svg(self) -> str:
-        """The same without the letters of its labels, for who sets them over it: see :meth:`letters`."""
+        """Return the same without the letters of its labels, for who sets them over it: see :meth:`letters`."""
         from coursework.figures.writing import left_out
 
         return self._layout.svg(None, left_out)
 
     def letters(self) -> tuple[Letters, ...]:
-        """The letters of the labels, each with its place on the drawing."""
+        """Return the letters of the labels, each with its place on the drawing."""
         return self._layout.letters(None)
 
     def _repr_svg_(self) -> str:
@@ -311,13 +314,13 @@ class Figure:
         return self.outlined_svg()
 
     def png(self, ppi: float = 200) -> bytes:
-        """The drawing as PNG, ``ppi`` pixels an inch."""
+        """Return the drawing as PNG, ``ppi`` pixels an inch."""
         from coursework.figures.typesetting import converted
 
         return converted(self.svg(), self.size_mm[0], "png", ppi)
 
     def pdf(self) -> bytes:
-        """The drawing as one PDF page of its own size."""
+        """Return the drawing as one PDF page of its own size."""
         from coursework.figures.typesetting import converted
 
         return converted(self.svg(), self.size_mm[0], "pdf")
@@ -336,25 +339,25 @@ class Beginning:
         return self.whole.size_mm
 
     def svg(self) -> str:
-        """The drawing as SVG, in mm, labels as text."""
+        """Return the drawing as SVG, in mm, labels as text."""
         from coursework.figures.writing import as_text
 
         return self.whole._layout.svg(self.count, as_text)
 
     def outlined_svg(self) -> str:
-        """The same with labels as outlines."""
+        """Return the same with labels as outlines."""
         from coursework.figures.writing import as_outlines
 
         return self.whole._layout.svg(self.count, as_outlines)
 
     def bare_svg(self) -> str:
-        """The same without the letters of its labels."""
+        """Return the same without the letters of its labels."""
         from coursework.figures.writing import left_out
 
         return self.whole._layout.svg(self.count, left_out)
 
     def letters(self) -> tuple[Letters, ...]:
-        """The letters of the labels, each with its place on the drawing."""
+        """Return the letters of the labels, each with its place on the drawing."""
         return self.whole._layout.letters(self.count)
 
     def _repr_svg_(self) -> str:
@@ -362,8 +365,8 @@ class Beginning:
 
 
 def _bounds(ink: Sequence[Ink], points: Sequence[complex]) -> tuple[complex, complex]:
-    """Corners of the frame round ink and points, with its margin, on tenths of a mm, so that rounded points stay
-    rounded in the file."""
+    """Return the corners of the frame round ink and points, with its margin, on tenths of a mm, so that
+    rounded points stay rounded in the file."""
     corners = list(points)
     for item in ink:
         half = complex(item.width, item.width) / 2

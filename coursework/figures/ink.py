@@ -28,7 +28,7 @@ Number = TypeVar("Number", float, complex)
 
 
 def number(x: float) -> str:
-    """A length in mm, to the hundredth at most, without idle zeros."""
+    """Return a length in mm, to the hundredth at most, without idle zeros."""
     text = f"{rounded(x, 2):.2f}".rstrip("0").rstrip(".")
     return text
 
@@ -38,18 +38,18 @@ def pair(z: complex) -> str:
 
 
 def added(numbers: Iterable[Number]) -> Number | float:
-    """Numbers added one after the other: how ``sum`` rounds depends on the version of Python."""
+    """Return the numbers added one after the other: how ``sum`` rounds depends on the version of Python."""
     return reduce(operator.add, numbers, 0.0)
 
 
 def turn(degrees: float) -> complex:
-    """Unit vector at an angle."""
+    """Return the unit vector at an angle."""
     return cmath.rect(1.0, math.radians(degrees))
 
 
 @lru_cache(maxsize=64)
 def _round(sides: int) -> tuple[complex, ...]:
-    """Unit vectors to the corners of a regular polygon, the first of them again at the end."""
+    """Return the unit vectors to the corners of a regular polygon, the first of them again at the end."""
     return tuple(turn(360 * k / sides) for k in range(sides + 1))
 
 

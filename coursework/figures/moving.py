@@ -72,7 +72,7 @@ class Track:
 
     @property
     def moves(self) -> bool:
-        """Whether two instants differ in print."""
+        """True if two instants differ in print."""
         return bool(np.ptp(self.numbers, axis=0).max(initial=0.0) >= 0.005)
 
     def value(self, instant: int) -> str:
@@ -84,7 +84,7 @@ class Track:
         return "M" + "L".join(points) + ("Z" if self.closed else "")
 
     def svg(self, instant: int, more: str = "", inside: str = "") -> str:
-        """The thing at an instant."""
+        """Return the thing at an instant."""
         if self.mark:
             return f'<g transform="translate({self.value(instant)})"{more}>{self.mark}{inside}</g>'
         tail = f">{inside}</path>" if inside else "/>"
@@ -185,7 +185,7 @@ def drawing(
     closed: bool = True,
     paper_mm: tuple[float, float] = PAPER_MM,
 ) -> Drawing:
-    """The elements at every instant, with vectors and paths of points, to one scale.
+    """Return the elements at every instant, with vectors and paths of points, to one scale.
 
     ``closed``: the last instant is followed by the first.
 
@@ -211,7 +211,7 @@ def drawing(
 def extent(
     frames: Frames, arrows: Sequence[Arrow] = (), spots: Sequence[Spot] = ()
 ) -> tuple[complex, complex]:
-    """Corners of all that is seen at some instant, mm of mechanism."""
+    """Return the corners of all that is seen at some instant, mm of mechanism."""
     points = [np.array([z for elements in frames for e in elements for z in e.reach()])]
     points += [spot.p for spot in spots] + [arrow.p + arrow.v for arrow in arrows]
     seen = np.concatenate(points)
@@ -223,7 +223,7 @@ def extent(
 
 
 def _common(frames: Frames) -> list[list[Element]]:
-    """The elements that are there at every instant: of one kind, label and rank among their like."""
+    """Return the elements that are there at every instant: of one kind, label and rank among their like."""
     keyed = [_by_kind(elements) for elements in frames]
     common = [key for key in keyed[0] if all(key in one for one in keyed)]
     return [[one[key] for key in common] for one in keyed]
@@ -257,7 +257,7 @@ def _settled_one(column: tuple[Element, ...]) -> tuple[Element, ...]:
 
 
 def _on_one_line(column: tuple) -> tuple:
-    """The union of segments of one line, at every instant; segments that turn stay as they are."""
+    """Return the union of segments of one line, at every instant; segments that turn stay as they are."""
     p, way = column[0].p, column[0].q - column[0].p
     if abs(way) == 0:
         return column
@@ -275,7 +275,7 @@ def _on_one_line(column: tuple) -> tuple:
 
 
 def _stages(frames: list[list[Element]], scale: float, middle: complex) -> list[_Stage]:
-    """One drawn sheet an instant."""
+    """Return one drawn sheet an instant."""
     sides: dict[tuple[float, float], complex] = {}
 
     def ground(p: complex) -> complex:
@@ -293,7 +293,7 @@ def _stages(frames: list[list[Element]], scale: float, middle: complex) -> list[
 
 
 def _free_side(taken: Sequence[Sequence[complex]]) -> complex:
-    """The side of a pivot where bars are least often, below first."""
+    """Return the side of a pivot where bars are least often, below first."""
 
     def clashes(way: complex) -> int:
         return sum(any((t * way.conjugate()).real > 0.64 for t in ways) for ways in taken)
@@ -305,7 +305,7 @@ def _free_side(taken: Sequence[Sequence[complex]]) -> complex:
 
 
 def _drawn(stages: Sequence[_Stage]) -> list[Track]:
-    """A track for each thing that the elements drew."""
+    """Return a track for each thing that the elements drew."""
     count = min(len(stage.ink) for stage in stages)
     return [_track([stage.ink[i] for stage in stages]) for i in range(count)]
 
@@ -335,7 +335,7 @@ def _points_of(thing: Ink) -> list[complex]:
 
 
 def _flat(points: Sequence[Sequence[complex]] | np.ndarray) -> np.ndarray:
-    """Rows of x, y, x, y, …; y up as yet."""
+    """Return the rows of x, y, x, y, …; y up as yet."""
     grid = np.asarray(points, dtype=complex)
     return np.stack([grid.real, grid.imag], axis=-1).reshape(len(grid), -1)
 
@@ -346,7 +346,7 @@ def _moving_marks(arrows: Sequence[Arrow], spots: Sequence[Spot], scale: float) 
 
 
 def _spot_tracks(spot: Spot, scale: float) -> list[Track]:
-    """The path of a point, under the links, and its dot, on them."""
+    """Return the path of a point, under the links, and its dot, on them."""
     colour, count = COLOURS["position"], len(spot.p)
     way = spot.p * scale
     path = Track(
@@ -383,7 +383,7 @@ def _arrow_tracks(arrow: Arrow, scale: float) -> list[Track]:
 
 
 def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float, closed: bool) -> list[Track]:
-    """Labels that ride with what they name."""
+    """Return the labels that ride with what they name."""
     segments = _segments([stage.ink for stage in stages])
     count = min(len(stage.wishes) for stage in stages)
     rows = [[stage.wishes[i] for stage in stages] for i in range(count)]
@@ -402,7 +402,7 @@ def _labels(stages: Sequence[_Stage], spots: Sequence[Spot], scale: float, close
 
 
 def _letters(label: str, colour: str) -> str:
-    """A label centred on the origin, on a white rim of its own: lines may pass under it."""
+    """Return a label centred on the origin, on a white rim of its own: lines may pass under it."""
     text = read(label)
     at = baseline(text, 0j)
     letters = as_outlines(text, at)
@@ -411,7 +411,7 @@ def _letters(label: str, colour: str) -> str:
 
 
 def _segments(inks: Sequence[Sequence[Ink]]) -> tuple[np.ndarray, np.ndarray]:
-    """Ends of every drawn segment that a label should keep off, a row an instant."""
+    """Return the ends of every drawn segment that a label should keep off, a row an instant."""
     rows = [[side for thing in ink for side in _sides(thing)] for ink in inks]
     most = max(map(len, rows))
     ends = np.array([[*row, *[row[-1]] * (most - len(row))] for row in rows])
@@ -427,7 +427,7 @@ def _sides(thing: Ink) -> list[tuple[complex, complex]]:
 
 
 def _framed(tracks: Sequence[Track], keys: Sequence[Key], scale: float) -> Drawing:
-    """All tracks in the frame's own coordinates, the legend below."""
+    """Return all tracks in the frame's own coordinates, the legend below."""
     xs = np.concatenate([t.numbers[:, 0::2].ravel() for t in tracks])
     ys = np.concatenate([t.numbers[:, 1::2].ravel() for t in tracks])
     around = 4.0  # symbols and letters reach this far from their origin
@@ -454,7 +454,7 @@ def _downwards(numbers: np.ndarray, left: float, top: float) -> np.ndarray:
 
 
 def _key_tracks(key: Key, count: int, corner: complex, indent: float, scale: float) -> list[Track]:
-    """An arrow of a round length, and its words."""
+    """Return an arrow of a round length, and its words."""
     start = corner / scale
     arrow = Arrow(np.full(count, start), np.full(count, key.length + 0j), key.effect, "")
     centre = start * scale + indent + read(key.words).box[0] / 2

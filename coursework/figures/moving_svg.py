@@ -19,7 +19,7 @@ def moving_svg(
     lang: str,
     times: str = "",
 ) -> str:
-    """The drawing in motion; it stands still for who wants no motion.
+    """Return the drawing in motion; it stands still for who wants no motion.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def moving_svg(
 
 
 def still_svg(shown: Drawing, instant: int, *, title: str, words: str, lang: str) -> str:
-    """The drawing at one instant."""
+    """Return the drawing at one instant."""
     return _whole(shown, (track.svg(instant) for track in shown.tracks), title, words, lang)
 
 

@@ -54,7 +54,7 @@ class Paper:
         self.ink += ink
 
     def directions(self, p: complex) -> list[complex]:
-        """Unit vectors of the bars that leave a paper point."""
+        """Return the unit vectors of the bars that leave a paper point."""
         found = []
         for a, b in self._bars:
             if a == b:
@@ -79,7 +79,7 @@ class Paper:
         return next((way for way in ways if room(way) > math.radians(50)), max(ways, key=room))
 
     def room(self, p: complex) -> float:
-        """Length on paper of the shortest bar that ends at a paper point."""
+        """Return the length on paper of the shortest bar that ends at a paper point."""
         return min((abs(b - a) for a, b in self._bars if p in (a, b)), default=math.inf)
 
     def around(
@@ -132,7 +132,7 @@ class Paper:
         self.wishes.append(Wish(label, (p + q) / 2, way, start, SIDES, (p, q)))
 
     def aside(self, p: complex, q: complex) -> float:
-        """Distance to the left of p→q where a dimension line meets no bar, the outer side first."""
+        """Return the distance to the left of p→q where a dimension line meets no bar, the outer side first."""
         normal = 1j * (q - p) / (abs(q - p) or 1.0)
         outer = 1 if (((p + q) / 2 - self.middle) * normal.conjugate()).real >= 0 else -1
 
@@ -179,7 +179,7 @@ class Paper:
 
 
 def _widest_gap(ways: Sequence[complex]) -> complex:
-    """The middle of the widest angle free of the given directions; up and right when there are none."""
+    """Return the middle of the widest angle free of the given directions; up and right when there are none."""
     if not ways:
         return turn(45)
     angles = sorted(math.degrees(cmath.phase(way)) for way in ways)

@@ -93,9 +93,10 @@ def _steps(place: Place) -> list[tuple[Place, Place]]:
 def in_perspective(
     rows: Sequence[Mapping[str, Any]], bodies: Iterable[tuple[int, int, int]] = (), *, tall: float = 36.0
 ) -> Figure:
-    """The joints of a statement's table (see ``table``). ``bodies`` are (number, first joint, second joint) of those
-    drawn as a line between two points; ``tall`` is what the drawing may take of the paper upwards, mm. A point of
-    several joints carries all their names, and their symbols stand aside of it along their axes."""
+    """Return the joints of a statement's table (see ``table``). ``bodies`` are (number, first joint, second
+    joint) of those drawn as a line between two points; ``tall`` is what the drawing may take of the paper
+    upwards, mm. A point of several joints carries all their names, and their symbols stand aside of it along
+    their axes."""
     places = [tuple(map(float, row["point"])) for row in rows]
     chain = _Chain(rows, places, [(k, places[p - 1], places[q - 1]) for k, p, q in bodies])
     view = max(_VIEWS, key=lambda view: (round(chain.apart(view, tall), 2), -_VIEWS.index(view)))
@@ -131,7 +132,7 @@ class _Chain:
         return list(dict.fromkeys(end for step in self.steps for end in step)) or list(self.places[:1])
 
     def size(self, view: tuple[float, float]) -> complex:
-        """Width and height of the points as seen."""
+        """Return the width and height of the points as seen."""
         see, _ = _looking(*view)
         across, up = ([see(c).real for c in self.corners], [see(c).imag for c in self.corners])
         return complex(max(across) - min(across), max(up) - min(up))
@@ -141,7 +142,7 @@ class _Chain:
         return min(_SCALE, _WIDE / (size.real or 1.0), tall / (size.imag or 1.0))
 
     def apart(self, view: tuple[float, float], tall: float) -> float:
-        """The least distance on paper between two points, or a point and a body that ends at others."""
+        """Return the least distance on paper between two points, or a point and a body that ends at others."""
         see, _ = _looking(*view)
         return min(
             _APART, self.scale(view, tall) * _least(see, list(dict.fromkeys(self.places)), self.bodies)
@@ -168,7 +169,8 @@ class _Chain:
 
 
 def _least(see: See, places: Sequence[Place], bodies: Sequence[tuple[int, Place, Place]]) -> float:
-    """The least distance, as seen, between two places, or between a place and a body that ends elsewhere."""
+    """Return the least distance, as seen, between two places, or between a place and a body that ends
+    elsewhere."""
     gaps = [abs(see(p) - see(q)) for p, q in combinations(places, 2)]
     gaps += [
         distance(see(r), see(p), see(q)) for _, p, q in bodies if p != q for r in places if r not in (p, q)
@@ -179,7 +181,7 @@ def _least(see: See, places: Sequence[Place], bodies: Sequence[tuple[int, Place,
 def _symbol(
     row: Mapping[str, Any], place: Place, aside: float, see: See, forward: Place, mm: float
 ) -> list[Element]:
-    """A joint's axis and its symbol, which hides what is behind it; ``mm`` is one of the symbol's."""
+    """Return a joint's axis and its symbol, which hides what is behind it; ``mm`` is one of the symbol's."""
     kind = row["joint"]
     shape, depth = _DRAWN[kind]
     if kind == "spherical":
@@ -196,7 +198,7 @@ def _symbol(
 def _tube(
     center: Place, u: Place, see: See, forward: Place, mm: float, long: float = _LONG, radius: float = _RADIUS
 ) -> list[Element]:
-    """A cylinder about an axis: its outline, then the end that is seen."""
+    """Return a cylinder about an axis: its outline, then the end that is seen."""
     e1, e2 = _across(u)
 
     def rim(far: float) -> list[complex]:
@@ -211,7 +213,7 @@ def _tube(
 
 
 def _stopped(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """A cylinder between two collars, which keep it from sliding."""
+    """Return a cylinder between two collars, which keep it from sliding."""
     ends = [_beyond(center, u, far * (_LONG + 0.4) * mm) for far in (-1, 1)]
     back, front = ends if _dot(u, forward) >= 0 else ends[::-1]
     collar = {"long": 0.35, "radius": 1.6 * _RADIUS}
@@ -223,14 +225,14 @@ def _stopped(center: Place, u: Place, see: See, forward: Place, mm: float) -> li
 
 
 def _threaded(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """A cylinder with a thread across it."""
+    """Return a cylinder with a thread across it."""
     _, e2 = _across(u)
     way = [_beyond(_beyond(center, u, far * 0.7 * _LONG * mm), e2, far * _RADIUS * mm) for far in (-1, 1)]
     return [*_tube(center, u, see, forward, mm), _face(tuple(map(see, way)))]
 
 
 def _box(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """A block along an axis: its three sides that are seen."""
+    """Return a block along an axis: its three sides that are seen."""
     e1, e2 = _across(u)
     half = ((u, _LONG * mm), (e1, _RADIUS * mm), (e2, _RADIUS * mm))
     faces: list[Element] = []
@@ -245,7 +247,7 @@ def _box(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[E
 
 
 def _plate(center: Place, u: Place, see: See, mm: float) -> _face:
-    """A square across an axis."""
+    """Return a square across an axis."""
     e1, e2 = _across(u)
     corners = [
         _beyond(_beyond(center, e1, i * _PLATE * mm), e2, j * _PLATE * mm)
@@ -255,7 +257,7 @@ def _plate(center: Place, u: Place, see: See, mm: float) -> _face:
 
 
 def _plates(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """Two plates that slide on each other, the one behind first."""
+    """Return two plates that slide on each other, the one behind first."""
     far = 0.9 * mm if _dot(u, forward) >= 0 else -0.9 * mm
     return [_plate(_beyond(center, u, side * far), u, see, mm) for side in (-1, 1)]
 
@@ -265,14 +267,14 @@ def _round(center: Place, u: Place, see: See, forward: Place, mm: float) -> list
 
 
 def _pinned(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """A ball with a pin across its axis, that way in which it is seen best."""
+    """Return a ball with a pin across its axis, that way in which it is seen best."""
     across = max(_across(u), key=lambda e: abs(see(e)))
     pin = _face(tuple(see(_beyond(center, across, far * 1.9 * _BALL * mm)) for far in (-1, 1)))
     return [pin, *_round(center, u, see, forward, mm)]
 
 
 def _grooved(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """A ball in a groove along its axis."""
+    """Return a ball in a groove along its axis."""
     return [
         *_tube(center, u, see, forward, mm, 1.2 * _LONG, 1.2 * _BALL),
         *_round(center, u, see, forward, mm),
@@ -280,13 +282,13 @@ def _grooved(center: Place, u: Place, see: See, forward: Place, mm: float) -> li
 
 
 def _on_plate(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """A ball on the side of a plate that is seen."""
+    """Return a ball on the side of a plate that is seen."""
     side = _BALL * mm if _dot(u, forward) >= 0 else -_BALL * mm
     return [_plate(center, u, see, mm), *_round(_beyond(center, u, side), u, see, forward, mm)]
 
 
 def _on_line(center: Place, u: Place, see: See, forward: Place, mm: float) -> list[Element]:
-    """A roller along its axis."""
+    """Return a roller along its axis."""
     return _tube(center, u, see, forward, mm, 1.2 * _LONG, 0.6 * _RADIUS)
 
 
@@ -319,7 +321,7 @@ def _unit(vector: Place) -> Place:
 
 
 def _across(u: Place) -> tuple[Place, Place]:
-    """The two other axes, in order after this one; of any other direction, two that go with it."""
+    """Return the two other axes, in order after this one; of any other direction, two that go with it."""
     units: list[Place] = list(_UNITS.values())
     if u in units:
         k = units.index(u)
@@ -330,7 +332,7 @@ def _across(u: Place) -> tuple[Place, Place]:
 
 
 def _hull(points: Sequence[complex]) -> tuple[complex, ...]:
-    """The convex hull, anticlockwise."""
+    """Return the convex hull, anticlockwise."""
     ordered = sorted(
         {complex(round(z.real, 6), round(z.imag, 6)) for z in points}, key=lambda z: (z.real, z.imag)
     )

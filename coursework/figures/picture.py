@@ -63,7 +63,7 @@ class Picture:
     width_mm: float | None = None
 
     def beside(self, folder: Path) -> Picture:
-        """The picture read from its file, a relative path being one from this folder.
+        """Return the picture read from its file, a relative path being one from this folder.
 
         Raises
         ------
@@ -111,33 +111,33 @@ class Picture:
         return round(wide, 1), round(wide * self._drawn[2], 1)
 
     def fitted(self, width: float, height: float) -> Picture:
-        """The picture made smaller where it does not fit a room of so many mm."""
+        """Return the picture made smaller where it does not fit a room of so many mm."""
         wide, high = self.size_mm
         ratio = min(1.0, width / wide, height / high)
         return self if ratio == 1 else replace(self, width_mm=wide * ratio)
 
     def svg(self) -> str:
-        """The picture as SVG of its size in mm; a PNG stands inside it."""
+        """Return the picture as SVG of its size in mm; a PNG stands inside it."""
         wide, high = self.size_mm
         return self._drawn[0].replace("SIZE", f'width="{wide}mm" height="{high}mm"', 1)
 
     outlined_svg = bare_svg = svg
 
     def letters(self) -> tuple[Letters, ...]:
-        """None: the letters of a picture are in it."""
+        """Return None: the letters of a picture are in it."""
         return ()
 
     def _repr_svg_(self) -> str:
         return self.svg()
 
     def png(self, ppi: float = 200) -> bytes:
-        """The picture as PNG, ``ppi`` pixels an inch."""
+        """Return the picture as PNG, ``ppi`` pixels an inch."""
         from coursework.figures.typesetting import converted
 
         return converted(self.svg(), self.size_mm[0], "png", ppi)
 
     def pdf(self) -> bytes:
-        """The picture as one PDF page of its own size."""
+        """Return the picture as one PDF page of its own size."""
         from coursework.figures.typesetting import converted
 
         return converted(self.svg(), self.size_mm[0], "pdf")
@@ -183,7 +183,7 @@ def _of_svg(data: bytes) -> tuple[str, float, float]:
 
 
 def _length(text: str) -> float:
-    """A length of SVG in mm; 0 where none is told, or a share of something."""
+    """Return a length of SVG in mm; 0 where none is told, or a share of something."""
     found = _LENGTH.fullmatch(text)
     return float(found[1]) * _MM[found[2].lower()] if found and found[2].lower() in _MM else 0.0
 

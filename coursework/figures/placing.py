@@ -48,7 +48,7 @@ class Place(NamedTuple):
 
 @lru_cache(maxsize=4)
 def _places(beside: bool, angle: bool) -> tuple[Place, ...]:
-    """All places of a kind of label, cheapest first; the costs are in mm away from the best place."""
+    """Return all places of a kind of label, cheapest first; the costs are in mm away from the best place."""
     costed: list[tuple[float, tuple[complex, float, float | None]]] = []
     if beside:
         for side in (1, -1):
@@ -113,13 +113,13 @@ class Wish:
         return _places(self.along is not None, self.rank == ANGLES)
 
     def hoped(self) -> tuple[complex, complex]:
-        """Corners of its box at the best place, whatever lies there."""
+        """Return the corners of its box at the best place, whatever lies there."""
         half = complex(*read(self.label).box) / 2
         center = self.center(self.places()[0], half)
         return center - half, center + half
 
     def center(self, place: Place, half: complex) -> complex:
-        """Centre of a box of these half-sides at a place."""
+        """Return the centre of a box of these half-sides at a place."""
         way, foot = self.toward * place.way, self.anchor
         if self.along and place.fraction is not None:
             foot = self.along[0] + (self.along[1] - self.along[0]) * place.fraction
@@ -128,7 +128,7 @@ class Wish:
 
 
 def _support(half: complex, way: complex) -> float:
-    """Half-width of a box across a direction."""
+    """Return half-width of a box across a direction."""
     return half.real * abs(way.real) + half.imag * abs(way.imag)
 
 
@@ -156,7 +156,7 @@ def _line(a: complex, b: complex, half: float) -> Line:
 
 
 def _meets(line: Line, across: float, up: float, wide: float, tall: float) -> bool:
-    """Whether a box, told by its middle and its half-sides, meets a line: no axis separates them."""
+    """Return whether a box, told by its middle and its half-sides, meets a line: no axis separates them."""
     left, low, right, high, middle_across, middle_up, half_across, half_up, half = line
     if left > across + wide or right < across - wide or low > up + tall or high < up - tall:
         return False
@@ -184,7 +184,7 @@ def _way_out(line: Line, across: float, up: float, wide: float, tall: float, way
 
 
 def _gap(line: Line, across: float, up: float, wide: float, tall: float) -> float:
-    """White between a box and a line, thin, that does not meet it."""
+    """Return the white between a box and a line, thin, that does not meet it."""
     x, y, dx, dy = line[4] - across, line[5] - up, line[6], line[7]
     square = dx * dx + dy * dy
     found = math.inf
@@ -246,8 +246,8 @@ class Obstacles:
             ]
 
     def white(self, center: complex, half: complex, way: complex, inside: bool = False) -> float:
-        """The white that a box has: the one that labels prefer, or the least there may be; where there is less, what
-        it has to go that way, at least, until there may be more, with a minus."""
+        """Return the white that a box has: the one that labels prefer, or the least there may be; where there
+        is less, what it has to go that way, at least, until there may be more, with a minus."""
         cx, cy, wide, tall = center.real, center.imag, half.real, half.imag
         x, y = wide + _CLEAR, tall + _CLEAR
         left, low, right, high = cx - x, cy - y, cx + x, cy + y
@@ -288,7 +288,7 @@ class Obstacles:
         return max((it[2] for it in self._things), default=0.0)
 
     def hides(self, anchor: complex, center: complex) -> bool:
-        """Whether a bar passes between an anchor and its label."""
+        """Return whether a bar passes between an anchor and its label."""
         return any(_meet(anchor, center, a, b) for a, b in self.bars if distance(anchor, a, b) > 1.3)
 
     def leader_free(self, a: complex, b: complex) -> bool:
@@ -299,7 +299,7 @@ class Obstacles:
 
 
 def within(z: complex, area: Sequence[complex]) -> bool:
-    """Even-odd rule."""
+    """Return even-odd rule."""
     odd = False
     for a, b in pairwise(area):
         if (a.imag > z.imag) != (b.imag > z.imag):
@@ -322,7 +322,8 @@ def distance(z: complex, a: complex, b: complex) -> float:
 
 
 def place(wishes: Sequence[Wish], ink: Sequence[Ink]) -> tuple[tuple[Label, ...], tuple[int, ...]]:
-    """Places every label, in order of rank then of writing; with each, the place of its wish among them."""
+    """Return the places every label, in order of rank then of writing; with each, the place of its wish among
+    them."""
     obstacles = Obstacles(ink)
     order = sorted(range(len(wishes)), key=lambda k: wishes[k].rank)
     sides = {wish.along: _line(*wish.along, 0.0) for wish in wishes if wish.along}
@@ -376,7 +377,7 @@ class _Rivals:
         return 0 if far else 1
 
     def _within(self, gap: float, center: complex, half: complex) -> bool:
-        """Whether one of the lines is so near to a box."""
+        """Return whether one of the lines is so near to a box."""
         cx, cy, x, y = center.real, center.imag, half.real + gap, half.imag + gap
         left, low, right, high = cx - x, cy - y, cx + x, cy + y
         for line in self.lines:
@@ -445,7 +446,7 @@ def _choose(wish: Wish, obstacles: Obstacles, rivals: _Rivals) -> Label:
 
 
 def _leader(wish: Wish, center: complex, half: complex) -> tuple[complex, complex] | None:
-    """A thin line from the anchor to the box, when the label is far from what it names."""
+    """Return a thin line from the anchor to the box, when the label is far from what it names."""
     if wish.along and distance(center, *wish.along) <= _support(half, wish.toward) + _LEADER:
         return None
     # An angle is named at its arc: its label may lie on any side of the corner.
@@ -460,7 +461,7 @@ def _leader(wish: Wish, center: complex, half: complex) -> tuple[complex, comple
 
 
 def _outside(wish: Wish, text: Text, obstacles: Obstacles) -> Label:
-    """Beyond everything drawn: the place of a label that found no other."""
+    """Return the beyond everything drawn: the place of a label that found no other."""
     right = max([obstacles.right, *(label.corners[1].real for label in obstacles.labels)])
     width, height = text.box
     return Label(wish.label, text, complex(right + 2 + width / 2, wish.anchor.imag), width, height)

@@ -146,7 +146,7 @@ class Plot:
         return _LEFT + _WIDTH * (value - low) / (high - low)
 
     def svg(self) -> str:
-        """The plot as SVG; letters are outlines, so that it looks the same everywhere."""
+        """Return the plot as SVG; letters are outlines, so that it looks the same everywhere."""
         width, height = map(number, self.size)
         body = [line for k in range(len(self.panels)) for line in self._panel(k)]
         low, high = self._reach
@@ -202,7 +202,8 @@ class Plot:
         return out
 
     def _outside(self, spot: Spot, edge: float, is_above: bool) -> list[str]:
-        """An arrow at the panel's edge, and the number that it stands for: the point itself is not in sight."""
+        """Return an arrow at the panel's edge, and the number that it stands for: the point itself is not in
+        sight."""
         x, out = self._x(spot.x), -1 if is_above else 1
         to_left = x > _LEFT + _WIDTH * 0.8
         arrow = (
@@ -218,7 +219,7 @@ class Plot:
 
 
 def _dot(x: float, y: float, right: bool | None) -> str:
-    """A full disc for what is right, a cross for what is not: told apart without colour."""
+    """Return a full disc for what is right, a cross for what is not: told apart without colour."""
     if right is False:
         return (
             f'<path d="M{number(x - 1.3)} {number(y - 1.3)}l2.6 2.6m0 -2.6l-2.6 2.6" stroke="{WRONG}" '
@@ -229,7 +230,7 @@ def _dot(x: float, y: float, right: bool | None) -> str:
 
 
 def _letters(text: Text, at: complex, anchor: str, size: float = 1.0) -> str:
-    """A text as outlines; ``at`` is its start, middle or end on the baseline."""
+    """Return a text as outlines; ``at`` is its start, middle or end on the baseline."""
     width = text.width * SIZE * size
     start = at - {"start": 0.0, "middle": width / 2, "end": width}[anchor]
     middle = SIZE * text.width / 2
@@ -276,7 +277,7 @@ def _axis_ticks(axis: Axis, low: float, high: float, count: int) -> list[float]:
 
 
 def _runs(x: np.ndarray, y: np.ndarray, turns: bool) -> list[list[tuple[float, float]]]:
-    """The curve in pieces: cut where there is no value, and where a direction passes from 180 to -180."""
+    """Return the curve in pieces: cut where there is no value, and where a direction passes from 180 to -180."""
     runs: list[list[tuple[float, float]]] = []
     before = math.nan
     for a, b in zip(x.tolist(), y.tolist(), strict=True):

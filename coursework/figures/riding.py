@@ -27,7 +27,7 @@ Segments = tuple[np.ndarray, np.ndarray]
 
 
 def ride(rows: Sequence[Sequence[Wish]], segments: Segments, closed: bool) -> list[np.ndarray]:
-    """Centres of labels at every instant, mm on paper.
+    """Return the centres of labels at every instant, mm on paper.
 
     ``rows`` has for each label its wish at every instant; ``segments`` the ends of everything drawn, a row an
     instant. ``closed``: the last instant is followed by the first.
@@ -53,7 +53,7 @@ def ride(rows: Sequence[Sequence[Wish]], segments: Segments, closed: bool) -> li
 
 
 def _places(wishes: Sequence[Wish], half: np.ndarray) -> Iterator[tuple[float, np.ndarray]]:
-    """Ways to carry a label about: a cost, and its centre at every instant."""
+    """Yield the ways to carry a label about: a cost, and its centre at every instant."""
     anchor = np.array([wish.anchor for wish in wishes])
     start = np.array([wish.start for wish in wishes])
 
@@ -81,7 +81,7 @@ def _places(wishes: Sequence[Wish], half: np.ndarray) -> Iterator[tuple[float, n
 
 
 def _on_line(segments: Segments, centres: np.ndarray, half: np.ndarray) -> np.ndarray:
-    """Whether a box of these half-sides meets a segment: a row a place, a column an instant."""
+    """Return whether a box of these half-sides meets a segment: a row a place, a column an instant."""
     a, b = segments
     middle, d = (a + b) / 2, (b - a) / 2
     across, up = half[0] + abs(d.real), half[1] + abs(d.imag)
@@ -96,7 +96,8 @@ def _on_line(segments: Segments, centres: np.ndarray, half: np.ndarray) -> np.nd
 
 
 def _cheapest(price: np.ndarray, centres: np.ndarray, closed: bool) -> np.ndarray:
-    """The place at each instant on the cheapest way through all of them; a closed way ends where it began."""
+    """Return the place at each instant on the cheapest way through all of them; a closed way ends where it
+    began."""
     count = price.shape[1]
     # A cycle is gone through three times; in the middle one nothing is left of where it began and ends.
     order = np.tile(np.arange(count), 3 if closed else 1)
@@ -119,7 +120,8 @@ def _cheapest(price: np.ndarray, centres: np.ndarray, closed: bool) -> np.ndarra
 
 
 def _along(places: np.ndarray, chosen: np.ndarray, looked_at: np.ndarray, closed: bool) -> np.ndarray:
-    """Centres at all instants: on the chosen places where they were compared, steadily from one to the next between."""
+    """Return the centres at all instants: on the chosen places where they were compared, steadily from one to
+    the next between."""
     count = places.shape[1]
     centres = np.empty(count, dtype=complex)
     stops = [*looked_at, count]

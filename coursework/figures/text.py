@@ -111,7 +111,7 @@ class Text:
         return min(run.bottom for run in self.runs)
 
     def start(self, index: int) -> float:
-        """Abscissa of a run, from the left of the label."""
+        """Return the abscissa of a run, from the left of the label."""
         back = self.runs[index].back if index < len(self.runs) else 0.0
         return round(advance(self.runs[:index]) - back, 6)
 
@@ -128,7 +128,7 @@ def advance(runs: Sequence[Run]) -> float:
 
 @lru_cache(maxsize=2048)
 def read(label: str) -> Text:
-    """The runs of a label; UnknownName for a command that is not known, WrongValue for stray braces."""
+    """Return the runs of a label; UnknownName for a command that is not known, WrongValue for stray braces."""
     label = label.strip().removeprefix("$").removesuffix("$").strip()
     if not re.search(r"[\\_^{}]", label) and re.search(r"\s|[^\W\d]{3,}", label):
         return Text((Run(label, italic=False),), ())
@@ -183,7 +183,8 @@ class _Reader:
     def index_or_exponent(
         self, token: str, style: Run, before: tuple[str, int] | None
     ) -> tuple[str, int] | None:
-        """Reads one, or primes, which are an exponent; the other one, if just read, is stacked with it."""
+        """Return the reads one, or primes, which are an exponent; the other one, if just read, is stacked
+        with it."""
         first = self.barrier = len(self.runs)
         if token == "'":
             self.letters("′", style)
@@ -234,6 +235,7 @@ class _Reader:
 
 
 def _moved(accent: Accent, low: int, middle: int, end: int) -> Accent:
-    """An accent once the runs from ``middle`` to the end stand before those from ``low`` to ``middle``."""
+    """Return an accent once the runs from ``middle`` to the end stand before those from ``low`` to
+    ``middle``."""
     shift = 0 if accent.first < low else end - middle if accent.first < middle else low - middle
     return Accent(accent.kind, accent.first + shift, accent.last + shift)

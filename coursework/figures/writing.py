@@ -28,8 +28,8 @@ class Letters(NamedTuple):
 def pieces(
     ink: Sequence[Ink], labels: Sequence[Label], corner: complex, lettering: Lettering
 ) -> tuple[list[str], list[str]]:
-    """Each piece of a paper-mm drawing and each label as SVG; ``corner`` is the frame's top left, which becomes
-    (0, 0), y down."""
+    """Return each piece of a paper-mm drawing and each label as SVG; ``corner`` is the frame's top left,
+    which becomes (0, 0), y down."""
 
     lines = [item.svg(lambda z: _from(corner, z)) for item in ink]
     middles = [baseline(label.text, _from(corner, label.center)) for label in labels]
@@ -40,25 +40,25 @@ def pieces(
 
 
 def letters(label: Label, corner: complex) -> Letters:
-    """A label's letters and their place, from the frame's top left ``corner``."""
+    """Return a label's letters and their place, from the frame's top left ``corner``."""
     at = baseline(label.text, _from(corner, label.center))
     return Letters(at.real, at.imag, label.text.runs)
 
 
 def _from(corner: complex, z: complex) -> complex:
-    """A point of the paper from the frame's top left corner, y down."""
+    """Return a point of the paper from the frame's top left corner, y down."""
     return complex(z.real - corner.real, corner.imag - z.imag)
 
 
 def baseline(text: Text, center: complex) -> complex:
-    """The middle of the baseline of a text whose box has this centre, y down."""
+    """Return the middle of the baseline of a text whose box has this centre, y down."""
     return center + 1j * SIZE * (text.top + text.bottom) / 2
 
 
 def written(
     lines: Sequence[str], texts: Sequence[str], size: tuple[float, float], lettering: Lettering
 ) -> str:
-    """A whole SVG from its pieces, from the bottom to the top of the pile."""
+    """Return a whole SVG from its pieces, from the bottom to the top of the pile."""
     width, height = map(number, size)
     font = f' font-family="{_FALLBACK}" font-size="{number(SIZE)}" text-anchor="middle"'
     style = font if lettering is as_text else ""
@@ -78,7 +78,7 @@ def left_out(text: Text, at: complex) -> str:
 
 
 def as_text(text: Text, at: complex) -> str:
-    """Letters as text, in the font that the reader has."""
+    """Return the letters as text, in the font that the reader has."""
     if len(text.runs) == 1 and text.runs[0].size == 1:
         italic = ' font-style="italic"' if text.runs[0].italic else ""
         body = escape(text.runs[0].text)
@@ -99,7 +99,7 @@ def _tspan(run: Run, rise: float) -> str:
 
 
 def as_outlines(text: Text, at: complex) -> str:
-    """Letters as outlines: they look the same on a machine without the font."""
+    """Return the letters as outlines: they look the same on a machine without the font."""
     from coursework.figures.typesetting import glyph
 
     left = at - SIZE * text.width / 2
@@ -117,18 +117,19 @@ def as_outlines(text: Text, at: complex) -> str:
 
 
 def _fine(x: float) -> str:
-    """A scale, which needs more digits than a length."""
+    """Return a scale, which needs more digits than a length."""
     return f"{x:.5f}".rstrip("0")
 
 
 def accents(text: Text, at: complex) -> str:
-    """The accents over a text, given the middle of its baseline: they need no combining character of the font."""
+    """Return the accents over a text, given the middle of its baseline: they need no combining character of
+    the font."""
     left = at - SIZE * text.width / 2
     return "".join(_accent(text, accent, left) for accent in text.accents)
 
 
 def _accent(text: Text, accent: Accent, left: complex) -> str:
-    """Dots as discs, bars and arrows as lines."""
+    """Return the dots as discs, bars and arrows as lines."""
     runs = text.runs[accent.first : accent.last]
     start = left.real + SIZE * text.start(accent.first)
     width = SIZE * advance(runs)

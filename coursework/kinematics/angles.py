@@ -88,7 +88,8 @@ _DEGREE = math.pi / 180
 
 
 def _quarters_on(quarters: Any, cos_squared: Any, sin_squared: Any, both: Any) -> tuple[Any, Any, Any]:
-    """The same three, whole quarters of a turn later: each exchanges cosine and sine, and turns the product's sign."""
+    """Return the same three, whole quarters of a turn later: each exchanges cosine and sine, and turns the
+    product's sign."""
     least = np.min(quarters, initial=np.inf)
     if least == np.max(quarters, initial=-np.inf):
         odd = least % 2 == 1
@@ -103,12 +104,12 @@ def _quarters_on(quarters: Any, cos_squared: Any, sin_squared: Any, both: Any) -
 
 
 def heading_in_degrees(angle: Any) -> Degrees:
-    """Heading of an angle in degrees, reduced exactly: at 180 the sine and the half cosine are 0."""
+    """Return the heading of an angle in degrees, reduced exactly: at 180 the sine and the half cosine are 0."""
     return Degrees(angle)
 
 
 def taken_apart(angle: Any) -> tuple[Callable[..., Any], tuple[Any, ...]]:
-    """The arrays that make up radians or a heading, and what makes it from them again."""
+    """Return the arrays that make up radians or a heading, and what makes it from them again."""
     make, parts = (type(angle), angle) if isinstance(angle, (Heading, Degrees)) else (_radians, (angle,))
     return make, tuple(np.asarray(part, dtype=float)[()] for part in parts)
 
@@ -118,14 +119,15 @@ def _radians(angle: Any) -> Any:
 
 
 def heading_after_turns(turns: Any, angle: Any) -> Heading:
-    """Heading after whole turns and an angle in radians beyond: the turns lose no digit of the angle."""
+    """Return the heading after whole turns and an angle in radians beyond: the turns lose no digit of the
+    angle."""
     sign = np.where(np.mod(turns, 2) == 0, 1.0, -1.0)[()]
     half = np.multiply(angle, 0.5)
     return Heading(np.cos(angle), np.sin(angle), sign * np.cos(half), sign * np.sin(half))
 
 
 def heading_of(cos: Any, sin: Any) -> Heading:
-    """Heading of direction cosines (of a unit vector), the angle taken in (-pi, pi]."""
+    """Return the heading of direction cosines (of a unit vector), the angle taken in (-pi, pi]."""
     larger, smaller = halves(np.abs(cos), sin)
     ahead = np.greater_equal(cos, 0)
     half_cos, half_sin = np.sqrt(np.where(ahead, larger, smaller)), np.sqrt(np.where(ahead, smaller, larger))
@@ -133,14 +135,15 @@ def heading_of(cos: Any, sin: Any) -> Heading:
 
 
 def full_angle(angle: Any) -> tuple[Any, Any]:
-    """Cosine and sine of radians or of a heading."""
+    """Return the cosine and sine of radians or of a heading."""
     if isinstance(angle, (Heading, Degrees)):
         return angle.cos, angle.sin
     return np.cos(angle), np.sin(angle)
 
 
 def half_angle(angle: Any) -> tuple[Any, Any]:
-    """Cosine and sine of half the angle, signed; each is accurate to the last digits where it is small."""
+    """Return the cosine and sine of half the angle, signed; each is accurate to the last digits where it is
+    small."""
     if isinstance(angle, (Heading, Degrees)):
         return angle.half_cos, angle.half_sin
     half = np.multiply(angle, 0.5)
@@ -148,7 +151,7 @@ def half_angle(angle: Any) -> tuple[Any, Any]:
 
 
 def halves(abs_cos: Any, sin: Any) -> tuple[Any, Any]:
-    """The larger and the smaller of (1 + cos)/2 and (1 - cos)/2, neither a difference; also with the
+    """Return the larger and the smaller of (1 + cos)/2 and (1 - cos)/2, neither a difference; also with the
     roles exchanged."""
     larger = (1 + abs_cos) / 2
     return larger, np.multiply(sin, sin) / (4 * larger)

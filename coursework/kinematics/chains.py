@@ -197,7 +197,8 @@ class Chain:
         return found
 
     def _newton(self, values: dict[str, Any], x: np.ndarray, exponents: np.ndarray) -> tuple:
-        """Damped Newton steps on rows of unknowns, each until its own gap is rounding or will not shrink."""
+        """Return the damped Newton steps on rows of unknowns, each until its own gap is rounding or will not
+        shrink."""
         x = x.copy()
         gaps, size = self._gaps(values, x, exponents)
         best = _norm(gaps)
@@ -240,14 +241,14 @@ class Chain:
         return *x.T, best, condition, converged.astype(float)
 
     def _named(self, x: np.ndarray) -> dict[str, Any]:
-        """Rows of unknowns by name, an angle as its unit vector."""
+        """Return the rows of unknowns by name, an angle as its unit vector."""
         return {
             name: x[:, i] if name in self._lengths else np.cos(x[:, i]) + 1j * np.sin(x[:, i])
             for i, name in enumerate(self.unknowns)
         }
 
     def _gaps(self, values: dict[str, Any], x: np.ndarray, exponents: np.ndarray) -> tuple:
-        """The sum of each loop, real and imaginary parts in turn, and the size of what was added."""
+        """Return the sum of each loop, real and imaginary parts in turn, and the size of what was added."""
         values = values | self._named(x)
         parts, size = [], np.zeros(len(x))
         for loop in self.loops:
@@ -258,7 +259,7 @@ class Chain:
         return np.stack(np.broadcast_arrays(*parts, np.zeros(len(x)))[:-1], axis=1), size
 
     def _vector(self, v: Vector, values: Mapping[str, Any], exponents: Any) -> tuple[Any, Any]:
-        """The vector and its unit vector, signed."""
+        """Return the vector and its unit vector, signed."""
         length = values[v.length] if isinstance(v.length, str) else scaled(v.length, -exponents)
         fixed = sum(a for a in (v.angle, v.turn) if not isinstance(a, str))
         unit = v.sign * complex(math.cos(fixed), math.sin(fixed)) if fixed else v.sign
@@ -273,7 +274,8 @@ class Chain:
         return derivative(arm, unit, of_length[:n], of_angle[:n], n)
 
     def _jacobian(self, values: Mapping[str, Any], exponents: Any) -> np.ndarray:
-        """Shape ``(..., 2 loops, unknowns)``; lengths are scaled, so that every column is of size 1 or so."""
+        """Return the shape ``(..., 2 loops, unknowns)``; lengths are scaled, so that every column is of size
+        1 or so."""
         rows = []
         for loop in self.loops:
             columns = dict.fromkeys(self.unknowns, 0.0)
@@ -299,14 +301,14 @@ def _norm(gaps: np.ndarray) -> np.ndarray:
 
 
 def _wrapped(angles: np.ndarray) -> np.ndarray:
-    """The same directions in (-pi, pi]; those that are there already keep all their digits."""
+    """Return the same directions in (-pi, pi]; those that are there already keep all their digits."""
     inside = (angles > -math.pi) & (angles <= math.pi)
     return np.where(inside, angles, math.pi - np.mod(math.pi - angles, 2 * math.pi))
 
 
 def _steps(jacobian: np.ndarray, right: np.ndarray, otherwise: float) -> np.ndarray:
-    """Solutions of many linear systems; ``otherwise`` where a matrix is singular to rounding or not
-    finite."""
+    """Return the solutions of many linear systems; ``otherwise`` where a matrix is singular to rounding or
+    not finite."""
     finite = np.isfinite(jacobian).all(axis=(-1, -2)) & np.isfinite(right).all(axis=-1)
     identity = np.eye(jacobian.shape[-1])
     regular = finite & (abs(np.linalg.det(np.where(finite[..., None, None], jacobian, 0.0))) > 0)
@@ -318,7 +320,7 @@ def _steps(jacobian: np.ndarray, right: np.ndarray, otherwise: float) -> np.ndar
 
 
 def _condition(jacobian: np.ndarray) -> np.ndarray:
-    """Largest over least singular value; NaN where the matrix is not finite."""
+    """Return largest over least singular value; NaN where the matrix is not finite."""
     finite = np.isfinite(jacobian).all(axis=(-1, -2))
     sizes = np.linalg.svd(np.where(finite[..., None, None], jacobian, 0.0), compute_uv=False)
     return np.where(finite, np.divide(sizes[..., 0], sizes[..., -1]), np.nan)

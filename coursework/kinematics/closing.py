@@ -46,7 +46,7 @@ def sweep(angle: Any, w: Any) -> Sweep:
 
 
 def signed_sweep(angle: Any, w: Any) -> Sweep:
-    """The same with the signed cosine and sine."""
+    """Return the same with the signed cosine and sine."""
     cos, sin = half_angle(angle)
     cos, sin = np.sqrt(w) * cos, np.sqrt(w) * sin
     return Sweep(cos * cos, sin * sin, cos * sin, cos, sin)
@@ -89,7 +89,8 @@ class Closing(NamedTuple):
 
 
 def closing(stretched: Any, folded: Any, side: Any, swept: Sweep, direct: Any = None) -> Closing:
-    """P, Q and S. Continued smoothly, sqrt(P) at E+ = 0 is the signed sqrt(w) cos(t / 2); likewise for Q.
+    """Return P, Q and S. Continued smoothly, sqrt(P) at E+ = 0 is the signed sqrt(w) cos(t / 2); likewise for
+    Q.
 
     ``direct`` is P where it is known better than by its sum, NaN elsewhere.
     """
@@ -181,5 +182,5 @@ class Opening:
 
 
 def _share(part: Any, whole: Any, flat: Any) -> Any:
-    """part / whole, and 0 where a smooth change point has divided it out."""
+    """Return part / whole, and 0 where a smooth change point has divided it out."""
     return part / whole if flat is False else np.where(flat, 0.0, part / whole)

@@ -17,7 +17,7 @@ _STEPS = 80  #: a bracket of a degree is halved to nothing in fewer
 
 
 def turning_points(slope: Slope, parameters: Sequence[Any], *, samples: int = 240) -> np.ndarray:
-    """The angles of one turn at which a function has a minimum or a maximum.
+    """Return the angles of one turn at which a function has a minimum or a maximum.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def turning_points(slope: Slope, parameters: Sequence[Any], *, samples: int = 24
 def _turning_points(
     slope: Slope, parameters: list[np.ndarray], samples: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Row and angle of every turning point."""
+    """Return the row and angle of every turning point."""
     theta = _FIRST + np.arange(samples) * (_TURN / samples)
     with np.errstate(all="ignore"):
         seen = slope(theta, *[p[:, None] for p in parameters])
@@ -69,8 +69,8 @@ def _turning_points(
 
 
 def _dips(slope: Slope, parameters: list[np.ndarray], theta: np.ndarray, seen: np.ndarray) -> list[tuple]:
-    """Brackets of two zeros between neighbouring samples of one sign: the slope dips through zero and
-    back."""
+    """Return the brackets of two zeros between neighbouring samples of one sign: the slope dips through zero
+    and back."""
     before, after = np.roll(seen, 1, axis=1), np.roll(seen, -1, axis=1)
     sign = np.where(seen < 0, -1.0, 1.0)
     bend = sign * (before + after - 2 * seen)
@@ -97,7 +97,7 @@ def _dips(slope: Slope, parameters: list[np.ndarray], theta: np.ndarray, seen: n
 
 
 def _lowest(f: Slope, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Minimum of a function with one dip in each bracket, by golden sections: where, and how low."""
+    """Return the minimum of a function with one dip in each bracket, by golden sections: where, and how low."""
     ratio = (math.sqrt(5) - 1) / 2
     left, right = high - ratio * (high - low), low + ratio * (high - low)
     at_left, at_right = f(left), f(right)
@@ -113,7 +113,7 @@ def _lowest(f: Slope, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np
 
 
 def _zero(f: Slope, low: np.ndarray, high: np.ndarray, at_low: np.ndarray, at_high: np.ndarray) -> np.ndarray:
-    """The zero in each bracket; the signs at its ends differ."""
+    """Return the zero in each bracket; the signs at its ends differ."""
     a, b, fa, fb = high, low, at_high, at_low
     c, fc = a, fa
     t = np.full(a.shape, 0.5)
@@ -141,7 +141,7 @@ def _zero(f: Slope, low: np.ndarray, high: np.ndarray, at_low: np.ndarray, at_hi
 
 
 def _in_rows(rows: np.ndarray, angles: np.ndarray, count: int) -> np.ndarray:
-    """Found angles as a table, a variant a row, NaN where a row has fewer."""
+    """Return the found angles as a table, a variant a row, NaN where a row has fewer."""
     angles = np.mod(angles - _FIRST, _TURN) + _FIRST
     order = np.lexsort((angles, rows))
     rows, angles = rows[order], angles[order]

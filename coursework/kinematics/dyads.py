@@ -29,14 +29,14 @@ Rates = Sequence[Any]  #: time derivatives of a point (complex) or of an angle, 
 
 
 def side_of(mode: Any) -> Any:
-    """+1 for ``open`` (or ``left``), -1 for ``crossed`` (or ``right``); arrays of texts too."""
+    """Return +1 for ``open`` (or ``left``), -1 for ``crossed`` (or ``right``); arrays of texts too."""
     if isinstance(mode, str):
         return {"open": OPEN, "left": OPEN, "crossed": CROSSED, "right": CROSSED}[mode]
     return np.where(np.isin(mode, ("open", "left")), OPEN, CROSSED)
 
 
 def rotating(pivot: Any, length: Any, angle: Any) -> Any:
-    """The end of a crank about ``pivot``; ``angle`` in radians or a :class:`Heading`.
+    """Return the end of a crank about ``pivot``; ``angle`` in radians or a :class:`Heading`.
 
     Its derivatives are :func:`vectors.turned` of the vector from the pivot.
     """
@@ -45,12 +45,12 @@ def rotating(pivot: Any, length: Any, angle: Any) -> Any:
 
 
 def sliding(point: Any, along: Any, distance: Any) -> Any:
-    """The pin of a driven slider, ``distance`` from ``point`` in the direction ``along``."""
+    """Return the pin of a driven slider, ``distance`` from ``point`` in the direction ``along``."""
     return point + along * distance
 
 
 def rrr(p: Any, q: Any, p_length: Any, q_length: Any, side: Any = OPEN) -> Any:
-    """Inner joint B of the dyad of three revolutes: |B - p| = p_length, |B - q| = q_length.
+    """Return the inner joint B of the dyad of three revolutes: |B - p| = p_length, |B - q| = q_length.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def rrr(p: Any, q: Any, p_length: Any, q_length: Any, side: Any = OPEN) -> Any:
 
 
 def rrp(p: Any, length: Any, line: Any, side: Any = 1, along: Any = 1.0) -> Any:
-    """Slider pinned to a rod: the point of a line at ``length`` from the rod's other pin ``p``.
+    """Return the slider pinned to a rod: the point of a line at ``length`` from the rod's other pin ``p``.
 
     ``line`` is a point of the line if complex; a real number is the ordinate of a horizontal line.
     ``along`` is its direction, a complex unit vector. ``side`` is +1 when the slider lies ahead of ``p``
@@ -98,7 +98,8 @@ def rrp(p: Any, length: Any, line: Any, side: Any = 1, along: Any = 1.0) -> Any:
 
 
 def rpr(p: Any, q: Any, offset: Any = 0.0, side: Any = 1) -> tuple[Any, Any]:
-    """Block pinned at ``p`` that slides on a guide pinned at ``q``: the guide's direction and the slide.
+    """Return the block pinned at ``p`` that slides on a guide pinned at ``q``: the guide's direction and the
+    slide.
 
     The slot runs parallel to the guide's own direction u, ``offset`` to the left of q: p = q + (slide + i
     offset) u. Returns u, a complex unit vector, and the slide, whose sign is ``side``.
@@ -114,7 +115,7 @@ def rpr(p: Any, q: Any, offset: Any = 0.0, side: Any = 1) -> tuple[Any, Any]:
 
 
 def prp(first_point: Any, first_along: Any, second_point: Any, second_along: Any) -> Any:
-    """Pin of two blocks, each on its own line: where the lines meet. One assembly only.
+    """Return the pin of two blocks, each on its own line: where the lines meet. One assembly only.
 
     Raises
     ------
@@ -125,7 +126,8 @@ def prp(first_point: Any, first_along: Any, second_point: Any, second_along: Any
 
 
 def rpp(p: Any, point: Any, along: Any, across: Any) -> tuple[Any, Any]:
-    """Body pinned at ``p`` that slides in the direction ``across`` on a block, which slides ``along`` a line.
+    """Return the body pinned at ``p`` that slides in the direction ``across`` on a block, which slides
+    ``along`` a line.
 
     p = point + first * along + second * across; returns both slides. One assembly only.
 
@@ -138,7 +140,7 @@ def rpp(p: Any, point: Any, along: Any, across: Any) -> tuple[Any, Any]:
 
 
 def rrr_rates(p_arm: Any, q_arm: Any, p_rates: Rates, q_rates: Rates) -> tuple[tuple, tuple]:
-    """Derivatives of the angles of both bodies of an RRR dyad.
+    """Return the derivatives of the angles of both bodies of an RRR dyad.
 
     ``p_arm`` = B - p and ``q_arm`` = B - q now; ``p_rates`` and ``q_rates`` the derivatives of p and q
     from the first on, of equal number. The point B itself moves by ``p_rates`` plus
@@ -155,7 +157,7 @@ def rrr_rates(p_arm: Any, q_arm: Any, p_rates: Rates, q_rates: Rates) -> tuple[t
 def rrp_rates(
     arm: Any, along: Any, p_rates: Rates, point_rates: Rates = (), slide: Any = 0.0, line_rates: Rates = ()
 ) -> tuple[tuple, tuple]:
-    """Derivatives of the rod's angle and of the slide along the line, of an RRP dyad.
+    """Return the derivatives of the rod's angle and of the slide along the line, of an RRP dyad.
 
     ``arm`` = B - p now. A line that moves has the derivatives ``point_rates`` of its point and
     ``line_rates`` of its angle, and ``slide`` = distance from that point to B now; a fixed line needs
@@ -172,7 +174,7 @@ def rrp_rates(
 
 
 def rpr_rates(arm: Any, unit: Any, p_rates: Rates, q_rates: Rates = ()) -> tuple[tuple, tuple]:
-    """Derivatives of the slide and of the guide's angle, of an RPR dyad.
+    """Return the derivatives of the slide and of the guide's angle, of an RPR dyad.
 
     ``arm`` = p - q and ``unit`` the guide's direction now. The second derivative holds the Coriolis term.
     """
@@ -192,7 +194,7 @@ def prp_rates(
     slides: tuple[Any, Any] = (0.0, 0.0),
     line_rates: tuple[Rates, Rates] = ((), ()),
 ) -> tuple[tuple, tuple]:
-    """Derivatives of both slides of a PRP dyad.
+    """Return the derivatives of both slides of a PRP dyad.
 
     ``first_rates`` and ``second_rates`` are the derivatives of the lines' points; lines that turn have
     the derivatives ``line_rates`` of their angles, and ``slides`` = the distances from these points to
@@ -215,7 +217,8 @@ def rpp_rates(
     slides: tuple[Any, Any] = (0.0, 0.0),
     line_rates: Rates = (),
 ) -> tuple[tuple, tuple]:
-    """Derivatives of both slides of an RPP dyad; both directions turn with the line, by ``line_rates``."""
+    """Return the derivatives of both slides of an RPP dyad; both directions turn with the line, by
+    ``line_rates``."""
     count = len(p_rates)
     carried = _padded(point_rates, count)
 
@@ -230,7 +233,7 @@ def rpp_rates(
 def out_of_reach(
     distance: float, p_length: float, q_length: float, gap: float | None = None, what: str = "the two bodies"
 ) -> CannotAssemble:
-    """The error for two bodies that do not span the distance between their pins, with the gap."""
+    """Return the error for two bodies that do not span the distance between their pins, with the gap."""
     least, most = abs(p_length - q_length), p_length + q_length
     gap = max(distance - most, least - distance) if gap is None else gap
     return CannotAssemble(
@@ -240,7 +243,7 @@ def out_of_reach(
 
 
 def _solved(kernel: Callable, failure: Callable[..., CourseworkError], *given: Any) -> Any:
-    """The kernel in blocks; of scalars, plain numbers or the error that says why there are none."""
+    """Return the kernel in blocks; of scalars, plain numbers or the error that says why there are none."""
     given = tuple(np.asarray(x)[()] for x in given)
     found = in_blocks(kernel, *given)
     if not np.ndim(found[0]):

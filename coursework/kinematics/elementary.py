@@ -46,12 +46,12 @@ def tangent(angle: Any) -> Any:
 
 
 def quotient_arctangent(tangent: Any) -> Any:
-    """Radians, of a tangent from -1 to 1."""
+    """Return radians, of a tangent from -1 to 1."""
     return _plus_cubed(tangent, *_ARCTANGENT)
 
 
 def _numpy_has_one() -> bool:
-    """Whether numpy's arctangent is made for this processor's vector units."""
+    """Return whether numpy's arctangent is made for this processor's vector units."""
     units = np.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", ())
     return sys.platform.startswith("linux") and not {"AVX512_SKX", "X86_V4"}.isdisjoint(units)
 
@@ -61,7 +61,7 @@ arctangent = np.arctan if _numpy_has_one() else quotient_arctangent
 
 
 def _plus_cubed(x: Any, above: Sequence[float], below: Sequence[float]) -> Any:
-    """x + x^3 P / Q. In place, so that of long arrays few are in the cache."""
+    """Return x + x^3 P / Q. In place, so that of long arrays few are in the cache."""
     squared = x * x
     found = above[-1] * squared
     found += above[-2]
@@ -74,7 +74,7 @@ def _plus_cubed(x: Any, above: Sequence[float], below: Sequence[float]) -> Any:
 
 
 def _horner(found: Any, lower: Sequence[float], x: Any) -> Any:
-    """A polynomial by Horner's rule, from the value of its highest terms and the lower coefficients."""
+    """Return a polynomial by Horner's rule, from the value of its highest terms and the lower coefficients."""
     for coefficient in reversed(lower):
         found *= x
         found += coefficient

@@ -107,11 +107,11 @@ class FourBar:
         return grashof_margins(*self.lengths)
 
     def turns_fully(self) -> Any:
-        """Whether the crank can make a whole turn, change points included."""
+        """Return whether the crank can make a whole turn, change points included."""
         return (self._linkage.stretched >= 0) & (self._linkage.folded >= 0)
 
     def limits(self) -> tuple[Any, Any]:
-        """The least and the greatest absolute crank angle at which the linkage closes, in [0, pi].
+        """Return the least and the greatest absolute crank angle at which the linkage closes, in [0, pi].
 
         0 and pi for a crank that turns fully; NaN for a linkage that never closes.
         """
@@ -130,7 +130,7 @@ class FourBar:
         return np.where(never, math.nan, least)[()], np.where(never, math.nan, greatest)[()]
 
     def angles(self, crank_angle: Any) -> tuple[Any, Any]:
-        """Angles of coupler and rocker, radians in (-pi, pi].
+        """Return the angles of coupler and rocker, radians in (-pi, pi].
 
         ``crank_angle`` is in radians or a heading (:mod:`angles`), any shape that broadcasts with the lengths.
 
@@ -152,7 +152,7 @@ class FourBar:
         *,
         order: int = 2,
     ) -> FourBarMotion:
-        """Angles and their time derivatives up to ``order`` (0 to 3); nothing is computed beyond.
+        """Return the angles and their time derivatives up to ``order`` (0 to 3); nothing is computed beyond.
 
         Rates in rad/s where the crank's are. Errors are those of :meth:`angles`, and
 
@@ -166,7 +166,7 @@ class FourBar:
         return FourBarMotion(*self._evaluate(_motion, crank_angle, *given))
 
     def coefficients(self, crank_angle: Any, *, order: int = 1) -> tuple[tuple[Any, Any], ...]:
-        """Derivatives of the coupler's and the rocker's angle by the crank angle.
+        """Return the derivatives of the coupler's and the rocker's angle by the crank angle.
 
         A pair (coupler, rocker) for each order from 1 to ``order`` (at most 3): the first holds the ratios
         omega3/omega2 and omega4/omega2. They need no inverse trigonometry. Errors as in :meth:`motion`.
@@ -175,24 +175,25 @@ class FourBar:
         return tuple(zip(found[::2], found[1::2], strict=True))
 
     def at(self, crank_angle: Any) -> FourBarPose:
-        """The linkage at a crank angle, from which angles and derivatives are had as they are asked for.
+        """Return the linkage at a crank angle, from which angles and derivatives are had as they are asked
+        for.
 
         Arrays are computed whole: for long ones asked for at once, :meth:`motion` is faster.
         """
         return FourBarPose(self, crank_angle)
 
     def pins(self, crank_angle: Any) -> tuple[Any, Any]:
-        """The points A and B, complex, in the linkage's unit of length. Errors as in :meth:`angles`."""
+        """Return the points A and B, complex, in the linkage's unit of length. Errors as in :meth:`angles`."""
         a, b = self._evaluate(_pins, crank_angle)
         return scaled(a, self._exponent)[()], scaled(b, self._exponent)[()]
 
     def transmission_angle(self, crank_angle: Any) -> Any:
-        """The angle CBA at B between coupler and rocker, radians in [0, pi]; 0 and pi are dead points."""
+        """Return the angle CBA at B between coupler and rocker, radians in [0, pi]; 0 and pi are dead points."""
         return self._evaluate(_transmission_angle, crank_angle)[0]
 
     def conditioning(self, crank_angle: Any) -> Any:
-        """1 / |sin(transmission angle)|: how much larger an error of the lengths comes out at B; inf at a
-        dead point."""
+        """Return 1 / |sin(transmission angle)|: how much larger an error of the lengths comes out at B; inf
+        at a dead point."""
         return self._evaluate(_conditioning, crank_angle)[0]
 
     def _scaled_lengths(self) -> tuple[Any, Any, Any, Any]:
@@ -346,7 +347,7 @@ def _lengths(*given: Any) -> list[Any]:
 
 
 def _side(mode: Any) -> Any:
-    """+1.0 or -1.0, from a mode or a side."""
+    """Return +1.0 or -1.0, from a mode or a side."""
     words = np.asarray(mode)
     side = np.asarray(side_of(mode) if words.dtype.kind in "UO" else words, dtype=float)
     return side if side.ndim else float(side)
@@ -449,7 +450,7 @@ class _Pose:
         return common + both * self.of_rocker - apart, common + both * self.of_coupler + apart
 
     def derivatives(self, order: int) -> tuple:
-        """Those of the first ``order`` orders, in pairs."""
+        """Return those of the first ``order`` orders, in pairs."""
         return tuple(getattr(self, name) for name in ("first", "second", "third")[:order])
 
     @cached_property

@@ -14,7 +14,7 @@ import numpy as np
 
 
 def exact_sum(*terms: Any) -> Any:
-    """The sum of a few terms without cancellation: scalars, or arrays that broadcast."""
+    """Return the sum of a few terms without cancellation: scalars, or arrays that broadcast."""
     if all(isinstance(term, (float, int)) for term in terms):
         return math.fsum(terms)
     parts = list(np.broadcast_arrays(*[np.asarray(term, dtype=float) for term in terms]))
@@ -29,7 +29,7 @@ def exact_sum(*terms: Any) -> Any:
 
 
 def _sum_and_error(x: Any, y: Any) -> tuple[Any, Any]:
-    """The error of x + y, then x + y."""
+    """Return the error of x + y, then x + y."""
     total = x + y
     of_y = total - x
     return (x - (total - of_y)) + (y - of_y), total

@@ -38,7 +38,8 @@ class RockerSlider(NamedTuple):
     line: Any
 
     def rocker_vectors(self, crank_angles: Any) -> np.ndarray:
-        """The vector D -> B, complex, for crank angles along a last axis: shape ``(..., k)``, k angles each.
+        """Return the vector D -> B, complex, for crank angles along a last axis: shape ``(..., k)``, k angles
+        each.
 
         NaN where the loop does not close.
         """
@@ -46,7 +47,7 @@ class RockerSlider(NamedTuple):
         return _rocker_and_coupler(np.asarray(crank_angles), *linkage)[0]
 
     def turning_points(self) -> np.ndarray:
-        """The crank angles at which the slider turns back.
+        """Return the crank angles at which the slider turns back.
 
         Radians, shape ``(..., k)``, k at least 2: those of each mechanism in the order of the turn, then NaN.
 
@@ -94,7 +95,7 @@ class RockerSlider(NamedTuple):
         return found.reshape(shape) if shape else int(found[0])
 
     def _closed_all_turn(self) -> tuple[tuple[int, ...], list[np.ndarray], np.ndarray]:
-        """The shape, the numbers of each mechanism, and whether it closes at every crank angle."""
+        """Return the shape, the numbers of each mechanism, and whether it closes at every crank angle."""
         given = np.broadcast_arrays(*self)
         flat = [np.atleast_1d(np.asarray(value, dtype=float)).ravel() for value in given]
         with np.errstate(all="ignore"):
@@ -129,7 +130,8 @@ def _margins(
 def _swing(
     ground: Any, ground_angle: Any, crank: Any, coupler: Any, rocker: Any, side: Any
 ) -> tuple[Any, Any]:
-    """The arc of the rocker's directions, of a crank that turns fully: its middle, and half of its size.
+    """Return the arc of the rocker's directions, of a crank that turns fully: its middle, and half of its
+    size.
 
     That is half a turn where the rocker turns fully too: then crank and coupler are never in line.
     """
@@ -181,20 +183,21 @@ def _turn(angle: Any) -> Any:
 def _rocker_and_coupler(
     angle: Any, ground: Any, ground_angle: Any, crank: Any, coupler: Any, rocker: Any, side: Any
 ) -> tuple[Any, Any, Any]:
-    """Vectors DB, AB and OA."""
+    """Return the vectors DB, AB and OA."""
     pin, pivot = crank * np.exp(1j * angle), ground * np.exp(1j * ground_angle)
     joint = rrr(pin, pivot, coupler, rocker, side)
     return joint - pivot, joint - pin, pin
 
 
 def _rocker_ratio(rocker: Any, coupler: Any, crank: Any) -> Any:
-    """Angular velocity of the rocker over that of the crank, of the three vectors: along the coupler both ends
-    move alike."""
+    """Return the angular velocity of the rocker over that of the crank, of the three vectors: along the
+    coupler both ends move alike."""
     return cross(coupler, crank) / cross(coupler, rocker)
 
 
 def _advance_of_slider(angle: Any, *mechanism: Any) -> Any:
-    """Derivative of the slider's abscissa with respect to the crank angle: no velocity of C across its line."""
+    """Return the derivative of the slider's abscissa with respect to the crank angle: no velocity of C across
+    its line."""
     ground, ground_angle, *_, rod, line = mechanism
     vectors = rocker, *_ = _rocker_and_coupler(angle, *mechanism[:6])
     rise = line - ground * np.sin(ground_angle) - rocker.imag

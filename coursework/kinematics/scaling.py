@@ -8,7 +8,8 @@ import numpy as np
 
 
 def exponent_of(*lengths: Any) -> Any:
-    """The integer k with the longest of the lengths in [2**(k-1), 2**k), elementwise; 0 if there is none.
+    """Return the integer k with the longest of the lengths in [2**(k-1), 2**k), elementwise; 0 if there is
+    none.
 
     Dividing all lengths of a linkage by ``2**k`` is exact, so that a result scaled back is, bit for
     bit, that of the linkage in any other unit that is a power of two of the first.
@@ -20,7 +21,7 @@ def exponent_of(*lengths: Any) -> Any:
 
 
 def scaled(value: Any, exponent: Any) -> Any:
-    """``value * 2**exponent``, exactly; complex values too."""
+    """Return ``value * 2**exponent``, exactly; complex values too."""
     value = np.asarray(value)
     if np.iscomplexobj(value):
         result = np.empty(np.broadcast_shapes(value.shape, np.shape(exponent)), dtype=complex)

@@ -83,7 +83,7 @@ class SliderCrank:
         )
 
     def turns_fully(self) -> Any:
-        """Whether the crank can make a whole turn: rod >= crank + |offset|, decided exactly."""
+        """Return whether the crank can make a whole turn: rod >= crank + |offset|, decided exactly."""
         return (self._linkage.stretched >= 0) & (self._linkage.folded >= 0)
 
     def motion(
@@ -95,8 +95,8 @@ class SliderCrank:
         *,
         order: int = 2,
     ) -> SliderCrankMotion:
-        """Rod angle and slider position, with their time derivatives up to ``order`` (0 to 3), nothing
-        beyond.
+        """Return the rod angle and slider position, with their time derivatives up to ``order`` (0 to 3),
+        nothing beyond.
 
         ``crank_angle`` is in radians or a heading, of any shape that broadcasts with the lengths.
 
@@ -114,7 +114,7 @@ class SliderCrank:
         return SliderCrankMotion(*found)
 
     def position(self, crank_angle: Any) -> Any:
-        """The slider's abscissa alone. Errors as in :meth:`motion`."""
+        """Return the slider's abscissa alone. Errors as in :meth:`motion`."""
         return self._restored(self._evaluate(_position, crank_angle)[0])
 
     def run(self, crank_angle: Any) -> Any:
@@ -129,16 +129,16 @@ class SliderCrank:
         return self._restored(self._evaluate(_displacement, crank_angle)[0])
 
     def pressure_angle(self, crank_angle: Any) -> Any:
-        """The angle between rod and line, in [0, pi/2]; the conditioning of the slider is its 1/cos."""
+        """Return the angle between rod and line, in [0, pi/2]; the conditioning of the slider is its 1/cos."""
         return self._evaluate(_pressure_angle, crank_angle)[0]
 
     def conditioning(self, crank_angle: Any) -> Any:
-        """1 / |cos(rod angle)|: how much larger an error of the rod comes out at the slider; inf where it
-        is square."""
+        """Return 1 / |cos(rod angle)|: how much larger an error of the rod comes out at the slider; inf where
+        it is square."""
         return self._evaluate(_conditioning, crank_angle)[0]
 
     def stroke(self) -> Any:
-        """Distance between the two dead centres, of a crank that turns fully: no difference of two
+        """Return the distance between the two dead centres, of a crank that turns fully: no difference of two
         distances."""
         outer, inner = self._dead_centres()
         t = self._linkage
@@ -146,8 +146,8 @@ class SliderCrank:
             return self._restored(4 * t.rod * t.crank / (outer + inner))
 
     def quick_return(self) -> Any:
-        """The crank angle by which the longer of the two strokes exceeds half a turn, radians, signed as
-        the offset.
+        """Return the crank angle by which the longer of the two strokes exceeds half a turn, radians, signed
+        as the offset.
 
         The strokes take pi + this and pi - this: see :func:`time_ratio`.
         """
@@ -158,7 +158,7 @@ class SliderCrank:
             return np.arctan2(t.offset * stroke, t.offset * t.offset + outer * inner)[()]
 
     def _dead_centres(self) -> tuple[Any, Any]:
-        """Distances from O to the slider where rod and crank are in line, scaled."""
+        """Return the distances from O to the slider where rod and crank are in line, scaled."""
         t = self._linkage
         with np.errstate(all="ignore"):
             inner = np.sqrt((t.rod - t.crank - t.offset) * (t.rod - t.crank + t.offset))
@@ -215,12 +215,13 @@ class SliderCrank:
 
 
 def time_ratio(excess: Any) -> Any:
-    """Longer stroke's time over the shorter's, of strokes of pi + excess and pi - excess of crank angle."""
+    """Return longer stroke's time over the shorter's, of strokes of pi + excess and pi - excess of crank
+    angle."""
     return 1 + time_ratio_excess(excess)
 
 
 def time_ratio_excess(excess: Any) -> Any:
-    """The time ratio minus 1, without loss of digits when the strokes are nearly equal."""
+    """Return the time ratio minus 1, without loss of digits when the strokes are nearly equal."""
     return 2 * np.abs(excess) / (math.pi - np.abs(excess))
 
 
@@ -240,7 +241,7 @@ def _plain(value: Any) -> Any:
 
 
 def _sweep(_: Any, cos: Any, sin: Any, w: Any) -> Sweep:
-    """The half angle of the complement: (1 + sin)/2, (1 - sin)/2 and half the cosine."""
+    """Return the half angle of the complement: (1 + sin)/2, (1 - sin)/2 and half the cosine."""
     larger, smaller = halves(np.abs(sin), cos)
     up = sin >= 0
     return Sweep(w * np.where(up, larger, smaller), w * np.where(up, smaller, larger), (0.5 * w) * cos)
@@ -256,7 +257,7 @@ def _signed_sweep(angle: Any, cos: Any, sin: Any, w: Any) -> Sweep:
 
 
 def _closing(t: _Linkage, swept: Sweep) -> Closing:
-    """P = l + p, Q = l - p; S is how far the slider is to the right of the crank pin."""
+    """Return P = l + p, Q = l - p; S is how far the slider is to the right of the crank pin."""
     return closing(t.stretched, t.folded, t.side, swept)
 
 
@@ -291,7 +292,8 @@ def _motion(t: _Linkage, swept: Sweep, cos: Any, sin: Any, _: Any, *rates: Any) 
 
 
 def _opening_rate(t: _Linkage, close: Closing, swept: Sweep, r_sin: Any) -> Any:
-    """The first derivative of rho where the side is kept: as :class:`Opening`'s, and exact near its zeros too.
+    """Return the first derivative of rho where the side is kept: as :class:`Opening`'s, and exact near its
+    zeros too.
 
     Of the two ways to take out the sine, for a line above and for one below O, each is a sum where the other cancels.
     """
@@ -302,8 +304,8 @@ def _opening_rate(t: _Linkage, close: Closing, swept: Sweep, r_sin: Any) -> Any:
 
 
 def _displacement(t: _Linkage, swept: Sweep, cos: Any, sin: Any, angle: Any) -> tuple[Any]:
-    """Differences of cosines and of square roots as products: each is zero with the angle from dead
-    centre."""
+    """Return the differences of cosines and of square roots as products: each is zero with the angle from
+    dead centre."""
     half_cos, half_sin = half_angle(angle)
     outer = _outer(t)
     at_centre = 0.5 * np.arctan2(t.offset, outer)

@@ -48,7 +48,7 @@ def motion(
     *,
     order: int = 2,
 ) -> SlottedGuideMotion:
-    """Guide and sliding pin, with time derivatives up to ``order`` (0 to 3), nothing beyond.
+    """Return the guide and sliding pin, with time derivatives up to ``order`` (0 to 3), nothing beyond.
 
     Parameters
     ----------
@@ -86,8 +86,8 @@ def motion(
 
 
 def swing(ground: Any, crank: Any) -> Any:
-    """The angle between the extreme positions of a guide that swings (crank <= ground), radians; NaN if
-    it turns.
+    """Return the angle between the extreme positions of a guide that swings (crank <= ground), radians; NaN
+    if it turns.
 
     It is also the crank angle by which the slow stroke exceeds half a turn.
     """

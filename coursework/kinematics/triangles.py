@@ -17,7 +17,7 @@ from coursework.kinematics.angles import half_angle
 
 
 def third_side(one: Any, other: Any, angle: Any) -> Any:
-    """The side opposite to the angle between two sides.
+    """Return the side opposite to the angle between two sides.
 
     Source: the law of cosines as a sum of two squares, ``(other - one)^2 + 4 one other sin^2(angle/2)``.
     """
@@ -25,7 +25,7 @@ def third_side(one: Any, other: Any, angle: Any) -> Any:
 
 
 def corner(near: Any, other: Any, opposite: Any) -> Any:
-    """The angle between the sides ``near`` and ``other``.
+    """Return the angle between the sides ``near`` and ``other``.
 
     Raises
     ------
@@ -44,7 +44,8 @@ def corner(near: Any, other: Any, opposite: Any) -> Any:
 
 
 def corner_beside(one: Any, other: Any, angle: Any, third: Any) -> Any:
-    """The angle between ``one`` and the third side, where the angle between ``one`` and ``other`` is known too.
+    """Return the angle between ``one`` and the third side, where the angle between ``one`` and ``other`` is
+    known too.
 
     ``third`` counts: where it is not what the two sides and their angle make, because it was rounded or measured, the
     angle is that of the triangle of the three sides. Where it is, no digit is lost in a flat triangle.

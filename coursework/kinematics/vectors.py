@@ -13,23 +13,23 @@ from coursework.kinematics.scaling import exponent_of, scaled
 
 
 def cross(u: Any, v: Any) -> Any:
-    """The z component of u x v."""
+    """Return the z component of u x v."""
     return np.real(u) * np.imag(v) - np.imag(u) * np.real(v)
 
 
 def dot(u: Any, v: Any) -> Any:
-    """The scalar product."""
+    """Return the scalar product."""
     return np.real(u) * np.real(v) + np.imag(u) * np.imag(v)
 
 
 def size(u: Any) -> Any:
-    """The length of a vector whose square neither overflows nor vanishes."""
+    """Return the length of a vector whose square neither overflows nor vanishes."""
     return np.sqrt(np.real(u) ** 2 + np.imag(u) ** 2)
 
 
 def direction(y: Any, x: Any) -> Any:
-    """Angle of the vector (x, y), radians in (-pi, pi], for arrays faster than ``arctan2``; NaN for the
-    zero vector."""
+    """Return the angle of the vector (x, y), radians in (-pi, pi], for arrays faster than ``arctan2``; NaN
+    for the zero vector."""
     quotient = np.divide(y, x)
     found = np.arctan(quotient)
     # Half a turn where x < 0, towards the side of y.
@@ -40,7 +40,8 @@ def direction(y: Any, x: Any) -> Any:
 
 
 def direction_of(y: Any, x: Any, length: Any) -> Any:
-    """The same of a vector whose length is known, by the tangent of half the angle: arrays are faster still.
+    """Return the same of a vector whose length is known, by the tangent of half the angle: arrays are faster
+    still.
 
     Arrays that are given are used up.
     """
@@ -72,8 +73,8 @@ def _twice_arctangent(y: Any, x: Any) -> Any:
 
 
 def components(r: Any, u: Any, v: Any) -> tuple[Any, Any]:
-    """The two real numbers with ``first * u + second * v = r`` (Cramer's rule); inf or NaN when u and v
-    are parallel."""
+    """Return the two real numbers with ``first * u + second * v = r`` (Cramer's rule); inf or NaN when u and
+    v are parallel."""
     # Vectors of lengths far from 1 are scaled: their product would overflow or vanish.
     of_u, of_v = exponent_of(np.real(u), np.imag(u)), exponent_of(np.real(v), np.imag(v))
     u, v = scaled(u, -of_u), scaled(v, -of_v)
@@ -84,7 +85,7 @@ def components(r: Any, u: Any, v: Any) -> tuple[Any, Any]:
 def derivative(
     arm: Any, unit: Any, length_rates: Sequence[Any], angle_rates: Sequence[Any], order: int
 ) -> Any:
-    """The derivative of order 1, 2 or 3 of a vector ``arm`` whose length and angle vary.
+    """Return the derivative of order 1, 2 or 3 of a vector ``arm`` whose length and angle vary.
 
     Parameters
     ----------

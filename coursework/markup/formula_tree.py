@@ -179,7 +179,7 @@ Node: TypeAlias = (
 
 
 def _upright(node: Node) -> Node:
-    """The same with each run of letters made one word: ``mm`` is a unit, not two variables.
+    """Return the same with each run of letters made one word: ``mm`` is a unit, not two variables.
 
     A dot between two units stands as close as their letters.
     """
@@ -205,13 +205,13 @@ _NUM = re.compile(rf"([+-]?)(\d+(?:\.\d+)?|\.\d+|[{FIRST_HOLE}-{LAST_HOLE}])(?:[
 
 
 def tokens(tex: str) -> tuple[str, ...]:
-    """The formula cut into macros, runs of blanks and single characters."""
+    """Return the formula cut into macros, runs of blanks and single characters."""
     return tuple(_TOKEN.findall(tex))
 
 
 @lru_cache(maxsize=4096)
 def parse(tex: str) -> Row:
-    """The tree of a formula.
+    """Return the tree of a formula.
 
     Raises :class:`BadStatement` naming the macro that is not in the list, or what is missing.
     """
@@ -238,7 +238,7 @@ class _Parser:
 
     # -- the stream ---------------------------------------------------------------------------
     def peek(self) -> str:
-        """The next token that is not blank; empty at the end."""
+        """Return the next token that is not blank; empty at the end."""
         return self.tokens[self.at]
 
     def take(self) -> str:
@@ -253,7 +253,7 @@ class _Parser:
             raise self.refuse(f"{token} expected after {after}, found {found or 'the end'}")
 
     def raw_group(self, macro: str) -> str:
-        """The characters between the braces that follow a macro, as they stand."""
+        """Return the characters between the braces that follow a macro, as they stand."""
         self.expect("{", macro)
         start = self.at
         depth = 1
@@ -275,7 +275,7 @@ class _Parser:
         return row
 
     def row(self, stops: tuple[str, ...]) -> Row:
-        """Items up to one of the stops, which stays in the stream, or to the end."""
+        """Return the items up to one of the stops, which stays in the stream, or to the end."""
         items: list[Node] = []
         closers = ("}", "&", r"\\", r"\right", r"\end")
         while (token := self.peek()) and token not in stops and token not in closers:
@@ -301,7 +301,7 @@ class _Parser:
         return Script(base, below, above, primes)
 
     def argument(self, macro: str) -> Node:
-        """One group, or one character or macro as LaTeX takes it."""
+        """Return one group, or one character or macro as LaTeX takes it."""
         token = self.peek()
         if token in ("", "}", "&", "^", "_", r"\\", r"\right", r"\end"):
             raise self.refuse(f"nothing after {macro}")

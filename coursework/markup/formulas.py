@@ -21,7 +21,7 @@ def check_formula(tex: str) -> None:
 
 
 def number_text(number: str, lang: str) -> str:
-    """A number written with a point, as running text: ``1.2e-5`` is ``1,2 × 10⁻⁵`` in French."""
+    """Return a number written with a point, as running text: ``1.2e-5`` is ``1,2 × 10⁻⁵`` in French."""
     mantissa, _, exponent = number.lower().partition("e")
     if not exponent:
         return localise(mantissa, lang)
@@ -30,12 +30,13 @@ def number_text(number: str, lang: str) -> str:
 
 
 def after_number(unit: str) -> str:
-    """The unit as it follows a number in running text: degrees touch it, others stand a narrow space off."""
+    """Return the unit as it follows a number in running text: degrees touch it, others stand a narrow space
+    off."""
     return unit if unit in ("", *_UNITS_THAT_TOUCH) else NARROW_SPACE + unit
 
 
 def quantity_formula(symbol: str, value: str, unit: str, *, is_number: bool = True) -> str:
-    """LaTeX of ``symbol = value unit``; without a symbol, of the value and its unit."""
+    """Return LaTeX of ``symbol = value unit``; without a symbol, of the value and its unit."""
     shown = rf"\num{{{value}}}" if is_number else rf"\text{{{value}}}"
     if unit:
         shown += ("" if unit in _UNITS_THAT_TOUCH else r"\,") + rf"\text{{{unit}}}"

@@ -85,12 +85,12 @@ SUBSTITUTE = r"\ensuremath{\square}"  #: stands for a character that these fonts
 
 
 def plain_latex(text: str) -> str:
-    """Text as LaTeX that prints exactly these characters, without the language's own spaces."""
+    """Return text as LaTeX that prints exactly these characters, without the language's own spaces."""
     return "".join(map(_character, unicodedata.normalize("NFC", text)))
 
 
 def latex_text(text: str, lang: str) -> str:
-    """Plain text as LaTeX that prints exactly these characters."""
+    """Return plain text as LaTeX that prints exactly these characters."""
     return plain_latex(typeset(text, lang))
 
 
@@ -110,7 +110,8 @@ def _character(char: str) -> str:
 
 @lru_cache(maxsize=4096)
 def to_latex(tex: str, lang: str) -> str:
-    r"""The formula without its dollars: ``\num{4.21}`` is ``4{,}21`` where the language has a comma."""
+    r"""Return the formula without its dollars: ``
+    um{4.21}`` is ``4{,}21`` where the language has a comma."""
     return _latex(parse(tex), lang)
 
 
@@ -186,7 +187,7 @@ def _latex(node: Node, lang: str) -> str:
 
 
 def to_notebook(tex: str, lang: str) -> str:
-    """The formula as MathJax and KaTeX read it: the same LaTeX, with each number written out."""
+    """Return the formula as MathJax and KaTeX read it: the same LaTeX, with each number written out."""
     check_formula(tex)
     written = re.sub(r"\\num\s*\{([^{}]*)\}", lambda m: _latex_number(m.group(1).strip(), lang), tex)
     written = re.sub(r"\\text\{[^{}]*[⁰¹²³⁴⁵⁶⁷⁸⁹⁻][^{}]*\}", _figures_raised, written)
@@ -196,7 +197,7 @@ def to_notebook(tex: str, lang: str) -> str:
 
 
 def _figures_raised(found: re.Match[str]) -> str:
-    r"""``\text{rad/s²}`` with its figure as an exponent: KaTeX's own letters have no raised one."""
+    r"""Return ``\text{rad/s²}`` with its figure as an exponent: KaTeX's own letters have no raised one."""
     text = re.sub("[⁰¹²³⁴⁵⁶⁷⁸⁹⁻]+", _exponent, found.group())
     return text.replace(r"\text{}", "")
 

@@ -29,7 +29,7 @@ from coursework.markup.spoken import is_simple
 
 @once_for_all_numbers
 def to_line(tex: str, lang: str) -> str:
-    """The formula as one line of plain text, for a terminal: ``θ₄ = arctan(y/x)``."""
+    """Return the formula as one line of plain text, for a terminal: ``θ₄ = arctan(y/x)``."""
     return re.sub(r"  +", " ", _line(parse(tex), lang)).strip()
 
 
@@ -42,7 +42,7 @@ def _grouped(node: Node, lang: str) -> str:
 
 
 def _raised(text: str, table: Mapping[int, int], mark: str) -> str:
-    """Small characters where Unicode has them all, else the mark and the text."""
+    """Return the small characters where Unicode has them all, else the mark and the text."""
     if all(ord(c) in table for c in text):
         return text.translate(table)
     return mark + (text if len(text) == 1 else f"({text})" if mark == "^" else text)

@@ -29,14 +29,14 @@ class Link:
 
 
 def relinked(text: str, write: Callable[[Link], str]) -> str:
-    """The text with each of its links written anew; code is left as it is."""
+    """Return the text with each of its links written anew; code is left as it is."""
     pieces = _VERBATIM.split(text)
     pieces[::2] = [_LINK.sub(lambda found: write(_link(found)), piece) for piece in pieces[::2]]
     return "".join(pieces)
 
 
 def links(text: str) -> tuple[Link, ...]:
-    """The links of a text, in order."""
+    """Return the links of a text, in order."""
     return tuple(_link(found) for piece in _VERBATIM.split(text)[::2] for found in _LINK.finditer(piece))
 
 

@@ -36,7 +36,7 @@ def _reader() -> MarkdownIt:
 
 @lru_cache(maxsize=1024)
 def tree(markdown: str) -> SyntaxTreeNode:
-    """The tree of a text."""
+    """Return the tree of a text."""
     return SyntaxTreeNode(_reader().parse(markdown))
 
 
@@ -72,18 +72,18 @@ SUBSTITUTE = "\N{WHITE SQUARE}"  #: stands for a character that no font at hand 
 
 
 def drawable(text: str, drawn: Callable[[str], bool] = lambda char: False) -> str:
-    """The text with a square for each character that a PDF sheet cannot draw; ``drawn`` tells of those that only other
-    fonts than the typesetter's own may draw."""
+    """Return the text with a square for each character that a PDF sheet cannot draw; ``drawn`` tells of those
+    that only other fonts than the typesetter's own may draw."""
     return _UNDRAWN.sub(lambda found: found[0] if drawn(found[0]) else SUBSTITUTE, text)
 
 
 def undrawn(text: str, drawn: Callable[[str], bool] = lambda char: False) -> list[str]:
-    """The characters that a PDF sheet cannot draw, each once."""
+    """Return the characters that a PDF sheet cannot draw, each once."""
     return [char for char in dict.fromkeys(_UNDRAWN.findall(text)) if not drawn(char)]
 
 
 def typst_text(text: str, lang: str) -> str:
-    """Plain text as Typst markup that prints exactly these characters."""
+    """Return plain text as Typst markup that prints exactly these characters."""
     pieces = _VECTOR.split(text)
     pieces[::2] = [_typst_plain(piece, lang) for piece in pieces[::2]]
     pieces[1::2] = [_vector(one) for one in pieces[1::2]]
@@ -97,7 +97,7 @@ def _typst_plain(text: str, lang: str) -> str:
 
 
 def typst_string(text: str) -> str:
-    """A Typst string literal."""
+    """Return A Typst string literal."""
     return (
         '"' + _ABOVE.sub(SUBSTITUTE, text).replace("\\", r"\\").replace('"', r"\"").replace("\n", r"\n") + '"'
     )
@@ -121,7 +121,7 @@ _WHOLE = 24  #: characters of a formula written out that a line of text does not
 
 @lru_cache(maxsize=4096)
 def typst_formula(tex: str, lang: str, *, display: bool = False) -> str:
-    """A formula as Typst markup, with its words as alternative text.
+    """Return a formula as Typst markup, with its words as alternative text.
 
     The semicolon ends the call: a parenthesis that follows it in the text is text.
     """
@@ -138,7 +138,7 @@ _ONE_FORMULA = re.compile(r"\$([^$`\n]+)(?<![\\\s])\$")
 
 @lru_cache(maxsize=1024)
 def to_typst_markup(markdown: str, lang: str) -> str:
-    """Markdown as Typst markup."""
+    """Return Markdown as Typst markup."""
     if formula := _ONE_FORMULA.fullmatch(markdown):
         return typst_formula(formula[1].strip(), lang)
     return _typst(tree(markdown), lang).strip()
@@ -149,7 +149,8 @@ _VALUE = re.compile(r"\$\\num\{[^{}]*\}(?:\^\{\\circ\}|\\ \\mathrm\{(?:[^{}]|\{\
 
 
 def typst_value(markdown: str, lang: str) -> str:
-    """An answer as Typst markup: a number with its unit as text, which is set far faster than a formula."""
+    """Return an answer as Typst markup: a number with its unit as text, which is set far faster than a
+    formula."""
     if _VALUE.fullmatch(markdown):
         return typst_text(to_text(markdown, lang), lang)
     return to_typst_markup(markdown, lang)
@@ -207,7 +208,7 @@ def _typst(node: SyntaxTreeNode, lang: str) -> str:
 
 
 def _leads(node: SyntaxTreeNode) -> bool:
-    """Whether a paragraph stands before a formula on a line of its own, or a table."""
+    """Return whether a paragraph stands before a formula on a line of its own, or a table."""
     after = node.next_sibling
     return after is not None and after.type in ("math_block", "math_block_label", "table")
 
@@ -230,7 +231,7 @@ def sort_key(entry: str) -> str:
 
 
 def anchor(entry: str) -> str:
-    """The place of a term in a page: its sort key in letters, digits and hyphens."""
+    """Return the place of a term in a page: its sort key in letters, digits and hyphens."""
     return "term-" + re.sub(r"[^a-z0-9]+", "-", sort_key(entry)).strip("-")
 
 
@@ -247,7 +248,7 @@ def _typst_table(node: SyntaxTreeNode, lang: str) -> str:
 
 
 def html_text(text: str, lang: str) -> str:
-    """Plain text as HTML."""
+    """Return plain text as HTML."""
     return escape(typeset(text, lang))
 
 
@@ -259,21 +260,22 @@ _MARK_AFTER_FORMULA = re.compile(
 
 @lru_cache(maxsize=4096)
 def to_html(markdown: str, lang: str) -> str:
-    """Markdown as an HTML fragment; its headings stand below those of the page."""
+    """Return Markdown as an HTML fragment; its headings stand below those of the page."""
     return _MARK_AFTER_FORMULA.sub(
         r'<span class="kept">\1\2</span>', _html_reader(lang).render(markdown).strip()
     )
 
 
 def html_inline(markdown: str, lang: str) -> str:
-    """Markdown of one paragraph as HTML without the ``<p>``; more than one paragraph keeps them."""
+    """Return Markdown of one paragraph as HTML without the ``<p>``; more than one paragraph keeps them."""
     shown = to_html(markdown, lang)
     one = shown.startswith("<p>") and shown.endswith("</p>") and shown.count("<p>") == 1
     return shown.removeprefix("<p>").removesuffix("</p>") if one else shown
 
 
 def html_words(markdown: str, lang: str) -> str:
-    """The same without its tags: what is left of a line and its formulas where a page is made plain text."""
+    """Return the same without its tags: what is left of a line and its formulas where a page is made plain
+    text."""
     return unescape(re.sub(r"<[^>]*>", "", html_inline(markdown, lang)))
 
 
@@ -338,13 +340,13 @@ _MARKDOWN_MARKS = re.compile(r"([\\`*_$\[\]|#~])")
 
 
 def notebook_text(text: str, lang: str) -> str:
-    """Plain text as Markdown that shows exactly these characters."""
+    """Return plain text as Markdown that shows exactly these characters."""
     one_line = " ".join(typeset(text, lang).split(" "))
     return _MARKDOWN_MARKS.sub(r"\\\1", one_line.replace("\n", " ").replace("<", "&lt;"))
 
 
 def to_notebook_markdown(markdown: str, lang: str) -> str:
-    """Markdown as a notebook shows it: numbers written out in formulas, no HTML."""
+    """Return Markdown as a notebook shows it: numbers written out in formulas, no HTML."""
     from coursework.markup.latex import to_notebook
 
     def prose(text: str) -> str:
@@ -369,7 +371,7 @@ def to_notebook_markdown(markdown: str, lang: str) -> str:
 
 
 def to_text(markdown: str, lang: str, width: int = 88) -> str:
-    """Markdown as plain text for a terminal, its lines at most ``width`` wide where words allow."""
+    """Return Markdown as plain text for a terminal, its lines at most ``width`` wide where words allow."""
     if formula := _ONE_FORMULA.fullmatch(markdown):
         line = _on_a_line(formula[1], lang)
         if len(line) <= width:
@@ -433,7 +435,7 @@ def _text_list(node: SyntaxTreeNode, lang: str, width: int) -> str:
 
 @lru_cache(maxsize=8192)
 def plain_line(markdown: str, lang: str) -> str:
-    """Markdown as one line of plain text."""
+    """Return Markdown as one line of plain text."""
     from coursework.markup.markdown import to_text
 
     return " ".join(to_text(markdown, lang).split())

@@ -34,7 +34,7 @@ _FITS = 24  #: characters that a line of a telephone holds
 
 
 def to_mathml(tex: str, lang: str, display: bool = False) -> str:
-    """The formula as a ``<math>`` element that needs no script and no font of its own."""
+    """Return the formula as a ``<math>`` element that needs no script and no font of its own."""
     layout = "block" if display else "inline"
     label = escape(spoken(tex, lang))
     body = _mathml_body(tex, lang)
@@ -101,7 +101,7 @@ def _is_name(node: Node) -> bool:
 
 
 def _thin_space_between(left: Node, right: Node) -> bool:
-    """A function's name stands off from what it multiplies and from an argument without brackets."""
+    """Return a function's name stands off from what it multiplies and from an argument without brackets."""
 
     def is_term(node: Node, bracket: str) -> bool:
         if isinstance(node, Symbol):
@@ -114,7 +114,7 @@ def _thin_space_between(left: Node, right: Node) -> bool:
 
 
 def _is_sign(left: Node | None, right: Symbol) -> bool:
-    """A plus or a minus after ``=``, ``(`` or a comma is a sign: it stands close to its number."""
+    """Return a plus or a minus after ``=``, ``(`` or a comma is a sign: it stands close to its number."""
     return (
         right.text in f"+±{MINUS}"
         and isinstance(left, Symbol)
@@ -181,7 +181,7 @@ def _fenced(left: str, body: str, right: str, grows: bool = True) -> str:
 
 
 def _is_tall(node: Node) -> bool:
-    """Whether brackets around it must grow; a browser leaves gaps beside those that could and do not."""
+    """Return whether brackets around it must grow; a browser leaves gaps beside those that could and do not."""
     match node:
         case Fraction() | Root() | Grid():
             return True

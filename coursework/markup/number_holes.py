@@ -26,7 +26,8 @@ Turn = Callable[[str, str], str]
 
 
 def once_for_all_numbers(turn: Turn) -> Turn:
-    """The same function of a formula and a language, which walks a formula once whatever its numbers are.
+    """Return the same function of a formula and a language, which walks a formula once whatever its numbers
+    are.
 
     Where ``turn`` makes more of a number's digits than to print them (small ones of an index, say), it is called for
     each formula.
@@ -34,7 +35,7 @@ def once_for_all_numbers(turn: Turn) -> Turn:
 
     @lru_cache(maxsize=4096)
     def pieces(holed: str, lang: str) -> tuple[str, ...] | None:
-        """Text and holes in turn; nothing where a hole does not stand for what would be printed."""
+        """Return text and holes in turn; nothing where a hole does not stand for what would be printed."""
         count = len(_HOLE.findall(holed))
         try:
             cut = tuple(_HOLE.split(turn(holed, lang)))
@@ -58,7 +59,7 @@ def once_for_all_numbers(turn: Turn) -> Turn:
 
 @lru_cache(maxsize=1024)
 def _holed(tex: str, lang: str) -> tuple[str, tuple[str, ...]]:
-    """A formula with holes, and the numbers of the holes as the language prints them."""
+    """Return a formula with holes, and the numbers of the holes as the language prints them."""
     parts = _DIGITS.split(tex)  # text, what opens a number and its digits, in turn
     numbers = tuple(localise(digits, lang) for digits in parts[2::3])
     parts[2::3] = (chr(ord(FIRST_HOLE) + at) for at in range(len(numbers)))

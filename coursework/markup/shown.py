@@ -54,7 +54,7 @@ class Shown:
         return f"[{said['figure']}{said['colon']} {piece.said}]"
 
     def bundles(self) -> list[dict[str, str]]:
-        """Each piece by MIME type."""
+        """Return each piece by MIME type."""
         out = []
         for piece in self.pieces:
             bundle = {"text/plain": self._plain(piece)}

@@ -31,13 +31,13 @@ from coursework.markup.number_holes import once_for_all_numbers
 
 @once_for_all_numbers
 def spoken(tex: str, lang: str) -> str:
-    """The formula in words, for those who hear the sheet: ``θ_4`` is ``theta 4``."""
+    """Return the formula in words, for those who hear the sheet: ``θ_4`` is ``theta 4``."""
     said = _spoken(parse(tex), lang, words(lang)["formula"])
     return re.sub(r"\s+", " ", said).strip() or words(lang)["formula"]["empty"]
 
 
 def is_simple(node: Node) -> bool:
-    """Whether the words of a node need no end mark: one symbol, or one symbol with a subscript."""
+    """Return whether the words of a node need no end mark: one symbol, or one symbol with a subscript."""
     match node:
         case Row(items):
             return len(items) <= 1 and all(map(is_simple, items))

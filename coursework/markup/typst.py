@@ -43,12 +43,12 @@ _TYPST_GRIDS = {"pmatrix": '"("', "bmatrix": '"["', "vmatrix": '"|"', "matrix": 
 
 @once_for_all_numbers
 def to_typst(tex: str, lang: str) -> str:
-    """The formula as Typst math, without the dollars."""
+    """Return the formula as Typst math, without the dollars."""
     return _typst(parse(tex), lang)
 
 
 def _typst_join(parts: Iterable[str]) -> str:
-    """Typst prints the blanks around a quoted text, so none is written beside a quote."""
+    """Return the typst prints the blanks around a quoted text, so none is written beside a quote."""
     joined = ""
     for part in filter(None, parts):
         touch = not joined or joined.endswith('"') or part.startswith('"')

@@ -49,7 +49,7 @@ class Equilibrium:
         return found
 
     def _rows(self, wrench: Wrench) -> np.ndarray:
-        """A wrench as rows of the equations, shape ``(n, 3 bodies)``: the ground bears what it must."""
+        """Return a wrench as rows of the equations, shape ``(n, 3 bodies)``: the ground bears what it must."""
         parts = (wrench.forces.real[:-1], wrench.forces.imag[:-1], wrench.moments[:-1])
         return np.stack(parts, axis=1).reshape(3 * self.bodies, -1).T
 
@@ -84,6 +84,7 @@ class Equilibrium:
         return Wrench.none(self.stance).turn(self.linkage.driven, 1.0)
 
     def under(self, *wrenches: Wrench) -> np.ndarray:
-        """The unknowns under each of some wrenches alone, shape ``(n, unknowns, wrenches)``; NaN in a dead point."""
+        """Return the unknowns under each of some wrenches alone, shape ``(n, unknowns, wrenches)``; NaN in a
+        dead point."""
         right = -np.stack([self._rows(wrench) for wrench in wrenches], axis=-1)
         return solved(self.matrix, right)

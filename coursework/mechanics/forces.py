@@ -53,12 +53,12 @@ class Forces:
 
     @property
     def needs_bends(self) -> bool:
-        """Whether second derivatives are needed."""
+        """True if second derivatives are needed."""
         return self.inertia and bool(self.linkage.masses)
 
     @property
     def resists(self) -> bool:
-        """Whether something always goes against the motion, so that the mechanism can stick."""
+        """True if something always goes against the motion, so that the mechanism can stick."""
         return bool(self.contacts) or any(acting.turns_over for acting in self.loads)
 
     @cached_property
@@ -95,7 +95,7 @@ class Forces:
     def applied(
         self, stance: Stance, driver: np.ndarray, speed: np.ndarray, acceleration: np.ndarray
     ) -> Wrench:
-        """Everything but friction and the joints."""
+        """Return everything but friction and the joints."""
         total = Wrench.none(stance)
         for acting, size in zip(self.loads, self.load_sizes(stance, driver, np.sign(speed)), strict=True):
             total = total + acting.pull(stance) * size

@@ -38,7 +38,7 @@ class Contact:
     reads: tuple[Mapping[str, float], ...]
 
     def rubs(self, stance: Stance) -> Wrench:
-        """Friction of size one against a motion in the joint's direction."""
+        """Return the friction of size one against a motion in the joint's direction."""
         wrench = Wrench.none(stance)
         if isinstance(self.joint, SlideJoint):
             return wrench.rub(self.joint, -stance.direction(self.joint))
@@ -127,13 +127,14 @@ class Rubbing:
         return found
 
     def magnitudes(self, normals: np.ndarray) -> np.ndarray:
-        """|s| of each contact, shape ``(n, contacts)``, for normal forces ``(n, k)``."""
+        """Return |s| of each contact, shape ``(n, contacts)``, for normal forces ``(n, k)``."""
         squares = np.zeros((len(normals), len(self.contacts)))
         np.add.at(squares.T, self.owner, (normals**2).T)
         return np.sqrt(squares)
 
     def _slopes(self, normals: np.ndarray) -> np.ndarray:
-        """Derivatives of the magnitudes, shape ``(n, contacts, k)``: signs for slides, unit vectors for pins."""
+        """Return the derivatives of the magnitudes, shape ``(n, contacts, k)``: signs for slides, unit
+        vectors for pins."""
         magnitudes = self.magnitudes(normals)[:, self.owner]
         with np.errstate(all="ignore"):
             share = np.where(magnitudes > 0, normals / magnitudes, 0.0)
@@ -183,7 +184,7 @@ class Rubbing:
         return strength * self.magnitudes(self._grown(free, spread, strength))
 
     def _grown(self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray) -> np.ndarray:
-        """The normal forces as friction grows from nothing to its strength, NaN where it jams."""
+        """Return the normal forces as friction grows from nothing to its strength, NaN where it jams."""
         normals = free
         for step in range(1, _STEPS + 1):
             normals, good = self._settled(free, spread, strength * (step / _STEPS), normals)
@@ -193,7 +194,7 @@ class Rubbing:
     def _settled(
         self, free: np.ndarray, spread: np.ndarray, strength: np.ndarray, start: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Newton's method from a solution for a little less friction; and where it holds."""
+        """Return Newton's method from a solution for a little less friction; and where it holds."""
         normals, one = start, np.eye(free.shape[1])
         size = np.abs(free).max(axis=1) + np.abs(start).max(axis=1)
         for _ in range(_ROUNDS):

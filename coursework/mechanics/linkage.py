@@ -137,7 +137,7 @@ class Linkage:
         return Held(self.index[body], complex(self.number(self.mechanism.place(point, body))) * MM)
 
     def owner(self, point: str) -> Held:
-        """A point on the first body that has it."""
+        """Return a point on the first body that has it."""
         return self.held(point, self.mechanism.holders(point)[0])
 
     @cached_property

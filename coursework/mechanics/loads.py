@@ -67,7 +67,7 @@ class Acting:
 
     @property
     def is_moment(self) -> bool:
-        """Whether it turns a body."""
+        """True if it turns a body."""
         mechanism = self.linkage.mechanism
         return bool(self.load.moment) or (
             self.load.on in mechanism.names and self.load.on not in mechanism.points
@@ -75,7 +75,7 @@ class Acting:
 
     @property
     def turns_over(self) -> bool:
-        """Whether it changes its way with that of the motion."""
+        """True if it changes its way with that of the motion."""
         return self.load.against
 
     @property
@@ -96,7 +96,7 @@ class Acting:
         return None if self.load.table or self.follows else float(self.linkage.number(self._size))
 
     def followed(self, driver: np.ndarray) -> np.ndarray:
-        """The values of what it follows at driver's angles, radians."""
+        """Return the values of what it follows at driver's angles, radians."""
         return self._at(self.follows, driver)
 
     def _at(self, name: str, driver: np.ndarray) -> np.ndarray:
@@ -140,7 +140,7 @@ class Acting:
             return np.where(rate == 0, 0, rate / np.abs(rate))
 
     def pull(self, stance: Stance) -> Wrench:
-        """One newton along the line, or one N m."""
+        """Return one newton along the line, or one N m."""
         if self.is_moment:
             return Wrench.none(stance).turn(self.linkage.index[self.load.on], 1.0)
         return Wrench.none(stance).push(self._held, self._line(stance))
@@ -155,7 +155,7 @@ class Acting:
 
     @property
     def is_by_angle(self) -> bool:
-        """Whether its table goes by the driver's angle."""
+        """True if its table goes by the driver's angle."""
         return bool(self.load.table) and self.load.by in ("", self.linkage.driver)
 
     def sizes(self, driver: np.ndarray, here: np.ndarray | None = None) -> np.ndarray:
@@ -188,7 +188,8 @@ class Strokes:
     really: bool = False
 
     def along(self, size: Any, pace: Any, driver_way: Any, *, against: bool) -> Any:
-        """A load's size along its line, for the sign of its pace with the driver turning forward, and the driver's way."""
+        """Return a load's size along its line, for the sign of its pace with the driver turning forward, and
+        the driver's way."""
         if self.way:
             size = size * ((pace * driver_way if self.really else pace) == self.way)
         return -size * pace * driver_way if against else size

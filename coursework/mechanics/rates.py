@@ -82,7 +82,7 @@ class Stance:
         return self.origins[held.body] + self.arm(held)
 
     def direction(self, slide: SlideJoint) -> np.ndarray:
-        """Along which a slide goes: unit vectors."""
+        """Return the along which a slide goes: unit vectors."""
         return slide.along * self.headings[slide.on]
 
     # --------------------------------------------------------------- first order
@@ -135,7 +135,7 @@ class Stance:
         return row
 
     def _solved(self, right: np.ndarray) -> np.ndarray:
-        """Rates of the unknown coordinates for right sides ``(conditions, n)``."""
+        """Return the rates of the unknown coordinates for right sides ``(conditions, n)``."""
         if not self.linkage.unknowns:
             return np.zeros((0, self.count))
         matrix = np.moveaxis(self._conditions[:, 1:], -1, 0)
@@ -183,7 +183,7 @@ class Stance:
         return self.bend(held) * speed**2 + self.rate(held) * acceleration
 
     def coriolis(self, slide: SlideJoint, speed: np.ndarray | float) -> np.ndarray:
-        """The Coriolis term of a slide's point, m/s^2, signed: to the left of the slide's direction."""
+        """Return the Coriolis term of a slide's point, m/s^2, signed: to the left of the slide's direction."""
         return 2 * self.rates[slide.on] * self.sliding(slide) * speed**2
 
     def sliding(self, slide: SlideJoint) -> np.ndarray:
@@ -208,7 +208,7 @@ class Stance:
         return np.concatenate([np.zeros((1, self.count)), unknown])
 
     def _bent(self) -> np.ndarray:
-        """Second derivatives of the unknown coordinates by the joints."""
+        """Return second derivatives of the unknown coordinates by the joints."""
         rows = []
         still = np.zeros(self.turns.shape)
         origins = self._origin_bends(still)
@@ -234,7 +234,8 @@ class Stance:
         return found
 
     def _bend(self, held: Held, origins: np.ndarray, turning: np.ndarray) -> np.ndarray:
-        """Second derivative of a place, for second derivatives of the origins and of the bodies' angles."""
+        """Return second derivative of a place, for second derivatives of the origins and of the bodies'
+        angles."""
         return origins[held.body] + (1j * turning[held.body] - self.rates[held.body] ** 2) * self.arm(held)
 
     @cached_property
@@ -243,7 +244,7 @@ class Stance:
         return self._origin_bends(self.bends, self._coordinate_bends)
 
     def bend(self, held: Held) -> np.ndarray:
-        """Second derivative of a place by the driver's angle."""
+        """Return second derivative of a place by the driver's angle."""
         return self._bend(held, self.origin_bends, self.bends)
 
     # ---------------------------------------------------------------- certificate
@@ -256,12 +257,14 @@ class Stance:
 
 
 def no_rounding(pace: np.ndarray, size: float) -> np.ndarray:
-    """A pace with nothing where it is no more than rounding beside the size of a mechanism, or 1 for a turning body."""
+    """Return a pace with nothing where it is no more than rounding beside the size of a mechanism, or 1 for a
+    turning body."""
     return np.where(np.abs(pace) > 1e-12 * size, pace, np.where(np.isnan(pace), np.nan, 0.0))
 
 
 def solved(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Many small linear systems, shapes ``(n, k, k)`` and ``(n, k, columns)``; NaN where one is singular."""
+    """Return many small linear systems, shapes ``(n, k, k)`` and ``(n, k, columns)``; NaN where one is
+    singular."""
     try:
         return np.linalg.solve(matrix, right)
     except np.linalg.LinAlgError:

@@ -63,7 +63,7 @@ class Motion:
     evaluations: int = 0
 
     def at(self, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The state at increasing instants, shape ``(3, n)``, and the way the driver turns."""
+        """Return the state at increasing instants, shape ``(3, n)``, and the way the driver turns."""
         found, ways = np.empty((3, len(t))), np.empty(len(t))
         starts = np.array([phase.start for phase in self.phases])
         which = np.clip(np.searchsorted(starts, t, side="right") - 1, 0, len(starts) - 1)
@@ -101,7 +101,7 @@ class _Rows:
         self.output = self.first_position + len(self.positions) if with_output else None
 
     def borne(self, values: np.ndarray) -> np.ndarray:
-        """Normal forces under each wrench, shape ``(wrenches, normals)``."""
+        """Return the normal forces under each wrench, shape ``(wrenches, normals)``."""
         return values[self.wrenches : self.paces.start].reshape(self.wrenches, self.normals)
 
 
@@ -132,8 +132,9 @@ class Running:
         return (10 if self.rows.normals > 1 else 1) * (1 if self.table.steps else 50)
 
     def _functions(self, angles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Inertia, its growth, gravity and unit loads: what each asks of the drive, then of the contacts; unit friction the
-        same; the paces; the positions that loads go by. With the sizes of their terms."""
+        """Return inertia, its growth, gravity and unit loads: what each asks of the drive, then of the
+        contacts; unit friction the same; the paces; the positions that loads go by. With the sizes of their
+        terms."""
         forces = self.forces
         stance = forces.pose(angles)
         with np.errstate(all="ignore"):
@@ -165,7 +166,7 @@ class Running:
     # --------------------------------------------------------------- at an instant
 
     def _sizes(self, angle: float, values: np.ndarray, signs: np.ndarray, way: int) -> list[float]:
-        """The loads along their lines, for the signs of their paces."""
+        """Return the loads along their lines, for the signs of their paces."""
         found = []
         together = zip(self.forces.loads, self.forces.strokes, signs.tolist(), strict=False)
         for number, (acting, when, sign) in enumerate(together):
@@ -189,7 +190,8 @@ class Running:
         return self._balance(angle, speed, way, signs)[0]
 
     def _balance(self, angle: float, speed: float, way: int, signs: np.ndarray | None) -> tuple[float, float]:
-        """The acceleration, and what goes of the drive into the kinetic energy: per radian, without the inertia's."""
+        """Return the acceleration, and what goes of the drive into the kinetic energy: per radian, without
+        the inertia's."""
         self._count(angle)
         values = self.table.at(angle)
         efforts: list[float] = values[: self.rows.wrenches].tolist()
@@ -250,7 +252,8 @@ class Running:
     def _rubbed_by_one(
         self, at: _Instant, values: Sequence[float], sizes: Sequence[float], sign: float
     ) -> float:
-        """The same where one place rubs on one side or the other: in numbers, as most mechanisms have it."""
+        """Return the same where one place rubs on one side or the other: in numbers, as most mechanisms have
+        it."""
         n, first = self.rows.wrenches, 3 + self.rows.loads
         efforts, normals = values[:n], values[n : 2 * n]
         start = (at.lacking - efforts[1] * at.speed**2) / at.inertia
@@ -263,7 +266,8 @@ class Running:
         return efforts[first] * strength * abs(free) / slope if slope > 0 else math.nan
 
     def holding(self, angle: float) -> tuple[float, float]:
-        """The efforts between which the drive does not move the mechanism from rest, N m; infinite where it locks itself."""
+        """Return the efforts between which the drive does not move the mechanism from rest, N m; infinite
+        where it locks itself."""
         low, high = (self._holding(angle, way) for way in (-1, 1))
         return low, high
 
@@ -316,7 +320,7 @@ class Running:
 
     @staticmethod
     def _unrolled(places: np.ndarray, low: float, high: float) -> np.ndarray:
-        """The places of every turn between two angles, both left out."""
+        """Return the places of every turn between two angles, both left out."""
         if not len(places):
             return places
         turns = np.arange(math.floor(low / TURN) - 1, math.floor(high / TURN) + 2)
@@ -324,13 +328,14 @@ class Running:
         return found[(found > low + 1e-9) & (found < high - 1e-9)]
 
     def next_place(self, angle: float, way: int) -> float:
-        """The next of the turning places, beyond an angle; infinitely far where there is none."""
+        """Return the next of the turning places, beyond an angle; infinitely far where there is none."""
         ahead = (angle, angle + 1.01 * TURN) if way > 0 else (angle - 1.01 * TURN, angle)
         beyond = self._unrolled(self.turning_places, *ahead)
         return float(beyond[0] if way > 0 else beyond[-1]) if len(beyond) else way * math.inf
 
     def signs(self, angle: float, way: int) -> np.ndarray:
-        """Signs of the paces just beyond an angle, the way that the driver turns: they stay to the next turning place."""
+        """Return the signs of the paces just beyond an angle, the way that the driver turns: they stay to the
+        next turning place."""
         if not self.forces.loads and not self.forces.contacts:
             return np.empty(0)
         room = min(abs(self.next_place(angle, way) - angle) / 2, _BEYOND)
@@ -339,7 +344,7 @@ class Running:
     # ---------------------------------------------------------------------- phases
 
     def run(self, angle: float, speed: float, duration: float, rtol: float = 1e-9) -> Motion:
-        """The motion from an angle (radians) and a speed (rad/s), for a duration (s).
+        """Return the motion from an angle (radians) and a speed (rad/s), for a duration (s).
 
         Raises
         ------
@@ -366,7 +371,7 @@ class Running:
         return motion
 
     def _energy(self, angle: float, speed: float, duration: float) -> float:
-        """An energy to measure errors by: what the motion starts with, and what the drive could do."""
+        """Return an energy to measure errors by: what the motion starts with, and what the drive could do."""
         inertia = abs(float(self.table.at(angle)[0])) + self.forces.flywheel
         return 0.5 * inertia * speed**2 + abs(self.drive(speed) * speed) * duration + 1e-12
 

@@ -153,7 +153,7 @@ class Mechanism:
         return next(body for body in self.bodies if body.name == name)
 
     def holders(self, point: str) -> tuple[str, ...]:
-        """The bodies that have a point, in order; the ground first."""
+        """Return the bodies that have a point, in order; the ground first."""
         on_ground = (GROUND,) if point in self.ground else ()
         return (*on_ground, *(b.name for b in self.bodies if point in b.places))
 
@@ -183,7 +183,7 @@ class Mechanism:
         return tuple(dict.fromkeys(b.angle for b in self.bodies if isinstance(b.angle, str)))
 
     def driven_by(self, angle: str) -> str:
-        """The body that the drive turns.
+        """Return the body that the drive turns.
 
         Raises
         ------
@@ -208,7 +208,7 @@ class Mechanism:
         return tuple(dict.fromkeys(name for place in places for name in parameters(place)))
 
     def unfolded(self) -> Iterator[Place]:
-        """Everything that a number must be found for."""
+        """Yield everything that a number must be found for."""
         yield from self.ground.values()
         for body in self.bodies:
             yield from (*body.points.values(), body.mass, body.inertia)
@@ -266,14 +266,14 @@ class Mechanism:
 
 
 def parameters(place: Place) -> tuple[str, ...]:
-    """The quantities that a place is given by."""
+    """Return the quantities that a place is given by."""
     if isinstance(place, str):
         return (place,)
     return tuple(inspect.signature(place).parameters) if callable(place) else ()
 
 
 def number(place: Place, values: Mapping[str, Any]) -> Any:
-    """The number of a place."""
+    """Return the number of a place."""
     if isinstance(place, str):
         return values[place]
     return place(*(values[n] for n in parameters(place))) if callable(place) else place

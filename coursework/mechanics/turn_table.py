@@ -82,7 +82,7 @@ class TurnTable:
         return np.fft.irfft(padded * count, count, axis=1)
 
     def at(self, angle: float) -> np.ndarray:
-        """The functions at one angle, shape ``(m,)``."""
+        """Return the functions at one angle, shape ``(m,)``."""
         place = angle / self._step
         whole = math.floor(place)
         x = place - whole
@@ -91,7 +91,7 @@ class TurnTable:
         return self._coefficients[whole % self._count] @ powers
 
     def over(self, angles: np.ndarray) -> np.ndarray:
-        """The functions at many angles, shape ``(m, n)``."""
+        """Return the functions at many angles, shape ``(m, n)``."""
         place = angles / self._step
         whole = np.floor(place)
         powers = (place - whole)[:, None] ** np.arange(6)
@@ -114,6 +114,6 @@ class Untabulated:
 
 
 def tabulated(functions: Functions) -> TurnTable | Untabulated:
-    """A table where one can be had: the functions close around the turn and are smooth."""
+    """Return a table where one can be had: the functions close around the turn and are smooth."""
     table = TurnTable(functions)
     return table if table.steps else Untabulated(functions)

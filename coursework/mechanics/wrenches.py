@@ -71,7 +71,7 @@ class Wrench:
 
 
 def weight(stance: Stance, downwards: complex = -1j * GRAVITY) -> Wrench:
-    """The weights; ``downwards`` is the acceleration of gravity."""
+    """Return the weights; ``downwards`` is the acceleration of gravity."""
     wrench = Wrench.none(stance)
     for own in stance.linkage.masses:
         wrench.push(Held(own.body, own.centre), own.mass * downwards)
@@ -79,17 +79,18 @@ def weight(stance: Stance, downwards: complex = -1j * GRAVITY) -> Wrench:
 
 
 def inertia_at_rate(stance: Stance) -> Wrench:
-    """Inertia for a driver at a constant 1 rad/s."""
+    """Return the inertia for a driver at a constant 1 rad/s."""
     return _inertia(stance, stance.bend, stance.bends)
 
 
 def inertia_at_start(stance: Stance) -> Wrench:
-    """Inertia for a driver at rest that accelerates by 1 rad/s^2: its effort is the generalised inertia, kg m^2."""
+    """Return the inertia for a driver at rest that accelerates by 1 rad/s^2: its effort is the generalised
+    inertia, kg m^2."""
     return _inertia(stance, stance.rate, stance.rates)
 
 
 def _inertia(stance: Stance, motion: Callable[[Held], np.ndarray], turning: np.ndarray) -> Wrench:
-    """Against accelerations of places, and of the bodies' angles."""
+    """Return the against accelerations of places, and of the bodies' angles."""
     wrench = Wrench.none(stance)
     for own in stance.linkage.masses:
         held = Held(own.body, own.centre)

@@ -53,7 +53,7 @@ class Motor:
             )
 
     def at(self, speed: float) -> float:
-        """The torque at a speed of the driver."""
+        """Return the torque at a speed of the driver."""
         return self.torque * (1.0 - speed / self.no_load_speed) if self.no_load_speed else self.torque
 
 
@@ -74,13 +74,13 @@ class Added:
 
     @property
     def is_own(self) -> bool:
-        """Whether it says anything that the exercise does not know of."""
+        """True if it says anything that the exercise does not know of."""
         return (
             bool(self.bodies or self.loads or self.friction or self.lengths) or self.gravity != -1j * GRAVITY
         )
 
     def to(self, mechanism: Mechanism) -> Mechanism:
-        """The mechanism with it.
+        """Return the mechanism with it.
 
         Raises
         ------

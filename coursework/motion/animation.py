@@ -144,7 +144,8 @@ class Animation(Reel):
         paper_mm: tuple[float, float] = PAPER_MM,
         frames: Sequence[tuple[Element, ...]] | None = None,
     ) -> Drawing:
-        """Everything at every instant, with what these effects show, in a box of this size; ``frames`` stand in place of its own."""
+        """Return everything at every instant, with what these effects show, in a box of this size; ``frames``
+        stand in place of its own."""
         arrows, spots = [], []
         for name, effect, v in self._vectors:
             if effect in effects and effect in self.scales:
@@ -164,7 +165,7 @@ class Animation(Reel):
         )
 
     def _keys(self, effects: set[str]) -> list[Key]:
-        """The legend: for each effect an arrow of a round value."""
+        """Return the legend: for each effect an arrow of a round value."""
         low, high = extent(self.frames)
         said = words(self.variant.lang)["motion"]
         size, keys = max((high - low).real, (high - low).imag), []
@@ -194,7 +195,7 @@ class Animation(Reel):
         return typeset(said, self.variant.lang) or self.title
 
     def svg(self) -> str:
-        """The moving figure as SVG with no script; it stands still for who wants no motion."""
+        """Return the moving figure as SVG with no script; it stands still for who wants no motion."""
         return moving_svg(
             self.drawing(self.effects),
             order=self.order,
@@ -216,7 +217,7 @@ class Animation(Reel):
         return tuple(still_svg(shown, instant, **said) for instant in turned)
 
     def _key_times(self) -> str:
-        """The same for SVG; nothing when they are evenly spread."""
+        """Return the same for SVG; nothing when they are evenly spread."""
         if np.ptp(np.diff(self.times)) < 1e-9:
             return ""
         return ";".join([*(f"{t:.5f}" for t in self.times[:-1]), "1"])
@@ -226,7 +227,8 @@ class Animation(Reel):
 
 
 def _without_sizes(frame: Sequence[Element]) -> tuple[Element, ...]:
-    """A figure without its angles and the letters of its lengths; points keep their names, bodies their numbers."""
+    """Return a figure without its angles and the letters of its lengths; points keep their names, bodies
+    their numbers."""
     kept = (one for one in frame if not isinstance(one, (angle_mark, dimension)))
     return tuple(
         replace(one, label=None)
@@ -237,6 +239,6 @@ def _without_sizes(frame: Sequence[Element]) -> tuple[Element, ...]:
 
 
 def _round_below(value: float) -> float:
-    """The largest of 1, 2 and 5 times a power of ten that is not above a value."""
+    """Return the largest of 1, 2 and 5 times a power of ten that is not above a value."""
     power = 10.0 ** math.floor(math.log10(value) + 1e-12)
     return max(m * power for m in (1, 2, 5) if m * power <= value * (1 + 1e-12))

@@ -47,7 +47,7 @@ def check_effect(effect: str, exercise: CourseExercise) -> None:
 
 
 def of_exercise(exercise: CourseExercise, driver: Driver) -> Mapping[str, tuple[str, ...]]:
-    """The quantities of each effect, in order."""
+    """Return the quantities of each effect, in order."""
     stated = exercise.solution.effects
     usual = _of_loops(exercise) if exercise.solution.loops else _of_parts(exercise, driver)
     given = exercise.spec.given

@@ -70,7 +70,7 @@ class Reel:
         return drive
 
     def _with_driver_at(self, angle: Any) -> dict[str, Any]:
-        """The given quantities, the driver at an angle, degrees, or at each of an array of angles."""
+        """Return the given quantities, the driver at an angle, degrees, or at each of an array of angles."""
         given = self.variant.given
         if self.film is not None:
             return {**given, self.film.angle: angle}
@@ -86,7 +86,7 @@ class Reel:
     # ------------------------------------------------------------------- instants
 
     def _elements(self, angle: float) -> tuple[Element, ...] | None:
-        """The figure's elements at an angle of the driver; None where the mechanism does not close."""
+        """Return the figure's elements at an angle of the driver; None where the mechanism does not close."""
         try:
             return self._elements_or_fault(angle)
         except (CannotAssemble, Undefined, WrongValue):
@@ -137,7 +137,7 @@ class Reel:
         return np.array(ordered), [closing[a] for a in ordered], ordered.index(start), False
 
     def _reel(self, film: Film) -> tuple[np.ndarray, list[tuple[Element, ...]], int, bool]:
-        """The same for a film: from 0, by equal steps and a last one that may be shorter."""
+        """Return the same for a film: from 0, by equal steps and a last one that may be shorter."""
         place = f"{self.variant.exercise.solution.source}: FILM"
         if film.speed not in self.variant.given:
             given = ", ".join(self.variant.given)
@@ -154,7 +154,8 @@ class Reel:
         return angles, [self._elements_or_fault(angle) for angle in angles], first, True
 
     def _toward_limit(self, last: float, step: float, back: int) -> dict[float, tuple[Element, ...]]:
-        """The limit beyond the last angle, and more angles before it, where the links turn as its square root."""
+        """Return the limit beyond the last angle, and more angles before it, where the links turn as its
+        square root."""
         limit, elements = self._limit(last, step)
         if abs(limit - last) < 1e-3 * abs(step):
             return {}
@@ -164,7 +165,7 @@ class Reel:
         return {limit: elements} | {angle: one for angle, one in found.items() if one is not None}
 
     def _limit(self, angle: float, step: float) -> tuple[float, tuple[Element, ...]]:
-        """The last angle that closes between one that does and the next, which does not."""
+        """Return the last angle that closes between one that does and the next, which does not."""
         inside, outside = 0.0, 1.0
         elements = self._elements_or_fault(angle)
         for _ in range(30):
@@ -193,12 +194,13 @@ class Reel:
 
     @property
     def turns(self) -> bool:
-        """Whether the driver turns fully; otherwise the mechanism swings between its limits."""
+        """True if the driver turns fully; otherwise the mechanism swings between its limits."""
         return self._cycle[3]
 
     @property
     def closed(self) -> bool:
-        """Whether the last instant is followed by the first as any by the next; neither in a swing nor in a film."""
+        """True if the last instant is followed by the first as any by the next; neither in a swing nor in a
+        film."""
         return self.turns and self.film is None
 
     @property

@@ -196,7 +196,7 @@ class _Reader:
         return tuple(found)
 
     def _amount(self, at: Path_, unit: str, otherwise: Any = None) -> Any:
-        """A number in a unit; a bare number is in that unit already."""
+        """Return a number in a unit; a bare number is in that unit already."""
         found = self._at(at)
         return otherwise if found is None else self._number(at, found, unit)
 
@@ -221,7 +221,7 @@ class _Reader:
         return self.course[name]
 
     def _given(self, exercise: CourseExercise) -> dict[str, Any]:
-        """The values of a variant, with those that the file names instead."""
+        """Return the values of a variant, with those that the file names instead."""
         seed = self.table.get("seed", 0)
         found = dict(self._told(("seed",), exercise.variant, seed).given)
         for name, value in self._table(("given",)).items():
@@ -335,7 +335,7 @@ class _Reader:
         return mechanism is not None and name in mechanism.names and name not in mechanism.points
 
     def _size(self, at: Path_, kind: str, exercise: CourseExercise) -> Place:
-        """A number, or a quantity of the exercise by its name."""
+        """Return a number, or a quantity of the exercise by its name."""
         found, unit = self._at((*at, kind)), {"force": "N", "moment": "N*m"}[kind]
         if found is None:
             if self._at((*at, "table")) is None:

@@ -34,7 +34,8 @@ class Table:
     balance: float = math.nan  #: largest energy balance error over the energy exchanged; for motions in time
 
     def rows(self, every: int = 1) -> list[dict[str, Any]]:
-        """A row an instant, or every so manieth; headers with units, empty where something does not exist."""
+        """Return a row an instant, or every so manieth; headers with units, empty where something does not
+        exist."""
         heads = [f"{name} [{self.units[name]}]" for name in self.columns]
         values = zip(*(c[::every].tolist() for c in self.columns.values()), strict=True)
         return [{h: v if math.isfinite(v) else "" for h, v in zip(heads, row, strict=True)} for row in values]
@@ -71,7 +72,7 @@ class Scene(Showing):
     # ----------------------------------------------------------------------- cycle
 
     def over_cycle(self, count: int = 360) -> Table:
-        """The scene over one turn of the driver, ``count`` equal steps and the end.
+        """Return the scene over one turn of the driver, ``count`` equal steps and the end.
 
         Angles are whole multiples of the step, never accumulated.
         """
@@ -116,7 +117,7 @@ class Scene(Showing):
             yield f"not everything exists at {self.driver.angle} = {listed} deg{more}: a dead centre"
 
     def _empty_effects(self) -> Iterator[str]:
-        """Effects that are called and for which the scene has no data."""
+        """Yield the effects that are called and for which the scene has no data."""
         if self.exercise.solution.mechanism is None or (self._graph_effects and not self.has_own_data):
             return
         data = self.with_data()
@@ -132,7 +133,7 @@ class Scene(Showing):
 
     @property
     def _resists(self) -> bool:
-        """Whether something goes against the motion."""
+        """True if something goes against the motion."""
         if self.exercise.solution.mechanism is None:
             return False
         return bool(self.contacts) or (
@@ -163,7 +164,7 @@ class Scene(Showing):
     # ------------------------------------------------------------------------ time
 
     def running(self, drive: Motor) -> Running:
-        """The equation of motion under a drive.
+        """Return the equation of motion under a drive.
 
         Raises
         ------
@@ -182,14 +183,15 @@ class Scene(Showing):
         return Running(self.forces, drive.at, output)
 
     def _output_pace(self, angles: np.ndarray) -> np.ndarray:
-        """Rate of the output per unit of the driver's speed: 0 at a dead centre."""
+        """Return the rate of the output per unit of the driver's speed: 0 at a dead centre."""
         output, given = self.driver.output, self._at_unit_speed(np.degrees(angles))
         return np.broadcast_to(self.exercise.solve(**given, only=output)[output], angles.shape)
 
     def in_time(
         self, drive: Motor | float, duration: float, *, rtol: float = 1e-9, count: int = 500
     ) -> Table:
-        """The motion from the given position and speed under its drive, a :class:`Motor` or a constant torque in N m.
+        """Return the motion from the given position and speed under its drive, a :class:`Motor` or a constant
+        torque in N m.
 
         One degree of freedom: every position is computed from the driver's angle by the closed form, so that nothing
         drifts apart. Dead centres of the driver's ``output`` are rows of the table, marked in ``dead_centre``. With

@@ -44,7 +44,7 @@ class Showing(Staged):
         )
 
     def shown_by(self, effect: str) -> tuple[str, ...]:
-        """The exercise's quantities that an effect shows."""
+        """Return the exercise's quantities that an effect shows."""
         return self._of(OF_FORCES if effect in self._graph_effects else effect)
 
     @property
@@ -84,7 +84,8 @@ class Showing(Staged):
         return tuple(self._motion_of_solution(0.0))
 
     def _motion_of_solution(self, angle: Any) -> Mapping[str, Moving]:
-        """The points that the solution's ``motion`` moves, at driver's angles, degrees; none without one."""
+        """Return the points that the solution's ``motion`` moves, at driver's angles, degrees; none without
+        one."""
         solution = self.exercise.solution
         if solution.motion is None:
             return {}
@@ -94,7 +95,8 @@ class Showing(Staged):
         return graph.evaluate(("motion",), known, self._graph_effects)["motion"]
 
     def _of_what_the_solution_leaves_out(self) -> list[str]:
-        """Velocities and accelerations of moving points, where the effect is called and no quantity tells it."""
+        """Return the velocities and accelerations of moving points, where the effect is called and no
+        quantity tells it."""
         points = [p for p in self.linkage.mechanism.points if p not in self.linkage.mechanism.ground]
         return [
             f"{effect} {point}"
@@ -150,7 +152,8 @@ class Showing(Staged):
         return {n: np.broadcast_to(found[n], shape) for n in dict.fromkeys([*self.quantities, *found])}
 
     def _advantage(self, driven: Mapping[str, Any]) -> dict[str, Any]:
-        """Effort that comes out for effort that goes in: the driver's speed over that of its output."""
+        """Return the effort that comes out for effort that goes in: the driver's speed over that of its
+        output."""
         output = self.driver.output
         if not output or not self.driver.speed:
             raise WrongValue(f"{self.exercise.name}: its driver names no output, so no advantage is known")
@@ -194,7 +197,8 @@ class Showing(Staged):
         speed: np.ndarray,
         acceleration: np.ndarray,
     ) -> dict[tuple[str, str], shown.Columns]:
-        """The motions of points, by pieces of the instants, so that a long cycle takes no more memory than its columns."""
+        """Return the motions of points, by pieces of the instants, so that a long cycle takes no more memory
+        than its columns."""
         parts: list[dict[tuple[str, str], shown.Columns]] = []
         for start in range(0, len(angles), _PIECE) if points else ():
             piece = slice(start, start + _PIECE)
@@ -209,7 +213,7 @@ class Showing(Staged):
         }
 
     def _points_of_solution(self, angle: np.ndarray) -> shown.Columns:
-        """The points that the solution itself moves: a mechanism in space states no bodies in a plane."""
+        """Return the points that the solution itself moves: a mechanism in space states no bodies in a plane."""
         points = self._motion_of_solution(angle)
         found: shown.Columns = {}
         for kind, of in map(shown.what, self.extra):
@@ -225,11 +229,12 @@ class Showing(Staged):
         return {name: (0.5 * inertia * speed**2, "J")}
 
     def _moved(self) -> Forces:
-        """Inertia alone, with the flywheel that is called."""
+        """Return the inertia alone, with the flywheel that is called."""
         return replace(self.forces, downwards=0j, inertia=True, loads=(), contacts=())
 
     def moving_points(self, angle: np.ndarray) -> dict[str, Moving]:
-        """The points of the bodies at driver's angles, degrees: mm, mm/s, mm/s^2; rates where the driver has a speed."""
+        """Return the points of the bodies at driver's angles, degrees: mm, mm/s, mm/s^2; rates where the
+        driver has a speed."""
         stance, linkage = self.pose(np.radians(angle)), self.linkage
         points = [p for p in linkage.mechanism.points if p not in linkage.mechanism.ground]
         sliding = {s.name.removesuffix(" slide"): s for s in shown.turning_slides(linkage)}
@@ -259,7 +264,7 @@ class Showing(Staged):
         return self.evaluated(wanted)
 
     def evaluated(self, wanted: Sequence[str]) -> tuple[str, ...]:
-        """The quantities that are evaluated for some, in order."""
+        """Return the quantities that are evaluated for some, in order."""
         graph = self.exercise.solution.graph
         names = {**self.exercise.intake.defaults, **self._driven(0.0)}
         given = frozenset(names) & self.exercise.quantity_names

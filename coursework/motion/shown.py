@@ -25,7 +25,7 @@ Columns = dict[str, tuple[Any, str]]  #: values and unit, by name
 
 
 def what(name: str) -> tuple[str, str]:
-    """The kind and the point or joint of ``"velocity B"``; no kind for the name of a quantity."""
+    """Return the kind and the point or joint of ``"velocity B"``; no kind for the name of a quantity."""
     kind, _, of = name.strip().partition(" ")
     return (kind, of.strip()) if of and kind in (*OF_POINTS, REACTION) else ("", name.strip())
 
@@ -55,12 +55,12 @@ def check(name: str, linkage: Linkage, quantities: Iterable[str]) -> None:
 
 
 def turning_slides(linkage: Linkage) -> tuple[SlideJoint, ...]:
-    """The slides whose guide turns: there Coriolis has a term."""
+    """Return the slides whose guide turns: there Coriolis has a term."""
     return tuple(s for s in linkage.slides if linkage.coordinates[s.on] != -1)
 
 
 def joint_points(linkage: Linkage) -> dict[str, list[str]]:
-    """The joints at each point, by what they are called in a scene."""
+    """Return the joints at each point, by what they are called in a scene."""
     found: dict[str, list[str]] = {}
     names = [
         *(p.name for p in linkage.pins),
@@ -74,7 +74,7 @@ def joint_points(linkage: Linkage) -> dict[str, list[str]]:
 
 
 def of_point(kind: str, point: str, stance: Stance, speed: np.ndarray, acceleration: np.ndarray) -> Columns:
-    """Two components and, of a rate, its length: mm, mm/s, mm/s^2, in the ground's frame."""
+    """Return two components and, of a rate, its length: mm, mm/s, mm/s^2, in the ground's frame."""
     if kind == "coriolis":
         (slide,) = (s for s in turning_slides(stance.linkage) if s.name.removesuffix(" slide") == point)
         return {f"a_coriolis_{point}": (stance.coriolis(slide, speed) / MM, "mm/s^2")}
@@ -88,7 +88,7 @@ def of_point(kind: str, point: str, stance: Stance, speed: np.ndarray, accelerat
 
 
 def of_moving(kind: str, point: str, moving: Moving) -> Columns:
-    """The same of a point that a solution moves itself; nothing where it does not say it."""
+    """Return the same of a point that a solution moves itself; nothing where it does not say it."""
     values = getattr(moving, kind)
     if values is None:
         return {}
@@ -112,7 +112,7 @@ def of_joint(point: str, linkage: Linkage, borne: Borne) -> Columns:
 
 
 def _of_one(name: str, joints: Mapping[str, np.ndarray], rubs: Mapping[str, np.ndarray]) -> Columns:
-    """A pin's force, a slide's normal force, moment and friction, or a gear's."""
+    """Return a pin's force, a slide's normal force, moment and friction, or a gear's."""
     called = name.removesuffix(" slide").replace(" ", "_")
     if f"{name}_x" in joints:
         force = joints[f"{name}_x"] + 1j * joints[f"{name}_y"]

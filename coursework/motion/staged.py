@@ -51,7 +51,7 @@ class Staged:
             self.mechanism  # noqa: B018  # is refused here where there is none
 
     def without(self, effect: str) -> Self:
-        """The same, less one effect; what it shows stays."""
+        """Return the same, less one effect; what it shows stays."""
         return replace(self, effects=tuple(e for e in self.effects if e != effect))
 
     # -------------------------------------------------------------------- driver
@@ -80,23 +80,24 @@ class Staged:
 
     @property
     def has_own_data(self) -> bool:
-        """Whether the scene brings data that the exercise's own formulas of forces do not know of."""
+        """True if the scene brings data that the exercise's own formulas of forces do not know of."""
         return self.added.is_own or FLYWHEEL in self.effects
 
     def _driven(self, angle: Any) -> dict[str, Any]:
-        """The given values with the driver at an angle, degrees."""
+        """Return the given values with the driver at an angle, degrees."""
         if self.exercise.spec.driver is None:
             return dict(self.given)
         return {**self.given, **self.exercise.posed(self._accepted, angle)}
 
     def _at_unit_speed(self, angle: Any) -> dict[str, Any]:
-        """The same with the driver turning at a constant 1 rad/s: rates are then derivatives by its angle."""
+        """Return the same with the driver turning at a constant 1 rad/s: rates are then derivatives by its
+        angle."""
         driver = self.driver
         rest = {driver.acceleration: 0.0} if driver.acceleration else {}
         return {**self._driven(angle), driver.speed: 1.0, **rest}
 
     def _value(self, name: str) -> float:
-        """A given value of the driver's; 0 where the exercise has none."""
+        """Return a given value of the driver's; 0 where the exercise has none."""
         return float(self._accepted.get(name, 0.0)) if name else 0.0
 
     @property
@@ -132,7 +133,7 @@ class Staged:
         return self.effects or ("position",)
 
     def with_data(self) -> tuple[str, ...]:
-        """The effects of forces for which there are data: masses, loads, friction, a flywheel."""
+        """Return the effects of forces for which there are data: masses, loads, friction, a flywheel."""
         if self.exercise.solution.mechanism is None:
             return self.exercise.solution.graph.effects()
         mechanism, found = self.mechanism, []
@@ -198,8 +199,8 @@ class Staged:
                     )
 
     def pose(self, angles: np.ndarray, *, by_joints: bool = False) -> Stance:
-        """The mechanism at driver's angles, radians, shape ``(n,)``; its rates by the solution's own formulas where it
-        has all of them, and by the joints where it has not, or where that is asked."""
+        """Return the mechanism at driver's angles, radians, shape ``(n,)``; its rates by the solution's own
+        formulas where it has all of them, and by the joints where it has not, or where that is asked."""
         linkage = self.linkage
         bodies = linkage.mechanism.bodies
         shifting = tuple(n for body in bodies if body.origin is not None for n in parameters(body.origin))
@@ -217,7 +218,8 @@ class Staged:
         return Stance(linkage, turns, None if by_joints else partial(self._stated_rates, degrees), shifts)
 
     def _stated_rates(self, degrees: np.ndarray, order: int) -> np.ndarray | None:
-        """First or second derivatives of the unknown angles by the driver's, as the solution's own rates give them."""
+        """Return first or second derivatives of the unknown angles by the driver's, as the solution's own
+        rates give them."""
         names = self._rates_by_name[order - 1]
         if names is None or not self.driver.speed:
             return None
@@ -261,7 +263,7 @@ class Staged:
         )
 
     def _acting(self, load: Load) -> Acting:
-        """A load on the mechanism; a quantity of it that the driver moves is followed over the turn.
+        """Return a load on the mechanism; a quantity of it that the driver moves is followed over the turn.
 
         Raises
         ------
@@ -297,7 +299,7 @@ class Staged:
         return self.exercise.solution.graph.descendants(placing)
 
     def _position(self, name: str, angles: np.ndarray) -> np.ndarray:
-        """A quantity of the exercise at driver's angles, radians."""
+        """Return a quantity of the exercise at driver's angles, radians."""
         degrees = np.degrees(angles)
         return np.asarray(self.exercise.solve(**self._driven(degrees), only=name)[name])
 

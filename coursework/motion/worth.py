@@ -94,7 +94,7 @@ class Budget:
 
 
 def budget(scene: Scene, run: Run, tolerance: float = TOLERANCE) -> Budget:
-    """The worth of every effect of a scene; ``run`` runs one, over a cycle or in time.
+    """Return the worth of every effect of a scene; ``run`` runs one, over a cycle or in time.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def budget(scene: Scene, run: Run, tolerance: float = TOLERANCE) -> Budget:
 
 
 def _others(scene: Scene, run: Run, effects: Sequence[str]) -> tuple[dict[str, Scene], dict[str, str]]:
-    """The scene without each effect, and why it does not run without some."""
+    """Return the scene without each effect, and why it does not run without some."""
     found, needed = {}, {}
     for effect in effects:
         try:
@@ -127,7 +127,7 @@ def _others(scene: Scene, run: Run, effects: Sequence[str]) -> tuple[dict[str, S
 
 
 def _times(scenes: Mapping[str, Scene], run: Run) -> dict[str, list[float]]:
-    """Seconds of each scene, in rounds that run all of them in turn."""
+    """Return the seconds of each scene, in rounds that run all of them in turn."""
     found: dict[str, list[float]] = {name: [] for name in scenes}
     started = time.perf_counter()
     for number in range(_ROUNDS):
@@ -192,7 +192,8 @@ def _rms(values: np.ndarray) -> float:
 
 
 def _lacking(scene: Scene, run: Run, whole: Table) -> Iterator[Worth]:
-    """Effects for which the scene has data and which it does not call, where it shows forces or moves in time."""
+    """Yield the effects for which the scene has data and which it does not call, where it shows forces or
+    moves in time."""
     for effect in scene.with_data():
         if effect in scene.effects:
             continue

@@ -159,7 +159,7 @@ class Construction:
         return tuple(steps)
 
     def _told(self, stage: Stage) -> str:
-        """A stage in words."""
+        """Return a stage in words."""
         text = " ".join(self._sentences(stage))
         if stage is not self.polygon.stages[0]:
             return text
@@ -199,7 +199,7 @@ class Construction:
         return listed((f"${name}$" for name in names), self.lang)
 
     def svg(self) -> str:
-        """The whole polygon as SVG, at true size."""
+        """Return the whole polygon as SVG, at true size."""
         return self.figure.svg()
 
     def _repr_svg_(self) -> str:
@@ -230,7 +230,7 @@ class _Drawing:
         yield from self._points(stage.points)
 
     def _line(self, side: Side) -> Element:
-        """The line of a side, which passes both its ends."""
+        """Return the line of a side, which passes both its ends."""
         p, q = self.at[side.start], self.at[side.end]
         ahead = self.beyond * side.along * (1 if (side.value * side.along.conjugate()).real >= 0 else -1)
         return line(p - ahead, q + ahead, dashed=True)
@@ -241,7 +241,7 @@ class _Drawing:
             yield vector(p, q - p, side.name if self.named else None)
 
     def _points(self, names: Iterable[str]) -> Iterator[Element]:
-        """Dots, one for points that are one on paper, with all their names."""
+        """Yield dots, one for points that are one on paper, with all their names."""
         for name in names:
             if name in self.shown:
                 continue
@@ -250,7 +250,7 @@ class _Drawing:
             yield point(self.at[name], r",\ ".join(there), self._outward(name))
 
     def _outward(self, name: str) -> float | None:
-        """Away from the sides that meet at a point, degrees."""
+        """Return the away from the sides that meet at a point, degrees."""
         ways = 0j
         for side in self.polygon.sides:
             if name in (side.start, side.end):

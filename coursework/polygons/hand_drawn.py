@@ -77,11 +77,11 @@ class Drawing:
     )  #: mm on paper: each point from those before it
 
     def is_right(self, point: str) -> bool:
-        """Whether the point is drawn and its vectors are right."""
+        """Return whether the point is drawn and its vectors are right."""
         return point not in self.faults
 
     def follows(self, point: str) -> bool:
-        """Whether it is right only as it follows from an earlier point that is not."""
+        """Return whether it is right only as it follows from an earlier point that is not."""
         return self.is_right(point) and any(q in self.faults for q in ancestors(self.polygon, point))
 
     def length_fault(self, start: str, end: str, measured: float) -> str:
@@ -101,12 +101,13 @@ class Drawing:
 
 
 def is_scale(polygon: Polygon, scale: float) -> bool:
-    """Whether the polygon can be drawn at a scale: a positive one, at which it is not beyond any paper."""
+    """Return whether the polygon can be drawn at a scale: a positive one, at which it is not beyond any
+    paper."""
     return 0 < scale < float("inf") and polygon.size <= MOST_MM * scale
 
 
 def on_paper(x: float, y: float) -> complex:
-    """A drawn point or arrow, brought back to the widest of papers, so that it can be computed with."""
+    """Return a drawn point or arrow, brought back to the widest of papers, so that it can be computed with."""
     return complex(*(max(-MOST_MM, min(MOST_MM, float(c))) for c in (x, y)))
 
 
@@ -116,7 +117,7 @@ def judge_drawing(
     scale: float | None = None,
     tolerance: float = TOLERANCE_MM,
 ) -> Drawing:
-    """Judge drawn points against the polygon that they should make.
+    """Return the judge drawn points against the polygon that they should make.
 
     Parameters
     ----------
@@ -189,7 +190,7 @@ def vector_fault(drawn: complex, right: complex, width: float) -> str:
 
 
 def ancestors(polygon: Polygon, point: str) -> frozenset[str]:
-    """The points, but for the pole, that a point is found from."""
+    """Return the points, but for the pole, that a point is found from."""
     found: set[str] = set()
     waiting = [point]
     while waiting:
@@ -207,7 +208,7 @@ def _anchor(side: Side, point: str) -> str:
 
 
 def _split(vector: complex, along: complex) -> tuple[float, float]:
-    """Its components along a unit vector, and 90 degrees ahead."""
+    """Return its components along a unit vector, and 90 degrees ahead."""
     turned = vector * along.conjugate()
     return turned.real, turned.imag
 
@@ -282,7 +283,7 @@ def _crossing(
 
 
 def _is_spread(here: Mapping[str, complex], drawn: Mapping[str, complex], width: float) -> bool:
-    """Whether the points drawn so far are more than one spot."""
+    """Return whether the points drawn so far are more than one spot."""
     first, *others = (drawn[q] for q in here if q in drawn)
     return any(abs(z - first) > 2 * width for z in others)
 
@@ -293,7 +294,8 @@ def _off(side: Side, there: complex, through: complex) -> float:
 
 
 def _through(side: Side, there: complex, names: list[str], here: Mapping[str, complex], width: float) -> str:
-    """Through which of these points a side's line goes that a drawn point is on; none when through none."""
+    """Return the through which of these points a side's line goes that a drawn point is on; none when through
+    none."""
     nearest = min(names, key=lambda q: _off(side, there, here[q]), default="")
     return nearest if nearest and _off(side, there, here[nearest]) <= width else ""
 
@@ -313,7 +315,7 @@ def _meeting(sides: tuple[Side, ...], through: list[complex]) -> complex | None:
 def _scale(
     polygon: Polygon, points: Mapping[str, complex], stated: float | None, width: float
 ) -> tuple[float, bool]:
-    """The scale to judge at, and whether the stated one is it.
+    """Return the scale to judge at, and whether the stated one is it.
 
     Each known vector is right for a range of scales. The stated scale is taken, unless it makes none of them
     right and another makes several right; without one, that which makes most of them right.
@@ -344,7 +346,7 @@ def _ranges(polygon: Polygon, points: Mapping[str, complex], width: float) -> It
 
 
 def _most_covered(ranges: list[tuple[float, float]]) -> tuple[float, int]:
-    """The middle of what most of the ranges have in common, and their number; of several, the first's.
+    """Return the middle of what most of the ranges have in common, and their number; of several, the first's.
 
     A vector as short as the tolerance is right down to no length at all: it bounds a scale, and tells none.
     """
@@ -359,7 +361,7 @@ def _most_covered(ranges: list[tuple[float, float]]) -> tuple[float, int]:
 
 
 def _by_length(polygon: Polygon, points: Mapping[str, complex]) -> float:
-    """The scale at which the first known vector has its length, whatever its direction."""
+    """Return the scale at which the first known vector has its length, whatever its direction."""
     for side in polygon.sides:
         if side.is_known and side.value and side.start in points and side.end in points:
             length = abs(points[side.end] - points[side.start])

@@ -26,14 +26,14 @@ def polygon_of_accelerations(*pieces: Sides, scale: float | None = None) -> Poly
 def crank_v(
     A: str, line: str, vector: complex, omega: float, number: str = "2", length: str = "r_2"
 ) -> Sides:
-    """A crank of known rate about a fixed point."""
+    """Return a crank of known rate about a fixed point."""
     return (turning("p_v", A.lower(), A, line, vector, omega, rf"{length} \left|\omega_{number}\right|"),)
 
 
 def crank_a(
     A: str, line: str, vector: complex, omega: float, alpha: float = 0.0, length: str = "r_2"
 ) -> Sides:
-    """The same; one that turns steadily has no tangential part."""
+    """Return the same; one that turns steadily has no tangential part."""
     a = A.lower()
     square, growth = rf"{length}\,\omega_2^2", rf"{length} \left|\alpha_2\right|"
     if not alpha:
@@ -45,7 +45,7 @@ def crank_a(
 
 
 def two_bars_v(B: str, A: str, C: str, AB: complex, omega: float, CB: complex, omega_C: float) -> Sides:
-    """The bar AB, whose end A is known, meets at B a bar that turns about the fixed point C."""
+    """Return the bar AB, whose end A is known, meets at B a bar that turns about the fixed point C."""
     a, b = A.lower(), B.lower()
     return (
         turning(a, b, f"{B}/{A}", A + B, AB, omega),
@@ -58,7 +58,7 @@ def two_bars_a(
     AB: complex, omega: float, alpha: float, length: str,
     CB: complex, omega_C: float, alpha_C: float, length_C: str,
 ) -> Sides:  # fmt: skip
-    """The same: the normal parts are known from the velocities."""
+    """Return the same: the normal parts are known from the velocities."""
     a, b = A.lower(), B.lower()
     return (
         normal(a, f"{b}'", f"{B}/{A}", A + B, AB, omega, rf"V_{{{B}/{A}}}^2 / {length}"),
@@ -70,7 +70,7 @@ def two_bars_a(
 
 
 def slider_v(B: str, A: str, AB: complex, omega: float, v: complex) -> Sides:
-    """The rod AB, whose end A is known, carries at B a slider that goes along x."""
+    """Return the rod AB, whose end A is known, carries at B a slider that goes along x."""
     a, b = A.lower(), B.lower()
     return (
         turning(a, b, f"{B}/{A}", A + B, AB, omega),
@@ -90,8 +90,8 @@ def slider_a(
 
 
 def guide_v(A: str, of_guide: str, line: str, vector: complex, omega: float, sliding: float) -> Sides:
-    """A guide that turns about a fixed point, and the block A that slides on it; ``vector`` goes from the guide's
-    pivot to A, ``sliding`` is positive away from it. ``of_guide`` is the guide's own point at A."""
+    """Return a guide that turns about a fixed point, and the block A that slides on it; ``vector`` goes from
+    the guide's pivot to A, ``sliding`` is positive away from it. ``of_guide`` is the guide's own point at A."""
     a, own = A.lower(), of_guide.lower()
     along = vector / abs(vector)
     return (
@@ -105,7 +105,8 @@ def guide_a(
     vector: complex, omega: float, alpha: float, sliding: float, gain: float,
     length: str, rate: str,
 ) -> Sides:  # fmt: skip
-    """The same; the Coriolis term is laid off back from the image of A, ``gain`` is the rate of ``sliding``."""
+    """Return the same; the Coriolis term is laid off back from the image of A, ``gain`` is the rate of
+    ``sliding``."""
     a, own = A.lower(), of_guide.lower()
     along = vector / abs(vector)
     slide = f"{A}/{of_guide}"

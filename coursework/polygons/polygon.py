@@ -178,7 +178,7 @@ class Polygon:
         return side.value / of if abs(of) > _CLOSED * self.size else None
 
     def side(self, start: str, end: str) -> Side:
-        """The side from a point to another; UnknownName if there is none."""
+        """Return the side from a point to another; UnknownName if there is none."""
         for side in self.sides:
             if (side.start, side.end) == (start, end):
                 return side
@@ -223,7 +223,7 @@ class Polygon:
 
     @staticmethod
     def _hung(side: Side, found: Mapping[str, complex]) -> tuple[str, str, int]:
-        """The end of a side that is found already, the other, and the sign of the way between them."""
+        """Return the end of a side that is found already, the other, and the sign of the way between them."""
         if (side.start in found) == (side.end in found):
             fault = "both its ends are" if side.start in found else "neither of its ends is"
             raise BadCourse(f"{side}: {fault} found by the sides before it")
@@ -244,13 +244,13 @@ class Polygon:
     # ------------------------------------------------------------------------ scale
 
     def extent(self) -> tuple[complex, complex]:
-        """Corners of the image points, lower left and upper right, from the pole."""
+        """Return the corners of the image points, lower left and upper right, from the pole."""
         xs = [z.real for z in self.points.values()]
         ys = [z.imag for z in self.points.values()]
         return complex(min(xs), min(ys)), complex(max(xs), max(ys))
 
     def scale_in(self, width: float, height: float) -> float:
-        """The least of 1, 2 and 5 times a power of ten at which the polygon fits a box, mm on paper."""
+        """Return the least of 1, 2 and 5 times a power of ten at which the polygon fits a box, mm on paper."""
         low, high = self.extent()
         least = max((high - low).real / width, (high - low).imag / height)
         if not least > 0:
@@ -278,7 +278,7 @@ class Polygon:
         return " = ".join(" + ".join(side.name for side in sum_) for sum_ in (left, right))
 
     def _path(self, side: Side, target: str) -> Iterator[tuple[Side, int]]:
-        """The sides from the pole to a point, the last of them told, each with its sign."""
+        """Yield the sides from the pole to a point, the last of them told, each with its sign."""
         anchor = side.start if side.end == target else side.end
         if anchor != self.pole:
             straight = [s for s in self.sides if (s.start, s.end) == (self.pole, anchor)]
@@ -292,7 +292,7 @@ class Polygon:
 def turning(
     start: str, end: str, of: str, line: str, vector: complex, omega: float, length: str = ""
 ) -> Side:
-    r"""The velocity that a turning bar gives one of its points about another: square to the bar.
+    r"""Return the velocity that a turning bar gives one of its points about another: square to the bar.
 
     ``of`` names it (``B/A``, or ``B`` about a fixed point), ``line`` is the bar (``AB``), ``vector`` its vector in
     mm, ``omega`` its rate in rad/s; ``length`` is stated where it is known before the drawing.
@@ -303,7 +303,8 @@ def turning(
 
 
 def normal(start: str, end: str, of: str, line: str, vector: complex, omega: float, length: str) -> Side:
-    """The normal acceleration of a bar's point about another, along the bar: known once the velocities are."""
+    """Return the normal acceleration of a bar's point about another, along the bar: known once the velocities
+    are."""
     return Side(
         start, end, rf"\vec{{a}}^n_{{{of}}}", -(omega**2) * vector, rf"\parallel {line}", length, -vector
     )
@@ -312,14 +313,15 @@ def normal(start: str, end: str, of: str, line: str, vector: complex, omega: flo
 def tangential(
     start: str, end: str, of: str, line: str, vector: complex, alpha: float, length: str = ""
 ) -> Side:
-    """The tangential acceleration of a bar's point about another, square to the bar; ``alpha`` in rad/s^2."""
+    """Return the tangential acceleration of a bar's point about another, square to the bar; ``alpha`` in
+    rad/s^2."""
     return Side(
         start, end, rf"\vec{{a}}^t_{{{of}}}", 1j * alpha * vector, rf"\perp {line}", length, 1j * vector
     )
 
 
 def image(start: str, end: str, name: str, value: complex, of: tuple[str, str], length: str) -> Side:
-    r"""The image of one more point of a bar: the vector between two image points of it, in proportion.
+    r"""Return the image of one more point of a bar: the vector between two image points of it, in proportion.
 
     ``of`` are these two points, ``length`` the proportion as LaTeX (``\frac{OD}{OP}\,p_v p_4``).
     """

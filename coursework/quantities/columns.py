@@ -11,7 +11,7 @@ from coursework.errors import WrongValue
 
 
 def each(function: Callable[..., Any], *arguments: Any, dtype: Any = object) -> Any:
-    """``function`` of the arguments; element by element where some are arrays, which broadcast.
+    """Return ``function`` of the arguments; element by element where some are arrays, which broadcast.
 
     Lists and records are single values. ``dtype`` is that of the array of results: ``int``, ``str``, or objects.
     """
@@ -27,7 +27,7 @@ def each(function: Callable[..., Any], *arguments: Any, dtype: Any = object) -> 
 
 
 def each_stacked(read: Callable[[Any], Any], whole: Any) -> Any:
-    """``read`` of one thing, or of each in an array of objects; vectors along a last axis."""
+    """Return ``read`` of one thing, or of each in an array of objects; vectors along a last axis."""
     if not isinstance(whole, np.ndarray):
         return read(whole)
     if whole.dtype != object or not whole.size:
@@ -37,12 +37,12 @@ def each_stacked(read: Callable[[Any], Any], whole: Any) -> Any:
 
 
 def vector(*entries: Any) -> np.ndarray:
-    """A vector of entries that broadcast, shape ``(..., n)``: the entries along a last axis."""
+    """Return a vector of entries that broadcast, shape ``(..., n)``: the entries along a last axis."""
     return np.stack(np.broadcast_arrays(*(np.asarray(e, dtype=float) for e in entries)), axis=-1)
 
 
 def matrix(*rows: Sequence[Any]) -> np.ndarray:
-    """A matrix of rows of entries that broadcast, shape ``(..., m, n)``.
+    """Return a matrix of rows of entries that broadcast, shape ``(..., m, n)``.
 
     Raises
     ------
@@ -57,7 +57,8 @@ def matrix(*rows: Sequence[Any]) -> np.ndarray:
 
 
 def cases(**holds: Any) -> Any:
-    """The names of what holds, as the answer of several choices has them: ``"stable fast"``, or an array of such."""
+    """Return the names of what holds, as the answer of several choices has them: ``"stable fast"``, or an
+    array of such."""
 
     def named(*which: Any) -> str:
         return " ".join(name for name, is_so in zip(holds, which, strict=True) if is_so)

@@ -52,7 +52,7 @@ def expression(function: Callable[..., Any]) -> ast.expr:
 
 
 def returning(function: ast.stmt) -> list[ast.stmt]:
-    """The statements of a function but for its docstring and its guards."""
+    """Return the statements of a function but for its docstring and its guards."""
     return [s for s in getattr(function, "body", []) if not (_is_docstring(s) or _is_guard(s))]
 
 
@@ -61,7 +61,7 @@ def _is_docstring(statement: ast.stmt) -> bool:
 
 
 def _is_guard(statement: ast.stmt) -> bool:
-    """``if …: raise …``, which says where the formula does not exist."""
+    """Return ``if …: raise …``, which says where the formula does not exist."""
     return (
         isinstance(statement, ast.If)
         and not statement.orelse
@@ -70,7 +70,7 @@ def _is_guard(statement: ast.stmt) -> bool:
 
 
 def called(node: ast.expr) -> str:
-    """The name of the function that is called, without its module's; empty where nothing is."""
+    """Return the name of the function that is called, without its module's; empty where nothing is."""
     if not isinstance(node, ast.Call):
         return ""
     function = node.func
@@ -78,12 +78,12 @@ def called(node: ast.expr) -> str:
 
 
 def call(name: str, *arguments: ast.expr) -> ast.Call:
-    """The tree of a call."""
+    """Return the tree of a call."""
     return ast.Call(ast.Name(name, ast.Load()), list(arguments), [])
 
 
 def put_in(helper: Any, arguments: Sequence[ast.expr]) -> ast.expr:
-    """A helper that is one expression, with these arguments in place of its parameters.
+    """Return a helper that is one expression, with these arguments in place of its parameters.
 
     Raises
     ------
@@ -122,7 +122,7 @@ class Formula:
     space: Mapping[str, Any]
 
     def __call__(self, values: Mapping[str, Any]) -> Any:
-        """Its value, for scalars or arrays ``(n,)`` by name; NaN where it does not exist."""
+        """Return its value, for scalars or arrays ``(n,)`` by name; NaN where it does not exist."""
         with np.errstate(all="ignore"):
             return self._function(*(values[name] for name in self.names))
 
@@ -138,7 +138,7 @@ class Formula:
 
 @lru_cache(maxsize=1024)
 def formula_of(function: Callable[..., Any]) -> Formula | None:
-    """The formula of a quantity's function; None where it is told in words alone."""
+    """Return the formula of a quantity's function; None where it is told in words alone."""
     template = getattr(function, "__formula__", None)
     try:
         return _of_code(function) if template is None else _of_template(template)
@@ -198,7 +198,7 @@ _FIRST = 10**9  #: numbers from here on stand for names
 
 
 def _of_template(template: str) -> Formula:
-    """A printed formula, its angles in degrees."""
+    """Return a printed formula, its angles in degrees."""
     names = tuple(dict.fromkeys(re.findall(r"<(\w+)>", template)))
     latex = re.sub(r"<(\w+)>", lambda m: rf"\num{{{_FIRST + names.index(m[1])}}}", template)
     try:

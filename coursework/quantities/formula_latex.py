@@ -61,7 +61,7 @@ Shown = Mapping[str, tuple]
 
 
 def kind_of(value: Any, unit: str) -> str:
-    """The kind of a value, as :class:`Told` has it."""
+    """Return the kind of a value, as :class:`Told` has it."""
     if isinstance(value, (complex, np.complexfloating)):
         return "complex"
     return "angle" if unit == "deg" else ""
@@ -90,7 +90,7 @@ def why_unprinted(function: Callable[..., Any]) -> str:
 
 
 def _of_numbers(called: ast.expr) -> str:
-    """``np.log2``, ``math.gamma``; empty where what is called is no function of a number."""
+    """Return ``np.log2``, ``math.gamma``; empty where what is called is no function of a number."""
     match called:
         case ast.Attribute(value=ast.Name(id="np" | "numpy" as home), attr=name):
             return f"{home}.{name}" if isinstance(getattr(np, name, None), np.ufunc) else ""
@@ -182,7 +182,7 @@ class _Printer:
         return text, (_UNARY if negative else _ATOM) if is_number else _ATOM
 
     def _constant(self, name: str) -> tuple[str, int]:
-        """A constant of the module: its name among symbols, its value among numbers."""
+        """Return a constant of the module: its name among symbols, its value among numbers."""
         value = self._value_of(name)
         if value is None:
             raise Unprintable
@@ -192,7 +192,7 @@ class _Printer:
         return f"{stem}_{{{','.join(below)}}}" if below else stem, _ATOM
 
     def _value_of(self, name: str) -> float | None:
-        """The value of a constant of the module; None where a name is none."""
+        """Return the value of a constant of the module; None where a name is none."""
         value = None if name in self.shown else self.helpers.get(name)
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
         return value if is_number else None
@@ -211,7 +211,7 @@ class _Printer:
         return f"{self.latex(left)} - {self._second(right, _PRODUCT)}"
 
     def _is_angle(self, node: ast.expr) -> bool:
-        """Whether an expression is an angle in degrees."""
+        """Return whether an expression is an angle in degrees."""
         match node:
             case ast.Constant(value=value):
                 return isinstance(value, _Degrees)
@@ -229,7 +229,7 @@ class _Printer:
         return False
 
     def _in_degrees(self, node: ast.expr) -> ast.expr:
-        """A term of a sum of angles: its constant is one, ``180`` or the ``90`` of ``90 * sense``."""
+        """Return a term of a sum of angles: its constant is one, ``180`` or the ``90`` of ``90 * sense``."""
         match node:
             case ast.Constant(value=int() | float() as value):
                 return ast.Constant(_Degrees(value))
@@ -318,7 +318,8 @@ class _Printer:
         return rf"{self.latex(length, _PRODUCT)}\,{turn}"
 
     def _components(self, node: ast.expr) -> tuple[list, list] | None:
-        """The terms of a sum of polar and Cartesian vectors along x and along y; None where one is neither.
+        """Return the terms of a sum of polar and Cartesian vectors along x and along y; None where one is
+        neither.
 
         A term is its sign, whether it is subtracted, and its tree.
         """
@@ -339,7 +340,7 @@ class _Printer:
         return None
 
     def _helper(self, name: str, arguments: Sequence[ast.expr]) -> tuple[str, int]:
-        """A private function that is one expression, with these arguments in place of its parameters."""
+        """Return a private function that is one expression, with these arguments in place of its parameters."""
         helper = self.helpers.get(name)
         try:
             body = put_in(helper, arguments)
@@ -361,7 +362,7 @@ def _times(length: ast.expr, ratio: ast.expr) -> ast.expr:
 
 
 def _added(terms: Sequence[tuple[bool, ast.expr]]) -> ast.expr:
-    """Terms with their signs as one sum; 0 where there are none."""
+    """Return the terms with their signs as one sum; 0 where there are none."""
     if not terms:
         return ast.Constant(0)
     (minus, total), *others = terms
@@ -372,7 +373,8 @@ def _added(terms: Sequence[tuple[bool, ast.expr]]) -> ast.expr:
 
 
 def _without_sign(node: ast.expr) -> tuple[ast.expr, bool]:
-    """A product without the sign that it begins with, and whether it has one: it stands before its fraction."""
+    """Return a product without the sign that it begins with, and whether it has one: it stands before its
+    fraction."""
     match node:
         case ast.UnaryOp(op=ast.USub(), operand=operand):
             return operand, True
@@ -383,7 +385,7 @@ def _without_sign(node: ast.expr) -> tuple[ast.expr, bool]:
 
 
 def _difference_of_squares(product: ast.BinOp) -> ast.BinOp | None:
-    """``a^2 - b^2`` for ``(a - b) * (a + b)``, the way to compute it that keeps its digits."""
+    """Return ``a^2 - b^2`` for ``(a - b) * (a + b)``, the way to compute it that keeps its digits."""
     match product.left, product.right:
         case (ast.BinOp(a, ast.Sub(), b), ast.BinOp(c, ast.Add(), d)) | (
             ast.BinOp(a, ast.Add(), b),
@@ -394,7 +396,8 @@ def _difference_of_squares(product: ast.BinOp) -> ast.BinOp | None:
 
 
 def _is_segment(symbol: str) -> bool:
-    r"""Whether a symbol is of several letters, as ``OB`` or ``\angle DOB``: side by side they would be a product."""
+    r"""Return whether a symbol is of several letters, as ``OB`` or ``\angle DOB``: side by side they would be
+    a product."""
     if "(" in symbol or symbol.startswith((r"\frac", r"\num")):
         return False
     base = re.sub(r"\\mathrm\{\w*\}", "x", symbol)
@@ -404,7 +407,7 @@ def _is_segment(symbol: str) -> bool:
 
 
 def formula_latex(function: Callable[..., Any], shown: Shown) -> str:
-    """LaTeX of a quantity's formula, each name shown as told; empty when words must say it."""
+    """Return LaTeX of a quantity's formula, each name shown as told; empty when words must say it."""
     template = getattr(function, "__formula__", None)
     if template is not None:
         return re.sub(r"<(\w+)>", lambda m: _in_template(shown, m), template)
@@ -415,7 +418,8 @@ def formula_latex(function: Callable[..., Any], shown: Shown) -> str:
 
 
 def tree_latex(tree: ast.expr, shown: Shown, space: Mapping[str, Any]) -> str:
-    """LaTeX of a piece of a formula; ``space`` holds what names mean besides. Empty when words must say it."""
+    """Return LaTeX of a piece of a formula; ``space`` holds what names mean besides. Empty when words must
+    say it."""
     try:
         return _Printer(shown, space).latex(tree)
     except (NoExpression, Unprintable):
@@ -424,12 +428,13 @@ def tree_latex(tree: ast.expr, shown: Shown, space: Mapping[str, Any]) -> str:
 
 @lru_cache(maxsize=1024)
 def formula_in_symbols(function: Callable[..., Any], symbols: tuple[tuple[str, str, str], ...]) -> str:
-    """The same with the symbol and kind of each name: what all students of an exercise read."""
+    """Return the same with the symbol and kind of each name: what all students of an exercise read."""
     return formula_latex(function, {name: Told(symbol, False, kind) for name, symbol, kind in symbols})
 
 
 def _in_template(shown: Shown, name: re.Match[str]) -> str:
-    """A name of a stated formula; a negative number in brackets unless an opening bracket stands before it."""
+    """Return a name of a stated formula; a negative number in brackets unless an opening bracket stands
+    before it."""
     text, is_number, *_ = shown[name.group(1)]
     if not is_number or not text.startswith((r"\num{-", "-")):
         return text
@@ -439,7 +444,11 @@ def _in_template(shown: Shown, name: re.Match[str]) -> str:
 
 
 def number_latex(value: Any, unit: str, digits: int = 5) -> str:
-    r"""A value as it stands in a substitution: ``\num{114.3}``, ``\num{135}^{\circ}``, ``\num{1}+\num{2}\,i``."""
+    r"""Return a value as it stands in a substitution: ``
+    um{114.3}``, ``
+    um{135}^{\circ}``, ``
+    um{1}+
+    um{2}\,i``."""
     degree = r"^{\circ}" if unit == "deg" else ""
     if isinstance(value, (complex, np.complexfloating)):
         imaginary = significant(float(value.imag), digits)

@@ -49,13 +49,13 @@ def _place(function: Callable[..., Value]) -> str:
 
 
 def plain_scalar(value: Value) -> Value:
-    """A numpy scalar as Python's own; vectors are left alone."""
+    """Return a numpy scalar as Python's own; vectors are left alone."""
     zero_dimensional = isinstance(value, np.generic) or (isinstance(value, np.ndarray) and not value.ndim)
     return value.item() if zero_dimensional else value
 
 
 def _right(name: str) -> str:
-    """The name under which a replaced quantity keeps its right value."""
+    """Return the name under which a replaced quantity keeps its right value."""
     return f"{name} (right)"
 
 
@@ -157,7 +157,7 @@ def _missing(found: Mapping[str, str]) -> MissingQuantity:
 
 
 def _met(nodes: Mapping[str, Node], names: Iterable[str]) -> frozenset[str]:
-    """The names and all that they need, by the first of each node's functions."""
+    """Return the names and all that they need, by the first of each node's functions."""
     found: set[str] = set()
     waiting = list(names)
     while waiting:
@@ -193,7 +193,7 @@ class Graph:
         }
 
     def _ancestors(self, names: Iterable[str]) -> frozenset[str]:
-        """The names and all that they need, by the first of each node's functions."""
+        """Return the names and all that they need, by the first of each node's functions."""
         return _met(self._nodes, names)
 
     @property
@@ -236,7 +236,8 @@ class Graph:
         return frozenset(self._nodes)
 
     def ancestors(self, names: Iterable[str]) -> frozenset[str]:
-        """The names and all that they need, optional effects among it, by the first of each node's functions."""
+        """Return the names and all that they need, optional effects among it, by the first of each node's
+        functions."""
         return self._ancestors(names)
 
     def node(self, name: str) -> Node:
@@ -245,13 +246,13 @@ class Graph:
         return self._nodes[name]
 
     def effects(self) -> tuple[str, ...]:
-        """The quantities that a request may call for as optional effects."""
+        """Return the quantities that a request may call for as optional effects."""
         return self._effects
 
     def plan(
         self, wanted: Sequence[str], given: Iterable[str] = (), effects: Iterable[str] = ()
     ) -> tuple[str, ...]:
-        """The quantities that a request evaluates, in order.
+        """Return the quantities that a request evaluates, in order.
 
         Raises
         ------
@@ -339,7 +340,7 @@ class Graph:
         effects: Iterable[str] = (),
         found: Mapping[str, Value] | None = None,
     ) -> dict[str, Value]:
-        """The wanted quantities, from the given ones.
+        """Return the wanted quantities, from the given ones.
 
         A given quantity is used as it is, whether or not a function could compute it. Values are
         scalars or arrays that broadcast; nothing is copied or checked but names. A function must give at
@@ -377,8 +378,9 @@ class Graph:
     def walk(
         self, wanted: Sequence[str], given: Mapping[str, Value], effects: Iterable[str] = ()
     ) -> tuple[str, ...]:
-        """The names of every quantity that the textbook way meets on the way to the wanted ones, in its order; those
-        that a formula on the way is stated with, or that are told before it, are met before it."""
+        """Return the names of every quantity that the textbook way meets on the way to the wanted ones, in
+        its order; those that a formula on the way is stated with, or that are told before it, are met before
+        it."""
         met = self._on_paper.plan(tuple(wanted), self._renamed(given), effects)
         return tuple(name for name in met if not _is_hidden(name))
 
@@ -426,7 +428,7 @@ class Graph:
 
     @staticmethod
     def _moving(steps: Sequence[tuple], cut: Iterable[str]) -> set[str]:
-        """The quantities of a plan that depend on some names, by the functions of the plan."""
+        """Return the quantities of a plan that depend on some names, by the functions of the plan."""
         reached = set(cut)
         for name, _, arguments in steps:
             if reached.intersection(arguments):
@@ -434,7 +436,7 @@ class Graph:
         return reached.difference(cut)
 
     def replacing(self, replacement: Replacement) -> Graph:
-        """The same graph with some quantities computed by another function.
+        """Return the same graph with some quantities computed by another function.
 
         Raises
         ------
@@ -468,8 +470,8 @@ class Graph:
         return graph
 
     def observed(self, observe: Callable[[str, Value], Value]) -> Graph:
-        """The same graph, with every value handed on as ``observe(name, value)`` gives it; hidden ones as
-        they are."""
+        """Return the same graph, with every value handed on as ``observe(name, value)`` gives it; hidden ones
+        as they are."""
 
         def wrapped(name: str, node: Node) -> Node:
             def function(*arguments: Value) -> Value:
@@ -484,7 +486,7 @@ class Graph:
         return graph
 
     def mapped(self, change: Callable[[Callable[..., Value]], Callable[..., Value]]) -> Graph:
-        """The same graph with every function as ``change`` gives it, hidden ones too; arguments stay."""
+        """Return the same graph with every function as ``change`` gives it, hidden ones too; arguments stay."""
 
         def changed(node: Node) -> Node:
             stable = changed(node.stable) if node.stable else None
@@ -496,7 +498,7 @@ class Graph:
         return graph
 
     def descendants(self, names: Iterable[str]) -> frozenset[str]:
-        """The names themselves and every quantity that depends on one of them."""
+        """Return the names themselves and every quantity that depends on one of them."""
         found = set(names)
         grown = True
         while grown:
@@ -506,7 +508,7 @@ class Graph:
         return frozenset(found)
 
     def with_functions(self, functions: Mapping[str, Callable[..., Value]]) -> Graph:
-        """The same graph with more quantities.
+        """Return the same graph with more quantities.
 
         Raises
         ------
@@ -530,5 +532,5 @@ def call_on_quantities(function: Any, values: Mapping[str, Any], helpers: tuple 
 
 @lru_cache(maxsize=256)
 def graph_of(function: Any, helpers: tuple = ()) -> Graph:
-    """The same graph for all variants, so that its plans are made once."""
+    """Return the same graph for all variants, so that its plans are made once."""
     return Graph({**{f.__name__: f for f in helpers}, function.__name__: function})

@@ -17,7 +17,7 @@ _RADIAN = 57.29577951308232  #: degrees
 
 
 def _taking(function: Callable[..., Any]) -> Callable[..., Any]:
-    """A function whose last argument is an angle."""
+    """Return a function whose last argument is an angle."""
     return lambda *values: function(*values[:-1], values[-1] * _RADIAN)
 
 

@@ -119,7 +119,7 @@ class Lens:
         self._kept: list[Any] = []  # so that no identity is used twice
 
     def function(self, function: Any) -> Callable[..., Any]:
-        """The same function, of numbers that carry their units."""
+        """Return the same function, of numbers that carry their units."""
         if not isinstance(function, FunctionType):
             return opaque(function)
         space = self._space(function.__globals__, _package(function.__module__))

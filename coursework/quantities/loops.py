@@ -46,7 +46,7 @@ class Link:
         return length if isinstance(length, str) else str(angle)
 
     def projection(self, axis: str, pieces: tuple[_Pieces, _Pieces]) -> _Pieces:
-        """Signed terms of a projection; ``pieces`` are the radial and the transverse ones."""
+        """Return the signed terms of a projection; ``pieces`` are the radial and the transverse ones."""
         radial, transverse = pieces
         on_x = (axis == "x") != self.swapped
         return [
@@ -55,7 +55,7 @@ class Link:
         ]
 
     def complex_terms(self, pieces: tuple[_Pieces, _Pieces]) -> _Pieces:
-        """Signed terms of the complex form."""
+        """Return the signed terms of the complex form."""
         radial, transverse = pieces
         sign, unit = 1, ""
         if isinstance(self._angle, str):
@@ -82,7 +82,7 @@ class Link:
         return angle + turn
 
     def _function(self, function: str) -> tuple[int, str]:
-        """Sign and text of the sine or cosine of the link's angle; sign 0 where it vanishes."""
+        """Return the sign and text of the sine or cosine of the link's angle; sign 0 where it vanishes."""
         angle = self._angle
         if isinstance(angle, str):
             return 1, f"{function}({angle})"
@@ -147,13 +147,13 @@ class Loop:
         return frozenset(self.names) - set(self.lengths)
 
     def highest(self, order: int) -> tuple[str, ...]:
-        """The names in which the equation of an order is linear: lengths, or rates of that order."""
+        """Return the names in which the equation of an order is linear: lengths, or rates of that order."""
         if not order:
             return self.lengths
         return tuple(r[order - 1] for n, r in self.rates.items() if n in self.names and r[order - 1])
 
     def equation(self, form: str, order: int = 0) -> str:
-        """The closure as text: ``x`` and ``y`` projections or ``complex``; derived ``order`` times."""
+        """Return the closure as text: ``x`` and ``y`` projections or ``complex``; derived ``order`` times."""
         terms: _Pieces = []
         for link in self.links:
             pieces = self._pieces(link, order)
@@ -168,7 +168,7 @@ class Loop:
         return self.rates.get(name, ("", "")) if isinstance(name, str) else ("", "")
 
     def _pieces(self, link: Link, order: int) -> tuple[_Pieces, _Pieces]:
-        """Radial and transverse factors of the derivative of a link."""
+        """Return the radial and transverse factors of the derivative of a link."""
         v = link.vector
         length = v.length if isinstance(v.length, str) else f"{v.length:.12g}"
         slide, turn = self._rates_of(v.length), self._rates_of(v.angle)
@@ -192,11 +192,11 @@ class Loop:
         return [p for p in radial if p[0]], [p for p in transverse if p[0]]
 
     def moves(self, order: int) -> bool:
-        """Whether the derivative of this order is known and says anything."""
+        """Return whether the derivative of this order is known and says anything."""
         return order == 0 or (order <= self.known and bool(self.highest(order)))
 
     def faults(self, order: int = 0) -> Iterator[Fault]:
-        """The known ways to err, those of one kind together."""
+        """Yield the known ways to err, those of one kind together."""
         for kind in FAULTS:
             for names, links in getattr(self, f"_{kind}")(order):
                 yield Fault(kind, names, replace(self, links=tuple(links)))
@@ -204,7 +204,7 @@ class Loop:
     def _changed(
         self, change: Callable[[Link], Iterable[Link]]
     ) -> Iterator[tuple[tuple[str, ...], list[Link]]]:
-        """The loop with one link in another way, for every link and every way."""
+        """Yield the loop with one link in another way, for every link and every way."""
         for k, link in enumerate(self.links):
             for other in change(link):
                 yield (link.name,), [*self.links[:k], other, *self.links[k + 1 :]]
@@ -259,7 +259,7 @@ def stated(
     computed: Collection[str],
     given: Collection[str],
 ) -> dict[str, Loop]:
-    """The loops that a solution states, with the derivatives of what varies.
+    """Return the loops that a solution states, with the derivatives of what varies.
 
     The angle ``theta3`` has ``omega3`` and ``alpha3``, another quantity ``r6`` has ``r6_dot`` and ``r6_ddot``, as far as
     the solution knows them; ``rates`` names those that are called otherwise. A given quantity without a
@@ -298,7 +298,7 @@ def usual_rates(name: str, names: Collection[str]) -> tuple[str, str]:
 
 
 def quantities(loops: Mapping[str, Loop]) -> dict[str, Callable[[], str]]:
-    """Functions of no argument that give the equations, by the names of their quantities."""
+    """Return the functions of no argument that give the equations, by the names of their quantities."""
     return {
         f"{name}_{form}{ending}": _constant(f"{name}_{form}{ending}", loop.equation(form, order))
         for name, loop in loops.items()

@@ -44,7 +44,7 @@ class Measured:
     __array__ = _refuse
 
     def _as_plain(self, kind: Callable[[Any], Any]) -> Any:
-        """A plain ratio as a number."""
+        """Return a plain ratio as a number."""
         if not all(s.is_like(ONE) for s in self.sizes):
             self._refuse()
         return kind(self.value)
@@ -119,7 +119,7 @@ for _name, _dunder, _function in _DUNDERS:
 
 
 def plain(value: Any) -> Any:
-    """A value without its unit."""
+    """Return a value without its unit."""
     return value.value if isinstance(value, Measured) else value
 
 
@@ -128,7 +128,7 @@ def _sizes(value: Any) -> Sizes:
 
 
 def _is_free(value: Any) -> bool:
-    """Whether a value is of any unit: a number that is written as nought, infinite or none at all."""
+    """Return whether a value is of any unit: a number that is written as nought, infinite or none at all."""
     if isinstance(value, Measured):
         return False
     numbers = np.asarray(value)
@@ -136,7 +136,8 @@ def _is_free(value: Any) -> bool:
 
 
 def alike(*values: Any) -> Sizes:
-    """The sizes that values which are added or compared share; a plain number takes that of the others.
+    """Return the sizes that values which are added or compared share; a plain number takes that of the
+    others.
 
     Raises
     ------
@@ -169,7 +170,8 @@ def _softest(shared: Sizes, others: Sizes) -> Sizes:
 
 
 def _takes_numbers(ratio: Size) -> bool:
-    """Whether a number may be added to a ratio: to a plain one, an angle in degrees, a share in percent."""
+    """Return whether a number may be added to a ratio: to a plain one, an angle in degrees, a share in
+    percent."""
     return any(
         ratio.is_like(other) for other in (ONE, DEGREE, Size(0.01), Size(math.pi / 200), Size(2 * math.pi))
     )
@@ -182,7 +184,7 @@ def needs(value: Any, wanted: Size, what: str) -> None:
 
 
 def product(one: Any, other: Any, power: float = 1) -> Sizes:
-    """The sizes of ``one * other**power``; a plain number may be a conversion."""
+    """Return the sizes of ``one * other**power``; a plain number may be a conversion."""
     a = _sizes(one) if isinstance(one, Measured) else _of_number(one)
     b = _sizes(other) if isinstance(other, Measured) else _of_number(other)
     return distinct(x.times(y, power) for x in a for y in b)
@@ -302,7 +304,7 @@ def _array_function(function: Any, args: Sequence[Any], options: Mapping[str, An
 
 
 def stripped(value: Any) -> Any:
-    """The same with plain numbers, in lists and records too."""
+    """Return the same with plain numbers, in lists and records too."""
     if isinstance(value, Measured):
         return value.value
     if isinstance(value, Mapping):
@@ -313,7 +315,8 @@ def stripped(value: Any) -> Any:
 
 
 def leaves(value: Any) -> list[Any]:
-    """The numbers of lists of lists; the shape and axis of a function of arrays are plain ones of them."""
+    """Return the numbers of lists of lists; the shape and axis of a function of arrays are plain ones of
+    them."""
     if type(value) in (tuple, list):
         return [leaf for one in value for leaf in leaves(one)]
     if isinstance(value, np.ndarray) and value.dtype == object:
@@ -322,7 +325,7 @@ def leaves(value: Any) -> list[Any]:
 
 
 def gathered(value: Any) -> Any:
-    """A list, or an array of objects, as one array with the unit that its numbers share."""
+    """Return a list, or an array of objects, as one array with the unit that its numbers share."""
     if type(value) not in (tuple, list) and not (isinstance(value, np.ndarray) and value.dtype == object):
         return value
     found = leaves(value)

@@ -71,7 +71,7 @@ class Opaque:
 
 
 def opaque(thing: Any) -> Opaque:
-    """A function, a class or a module whose inside is not looked into."""
+    """Return a function, a class or a module whose inside is not looked into."""
     name = getattr(thing, "__name__", str(thing))
     home = getattr(thing, "__module__", None) or name
     is_core = home.startswith("coursework.kinematics")
@@ -91,7 +91,7 @@ def _handed(value: Any) -> list[Any]:
 
 
 def _plain(value: Any, factors: _Factors) -> Any:
-    """A value as it reads in other base units."""
+    """Return a value as it reads in other base units."""
     if isinstance(value, Measured):
         powers = value.sizes[0].hard
         factor = math.prod(f**p for f, p in zip(factors, powers, strict=True))
@@ -108,14 +108,14 @@ def _plain(value: Any, factors: _Factors) -> Any:
 
 
 def _of_plain_numbers(function: FunctionType, factors: _Factors) -> FunctionType:
-    """A function of the course as it was written, where one that takes plain numbers calls it."""
+    """Return a function of the course as it was written, where one that takes plain numbers calls it."""
     cells = tuple(CellType(_plain(cell.cell_contents, factors)) for cell in function.__closure__ or ())
     space = function.__globals__[PLAIN]
     return FunctionType(function.__code__, space, function.__name__, function.__defaults__, cells)
 
 
 def unmeasured(value: Any) -> Any:
-    """A value without units, records and what is opaque in them too."""
+    """Return a value without units, records and what is opaque in them too."""
     return _plain(value, _SAME)
 
 
@@ -148,7 +148,7 @@ def _measured(made: Opaque, origin: Origin) -> Any:
 
 
 def _power(made: Opaque, place: int, origin: Origin) -> float:
-    """The power of one base unit that a result has."""
+    """Return the power of one base unit that a result has."""
     if not any(size.hard[place] for size in origin.handed):
         return 0.0
     powers = {_power_of(made, place, other, origin) for other in _OTHERS}
@@ -160,7 +160,7 @@ def _power(made: Opaque, place: int, origin: Origin) -> float:
 
 
 def _power_of(made: Opaque, place: int, factor: float, origin: Origin) -> float | None:
-    """The same, by one factor; None where the result is not multiplied by a power of it."""
+    """Return the same, by one factor; None where the result is not multiplied by a power of it."""
     factors = tuple(factor if k == place else 1.0 for k in range(BASES))
     value = np.asarray(made._in_bases(_SAME))
     try:
@@ -175,7 +175,7 @@ def _power_of(made: Opaque, place: int, factor: float, origin: Origin) -> float 
 
 
 def _system(origin: Origin) -> list[float]:
-    """The base units, in SI, of the one system that all units are of.
+    """Return the base units, in SI, of the one system that all units are of.
 
     Raises
     ------

@@ -19,7 +19,7 @@ _BEYOND_FIRST_ORDER = 1.1
 
 
 def rounded(value: Any, digits: int) -> Any:
-    """Numbers to significant digits, element by element; whatever is no number stays as it is."""
+    """Return the numbers to significant digits, element by element; whatever is no number stays as it is."""
     if isinstance(value, tuple):
         parts = [rounded(part, digits) for part in value]
         return type(value)(*parts) if hasattr(value, "_fields") else tuple(parts)
@@ -38,7 +38,7 @@ def rounded(value: Any, digits: int) -> Any:
 
 
 def half_step(value: Any, digits: int) -> np.ndarray:
-    """Half of the last of so many digits: what rounding moves a number by at most; 0 for 0.
+    """Return the half of the last of so many digits: what rounding moves a number by at most; 0 for 0.
 
     A number that a last bit keeps below a power of ten has the digits of the power.
     """
@@ -57,7 +57,7 @@ def _is_number(value: Any) -> bool:
 def student_who_rounds(
     graph: Graph, wanted: Sequence[str], given: Mapping[str, Any], effects: Iterable[str], digits: int
 ) -> dict[str, Any]:
-    """The answers of a student who takes the textbook way and rounds each value that they write down.
+    """Return the answers of a student who takes the textbook way and rounds each value that they write down.
 
     ``given`` holds scalars or arrays that broadcast. Errors are those of :meth:`Graph.evaluate`.
     """
@@ -100,7 +100,7 @@ def envelope(
 
 
 def _down(value: Any, count: int) -> Any:
-    """A given value as a column, so that the moves lie side by side."""
+    """Return a given value as a column, so that the moves lie side by side."""
     if isinstance(value, str):
         return value
     return np.broadcast_to(np.asarray(value), (count,))[:, None] if np.ndim(value) else value
@@ -145,7 +145,8 @@ def _columns(
 
 
 def _matrix_shape(value: Any, has_axis: bool) -> tuple[int, ...] | None:
-    """The shape of a matrix of the first variant; ``()`` for one that does not vary with it, None for no matrix.
+    """Return the shape of a matrix of the first variant; ``()`` for one that does not vary with it, None for
+    no matrix.
 
     Where something ``has_axis``, what varies has an axis of variants before its own, of length 1 here.
     """
@@ -158,7 +159,7 @@ def _matrix_shape(value: Any, has_axis: bool) -> tuple[int, ...] | None:
 
 
 def _moved(value: Any, part: Any, column: int, width: int, digits: int) -> Any:
-    """The value with one column of it moved by half of its last digit."""
+    """Return the value with one column of it moved by half of its last digit."""
     vector = isinstance(part, int)
     value = np.asarray(value)
     if isinstance(part, tuple):
@@ -181,7 +182,7 @@ def _moved(value: Any, part: Any, column: int, width: int, digits: int) -> Any:
 
 
 def _total(value: Any, count: int, is_direction: bool) -> np.ndarray:
-    """The moves of an answer added up: from its first column, where nothing is moved, to the others."""
+    """Return the moves of an answer added up: from its first column, where nothing is moved, to the others."""
     value = np.asarray(value)
     if value.dtype.kind not in "fc" or value.ndim < 2:
         return np.zeros(count)

@@ -50,7 +50,7 @@ class Size(NamedTuple):
         return Size(self.scale * other.scale**power, powers)
 
     def is_like(self, other: Size) -> bool:
-        """Whether values of the two may be added."""
+        """Return whether values of the two may be added."""
         return _near(self.scale, other.scale) and all(map(_near_power, self.hard, other.hard))
 
 
@@ -58,12 +58,13 @@ Sizes = tuple[Size, ...]
 
 
 def size(scale: float = 1.0, **powers: float) -> Size:
-    """A size by the names of its dimensions; ``bare`` counts the degrees that were taken as plain numbers."""
+    """Return a size by the names of its dimensions; ``bare`` counts the degrees that were taken as plain
+    numbers."""
     return Size(scale, tuple(float(powers.get(name, 0)) for name in (*DIMENSIONS, "bare")))
 
 
 def of_hard(scale: float, powers: Sequence[float]) -> Size:
-    """A size by its scale and its powers of base units alone."""
+    """Return a size by its scale and its powers of base units alone."""
     return size(scale, **{DIMENSIONS[place]: power for place, power in zip(_HARD, powers, strict=True)})
 
 
@@ -82,7 +83,7 @@ def sizes_of(unit: str) -> Sizes:
 
 
 def _counted(one: Size) -> Sizes:
-    """The turns of a unit as a count: of ``tr/min`` and ``tr``, not of degrees."""
+    """Return the turns of a unit as a count: of ``tr/min`` and ``tr``, not of degrees."""
     if not one.angle:
         return ()
     scale = one.scale / (2 * math.pi) ** one.angle
@@ -92,7 +93,7 @@ def _counted(one: Size) -> Sizes:
 
 
 def _turning(one: Size) -> Sizes:
-    """The cycles of a unit as turns: of ``Hz``."""
+    """Return the cycles of a unit as turns: of ``Hz``."""
     cycles = one.powers[_CYCLE]
     if not cycles:
         return ()
@@ -105,8 +106,8 @@ def _with(powers: Sequence[float], **changed: float) -> tuple[float, ...]:
 
 
 def fits(found: Size, declared: Size) -> bool:
-    """Whether a value of one size may be declared in the other: radians, turns and plain numbers may go unsaid,
-    a plain 180 or a count of turns is no angle, and radians a second are no hertz."""
+    """Return whether a value of one size may be declared in the other: radians, turns and plain numbers may
+    go unsaid, a plain 180 or a count of turns is no angle, and radians a second are no hertz."""
     if not found.is_like(declared):
         return False
     if declared.angle:
@@ -124,7 +125,7 @@ def _near_power(a: float, b: float) -> bool:
 
 
 def distinct(sizes: Iterable[Size]) -> Sizes:
-    """The same without repetition, the plainest first."""
+    """Return the same without repetition, the plainest first."""
     kept: list[Size] = []
     for one in sizes:
         if not any(one.powers == other.powers and _near(one.scale, other.scale) for other in kept):
@@ -164,7 +165,7 @@ def meanings(number: float) -> tuple[Sizes, bool]:
 
 
 def _is_conversion(value: float) -> bool:
-    """A power of ten; or of sixties, of pi and of degrees, with thousands."""
+    """Return a power of ten; or of sixties, of pi and of degrees, with thousands."""
     if _is_whole(math.log10(value)):
         return True
     for sixties, angular, sense in itertools.product((-2, -1, 0, 1, 2), _ANGULAR, (1, -1)):
@@ -187,7 +188,7 @@ _NAMES = (
 
 
 def told(one: Size) -> str:
-    """A size by a unit's name, else by powers of base units."""
+    """Return a size by a unit's name, else by powers of base units."""
     for name in _NAMES:
         known = sizes_of(name)[0]
         if one.is_like(known) and known.angle == one.angle and known.powers[_CYCLE] == one.powers[_CYCLE]:

@@ -47,7 +47,8 @@ def prove(
     effects: Collection[str] = (),
     wanted: Sequence[str] = (),
 ) -> Findings:
-    """Whether each quantity's functions give the unit that ``units`` declares, from what is given in its own.
+    """Return whether each quantity's functions give the unit that ``units`` declares, from what is given in
+    its own.
 
     A quantity is proved by its formula and, where it has one, by its stable way; what is given and could be
     computed is proved as well. What is wrong is followed on in the declared unit, so that one fault is told once.
@@ -74,14 +75,14 @@ class _Walk:
         self.waiting: set[str] = set()
 
     def _handed_in(self, name: str, value: Any) -> Any:
-        """A value in its declared unit; texts and structures as they are."""
+        """Return a value in its declared unit; texts and structures as they are."""
         is_number = isinstance(value, _NUMBERS) and not isinstance(value, (bool, np.bool_))
         if not is_number and not (isinstance(value, np.ndarray) and value.dtype.kind in "iufc"):
             return value
         return Measured(value, self.sizes[name]) if name in self.sizes else value
 
     def value(self, name: str) -> Any:
-        """The value of a quantity, with its unit; what its functions give is judged on the way."""
+        """Return the value of a quantity, with its unit; what its functions give is judged on the way."""
         if name in self.waiting:
             return self.values.get(name, _Unknown)
         if name in self.values and (name not in self.given or name not in self.graph.names):
@@ -170,7 +171,7 @@ def _unknown(node: Node, arguments: Sequence[Any]) -> str:
 
 
 def _line(fault: Exception, node: Node) -> str:
-    """The line of the course at which units part, else that of the function."""
+    """Return the line of the course at which units part, else that of the function."""
     code = getattr(node.function, "__code__", None)
     home = Path(code.co_filename).parent if code else Path()
     frames = [

@@ -65,7 +65,7 @@ _Change = tuple[str, ast.expr | None, ast.expr]  #: kind, what it is about, the 
 
 @lru_cache(maxsize=1024)
 def formula_errors(function: Callable[..., Any]) -> tuple[FormulaError, ...]:
-    """The usual errors in the formula of a quantity's function; none where words alone tell it."""
+    """Return the usual errors in the formula of a quantity's function; none where words alone tell it."""
     formula = formula_of(function)
     if formula is None:
         return ()
@@ -80,7 +80,7 @@ def formula_errors(function: Callable[..., Any]) -> tuple[FormulaError, ...]:
 
 
 def _whole(formula: Formula) -> Iterator[_Change]:
-    """Errors in all of a formula at once."""
+    """Yield the errors in all of a formula at once."""
     match formula.tree:
         case ast.BinOp(left=left, op=ast.Div(), right=right):
             yield INVERSE, None, ast.BinOp(right, ast.Div(), left)
@@ -120,7 +120,7 @@ class _Changes:
     def _inside(
         self, items: Sequence[ast.expr], whole: Callable[[list[ast.expr]], ast.expr]
     ) -> Iterator[_Change]:
-        """The changes of each of some trees, in the tree that they make up."""
+        """Yield the changes of each of some trees, in the tree that they make up."""
         for place, item in enumerate(items):
             for kind, about, tree in self.of(item):
                 yield kind, about, whole([*items[:place], tree, *items[place + 1 :]])
@@ -192,7 +192,7 @@ _TAKE_ANGLES = ("sin", "cos", "tan", "polar")
 
 
 def _is_of_degrees(formula: Formula, node: ast.Call) -> bool:
-    """Whether the function that is called takes, or gives, degrees."""
+    """Return whether the function that is called takes, or gives, degrees."""
     name = called(node)
     if not isinstance(node.func, ast.Name) or not hasattr(degrees, name):
         return False
@@ -200,7 +200,7 @@ def _is_of_degrees(formula: Formula, node: ast.Call) -> bool:
 
 
 def _in_radians(angle: ast.expr) -> ast.expr:
-    """The angle whose number of degrees was taken for radians."""
+    """Return the angle whose number of degrees was taken for radians."""
     return ast.BinOp(angle, ast.Mult(), ast.Constant(_RADIAN))
 
 
@@ -220,7 +220,7 @@ class _AllInRadians(ast.NodeTransformer):
 
 
 def _called_as(node: ast.Call, name: str, arguments: list[ast.expr]) -> ast.Call:
-    """A call of the neighbour of a function: ``np.cos`` for ``np.sin``."""
+    """Return a call of the neighbour of a function: ``np.cos`` for ``np.sin``."""
     function = node.func
     other = _changed(function, "attr", name) if isinstance(function, ast.Attribute) else call(name).func
     return ast.Call(other, arguments, [])
@@ -241,7 +241,7 @@ def _changed(node: ast.expr, field: str, value: Any) -> ast.expr:
 
 
 def _is_small(node: ast.expr) -> bool:
-    """Whether a term is one thing more or less, as where something is counted."""
+    """Return whether a term is one thing more or less, as where something is counted."""
     return isinstance(node, ast.Constant) and isinstance(node.value, int) and abs(node.value) <= _FEW
 
 
@@ -255,7 +255,7 @@ def _is_sum(node: ast.expr) -> bool:
 
 
 def _terms(node: ast.expr) -> list[tuple[bool, ast.expr]]:
-    """The terms of a sum, each with whether it is subtracted."""
+    """Return the terms of a sum, each with whether it is subtracted."""
     match node:
         case ast.BinOp(left=left, op=ast.Add(), right=right):
             return _terms(left) + _terms(right)
@@ -284,7 +284,7 @@ def _sum(terms: Sequence[tuple[bool, ast.expr]]) -> ast.expr:
 
 
 def _factors(node: ast.expr) -> tuple[list[ast.expr], list[ast.expr]]:
-    """The factors of a product or a quotient, above and below its line."""
+    """Return the factors of a product or a quotient, above and below its line."""
     match node:
         case ast.BinOp(left=left, op=ast.Mult(), right=right):
             (above, below), (more, under) = _factors(left), _factors(right)

@@ -48,7 +48,7 @@ class _Errors(Mapping[str, Iterable[str]]):
 
 
 def told_standings(course: Course[Any], progress: Progress, on: date, lang: str) -> str:
-    """A line an exercise that was begun, as a Markdown list; empty where none was."""
+    """Return a line an exercise that was begun, as a Markdown list; empty where none was."""
     said = words(lang)["study"]["progress"]
     return "\n".join(
         _line(course, s, on, lang, said) for s in standings(progress) if s.tried and s.exercise in course
@@ -127,7 +127,7 @@ def told_advice(course: Course[Any], advice: Advice, lang: str, called: Called |
 
 
 def title(exercise: CourseExercise[Any], lang: str) -> str:
-    """An exercise as a student knows it: its title, and its name."""
+    """Return an exercise as a student knows it: its title, and its name."""
     return f"{exercise.title(lang)} (`{exercise.name}`)"
 
 

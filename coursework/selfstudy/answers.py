@@ -16,7 +16,7 @@ from coursework.selfstudy.store import Kept, is_blank
 
 
 def sign_of(mark: Mark) -> str:
-    """The mark at the head of a line, told apart without colour."""
+    """Return the mark at the head of a line, told apart without colour."""
     if mark.verdict == "correct":
         return "✓"
     if mark.verdict == "to_mark":
@@ -52,7 +52,7 @@ def sentence_of(variant: Variant, mark: Mark, reveal: str) -> str:
 def same_as_another(
     variant: Variant, kept: Kept, given: Mapping[str, Any], marking: Marking
 ) -> tuple[int | None, list[str]]:
-    """The seed of another variant that these very answers were for, and which of them are wrong here.
+    """Return the seed of another variant that these very answers were for, and which of them are wrong here.
 
     Two numbers at least that are wrong here, and would be others there, make a copy: what is right in both,
     and a small whole number, may well be the same.
@@ -83,7 +83,7 @@ def is_open(variant: Variant, mark: Mark) -> bool:
 
 
 def judged_out_of(variant: Variant, marking: Marking) -> float:
-    """The points of what is marked here."""
+    """Return the points of what is marked here."""
     return sum(m.out_of for m in marking.values() if not is_open(variant, m))
 
 

@@ -91,7 +91,7 @@ class Attempt:
         return right_ones(self.variant, checked.answers, checked.right)
 
     def compared(self, asked: Iterable[Prediction], own: Mapping[str, Own]) -> list[Compared]:
-        """Predictions beside what came out; those that were not made are left out."""
+        """Return the predictions beside what came out; those that were not made are left out."""
         said, found = self.predictions, []
         for one in asked:
             mine = own.get(one.quantity)
@@ -102,7 +102,8 @@ class Attempt:
     # ------------------------------------------------------------ hints, solutions
 
     def hints(self, name: str, call: Callable[[str], str]) -> tuple[str, ...]:
-        """All hints for a question or a step on the way to one, as Markdown; ``call`` says how to ask for those of another."""
+        """Return all hints for a question or a step on the way to one, as Markdown; ``call`` says how to ask
+        for those of another."""
         # Of what is right in another way the reference is not the student's: it stays a symbol.
         own = self.own(self.marked())
         found = {q: one.value for q, one in own.items() if one.is_usual and one.value is not None}
@@ -114,12 +115,12 @@ class Attempt:
         return max(steps, default=0)
 
     def is_revealed(self, part: Part) -> bool:
-        """Whether the solution of a question has been shown."""
+        """Return whether the solution of a question has been shown."""
         return not {e["part"] for e in self._happened(REVEAL)}.isdisjoint((part.id, part.quantity))
 
     @property
     def is_example(self) -> bool:
-        """Whether the variant was shown with its solution: it counts no more."""
+        """True if the variant was shown with its solution: it counts no more."""
         return any(self._happened(EXAMPLE))
 
     def reveal(self) -> None:

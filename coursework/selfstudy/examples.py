@@ -29,7 +29,7 @@ _APART = 1_000  #: seeds between levels
 
 
 def example_variant(variant: Variant, base: int, level: int) -> Variant:
-    """The variant of an example of a level: none of those that are asked, nor of another level.
+    """Return the variant of an example of a level: none of those that are asked, nor of another level.
 
     Raises
     ------
@@ -45,12 +45,13 @@ def example_variant(variant: Variant, base: int, level: int) -> Variant:
 
 
 def has_example(variant: Variant) -> bool:
-    """Whether there is something to leave blank."""
+    """Return whether there is something to leave blank."""
     return variant.exercise.folder.has_solutions and bool(blanks(variant, 1))
 
 
 def blanks(variant: Variant, level: int, *, in_lesson: bool = False) -> tuple[Part, ...]:
-    """The questions that are left blank at a level: the last one, a third, two thirds, all; in the order of the solution.
+    """Return the questions that are left blank at a level: the last one, a third, two thirds, all; in the
+    order of the solution.
 
     In a study session not what has one answer in every variant: it would be that of the variant that is asked; nor what
     is judged together. A lesson asks nothing else, and may leave both: what is judged together counts as one question.
@@ -73,7 +74,8 @@ def _may_be_blank(variant: Variant, part: Part) -> bool:
 
 
 def _together(parts: Iterable[Part], places: Mapping[str, int]) -> list[list[Part]]:
-    """Parts in the order of the solution, those that are judged together as one, at the place of the first."""
+    """Return the parts in the order of the solution, those that are judged together as one, at the place of
+    the first."""
     groups: dict[tuple[str, str], list[Part]] = {}
     for part in sorted(parts, key=lambda p: places[p.quantity]):
         judge = part.judge or part.loop
@@ -86,7 +88,8 @@ def _steps(variant: Variant) -> Sequence[Step]:
 
 
 def _blank(variant: Variant, part: Part, step: Step, keys: Mapping[str, str], said: Any) -> str:
-    """The room of an answer, behind its symbol, or behind the number of its question where no symbol says anything."""
+    """Return the room of an answer, behind its symbol, or behind the number of its question where no symbol
+    says anything."""
     form = said["blank" if part.sort.has_symbol else "unnamed"]
     question, key = question_called(variant, part), f"`{keys[part.id]}`"
     return str(form.format(symbol=f"${step.symbol}$", question=question, key=key))
@@ -101,7 +104,8 @@ def told_steps(
     *,
     in_lesson: bool = False,
 ) -> str:
-    """The steps of the solution as Markdown: whole up to the first blank; from there on no number stands in them.
+    """Return the steps of the solution as Markdown: whole up to the first blank; from there on no number
+    stands in them.
 
     In a study session what has one answer in every variant is left out: it is asked, and not told.
     """

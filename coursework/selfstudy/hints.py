@@ -40,7 +40,7 @@ _AROUND = re.compile(r"\^\{\\circ\}|\\left|\\right|\\ |[();\s-]")
 
 
 def quantity_of(variant: Variant, name: str) -> str:
-    """The quantity of a part's id, or a step on the way to one, by its own name.
+    """Return the quantity of a part's id, or a step on the way to one, by its own name.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def steps(
     found: Mapping[str, float] = MappingProxyType({}),
     call: Callable[[str], str] = '`hint("{}")`'.format,
 ) -> tuple[str, ...]:
-    """The hints for a part or a step on the way, from the vaguest on, as Markdown.
+    """Return the hints for a part or a step on the way, from the vaguest on, as Markdown.
 
     ``found`` holds the quantities that the student has right, as the student has them; ``call`` says how to ask
     for the hints of another.
@@ -82,7 +82,7 @@ def steps(
 
 
 def _asked(variant: Variant, quantity: str) -> Part | None:
-    """The part that asks for a quantity."""
+    """Return the part that asks for a quantity."""
     return next((p for p in variant.parts if p.quantity == quantity), None)
 
 
@@ -122,7 +122,7 @@ def _given(variant: Variant, name: str) -> str:
 
 
 def words_of(variant: Variant, quantity: str) -> str:
-    """The solution's words before the step of a quantity, where they hold no computed number."""
+    """Return the solution's words before the step of a quantity, where they hold no computed number."""
     section = variant.solution_text.sections.get(quantity)
     if section is None or not section.text:
         return ""
@@ -141,7 +141,7 @@ def words_of(variant: Variant, quantity: str) -> str:
 
 
 def _before_numbers(variant: Variant, section: str) -> str:
-    """The sentences of a section's words that stand before the first computed number."""
+    """Return the sentences of a section's words that stand before the first computed number."""
     path = variant.exercise.texts.file("solutions", variant.lang)
     start = _COMPUTED.split(sections(path, path.stat().st_mtime_ns).get(section, ""), maxsplit=1)[0]
     ends = [found.end() for found in _SENTENCE_END.finditer(start)]
@@ -182,7 +182,7 @@ def sections(path: Path, changed: int) -> Mapping[str, str]:
 
 @lru_cache(maxsize=256)
 def variables(path: Path, changed: int) -> Mapping[str, frozenset[str]]:
-    """The names that each section of a text prints; a section cut by a block is left out."""
+    """Return the names that each section of a text prints; a section cut by a block is left out."""
     import jinja2
     from jinja2 import meta
 
@@ -197,7 +197,8 @@ def variables(path: Path, changed: int) -> Mapping[str, frozenset[str]]:
 
 
 def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
-    """The formula, numbers put in for what is known; empty where words say it or it would be the value."""
+    """Return the formula, numbers put in for what is known; empty where words say it or it would be the
+    value."""
     values, units = variant.walk, variant.exercise.units
     kinds = {n: kind_of(value, units.get(n, "1")) for n, value in values.items()}
     symbols = {n: Told(_symbol(variant, n), False, kinds[n]) for n in values}
@@ -219,17 +220,17 @@ def _formula(variant: Variant, quantity: str, known: Mapping[str, Any]) -> str:
 
 
 def formula(variant: Variant, quantity: str) -> str:
-    """The formula of a quantity in symbols alone, as Markdown; empty where words say it."""
+    """Return the formula of a quantity in symbols alone, as Markdown; empty where words say it."""
     return _formula(variant, quantity, {})
 
 
 def _is_value(latex: str) -> bool:
-    """Whether a formula is a number, or numbers side by side, with nothing left to compute."""
+    """Return whether a formula is a number, or numbers side by side, with nothing left to compute."""
     return not _AROUND.sub("", _NUMBER.sub("", latex))
 
 
 def _names_something(latex: str) -> bool:
-    """Whether a formula holds a symbol: one of numbers alone would be the value."""
+    """Return whether a formula holds a symbol: one of numbers alone would be the value."""
     without = "".join(
         t for t in tokens(latex) if t not in (r"\num", r"\times", r"\frac", r"\left", r"\right")
     )
@@ -237,13 +238,13 @@ def _names_something(latex: str) -> bool:
 
 
 def revealed(variant: Variant, name: str) -> Step:
-    """The whole step of the worked solution, with its value."""
+    """Return the whole step of the worked solution, with its value."""
     quantity = quantity_of(variant, name)
     return next(s for s in answer_sheet(variant).steps if s.name == quantity)
 
 
 def revealed_text(variant: Variant, name: str) -> str:
-    """The same as Markdown; of a question that a person marks its model answer, or that it has none."""
+    """Return the same as Markdown; of a question that a person marks its model answer, or that it has none."""
     asked = next((p for p in variant.parts if p.id == name and p.sort.is_open), None)
     if asked is not None:
         models = (s.words for s in answer_sheet(variant).steps if s.name == asked.id)

@@ -32,7 +32,7 @@ def compare(
     lang: str = "fr",
     angles: Collection[str] = (),
 ) -> Compared:
-    """Predictions beside what came out, as a notebook's cell shows them.
+    """Return the predictions beside what came out, as a notebook's cell shows them.
 
     Numbers agree within a tenth, angles within 10°, whole turns apart or not; texts and truths when they are the
     same. Numbers may be texts with a comma and a unit, truths yes and no in any language. A prediction that is None
@@ -99,7 +99,7 @@ def plot(
     lang: str = "fr",
     at: float | None = None,
 ) -> Shown:
-    r"""Curves over one variable, a panel each, as a notebook's cell shows them.
+    r"""Return the curves over one variable, a panel each, as a notebook's cell shows them.
 
     Parameters
     ----------

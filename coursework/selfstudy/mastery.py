@@ -47,7 +47,7 @@ class Outing:
 
     @property
     def counts(self) -> bool:
-        """Whether something can be said of it: it was answered, or its solution was asked for."""
+        """True if something can be said of it: it was answered, or its solution was asked for."""
         return bool(self.verdicts) or self.was_revealed
 
 
@@ -79,7 +79,8 @@ class Skill:
 
 
 def outings(progress: Progress) -> tuple[Outing, ...]:
-    """The outings of which something can be said, the earliest begun first; none of a variant that was an example before."""
+    """Return the outings of which something can be said, the earliest begun first; none of a variant that was
+    an example before."""
     found: dict[tuple[str, int, str], Outing] = {}
     examples = set()
     for one in progress:
@@ -107,7 +108,7 @@ def _follow(outing: Outing, one: Entry, day: date) -> None:
 
 
 def questions(progress: Progress) -> tuple[Question, ...]:
-    """The questions that were met, with the day on which each comes again."""
+    """Return the questions that were met, with the day on which each comes again."""
     by_question: dict[tuple[str, str], list[Outing]] = {}
     for outing in outings(progress):
         by_question.setdefault((outing.exercise, outing.part), []).append(outing)
@@ -128,7 +129,7 @@ def _question(exercise: str, part: str, met: tuple[Outing, ...]) -> Question:
 
 
 def skills(progress: Progress) -> tuple[Skill, ...]:
-    """The skills that were tried, those of errors and those of kinds, the first tried first."""
+    """Return the skills that were tried, those of errors and those of kinds, the first tried first."""
     lost: dict[str, list[tuple[str, date]]] = {}
     shown: dict[str, dict[tuple[str, int], str]] = {}
     lost_in: dict[str, tuple[str, int]] = {}  # where a skill was lost, other answers show nothing of it

@@ -35,7 +35,8 @@ class Curves(NamedTuple):
 
 
 def usual_parts(variant: Variant, parts: Sequence[Part]) -> tuple[Part, ...]:
-    """Those of some parts that are plotted unless some are named: first those of which something is predicted."""
+    """Return those of some parts that are plotted unless some are named: first those of which something is
+    predicted."""
     first = [p.quantity for p in predictions.over_the_cycle(variant)]
     wanted = sorted(parts, key=lambda p: p.quantity not in first)[:PANELS]
     return tuple(p for p in parts if p in wanted)
@@ -44,7 +45,8 @@ def usual_parts(variant: Variant, parts: Sequence[Part]) -> tuple[Part, ...]:
 def curves(
     variant: Variant, parts: Sequence[Part], answers: Mapping[str, Any], own: Mapping[str, Own]
 ) -> Curves:
-    """The parts over a turn of the driver; ``answers`` by part, ``own`` what the student has right, by quantity."""
+    """Return the parts over a turn of the driver; ``answers`` by part, ``own`` what the student has right, by
+    quantity."""
     exercise, lang = variant.exercise, variant.lang
     assert exercise.spec.driver is not None  # without one no part moves
     driver = exercise.spec.driver.angle
@@ -63,7 +65,8 @@ def curves(
 def _spots(
     variant: Variant, part: Part, answer: Any, mine: Own | None, at: float, values: np.ndarray
 ) -> tuple[Spot, ...]:
-    """The student's answer as a point, where it can be read; none where it is right, but not of this curve."""
+    """Return the student's answer as a point, where it can be read; none where it is right, but not of this
+    curve."""
     if mine is not None and not mine.is_usual:
         return ()
     if is_blank(answer):

@@ -113,7 +113,7 @@ def _of_part(exercise: CourseExercise, part: Part) -> Prediction | None:
 
 
 def is_of_the_mechanism(exercise: CourseExercise, part: Part) -> bool:
-    """Whether the number that a part asks is one that a body or a point has.
+    """Return whether the number that a part asks is one that a body or a point has.
 
     A length, an angle, a velocity, an acceleration or an effort: no ratio, no area, and no coefficient, which is a letter
     without an index. Not a length on paper either: what is drawn to a scale of velocities hangs on them, a length does not.
@@ -124,8 +124,8 @@ def is_of_the_mechanism(exercise: CourseExercise, part: Part) -> bool:
 
 
 def is_seen(exercise: CourseExercise, part: Part) -> bool:
-    """Whether the figure or the reason tells which of this number and another is larger: of a length that stands in the
-    figure, since it moves with the driver, and of an effort."""
+    """Return whether the figure or the reason tells which of this number and another is larger: of a length
+    that stands in the figure, since it moves with the driver, and of an effort."""
     driver = exercise.spec.driver
     if part.unit != "mm":
         return part.unit in ("N", "N*m")
@@ -137,7 +137,7 @@ def is_seen(exercise: CourseExercise, part: Part) -> bool:
 
 
 def _hangs_on(exercise: CourseExercise, part: Part, units: Collection[str], name: str = "") -> bool:
-    """Whether a quantity is computed from a given one of this name, or of these units."""
+    """Return whether a quantity is computed from a given one of this name, or of these units."""
     graph, given = exercise.solution.graph.textbook, exercise.spec.given
     known = [
         n for n, spec in given.items() if (spec.unit in units or n == name) and n in exercise.quantity_names
@@ -147,7 +147,7 @@ def _hangs_on(exercise: CourseExercise, part: Part, units: Collection[str], name
 
 @lru_cache(maxsize=256)
 def _differs_among(exercise: CourseExercise, part: str, quantity: str) -> bool:
-    """Whether the case of a choice that every variant asks differs enough among some variants."""
+    """Return whether the case of a choice that every variant asks differs enough among some variants."""
     cases = []
     for variant in exercise.variants(_SAMPLE):
         if part not in variant.part_ids:
@@ -164,7 +164,7 @@ def _differ(holds: np.ndarray, values: np.ndarray) -> bool:
 
 @lru_cache(maxsize=64)
 def _sample(exercise: CourseExercise) -> Mapping[str, np.ndarray]:
-    """Numbers given and asked, over some variants; NaN where a variant has none."""
+    """Return the numbers given and asked, over some variants; NaN where a variant has none."""
     asked = [p.quantity for p in exercise.spec.parts if p.sort.prediction == "size"]
     given = [n for n, spec in exercise.spec.given.items() if not spec.is_choice]
     columns: dict[str, list[float]] = {name: [] for name in dict.fromkeys([*given, *asked])}
@@ -181,7 +181,7 @@ def _sample(exercise: CourseExercise) -> Mapping[str, np.ndarray]:
 
 
 def moving(variant: Variant) -> tuple[Part, ...]:
-    """The parts whose number moves with the driver; none without a driver or without solutions."""
+    """Return the parts whose number moves with the driver; none without a driver or without solutions."""
     exercise = variant.exercise
     driver = exercise.spec.driver
     if driver is None or driver.angle not in variant.used or not exercise.folder.has_solutions:
@@ -218,8 +218,8 @@ def prediction_keys(variant: Variant) -> dict[str, str]:
 
 @lru_cache(maxsize=256)
 def _is_bounded(exercise: CourseExercise, quantity: str) -> bool:
-    """Whether a quantity stays finite over the turn, in a few variants: what grows beyond all bounds at a dead point is nowhere
-    largest."""
+    """Return whether a quantity stays finite over the turn, in a few variants: what grows beyond all bounds
+    at a dead point is nowhere largest."""
     for variant in exercise.variants(range(_FEW)):
         try:
             sizes = np.abs(curve(variant, quantity)[1])
@@ -235,7 +235,7 @@ def _is_bounded(exercise: CourseExercise, quantity: str) -> bool:
 
 
 def asked(variant: Variant, prediction: Prediction) -> str:
-    """The question of a prediction, in one line of Markdown."""
+    """Return the question of a prediction, in one line of Markdown."""
     said = words(variant.lang)["study"]["predict"]
     exercise = variant.exercise
     driver = exercise.spec.driver
@@ -261,14 +261,14 @@ def options(variant: Variant, prediction: Prediction) -> str:
 
 
 def choices(variant: Variant, part: Part) -> str:
-    """The cases of a choice: the letter that is written, and what it is called."""
+    """Return the cases of a choice: the letter that is written, and what it is called."""
     letters = variant.letters(part)
     labels = {c: to_text(variant.label(part.id, c), variant.lang, sys.maxsize) for c in variant.cases(part)}
     return " / ".join(f"{letters[c]} ({label})" if c in letters else label for c, label in labels.items())
 
 
 def is_understood(variant: Variant, prediction: Prediction, text: Any) -> bool:
-    """Whether a prediction can be read; nothing is computed."""
+    """Return whether a prediction can be read; nothing is computed."""
     return _READ[prediction.kind](variant, prediction, text) is not None
 
 
@@ -278,7 +278,7 @@ def is_understood(variant: Variant, prediction: Prediction, text: Any) -> bool:
 def compared(
     variant: Variant, prediction: Prediction, text: Any, own: float | None = None
 ) -> Compared | None:
-    """A prediction beside what comes out; None where nothing was predicted.
+    """Return a prediction beside what comes out; None where nothing was predicted.
 
     ``own`` is the student's own right value, where it is not the reference's: the prediction was of that.
 
@@ -371,7 +371,8 @@ def zeros(values: np.ndarray) -> int:
 
 
 def curve(variant: Variant, quantity: str) -> tuple[np.ndarray, np.ndarray]:
-    """The driver's angle over a turn, from 0 to 360 degrees, and the quantity at each; NaN where nothing closes."""
+    """Return the driver's angle over a turn, from 0 to 360 degrees, and the quantity at each; NaN where
+    nothing closes."""
     angles = np.linspace(0.0, 360.0, INSTANTS)
     exercise = variant.exercise
     driver = exercise.spec.driver

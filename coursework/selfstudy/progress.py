@@ -66,11 +66,11 @@ class Progress:
         return len(self._entries)
 
     def __or__(self, other: Progress) -> Progress:
-        """The entries of both."""
+        """Return the entries of both."""
         return Progress((*self._entries.values(), *other._entries.values()))
 
     def of(self, exercise: str) -> Progress:
-        """The entries of one exercise."""
+        """Return the entries of one exercise."""
         return Progress(e for e in self if e["exercise"] == exercise)
 
     @property
@@ -79,14 +79,14 @@ class Progress:
         return tuple(dict.fromkeys(str(e["exercise"]) for e in self))
 
     def text(self) -> str:
-        """The JSON text, an entry a line."""
+        """Return the JSON text, an entry a line."""
         head = f'{{"format": {json.dumps(FORMAT)}, "version": {VERSION}, "entries": ['
         text = head + ",".join(f"\n{_identity(one)}" for one in self) + "\n]}\n"
         return text.encode("utf-8", "replace").decode("utf-8")  # halves of characters stand in no file
 
     @classmethod
     def read(cls, text: str) -> Progress:
-        """The progress that a text holds.
+        """Return the progress that a text holds.
 
         Raises
         ------
@@ -129,7 +129,7 @@ def read_brought(data: bytes, most: int) -> tuple[type[ValueError] | None, tuple
 
 
 def entry(at: datetime, exercise: str, seed: int, part: str, what: str, **more: Any) -> dict[str, Any]:
-    """Something that happens now, as it is kept."""
+    """Return the something that happens now, as it is kept."""
     told = at.astimezone(UTC).isoformat(timespec="microseconds").replace("+00:00", "Z")
     return {"at": told, "exercise": exercise, "seed": seed, "part": part, "what": what, **more}
 
@@ -140,7 +140,7 @@ def date_of(one: Entry) -> datetime:
 
 
 def _checked(one: Any) -> Entry:
-    """An entry that can be used.
+    """Return an entry that can be used.
 
     Raises
     ------

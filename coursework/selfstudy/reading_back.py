@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
 
 def read_back(variant: Variant, part: Part, text: str) -> tuple[bool, tuple[str, ...]]:
-    """Whether an answer can be read, and its readings as Markdown, else why it cannot; nothing of a blank one, or of one that a
-    person marks. Nothing is computed of the variant."""
+    """Return whether an answer can be read, and its readings as Markdown, else why it cannot; nothing of a
+    blank one, or of one that a person marks. Nothing is computed of the variant."""
     reading = read(variant, part, text)
     if reading.status == "missing" or part.sort.is_open:
         return True, ()

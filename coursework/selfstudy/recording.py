@@ -65,7 +65,7 @@ def skill_of_kind(part: Part) -> str:
 
 
 def errors_shown(variant: Variant, part: Part) -> Iterator[str]:
-    """The named errors that would have given another answer to a part of this variant."""
+    """Yield the named errors that would have given another answer to a part of this variant."""
     key, sort = variant.key, part.sort
     if sort.is_open or not sort.disproves:
         return

@@ -27,7 +27,7 @@ def expect(lang: str, kind: str, name: object, known: Collection[str]) -> None:
 
 
 def would_do(lang: str, name: str, known: Collection[str]) -> str:
-    """The nearest known name, or all."""
+    """Return the nearest known name, or all."""
     said = words(lang)["study"]["refused"]
     near = closest(name, known)
     if near is not None:
@@ -40,7 +40,7 @@ class UnknownMethod(UnknownName, AttributeError):
 
 
 def no_method(lang: str, name: str, known: Collection[str]) -> UnknownMethod:
-    """The error for a method that is not there."""
+    """Return the error for a method that is not there."""
     said = words(lang)["study"]["refused"]["method"].format(name=name)
     return UnknownMethod(f"{said} {would_do(lang, name, known)}")
 
@@ -59,7 +59,7 @@ def by_name(lang: str, call: str, told: object) -> Mapping[str, Any]:
 
 
 def counted(lang: str, why: str, told: object, most: int | None = None) -> int:
-    """A whole number from 1 on, up to ``most`` where that is told.
+    """Return a whole number from 1 on, up to ``most`` where that is told.
 
     Raises
     ------
@@ -72,5 +72,5 @@ def counted(lang: str, why: str, told: object, most: int | None = None) -> int:
 
 
 def refused(lang: str, why: str, **told: object) -> BadInput:
-    """The error for anything else that would not do."""
+    """Return the error for anything else that would not do."""
     return BadInput(words(lang)["study"]["refused"][why].format(**told))

@@ -50,7 +50,7 @@ def open_session(
     folder: str | Path,
     clock: Clock = now,
 ) -> StudySession:
-    """A study session of an exercise of an open course; ``named`` is how the course was asked for.
+    """Return a study session of an exercise of an open course; ``named`` is how the course was asked for.
 
     Raises
     ------
@@ -71,8 +71,8 @@ def open_session(
 
 
 def course_folder(course: str | Path | None, lang: str) -> Path | None:
-    """The folder of a course that is asked for by it, or by its name, beside or above the place where we are; none
-    for the built-in course.
+    """Return the folder of a course that is asked for by it, or by its name, beside or above the place where
+    we are; none for the built-in course.
 
     Raises
     ------
@@ -112,7 +112,7 @@ class StudySession:
     # ---------------------------------------------------------------- statement
 
     def statement(self) -> Shown:
-        """The statement, the figure, the data and the questions."""
+        """Return the statement, the figure, the data and the questions."""
         sheet, said = handout(self.variant), words(self.variant.lang)["sheet"]
         colon = said["colon"]
         head = self._said["variant"].format(title=f"**{sheet.title}**", seed=sheet.seed)
@@ -150,7 +150,8 @@ class StudySession:
         return self.variant.figure
 
     def motion(self, *effects: str) -> Shown:
-        """The mechanism over its cycle; ``effects`` as in :class:`~coursework.motion.animation.Animation`.
+        """Return the mechanism over its cycle; ``effects`` as in
+        :class:`~coursework.motion.animation.Animation`.
 
         Unless told, paths and velocities, where the solution states them.
 
@@ -251,7 +252,8 @@ class StudySession:
         return found
 
     def _is_passed_over(self, kind: str, name: Any) -> bool:
-        """Whether a name is of this exercise and not asked here: theory in another variant, what an older notebook predicts."""
+        """Return whether a name is of this exercise and not asked here: theory in another variant, what an
+        older notebook predicts."""
         ids = {p.id for p in self.variant.exercise.spec.parts}
         if kind == "question":
             return name in theory(self.variant.exercise) and name not in self.variant.part_ids
@@ -262,7 +264,7 @@ class StudySession:
         )
 
     def _named(self, question: Any) -> Any:
-        """A question's name, where its number is told: ``5``, ``"5"``, ``"question 5"``."""
+        """Return a question's name, where its number is told: ``5``, ``"5"``, ``"question 5"``."""
         ids = self._numbered
         number = question if isinstance(question, int) and not isinstance(question, bool) else None
         if isinstance(question, str) and question not in ids:
@@ -286,7 +288,7 @@ class StudySession:
         return self._said["left"].format(names=_names(names))
 
     def _compared(self, names: Iterable[str], own: Mapping[str, Own]) -> str:
-        """Predictions beside what came out, as a list."""
+        """Return the predictions beside what came out, as a list."""
         lines = []
         for found in self._attempt.compared([self._asked[name] for name in names], own):
             mark = {True: "✓", False: "✗", None: "?"}[found.right]
@@ -305,7 +307,7 @@ class StudySession:
         return self._attempt.answers
 
     def _asked_of(self, variant: Variant) -> dict[str, Any]:
-        """The kept answers to a variant that it asks: a file may hold others."""
+        """Return the kept answers to a variant that it asks: a file may hold others."""
         return {n: a for n, a in self._kept.of(variant.seed, "answers").items() if n in variant.part_ids}
 
     def check(self, answers: Mapping[str, Any] | None = None, /, **named: Any) -> Shown:
@@ -368,7 +370,7 @@ class StudySession:
         return sentence.format(names=names, call=self._call(method, self.variant.part_ids[0]))
 
     def hint(self, question: str | int = "", step: int | None = None) -> Shown:
-        """A hint, and one step more at each call; without a question, which there are.
+        """Return a hint, and one step more at each call; without a question, which there are.
 
         ``step`` goes to a step at once. No hint holds the value: :meth:`reveal` does.
 
@@ -404,7 +406,8 @@ class StudySession:
         return self._shown(*pieces, f"*{closing}*")
 
     def reveal(self, question: str | int = "") -> Shown:
-        """The whole step of the worked solution, with its value: for who asks for it by name or number.
+        """Return the whole step of the worked solution, with its value: for who asks for it by name or
+        number.
 
         Raises
         ------
@@ -427,7 +430,8 @@ class StudySession:
     # -------------------------------------------------------------------- plots
 
     def plot(self, *names: str | int) -> Shown:
-        """Quantities over a turn of the driver, the student's own answers marked; then the predictions about them.
+        """Return the quantities over a turn of the driver, the student's own answers marked; then the
+        predictions about them.
 
         A curve tells the answer at the position of the statement: it is drawn once the question is answered right, or its solution was
         shown. Without names, the first of those asked; any that moves may be named.
@@ -478,7 +482,8 @@ class StudySession:
     # ----------------------------------------------------------- other variants
 
     def fresh(self, number: int | None = None) -> StudySession:
-        """Another variant: the first, second… after the notebook's own; without a number, the next one not begun.
+        """Return the another variant: the first, second… after the notebook's own; without a number, the next
+        one not begun.
 
         Only variants that are worth issuing count, as for a class.
 
@@ -509,8 +514,8 @@ class StudySession:
         return any(e["what"] == EXAMPLE for e in self._kept.happened(seed))
 
     def example(self, level: int | None = None) -> ExampleSession | Shown:
-        """The worked solution of another variant, with blanks to fill: at level 1 the last question, at level 4 all; without a
-        level, the one after the last that was seen.
+        """Return the worked solution of another variant, with blanks to fill: at level 1 the last question,
+        at level 4 all; without a level, the one after the last that was seen.
 
         Raises
         ------
@@ -564,7 +569,8 @@ class StudySession:
         return self._kept.file.clock().date()
 
     def progress(self) -> Shown:
-        """The variants begun, and what is right in each; then the other exercises, what has cost answers, and what came out since."""
+        """Return the variants begun, and what is right in each; then the other exercises, what has cost
+        answers, and what came out since."""
         if missing := self._missing():
             return self._shown(missing)
         self._kept.file.refresh()
@@ -590,7 +596,7 @@ class StudySession:
     # ------------------------------------------------------------------- common
 
     def __getattr__(self, name: str) -> Any:
-        """A method that is none is refused in the session's language, with the nearest."""
+        """Return a method that is none is refused in the session's language, with the nearest."""
         if name.startswith("_"):
             raise AttributeError(name)
         known = [n for n in dir(type(self)) if not n.startswith("_")]
@@ -643,7 +649,7 @@ class ExampleSession(StudySession):
         return self._whole.part_ids
 
     def statement(self) -> Shown:
-        """The data, then the solution with its blanks."""
+        """Return the data, then the solution with its blanks."""
         said = self._said["example"]
         head = said["head"].format(title=f"**{self._whole.text.title}**", level=self.level, of=LEVELS)
         sheet = handout(self._whole)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 def study_sheet(variant: Variant, student: str = "") -> StudySheet:
-    """The self-study notebook of a variant, before it is printed."""
+    """Return the self-study notebook of a variant, before it is printed."""
     exercise = variant.exercise
     own = exercise.folder.root != builtin_root().resolve()
     return StudySheet(
@@ -44,8 +44,8 @@ def study_sheet(variant: Variant, student: str = "") -> StudySheet:
 
 
 def fresh_variants(exercise: CourseExercise, seed: int, count: int, lang: str) -> list[Variant]:
-    """The first variants after that of a seed that are worth issuing, all different from it and each other; they ask no
-    theory.
+    """Return the first variants after that of a seed that are worth issuing, all different from it and each
+    other; they ask no theory.
 
     Raises
     ------

@@ -228,12 +228,12 @@ class Kept:
 
 
 def _seed(text: str) -> int:
-    """A seed as it is written; anything else is none."""
+    """Return a seed as it is written; anything else is none."""
     if not re.fullmatch(r"0|[1-9][0-9]{0,99}", text):
         raise ValueError(text)
     return int(text)
 
 
 def is_blank(text: Any) -> bool:
-    """Whether nothing was written."""
+    """Return whether nothing was written."""
     return text is None or (isinstance(text, str) and not text.strip())

@@ -17,7 +17,8 @@ _UNITS = ("deg", "mm", "rad/s", "rad/s^2", "mm/s", "mm/s^2", "N", "N*m", "mm^2",
 
 
 def unwrapped(value: Any) -> Any:
-    """A value as plain Python: numbers of numpy as numbers, arrays as lists, anything else as its text."""
+    """Return a value as plain Python: numbers of numpy as numbers, arrays as lists, anything else as its
+    text."""
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, (list, tuple)):
@@ -26,7 +27,7 @@ def unwrapped(value: Any) -> Any:
 
 
 def folded(text: Any) -> str:
-    """A text without case, accents and what closes a sentence."""
+    """Return a text without case, accents and what closes a sentence."""
     bare = unicodedata.normalize("NFKD", str(text).translate(_DASHES)).casefold().replace("’", "'")
     return " ".join("".join(c for c in bare if not unicodedata.combining(c)).strip(" .!,;").split())
 
@@ -41,7 +42,7 @@ def _one_of(text: str, kinds: tuple[str, ...]) -> str:
 
 
 def sign(text: Any) -> str:
-    """``+`` or ``-``; empty where neither is said, or both."""
+    """Return ``+`` or ``-``; empty where neither is said, or both."""
     said = folded(text)
     if found := re.fullmatch(r"([+-])\s*(?:[\d.,]*|\([^()]*\))|([<>])\s*0", said):
         return found[1] or {">": "+", "<": "-"}[found[2]]
@@ -49,7 +50,7 @@ def sign(text: Any) -> str:
 
 
 def comparison(text: Any) -> str:
-    """``>``, ``<`` or ``=``; empty where none is said."""
+    """Return ``>``, ``<`` or ``=``; empty where none is said."""
     said = folded(text)
     if found := re.fullmatch(r"([<>=])[^<>=]*", said):
         return found[1]
@@ -60,7 +61,7 @@ def comparison(text: Any) -> str:
 
 
 def quadrant(text: Any) -> int | None:
-    """1 to 4: a digit, a Roman numeral, an ordinal, in words or not."""
+    """Return 1 to 4: a digit, a Roman numeral, an ordinal, in words or not."""
     said = re.sub(
         r"\b(?:quadrant|le|la|l'|dans|in|the|q|n°)(?![a-z])|(?<=\bq)(?=[1-4]$)|^q(?=[1-4]$)",
         " ",
@@ -79,7 +80,7 @@ def quadrant(text: Any) -> int | None:
 
 
 def count(text: Any) -> int | None:
-    """A whole number from 0 on, in digits or in words, with or without ``times``."""
+    """Return a whole number from 0 on, in digits or in words, with or without ``times``."""
     said = folded(text)
     for times in sorted(_called("times"), key=len, reverse=True):
         said = said.removesuffix(f" {times}")
@@ -95,14 +96,15 @@ def count(text: Any) -> int | None:
 
 
 def truth(text: Any) -> bool | None:
-    """Yes or no; None where neither is said."""
+    """Return the yes or no; None where neither is said."""
     if isinstance(text, bool):
         return text
     return {"yes": True, "no": False}.get(_one_of(folded(text), ("yes", "no")))
 
 
 def numbers(text: Any) -> tuple[tuple[float, ...], bool]:
-    """The honest readings of a number, with or without a unit, in the course's unit; whether it is in degrees."""
+    """Return the honest readings of a number, with or without a unit, in the course's unit; whether it is in
+    degrees."""
     if isinstance(text, str):
         if (whole := count(text)) is not None:
             return (float(whole),), False
@@ -115,7 +117,7 @@ def numbers(text: Any) -> tuple[tuple[float, ...], bool]:
 
 
 def without_about(text: Any) -> Any:
-    """An angle or a number without a word that says only that it is not exact."""
+    """Return an angle or a number without a word that says only that it is not exact."""
     return (
         re.sub(r"^\s*(?:vers|autour de|towards|near|around)\b", "", text, flags=re.I)
         if isinstance(text, str)

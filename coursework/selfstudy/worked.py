@@ -50,7 +50,7 @@ class Worked(Shown):
         return answer_keys(self.parts)  # questions are numbered as they stand here
 
     def _posed(self) -> list[str | Picture]:
-        """The statement, the figure, the data, and what is asked."""
+        """Return the statement, the figure, the data, and what is asked."""
         sheet, said = handout(self._asking), words(self.lang)["sheet"]
         told = words(self.lang)["lesson"]["levels"]
         head = told["whole" if not self.level else "bare" if self.level == BARE else "part"]
@@ -73,7 +73,7 @@ class Worked(Shown):
         return f"{_named(question)}{cases}"
 
     def _told(self) -> str:
-        """The solution, as far as it is told."""
+        """Return the solution, as far as it is told."""
         if self.level == BARE:
             return ""
         title = f"**{words(self.lang)['lesson']['solution']}.**"
@@ -139,7 +139,7 @@ def _named(question: Question) -> str:
 
 
 def _leading_to(variant: Variant, wanted: set[str]) -> list[Step]:
-    """The steps of the solution that lead to some quantities."""
+    """Return the steps of the solution that lead to some quantities."""
     graph = variant.exercise.solution.graph
     met = graph.walk(sorted(wanted & graph.names), variant.used, variant.effects)
     needed = wanted | set(met)
@@ -153,7 +153,7 @@ def _step(step: Step) -> str:
 def worked(
     course: Course[Any], exercise: str, seed: int, lang: str, level: int, parts: Sequence[str]
 ) -> Worked:
-    """A variant as a worked example.
+    """Return a variant as a worked example.
 
     Raises
     ------

@@ -24,7 +24,8 @@ def aligned(
     between: Sequence[int] = (0, 1),
     tilt: str = "",
 ) -> dict[str, Any]:
-    """The mapping of a joint whose direction is ``x``, ``y`` or ``z``, or three whole numbers, ``3 4 0``.
+    """Return the mapping of a joint whose direction is ``x``, ``y`` or ``z``, or three whole numbers, ``3 4
+    0``.
 
     The direction is the axis, the normal of a joint that has no axis, and the line of a contact along a
     line, whose normal is then the axis that follows: y after x, z after y, x after z; of a direction in a coordinate plane,
@@ -43,7 +44,7 @@ def aligned(
 
 
 def directions_of(along: str, tilt: str = "") -> tuple[Whole, Whole]:
-    """A direction and the one that follows it, as :func:`aligned` says, in whole numbers.
+    """Return a direction and the one that follows it, as :func:`aligned` says, in whole numbers.
 
     Raises
     ------
@@ -120,7 +121,7 @@ def _crossed(a: Any, b: Any) -> Any:
 
 
 def _turned(vector: Any, tilt: str) -> Any:
-    """Five times what the tilt makes of a vector; without a tilt the vector."""
+    """Return five times what the tilt makes of a vector; without a tilt the vector."""
     if not tilt:
         return vector
     about = _WHOLE[tilt]
@@ -136,7 +137,7 @@ def _unit(vector: Whole) -> list[float]:
 
 
 def each_distinct(function: Callable[..., Any], *columns: Any) -> Any:
-    """``function`` of each row of columns that broadcast, called once for each distinct row.
+    """Return ``function`` of each row of columns that broadcast, called once for each distinct row.
 
     Scalars give what the function gives. What is no number or truth value comes in an array of objects.
     """

@@ -86,7 +86,7 @@ class _Loops:
         raise NotImplementedError
 
     def _system(self, walks: Sequence[Mapping[int, int]]) -> np.ndarray:
-        """The sums of twists along some walks: shape (equations · walks, Nc)."""
+        """Return the sums of twists along some walks: shape (equations · walks, Nc)."""
         places = np.cumsum([0, *(len(rows) for rows in self.columns)])
         size = self.equations
         matrix = np.zeros((size * len(walks), places[-1]))
@@ -199,7 +199,7 @@ _IN_PLANE_OR_SQUARE = 1e-9  #: largest component out of the plane, or in it, of 
 
 @lru_cache(maxsize=1024)
 def _projected(name: str, frame: tuple[Vector, Vector, Vector], pitch: float) -> np.ndarray:
-    """The freedoms of a joint in the plane xy, at its own point: shape (k, 3), not to be changed.
+    """Return the freedoms of a joint in the plane xy, at its own point: shape (k, 3), not to be changed.
 
     Raises
     ------

@@ -19,7 +19,8 @@ CONDITIONS = ("none", "directions", "positions", "both")
 
 
 def in_parallel(joints: Iterable[Joint | Mapping[str, Any]]) -> Parallel:
-    """Joints between the same two bodies: what one forbids is forbidden, what one transmits is transmitted.
+    """Return the joints between the same two bodies: what one forbids is forbidden, what one transmits is
+    transmitted.
 
     Raises
     ------
@@ -30,7 +31,8 @@ def in_parallel(joints: Iterable[Joint | Mapping[str, Any]]) -> Parallel:
 
 
 def in_series(joints: Iterable[Joint | Mapping[str, Any]]) -> Series:
-    """Joints in a row: the motions that they leave free add up. Errors are those of :func:`in_parallel`."""
+    """Return the joints in a row: the motions that they leave free add up. Errors are those of
+    :func:`in_parallel`."""
     return Series(read_joints(joints))
 
 

@@ -66,7 +66,7 @@ def unit(a: Sequence[float]) -> Vector:
 
 @lru_cache(maxsize=1024)
 def frame_about(u: Vector) -> tuple[Vector, Vector, Vector]:
-    """Unit vectors u, v, w, right-handed; v leans on the coordinate axis that is least along u."""
+    """Return the unit vectors u, v, w, right-handed; v leans on the coordinate axis that is least along u."""
     least = min(range(3), key=lambda i: abs(u[i]))
     w = unit(cross(u, tuple(float(i == least) for i in range(3))))
     return u, cross(w, u), w
@@ -111,7 +111,7 @@ class Joint:
         return self._free[1]
 
     def twists(self, origin: Vector, length: float) -> list[list[float]]:
-        """Its free twists at a point: ``freedoms`` rows of 6, velocities divided by the length."""
+        """Return its free twists at a point: ``freedoms`` rows of 6, velocities divided by the length."""
         arm = self.arm(origin, length)
         advance = self.pitch / (2 * math.pi * length) if self.name == "helical" else 0.0
         rotations, translations = self._free
@@ -153,7 +153,7 @@ def _others(letters: str) -> str:
 
 
 def joint_of(given: Mapping[str, Any]) -> Joint:
-    """A joint from its mapping; keys that it does not need are passed over.
+    """Return a joint from its mapping; keys that it does not need are passed over.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def joint_of(given: Mapping[str, Any]) -> Joint:
 
 
 def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
-    """All the joints of a list, in its order; an empty list is refused."""
+    """Return all the joints of a list, in its order; an empty list is refused."""
     if isinstance(given, (Mapping, str)) or not isinstance(given, Iterable):
         raise WrongValue(f"a list of joints is a list of mappings; found {str(given)[:60]!r}")
     joints = tuple(joint_of(one) for one in given)
@@ -191,7 +191,7 @@ def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
 
 
 def read_joints(given: Iterable[Joint | Mapping[str, Any]]) -> tuple[Joint, ...]:
-    """Joints as they are, or read from their mappings: all of one sort."""
+    """Return the joints as they are, or read from their mappings: all of one sort."""
     every: tuple[Any, ...] = tuple(given)
     known = tuple(joint for joint in every if isinstance(joint, Joint))
     if known and len(known) == len(every):
@@ -252,7 +252,7 @@ class Measure:
 
     @staticmethod
     def of(joints: Sequence[Joint]) -> Measure:
-        """The middle of the joints' points and the largest distance from it.
+        """Return the middle of the joints' points and the largest distance from it.
 
         Where all points coincide, a pitch is the only length; where there is none, any length does.
         """

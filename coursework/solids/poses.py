@@ -22,7 +22,8 @@ _SAME = 1e-7  #: angles that differ by less are equal
 
 
 def all_free_at_every_pose(joints: Sequence[Joint]) -> bool:
-    """Whether the last body of a row has six freedoms with respect to the first however the joints between are moved.
+    """Return whether the last body of a row has six freedoms with respect to the first however the joints
+    between are moved.
 
     A joint that turns and slides may carry its slide on either of its bodies: both must do.
     """
@@ -70,7 +71,7 @@ def _blocks(joints: Sequence[Joint]) -> list[_Block]:
 
 
 def _turns_of(joint: Joint) -> tuple[Vector, ...] | None:
-    """The axes of a joint's own turning; None where it turns in more than one way."""
+    """Return the axes of a joint's own turning; None where it turns in more than one way."""
     if len(joint.kind.rotations) > 1:
         return None
     return tuple(joint.turns)
@@ -81,7 +82,7 @@ def _spanned(slides: Sequence[Vector]) -> np.ndarray:
 
 
 def _span_together(blocks: Sequence[_Block], one: int, other: int) -> bool:
-    """Whether two blocks span space however the turns between them stand."""
+    """Return whether two blocks span space however the turns between them stand."""
     first, last = blocks[one].span, blocks[other].span
     axes: list[Vector] = []
     for block in blocks[one:other]:
@@ -99,7 +100,8 @@ def _span_together(blocks: Sequence[_Block], one: int, other: int) -> bool:
 
 
 def _angles(fixed: np.ndarray, axes: Sequence[Vector], turned: np.ndarray) -> tuple[float, float]:
-    """The least and the largest angle between two directions, one of which is turned about axes in a row."""
+    """Return the least and the largest angle between two directions, one of which is turned about axes in a
+    row."""
     chain = [fixed, *(np.array(axis) for axis in axes), turned]
     low = high = _angle(chain[-1], chain[-2])
     for axis, before in zip(chain[-2:0:-1], chain[-3::-1], strict=True):

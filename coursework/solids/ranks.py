@@ -27,7 +27,7 @@ class Rank:
 
 
 def is_zero(value: float, what: str) -> bool:
-    """Whether a number that is of the order of 1 or vanishes does vanish.
+    """Return whether a number that is of the order of 1 or vanishes does vanish.
 
     Raises
     ------
@@ -44,7 +44,8 @@ def is_zero(value: float, what: str) -> bool:
 
 
 def decompose(rows: np.ndarray, what: str, scale: float | None = None) -> tuple[Rank, np.ndarray, np.ndarray]:
-    """The rank of the rows, and orthonormal bases of what they span and of what is perpendicular to it.
+    """Return the rank of the rows, and orthonormal bases of what they span and of what is perpendicular to
+    it.
 
     ``rows`` has shape (k, d), the bases (rank, d) and (d - rank, d). Singular values are counted in
     ``scale``, by default the largest of them.
@@ -74,7 +75,7 @@ def decompose(rows: np.ndarray, what: str, scale: float | None = None) -> tuple[
 
 
 def rank_of(matrix: np.ndarray, what: str = "the system") -> Rank:
-    """The rank of a matrix whose columns are scaled to the same length first.
+    """Return the rank of a matrix whose columns are scaled to the same length first.
 
     Raises
     ------

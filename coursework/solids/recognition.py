@@ -46,7 +46,7 @@ class Equivalent:
 
 
 def recognise(twists: np.ndarray, wrenches: np.ndarray, measure: Measure) -> Equivalent:
-    """The joint whose free twists are those of the rows.
+    """Return the joint whose free twists are those of the rows.
 
     ``twists`` (m, 6) and ``wrenches`` (6 - m, 6) are orthonormal bases, perpendicular to one another, written
     at the measure's origin.
@@ -73,7 +73,8 @@ class _Space:
         return _Space(np.roll(self.rows, 3, axis=1), self.measure)
 
     def split(self) -> tuple[np.ndarray, np.ndarray]:
-        """A basis whose first rows have independent lines, and pure couples or translations after them."""
+        """Return a basis whose first rows have independent lines, and pure couples or translations after
+        them."""
         lines = self.rows[:, :3]
         rank, _, _ = decompose(lines, "the directions of the axes", 1.0)
         left, _, _ = np.linalg.svd(lines)
@@ -81,30 +82,30 @@ class _Space:
         return mixed[: rank.value], mixed[rank.value :, 3:]
 
     def place(self, arm: np.ndarray) -> tuple[float, float, float]:
-        """A point given from the origin in lengths, in the unit of the data."""
+        """Return a point given from the origin in lengths, in the unit of the data."""
         found = np.asarray(self.measure.origin) + arm * self.measure.length
         return _tidy(found, max(self.measure.length, *map(abs, self.measure.origin)))
 
 
 def _tidy(vector: np.ndarray, size: float) -> tuple[float, float, float]:
-    """Without what rounding leaves of zeros."""
+    """Return the without what rounding leaves of zeros."""
     x, y, z = (0.0 if abs(x) <= 1e-12 * size else float(x) for x in vector)
     return x, y, z
 
 
 def _along(vector: np.ndarray) -> tuple[float, float, float]:
-    """Its direction; the first coordinate that is not zero is positive."""
+    """Return its direction; the first coordinate that is not zero is positive."""
     x = np.asarray(_tidy(vector / np.linalg.norm(vector), 1.0))
     return tuple((x * np.sign(x[np.flatnonzero(x)[0]]) + 0.0).tolist())
 
 
 def _foot(line: np.ndarray, rest: np.ndarray) -> np.ndarray:
-    """The point nearest to the origin of the axis of (line, rest), where rest = arm × line + a pitch."""
+    """Return the point nearest to the origin of the axis of (line, rest), where rest = arm × line + a pitch."""
     return np.cross(line, rest) / (line @ line)
 
 
 def _common_point(rows: np.ndarray) -> np.ndarray | None:
-    """The point that all axes pass through, each without pitch, or None."""
+    """Return the point that all axes pass through, each without pitch, or None."""
     system = np.concatenate([_crossing(row[:3]) for row in rows])
     right = np.concatenate([row[3:] for row in rows])
     arm, *_ = np.linalg.lstsq(system, right, rcond=None)
@@ -113,7 +114,7 @@ def _common_point(rows: np.ndarray) -> np.ndarray | None:
 
 
 def _crossing(line: np.ndarray) -> np.ndarray:
-    """The matrix of arm -> arm × line."""
+    """Return the matrix of arm -> arm × line."""
     x, y, z = line
     return np.array([[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]])
 

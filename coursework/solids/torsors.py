@@ -20,7 +20,8 @@ _NOTHING = 1e-9
 
 
 def moved(resultant: Any, moment: Any, arm: Any) -> Any:
-    """The moment, or the velocity, of a torsor at another point; ``arm`` leads from there to the point of ``moment``.
+    """Return the moment, or the velocity, of a torsor at another point; ``arm`` leads from there to the point
+    of ``moment``.
 
     Arrays of shape ``(..., 3)``: ``M(B) = M(A) + BA × R``, and ``V(B) = V(A) + BA × Ω``. Units are those of the product.
     """
@@ -28,12 +29,13 @@ def moved(resultant: Any, moment: Any, arm: Any) -> Any:
 
 
 def twist_components(of: Joint | Parallel | Series, point: Vector) -> str:
-    """The names of the components of its free twists at a point that may differ from zero, ``"wz vx"``; ``"0"`` for none."""
+    """Return the names of the components of its free twists at a point that may differ from zero, ``"wz
+    vx"``; ``"0"`` for none."""
     return _named(_twists(of, point), TWIST)
 
 
 def wrench_components(of: Joint | Parallel | Series, point: Vector) -> str:
-    """The same of what it transmits, ``"X Y M"``."""
+    """Return the same of what it transmits, ``"X Y M"``."""
     if isinstance(of, Joint):
         rows = np.array(of.wrenches(point, _LENGTH)).reshape(-1, 6)
         return _named(np.roll(rows, 3, axis=1), WRENCH)

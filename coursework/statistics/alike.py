@@ -35,7 +35,7 @@ class Alike(NamedTuple):
     of: int  #: numbers on the sheet that are not right
 
     def row(self) -> dict[str, Any]:
-        """A line of ``alike.csv``."""
+        """Return a line of ``alike.csv``."""
         more = ", …" if len(self.owners) > _NAMES else ""
         told = ", ".join(self.owners[:_NAMES]) + more
         return dict(
@@ -48,7 +48,7 @@ class Alike(NamedTuple):
 
 
 def alike(folder: Path) -> list[Alike]:
-    """The sheets of a folder of marks of which most that is wrong is right on one other variant.
+    """Return the sheets of a folder of marks of which most that is wrong is right on one other variant.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def alike(folder: Path) -> list[Alike]:
 
 
 def _measured(read_as: str) -> float | None:
-    """A number of three digits at least; fewer are alike by chance."""
+    """Return a number of three digits at least; fewer are alike by chance."""
     found = _NUMBER.match(read_as)
     if found is None or len(re.sub(r"e.*|\D", "", found[0]).lstrip("0")) < 3:
         return None
@@ -96,7 +96,7 @@ def _likest(
     answers: list[tuple[str, float]],
     right: dict[tuple[str, str], tuple[np.ndarray, list[str]]],
 ) -> Iterator[tuple[str, int]]:
-    """The other variant that most answers are right on, and how many."""
+    """Yield the other variant that most answers are right on, and how many."""
     counts: Counter[str] = Counter()
     for part, value in answers:
         values, seeds = right.get((exercise, part), (np.array([]), []))

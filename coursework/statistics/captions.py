@@ -42,7 +42,7 @@ class Names:
         self._texts: dict[str, list[Mapping[str, Any]]] = {}
 
     def exercise(self, name: str) -> CourseExercise | None:
-        """The exercise of that name, where the course has it."""
+        """Return the exercise of that name, where the course has it."""
         if name not in self._course:
             return None
         return self._course[name]
@@ -50,7 +50,7 @@ class Names:
     # --------------------------------------------------------------- questions
 
     def number(self, part: PartStatistics) -> int | None:
-        """The number of the question; None where it is not the same on every sheet, or cannot be told."""
+        """Return the number of the question; None where it is not the same on every sheet, or cannot be told."""
         exercise = self.exercise(part.exercise)
         asked = [p for p in exercise.spec.parts if not p.by_request] if exercise else []
         ids = [p.id for p in asked]
@@ -61,19 +61,21 @@ class Names:
         return place + 1 if always.issuperset(ids[:place]) else None
 
     def _known(self, part: Question) -> tuple[CourseExercise | None, Part | None]:
-        """The exercise and the part, where the course has them."""
+        """Return the exercise and the part, where the course has them."""
         exercise = self.exercise(part.exercise)
         return exercise, None if exercise is None else exercise.spec.part(part.part)
 
     def symbol(self, part: PartStatistics) -> str:
-        """LaTeX of what the part asks; nothing where a symbol says nothing, or the course knows no such part."""
+        """Return LaTeX of what the part asks; nothing where a symbol says nothing, or the course knows no
+        such part."""
         exercise, asked = self._known(part)
         if exercise is None or asked is None or not asked.sort.is_scalar:
             return ""
         return exercise.symbol(asked.quantity)
 
     def question(self, part: Question) -> str:
-        """The words of the question, shortened, as plain text; the part's own name where there are none."""
+        """Return the words of the question, shortened, as plain text; the part's own name where there are
+        none."""
         exercise, asked = self._known(part)
         if exercise is None or asked is None or self._lang not in exercise.languages:
             return part.part
@@ -94,17 +96,17 @@ class Names:
         return _common(told) if told else ""
 
     def says_markdown(self, one: MistakeStatistics) -> str:
-        """The same with its formulas, where all are told the same; else nothing."""
+        """Return the same with its formulas, where all are told the same; else nothing."""
         told = set(self._told(one))
         return " ".join(told.pop().split()) if len(told) == 1 else ""
 
     def mistake(self, one: MistakeStatistics, most: int = SHORT) -> str:
-        """The mistake in the first words of what is told; its own name where nothing is."""
+        """Return the mistake in the first words of what is told; its own name where nothing is."""
         first = re.split(r"(?<=[.?!])\s", self.says(one), maxsplit=1)[0]
         return shortened(first.removesuffix("."), most) or one.name
 
     def _told(self, one: MistakeStatistics) -> list[str]:
-        """The sentence of a mistake on two variants, Markdown."""
+        """Return the sentence of a mistake on two variants, Markdown."""
         if one.kind == "slip":
             return []
         if one.exercise not in self._texts:
@@ -129,7 +131,7 @@ class Names:
 
 
 def shortened(text: str, most: int = SHORT) -> str:
-    """The text up to the end of a word, with an ellipsis where that is not all."""
+    """Return the text up to the end of a word, with an ellipsis where that is not all."""
     if len(text) <= most:
         return text
     whole = text[:most].rpartition(" ")[0] or text[: most - 1]
@@ -137,7 +139,8 @@ def shortened(text: str, most: int = SHORT) -> str:
 
 
 def _common(texts: list[str]) -> str:
-    """The words that the texts share, an ellipsis for each that they do not; nothing where they differ in more."""
+    """Return the words that the texts share, an ellipsis for each that they do not; nothing where they differ
+    in more."""
     split = [text.split() for text in texts]
     if len({len(one) for one in split}) > 1:
         return ""

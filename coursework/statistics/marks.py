@@ -107,7 +107,7 @@ class Told(NamedTuple):
 
 
 def marks_of(lines: Iterable[Line], told: Mapping[str, Told], rejected: int = 0) -> Marks:
-    """The columns of a class's marks, and of what its summary says of each student."""
+    """Return the columns of a class's marks, and of what its summary says of each student."""
     return _Columns(lines).marks(told, rejected)
 
 
@@ -126,7 +126,7 @@ class _Columns:
             self.out_of.append(of)
 
     def marks(self, told: Mapping[str, Told], rejected: int) -> Marks:
-        """The columns, and what else is known."""
+        """Return the columns, and what else is known."""
         students, marked = self.students, len(self.students)
         unread = [name for name, own in told.items() if own.unreadable]
         for name in told:
@@ -157,7 +157,8 @@ class _Columns:
 
 
 def unlike_summary(folder: Path, marks: Marks) -> list[str]:
-    """The students whose points in the marks are not those of the summary beside them: a hand changed one of the two."""
+    """Return the students whose points in the marks are not those of the summary beside them: a hand changed
+    one of the two."""
     path = folder / "summary.csv"
     if not path.is_file() or "points" not in _header(path):
         return []
@@ -168,7 +169,7 @@ def unlike_summary(folder: Path, marks: Marks) -> list[str]:
 
 
 def _counting(folder: Path, decimals: _Decimals) -> Iterator[tuple[Any, ...]]:
-    """The lines of the marks; of a student with several sittings those of the one that counts."""
+    """Yield the lines of the marks; of a student with several sittings those of the one that counts."""
     path, summary = folder / "marks.csv", folder / "summary.csv"
     if not (summary.is_file() and SITTING in _header(path) and SITTING in _header(summary)):
         yield from _lines(path, _MARKS, decimals)
@@ -221,7 +222,7 @@ def family_of(verdict: str) -> str:
 
 
 def columns_of(path: Path, columns: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """Named columns of a table of marks, line by line, as texts.
+    """Return the named columns of a table of marks, line by line, as texts.
 
     Raises
     ------
@@ -234,7 +235,7 @@ def columns_of(path: Path, columns: Sequence[str]) -> Iterator[tuple[str, ...]]:
 def _lines(
     path: Path, columns: Sequence[str], decimals: _Decimals | None = None
 ) -> Iterator[tuple[Any, ...]]:
-    """The named columns of a CSV, line by line; with ``decimals``, the last two of them as floats."""
+    """Yield the named columns of a CSV, line by line; with ``decimals``, the last two of them as floats."""
     try:
         with open_csv(path) as file:
             delimiter = delimiter_of(file.readline())

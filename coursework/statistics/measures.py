@@ -59,7 +59,7 @@ class PartStatistics:
         return self.answers - self.counts[WAITING]
 
     def row(self) -> dict[str, Any]:
-        """A line of ``parts.csv``: shares with four decimals."""
+        """Return a line of ``parts.csv``: shares with four decimals."""
         r = self.discrimination
         return {
             "exercise": self.exercise,
@@ -86,7 +86,7 @@ class MistakeStatistics:
     share_of_lost: float  #: of all points that the class lost on lines of marks.csv
 
     def row(self) -> dict[str, Any]:
-        """A line of ``mistakes.csv``, but for the words of its feedback."""
+        """Return a line of ``mistakes.csv``, but for the words of its feedback."""
         return {
             "exercise": self.exercise,
             "part": self.part,
@@ -124,13 +124,13 @@ class Statistics:
         return tuple(dict.fromkeys(p.exercise for p in self.parts))
 
     def histogram(self) -> np.ndarray:
-        """Students in each tenth of the points, shape (BINS,); a full score is in the last."""
+        """Return the students in each tenth of the points, shape (BINS,); a full score is in the last."""
         # A hair above its edge, so that rounding puts no 70 % below 70 %.
         place = np.floor(self.percents * BINS / 100 + 1e-9)
         return np.bincount(np.clip(place, 0, BINS - 1).astype(int), minlength=BINS)
 
     def mistakes_of_exercises(self) -> list[MistakeStatistics]:
-        """The mistakes, those of one name summed over an exercise's parts; the most frequent first."""
+        """Return the mistakes, those of one name summed over an exercise's parts; the most frequent first."""
         groups: dict[tuple[str, str, str], list[MistakeStatistics]] = {}
         for one in self.mistakes:
             groups.setdefault((one.exercise, one.kind, one.name), []).append(one)
@@ -224,7 +224,8 @@ def measure(marks: Marks, sheet_order: Mapping[str, Sequence[str]] | None = None
 
 
 def marked_lines(marks: Marks, marked: np.ndarray) -> Marks:
-    """The marks without the lines that wait for a person, shape (lines,) of booleans, and without their points."""
+    """Return the marks without the lines that wait for a person, shape (lines,) of booleans, and without
+    their points."""
     if np.all(marked):
         return marks
     waiting = np.bincount(marks.student[~marked], marks.out_of[~marked], minlength=len(marks.students))
@@ -267,7 +268,7 @@ def _discriminations(marks: Marks, share: np.ndarray, askers: Sequence[int]) -> 
 
 
 def correlation(x: np.ndarray, y: np.ndarray) -> float | None:
-    """Pearson's correlation of two samples; None where one of them does not vary."""
+    """Return Pearson's correlation of two samples; None where one of them does not vary."""
     if min(np.ptp(x), np.ptp(y)) < 1e-9:
         return None
     x, y = x - x.mean(), y - y.mean()

@@ -42,12 +42,13 @@ Words = Mapping[str, Any]
 
 
 def sheet_order(course: Course, exercises: Iterable[str]) -> dict[str, tuple[str, ...]]:
-    """Part ids in the order of the sheets, of those exercises that the course has."""
+    """Return the part ids in the order of the sheets, of those exercises that the course has."""
     return {name: tuple(p.id for p in course[name].spec.parts) for name in exercises if name in course}
 
 
 def report(course: Course, statistics: Statistics, lang: str) -> Report:
-    """The reading, the points, a section an exercise, the mistakes; says so where no chart can be drawn."""
+    """Return the reading, the points, a section an exercise, the mistakes; says so where no chart can be
+    drawn."""
     page = _Page(course, statistics, lang)
     sections = [page.short()]
     if statistics.percents.size:
@@ -66,7 +67,7 @@ def report(course: Course, statistics: Statistics, lang: str) -> Report:
 
 
 def mistake_rows(course: Course, statistics: Statistics, lang: str) -> Iterator[dict[str, Any]]:
-    """The lines of ``mistakes.csv``."""
+    """Yield the lines of ``mistakes.csv``."""
     names = Names(course, statistics, lang)
     for one in statistics.mistakes:
         yield {c: {**one.row(), "says": names.says(one)}[c] for c in MISTAKE_COLUMNS}
@@ -176,7 +177,7 @@ class _Page:
         return self.said["too_few" if part.students < ENOUGH else "all_alike"]
 
     def _verdict_table(self, parts: Sequence[PartStatistics]) -> Table:
-        """The verdicts that some answer has; the others have no column."""
+        """Return the verdicts that some answer has; the others have no column."""
         met = [f for f in VERDICTS if any(p.counts[f] for p in parts)]
         rows = tuple(
             (self._name(p), *(self._hundredths(p.share(f)) if p.counts[f] else "" for f in met))
@@ -264,12 +265,12 @@ class _Page:
     # ------------------------------------------------------------------- names
 
     def _title(self, name: str) -> str:
-        """An exercise's title as Markdown."""
+        """Return an exercise's title as Markdown."""
         exercise = self.names.exercise(name)
         return exercise.title(self.lang) if exercise and self.lang in exercise.languages else _as_it_is(name)
 
     def _heading(self, name: str) -> str:
-        """An exercise's title as plain text."""
+        """Return an exercise's title as plain text."""
         return " ".join(to_text(self._title(name), self.lang).split())
 
     def _numbered(self, part: PartStatistics, name: str) -> str:
@@ -286,7 +287,7 @@ class _Page:
         return name if name == own else f"{name} ({own})"
 
     def _with(self, part: PartStatistics, value: str) -> str:
-        """A part and a number of it, in a sentence about the class."""
+        """Return a part and a number of it, in a sentence about the class."""
         several = len(self.statistics.exercises) > 1
         note = f"{self._title(part.exercise)}, {value}" if several else value
         return f"{self._name(part)} ({note})"
@@ -312,7 +313,7 @@ class _Page:
         return localise(text.removeprefix("-") if float(text) == 0 else text, self.lang)
 
     def _hundredths(self, share: float) -> str:
-        """A share in percent as a number alone; what is not all and not nothing does not round to it."""
+        """Return a share in percent as a number alone; what is not all and not nothing does not round to it."""
         value = round(100 * float(share), 9)
         rounded = min(max(round(value), 1), 99) if 0 < value < 100 else round(value)
         return localise(str(rounded), self.lang)
@@ -324,19 +325,19 @@ class _Page:
         return _charted(typeset(_short(text, _HEADED), self.lang))
 
     def _charts(self, draw: Callable[[], bytes], heading: str) -> tuple[Chart, ...]:
-        """The chart, where charts can be drawn."""
+        """Return the chart, where charts can be drawn."""
         return (Chart(draw().decode("utf-8"), self.said["alt"].format(heading)),) if self.drawn else ()
 
 
 def _shared_out(rows: Sequence[PartStatistics], most: int) -> list[Sequence[PartStatistics]]:
-    """The rows in as few runs as hold them, of about the same length."""
+    """Return the rows in as few runs as hold them, of about the same length."""
     runs = -(-len(rows) // most)
     size = -(-len(rows) // runs)
     return [rows[start : start + size] for start in range(0, len(rows), size)]
 
 
 def _short(name: str, most: int = 40) -> str:
-    """A name from a file on one line of a chart."""
+    """Return a name from a file on one line of a chart."""
     one_line = " ".join(name.split())
     return one_line if len(one_line) <= most else one_line[: most - 1] + "…"
 
@@ -346,7 +347,8 @@ _VECTOR = re.compile("([^\\W_])\N{COMBINING RIGHT ARROW ABOVE}")
 
 
 def _charted(text: str) -> str:
-    """A text as a label of a chart, in characters that its font has; an arrow over a letter is drawn as in a formula."""
+    """Return a text as a label of a chart, in characters that its font has; an arrow over a letter is drawn
+    as in a formula."""
     pieces = _VECTOR.split(text)
     pieces[::2] = [plain_label(drawable_label(piece)) for piece in pieces[::2]]
     pieces[1::2] = [rf"$\vec{{{letter}}}$" for letter in pieces[1::2]]
@@ -354,6 +356,6 @@ def _charted(text: str) -> str:
 
 
 def _as_it_is(name: str) -> str:
-    """A name from a file as Markdown that shows it."""
+    """Return a name from a file as Markdown that shows it."""
     one_line = " ".join("".join(c if c.isprintable() else " " for c in name).split())
     return re.sub(r"([!-/:-@\[-`{-~])", r"\\\1", one_line) or "–"

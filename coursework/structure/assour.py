@@ -47,18 +47,19 @@ class Decomposition:
         return roman(self.rank)
 
     def group_of(self, body: int) -> Group | None:
-        """The group that holds a body; None for the frame and the driver."""
+        """Return the group that holds a body; None for the frame and the driver."""
         return next((group for group in self.groups if body in group.bodies), None)
 
 
 def roman(number: int) -> str:
-    """A small number, 1 to 39, in Roman figures."""
+    """Return a small number, 1 to 39, in Roman figures."""
     tens, ones = divmod(number, 10)
     return "X" * tens + ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX")[ones]
 
 
 def decompose(joints: JointGraph | Iterable[Record], driver: Sequence[int]) -> Decomposition:
-    """The Assour groups of a mechanism with lower pairs alone, driven by the pair of ``driver``, [1, body].
+    """Return the Assour groups of a mechanism with lower pairs alone, driven by the pair of ``driver``, [1,
+    body].
 
     Raises
     ------
@@ -80,7 +81,7 @@ def decompose(joints: JointGraph | Iterable[Record], driver: Sequence[int]) -> D
 
 
 def driven_body(graph: JointGraph, driver: Sequence[int]) -> int:
-    """The body of a driver [1, body], which a lower pair joins to the frame."""
+    """Return the body of a driver [1, body], which a lower pair joins to the frame."""
     try:
         numbers = [int(x) for x in driver]
         wrong = len(numbers) != 2 or FRAME not in numbers or numbers != list(driver)
@@ -98,7 +99,7 @@ def driven_body(graph: JointGraph, driver: Sequence[int]) -> int:
 
 
 def drivers(graph: JointGraph) -> tuple[int, ...]:
-    """The bodies that a lower pair joins to the frame."""
+    """Return the bodies that a lower pair joins to the frame."""
     joined = {b for j in graph.joints if FRAME in j.bodies and j.kind != "higher" for b in j.bodies}
     return tuple(sorted(joined - {FRAME}))
 
@@ -107,8 +108,8 @@ def drivers(graph: JointGraph) -> tuple[int, ...]:
 
 
 def _conditions(graph: JointGraph) -> list[tuple[Node, Node]]:
-    """The ends of each pair of conditions. A pivot of several bodies holds each of them to a pin, a point with
-    two unknowns of its own: so no body of it is preferred."""
+    """Return the ends of each pair of conditions. A pivot of several bodies holds each of them to a pin, a
+    point with two unknowns of its own: so no body of it is preferred."""
     found: list[tuple[Node, Node]] = []
     for index, joint in enumerate(graph.joints):
         if len(joint.bodies) == 2:
@@ -119,7 +120,7 @@ def _conditions(graph: JointGraph) -> list[tuple[Node, Node]]:
 
 
 def _rings(graph: JointGraph, driver: int) -> list[tuple[int, ...]]:
-    """The sets of bodies that settle each other, in no order."""
+    """Return the sets of bodies that settle each other, in no order."""
     conditions = _conditions(graph)
     placed = {("body", FRAME), ("body", driver)}
     # The driver's own pair is taken away: it stays among the conditions only in a multiple pivot, where
@@ -140,7 +141,7 @@ def _rings(graph: JointGraph, driver: int) -> list[tuple[int, ...]]:
 
 
 def _own_hold(graph: JointGraph, driver: int) -> tuple[Node, Node] | None:
-    """The driver's hold of a pin that the frame holds too."""
+    """Return the driver's hold of a pin that the frame holds too."""
     for index, joint in enumerate(graph.joints):
         if len(joint.bodies) > 2 and {FRAME, driver} <= set(joint.bodies):
             return ("pin", index), ("body", driver)
@@ -188,7 +189,7 @@ def _given_out(conditions: Sequence[tuple[Node, Node]], placed: set[Node]) -> li
 
 
 def _components(arrows: dict[Node, set[Node]], left_out: set[Node]) -> list[list[Node]]:
-    """Strongly connected parts: nodes that reach each other."""
+    """Return the strongly connected parts: nodes that reach each other."""
     back: dict[Node, set[Node]] = {node: set() for node in arrows}
     for node, after in arrows.items():
         for other in after - left_out:
@@ -231,7 +232,7 @@ def _visit(start: Node, arrows: dict[Node, set[Node]], seen: set[Node], leave: A
 
 
 def _ordered(graph: JointGraph, driver: int, rings: Sequence[tuple[int, ...]]) -> tuple[Group, ...]:
-    """Assembly: again and again the smallest set that has all its pairs, the lowest bodies first."""
+    """Return Assembly: again and again the smallest set that has all its pairs, the lowest bodies first."""
     placed = {FRAME, driver}
     ready: list[tuple[int, tuple[int, ...]]] = []
     waiting = set(rings)
@@ -248,7 +249,7 @@ def _ordered(graph: JointGraph, driver: int, rings: Sequence[tuple[int, ...]]) -
 
 
 def _pairs_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
-    """The pairs of some bodies among themselves and to what is placed."""
+    """Return the pairs of some bodies among themselves and to what is placed."""
     total = 0
     for joint in graph.joints:
         own = len(set(joint.bodies) & set(ring))
@@ -258,7 +259,7 @@ def _pairs_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
 
 
 def class_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
-    """The larger of the longest chordless loop of the bodies and of the most joints on one of them.
+    """Return the larger of the longest chordless loop of the bodies and of the most joints on one of them.
 
     A multiple pivot is one corner of each of its bodies.
     """
@@ -269,7 +270,7 @@ def class_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
 
 
 def longest_loop(joined: Sequence[set[int]], bodies: Iterable[int]) -> int:
-    """Sides of the longest loop of bodies that no joint shortens; 0 if there is none.
+    """Return the sides of the longest loop of bodies that no joint shortens; 0 if there is none.
 
     ``joined`` holds the bodies of each joint. Bodies on one common pivot are no loop.
     """

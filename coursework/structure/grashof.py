@@ -53,7 +53,8 @@ def _grashof(s: Any, p: Any, q: Any, l: Any) -> tuple[Any, ...]:
 
 
 def _exact(terms: Callable[..., tuple[Any, ...]], *lengths: Any) -> Any:
-    """The sum of the terms of the lengths in order: of decimals wherever that of the doubles leaves its sign open."""
+    """Return the sum of the terms of the lengths in order: of decimals wherever that of the doubles leaves
+    its sign open."""
     ordered = np.sort(np.stack(np.broadcast_arrays(*[np.asarray(r, dtype=float) for r in lengths])), axis=0)
     excess = np.asarray(exact_sum(*terms(*ordered)))
     # Of up to six decimals, the usual case, the millionths are whole numbers, and so are their sums.
@@ -77,7 +78,8 @@ def type_by_shortest(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
 
 
 def linkage_type(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
-    """One of :data:`TYPES`, for a frame r1, input r2, coupler r3, output r4: positive scalars or arrays."""
+    """Return one of :data:`TYPES`, for a frame r1, input r2, coupler r3, output r4: positive scalars or
+    arrays."""
     excess = grashof_excess(r1, r2, r3, r4)
     return np.select(
         [closing_excess(r1, r2, r3, r4) <= 0, excess == 0, excess < 0],

@@ -35,7 +35,7 @@ class Choices:
             block += 1
 
     def below(self, count: int) -> int:
-        """A number from 0 to ``count - 1``."""
+        """Return a number from 0 to ``count - 1``."""
         return (next(self._bits) * count) >> 32
 
     def one_of(self, items: Sequence[Item]) -> Item:
@@ -58,7 +58,8 @@ class Grown(NamedTuple):
 
 
 def grow(number: int, groups: Sequence[str], *, drivers: int = 1) -> Grown:
-    """The mechanism of a number, made of these groups in this order, its bodies and joints in any order.
+    """Return the mechanism of a number, made of these groups in this order, its bodies and joints in any
+    order.
 
     ``groups`` holds ``dyad`` (class II), ``triad`` (III), ``tetrad`` (IV: a loop of four bodies), ``follower``
     (one body, a lower and a higher pair) and ``stiffener`` (a bar, which takes a degree of freedom away).
@@ -70,7 +71,8 @@ def grow(number: int, groups: Sequence[str], *, drivers: int = 1) -> Grown:
 
 
 def relabelled(number: int, joints: Sequence[Joint], drivers: Sequence[int] = ()) -> Grown:
-    """Moving bodies numbered anew, joints listed in any order and lettered A, B, C, … along the list."""
+    """Return the moving bodies numbered anew, joints listed in any order and lettered A, B, C, … along the
+    list."""
     choices = Choices(number, "relabel")
     moving = sorted({body for joint in joints for body in joint.bodies} - {FRAME})
     new = {FRAME: FRAME, **dict(zip(moving, choices.shuffled(moving), strict=True))}
@@ -82,7 +84,7 @@ def relabelled(number: int, joints: Sequence[Joint], drivers: Sequence[int] = ()
 
 
 def _letter(place: int) -> str:
-    """A to Z, then A1, B1, …"""
+    """Return a to Z, then A1, B1, …"""
     round_, letter = divmod(place, 26)
     return chr(ord("A") + letter) + (str(round_) if round_ else "")
 
@@ -139,7 +141,7 @@ class _Plant:
         return self._place(first)
 
     def _place(self, taken: frozenset[int]) -> frozenset[int]:
-        """A body, or the bodies of a pivot, that are not taken; a pivot leaves some other body free."""
+        """Return a body, or the bodies of a pivot, that are not taken; a pivot leaves some other body free."""
         pivots = [
             frozenset(joint.bodies)
             for joint in self.joints

@@ -73,7 +73,7 @@ class JointGraph:
         return JointGraph(tuple(sorted(joints)))
 
     def records(self) -> tuple[dict[str, Any], ...]:
-        """The joints as records, a multiple pivot in one of them."""
+        """Return the joints as records, a multiple pivot in one of them."""
         return tuple(
             {"between": list(j.bodies), "kind": j.kind, **({"at": j.at} if j.at else {})} for j in self.joints
         )
@@ -102,15 +102,15 @@ class JointGraph:
         return Counts(total - 1, lower, higher, freedoms, pairs, total, pairs - total + 1)
 
     def joints_of(self, body: int) -> tuple[Joint, ...]:
-        """The joints that a body takes part in."""
+        """Return the joints that a body takes part in."""
         return tuple(joint for joint in self.joints if body in joint.bodies)
 
     def pairs(self) -> tuple[Pair, ...]:
-        """The kinematic pairs, a multiple pivot as pairs with its lowest body."""
+        """Return the kinematic pairs, a multiple pivot as pairs with its lowest body."""
         return tuple(sorted((joint.bodies[0], other) for joint in self.joints for other in joint.bodies[1:]))
 
     def cycles(self) -> tuple[tuple[int, ...], ...]:
-        """Independent cycles, as many as ``counts.gamma``: the bodies met, in order.
+        """Return the independent cycles, as many as ``counts.gamma``: the bodies met, in order.
 
         Each closes by one pair that no other cycle uses. A cycle of two bodies is two pairs between them.
         """
@@ -136,12 +136,12 @@ class JointGraph:
 
 
 def copied(records: Iterable[Record]) -> tuple[dict[str, Any], ...]:
-    """Records of their own, for whom may change them."""
+    """Return the records of their own, for whom may change them."""
     return tuple({**record, "between": list(record["between"])} for record in records)
 
 
 def _cycle(parents: Mapping[int, int], one: int, other: int) -> tuple[int, ...]:
-    """The cycle that a pair closes with the ways of its two bodies towards the frame."""
+    """Return the cycle that a pair closes with the ways of its two bodies towards the frame."""
     left, right = _way(parents, one), _way(parents, other)
     while len(left) > 1 and len(right) > 1 and left[-2] == right[-2]:
         left.pop()
@@ -191,7 +191,7 @@ def _bodies(between: Any, where: str) -> tuple[int, ...]:
 
 
 def _merged(joints: Sequence[Joint]) -> list[Joint]:
-    """Pivots of one label as one pivot."""
+    """Return the pivots of one label as one pivot."""
     found = [joint for joint in joints if joint.kind != "revolute" or not joint.at]
     labelled: dict[str, list[Joint]] = {}
     for joint in joints:

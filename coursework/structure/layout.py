@@ -61,7 +61,8 @@ def slides(graph: JointGraph, at: Sequence[complex] = ()) -> dict[int, Slide]:
 
 
 def sites(graph: JointGraph) -> list[int]:
-    """The site of each joint: a block that has one pivot besides sits on that pivot, one block a pivot."""
+    """Return the site of each joint: a block that has one pivot besides sits on that pivot, one block a
+    pivot."""
     number = list(range(len(graph.joints)))
     taken: set[int] = set()
     for index, slide in slides(graph).items():
@@ -77,7 +78,7 @@ def sites(graph: JointGraph) -> list[int]:
 
 @lru_cache(maxsize=1024)
 def places(graph: JointGraph) -> tuple[complex, ...]:
-    """A place for each joint of the graph, mm on paper, y up."""
+    """Return a place for each joint of the graph, mm on paper, y up."""
     picture = _Picture(graph)
     pictures = picture.settled(picture.starts())
     found = pictures[int(np.argmin(picture.cost(pictures)))]
@@ -238,7 +239,7 @@ class _Picture:
     def _angle(
         self, start: np.ndarray, end: np.ndarray, e: np.ndarray, f: np.ndarray, s: np.ndarray
     ) -> np.ndarray:
-        """Lines that leave one site: not too near to each other, nor in one line."""
+        """Return the lines that leave one site: not too near to each other, nor in one line."""
         cosine = _cosine(self._leaving(start, end, e, s), self._leaving(start, end, f, s))
         sharp = 14.0 * _short(cosine, 0.85, below=False) + 3.0 * _short(cosine, 0.5, below=False)
         return sharp + 6.0 * _short(-cosine, 0.95, below=False)
@@ -250,7 +251,8 @@ class _Picture:
     # ---------------------------------------------------------------- search
 
     def starts(self) -> np.ndarray:
-        """Grounded sites in a row below, the others above them, farther the more bodies lie between."""
+        """Return the grounded sites in a row below, the others above them, farther the more bodies lie
+        between."""
         depth = self._depths()
         found = []
         for variant in range(_STARTS):
@@ -280,7 +282,8 @@ class _Picture:
         return depth
 
     def settled(self, z: np.ndarray) -> np.ndarray:
-        """Every site of each picture moved in turn to its best place: over the whole sheet first, then round about."""
+        """Return every site of each picture moved in turn to its best place: over the whole sheet first, then
+        round about."""
         wide, high = self.box
         sheet = np.array([
             complex(x + (_SPACING // 2) * (y // _SPACING % 2), y)
@@ -292,7 +295,8 @@ class _Picture:
         return self._swept(z, lambda here: here + about)
 
     def _swept(self, z: np.ndarray, tried: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        """Sites moved in turn, over and over until none moves. What is tried is told of a column of places."""
+        """Return the sites moved in turn, over and over until none moves. What is tried is told of a column
+        of places."""
         z, moving = z.copy(), np.arange(len(z))
         for _ in range(_SWEEPS):
             before = z[moving]
@@ -313,7 +317,8 @@ def _columns(rows: Sequence[Sequence[int]], width: int) -> np.ndarray:
 
 
 def _those(rows: np.ndarray, *touched: np.ndarray, also: Sequence[np.ndarray] = ()) -> _Once:
-    """The columns of the rows of which some entry is touched, and what goes with them; nothing if there is none."""
+    """Return the columns of the rows of which some entry is touched, and what goes with them; nothing if
+    there is none."""
     keep = np.zeros(len(rows), bool)
     for column, mask in enumerate(touched):
         keep |= mask[rows[:, column]]

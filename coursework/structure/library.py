@@ -16,7 +16,7 @@ _KINDS = {"R": "revolute", "P": "prismatic", "H": "higher"}
 
 
 def _graph(text: str) -> JointGraph:
-    """``R1-2:O`` a pivot of bodies 1 and 2 at O; P a slide, H a higher pair."""
+    """Return ``R1-2:O`` a pivot of bodies 1 and 2 at O; P a slide, H a higher pair."""
     joints = []
     for word in text.split():
         bodies, _, at = word[1:].partition(":")

@@ -11,7 +11,8 @@ Drawn = tuple[tuple[complex, ...], dict[int, float]]
 
 
 def drawn_in_course(graph: JointGraph) -> Drawn | None:
-    """A place for each joint, and the direction of each fixed rail that is not level; None if no figure is like it."""
+    """Return a place for each joint, and the direction of each fixed rail that is not level; None if no
+    figure is like it."""
     for figure, known in LIBRARY.items():
         if figure not in PLACES or len(known.joints) != len(graph.joints):
             continue
@@ -57,7 +58,7 @@ def _matched(graph: JointGraph, known: JointGraph, found: dict[int, int]) -> Ite
 
 
 def _seen(graph: JointGraph, body: int, names: Mapping[int, int]) -> list[tuple[str, int, list[int]]]:
-    """A body's joints as far as its neighbours are named: their kinds, how many they hold, and whom."""
+    """Return a body's joints as far as its neighbours are named: their kinds, how many they hold, and whom."""
     return sorted(
         (joint.kind, len(joint.bodies), sorted(names[b] for b in joint.bodies if b in names))
         for joint in graph.joints_of(body)

@@ -51,7 +51,8 @@ class Driven(NamedTuple):
 
 @lru_cache(maxsize=4096)
 def to_count(number: int) -> tuple[Record, ...]:
-    """A mechanism whose joints and bodies are to be counted; 0, 1 or 2 degrees of freedom by the formula."""
+    """Return a mechanism whose joints and bodies are to be counted; 0, 1 or 2 degrees of freedom by the
+    formula."""
     choices = Choices(number, "count")
     if choices.below(_ONE_IN) == 0:
         return relabelled(number, LIBRARY[choices.one_of(_COUNTED_FIGURES)].joints).joints
@@ -64,7 +65,8 @@ def to_count(number: int) -> tuple[Record, ...]:
 
 @lru_cache(maxsize=4096)
 def to_decompose(number: int) -> Driven:
-    """A mechanism to be taken apart into Assour groups of class II to IV, and any driver that allows it."""
+    """Return a mechanism to be taken apart into Assour groups of class II to IV, and any driver that allows
+    it."""
     choices = Choices(number, "decompose")
     if choices.below(_ONE_IN) == 0:
         grown = relabelled(number, LIBRARY[choices.one_of(_DECOMPOSED_FIGURES)].joints, (2,))
@@ -83,5 +85,6 @@ def _can_drive(graph: JointGraph, body: int) -> bool:
 
 
 def last_body(graph: JointGraph, driver: tuple[int, int]) -> int:
-    """The highest number of a body that is neither frame nor driven; the driven one where there is no other."""
+    """Return the highest number of a body that is neither frame nor driven; the driven one where there is no
+    other."""
     return max((body for body in graph.moving if body not in driver), default=max(driver))

@@ -19,7 +19,8 @@ Line = tuple[complex, complex]
 
 
 def kinematic_graph(joints: JointGraph | Iterable[Record]) -> Figure:
-    """Bodies as numbered circles (the frame has a second one), joints as lines with the letter of their kind.
+    """Return the bodies as numbered circles (the frame has a second one), joints as lines with the letter of
+    their kind.
 
     Two joints of the same two bodies are drawn side by side; a pivot of several bodies is a dot with a line to each.
     """
@@ -56,7 +57,7 @@ def _hub(joint: Joint, places: dict[int, complex]) -> complex:
 
 
 def _places(graph: JointGraph) -> dict[int, complex]:
-    """Bodies around a circle, the frame below, in an order in which few lines cross."""
+    """Return the bodies around a circle, the frame below, in an order in which few lines cross."""
     order = list(graph.moving)
     best = _tangle(graph, order)
     improving = True

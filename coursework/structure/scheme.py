@@ -41,7 +41,7 @@ _OFF_AXIS = math.radians(35)  #: a wheel's pivot is no farther from the normal o
 def kinematic_scheme(
     joints: JointGraph | Iterable[Record], *, letters: bool = True, driver: Sequence[int] = ()
 ) -> Figure:
-    """The scheme at a scale of its own: lengths are of no account.
+    """Return the scheme at a scale of its own: lengths are of no account.
 
     A mechanism of the course's figures is drawn as the course draws it, any other one as it reads best.
 
@@ -92,7 +92,8 @@ class _Scheme:
     # ---------------------------------------------------------------- bodies
 
     def _body(self, body: int) -> list[Element]:
-        """Its bar or plate, its wheel, its guides; its number once, at the block of a body that has nothing else."""
+        """Return its bar or plate, its wheel, its guides; its number once, at the block of a body that has
+        nothing else."""
         rigid, number = self._rigid(body), str(body)
         own = [k for k in self._own(body) if k in self.slides and self.slides[k].guide == body]
         guides = [self._guide(k, self._base(k, rigid, own)) for k in own]
@@ -106,7 +107,7 @@ class _Scheme:
         return [wheel(*disc, label=number)] if disc else []
 
     def _rigid(self, body: int) -> list[complex]:
-        """The points that a bar or a plate of the body holds together: pins, blocks, noses."""
+        """Return the points that a bar or a plate of the body holds together: pins, blocks, noses."""
         found: list[complex] = []
         for k in self._own(body):
             if k in self.slides and self.slides[k].guide == body:
@@ -121,20 +122,20 @@ class _Scheme:
         return found
 
     def _base(self, index: int, rigid: Sequence[complex], guides: Sequence[int]) -> complex:
-        """The nearest point of the body from which a guide comes to its block."""
+        """Return the nearest point of the body from which a guide comes to its block."""
         here = self.at[index]
         able = [z for z in rigid if abs(z - here) > 1] or [self.at[k] for k in guides if k != index]
         return min(able, key=lambda z: (z not in self.at, abs(z - here)), default=here - 2 * BEYOND)
 
     def _way_of(self, index: int, foot: complex, tip: complex) -> Element:
-        """A slot, or a rod through a block that turns on the frame, whose support a slot would hide."""
+        """Return a slot, or a rod through a block that turns on the frame, whose support a slot would hide."""
         fixed = any(
             self._together(index, k) and FRAME in self.graph.joints[k].bodies for k in range(len(self.at))
         )
         return link(foot, tip) if fixed else slot_link(foot, tip)
 
     def _guide(self, index: int, base: complex) -> tuple[complex, complex]:
-        """Foot and tip of the slot in which a block slides."""
+        """Return the foot and tip of the slot in which a block slides."""
         here = self.at[index]
         way = (here - base) / abs(here - base)
         return here - way * min(BEYOND, 0.5 * abs(here - base)), here + way * BEYOND
@@ -142,7 +143,7 @@ class _Scheme:
     # ---------------------------------------------------------------- joints
 
     def _pins(self) -> list[Element]:
-        """Pivots, each with its letter and that of a block on it."""
+        """Return pivots, each with its letter and that of a block on it."""
         found: list[Element] = []
         for k, joint in enumerate(self.graph.joints):
             if joint.kind == "revolute":
@@ -175,7 +176,8 @@ class _Scheme:
         return 0.0
 
     def _below(self, index: int) -> complex:
-        """The side of a block on which its fixed guide lies: the one with fewer bars, below if there is none."""
+        """Return the side of a block on which its fixed guide lies: the one with fewer bars, below if there
+        is none."""
         along = cmath.exp(1j * math.radians(self._direction(index)))
         here, side = self.at[index], -1j * along if along.real >= 0 else 1j * along
         bodies = {
@@ -186,7 +188,8 @@ class _Scheme:
         return -side if crowd > 0.3 else side
 
     def _slide(self, index: int) -> list[Element]:
-        """The block, with its number if it is a body of its own, else with its letter; its rail on the frame."""
+        """Return the block, with its number if it is a body of its own, else with its letter; its rail on the
+        frame."""
         here, block = self.at[index], self.slides[index].block
         alone = len(self._rigid(block)) == 1
         label = str(block) if alone else self._letter(self.graph.joints[index])
@@ -203,7 +206,7 @@ class _Scheme:
         return way / abs(way) if abs(way) > 1e-6 else (one or -other) * 1j
 
     def _comes_from(self, body: int, joint: Joint) -> complex:
-        """A unit vector from a body's other joints to a contact; none for the frame."""
+        """Return a unit vector from a body's other joints to a contact; none for the frame."""
         here = self.at[self.graph.joints.index(joint)]
         others = [self.at[k] for k in self._own(body) if self.graph.joints[k] != joint]
         if body == FRAME or not others:
@@ -220,7 +223,8 @@ class _Scheme:
         return self.at[index] + _NOSE * self._inward(index, body)
 
     def _wheel(self, body: int) -> tuple[complex, float] | None:
-        """Centre and radius of the disc about the pivot of a body that has a pivot and a contact alone."""
+        """Return the centre and radius of the disc about the pivot of a body that has a pivot and a contact
+        alone."""
         own = self._own(body)
         kinds = sorted(self.graph.joints[k].kind for k in own)
         if kinds == ["revolute"]:
@@ -266,7 +270,8 @@ class _Scheme:
         return []
 
     def _gap(self, here: complex) -> tuple[float, float]:
-        """The middle of the widest angle between bars at a pivot, and half of what an arrow takes of it."""
+        """Return the middle of the widest angle between bars at a pivot, and half of what an arrow takes of
+        it."""
         around = [z for b in self.graph.moving for z in self._rigid(b) if here in self._rigid(b)]
         taken = sorted({_degrees(z - here) for z in around if abs(z - here) > 1} | {-120.0, -60.0})
         gaps = [(b - a, a) for a, b in zip(taken, [*taken[1:], taken[0] + 360], strict=True)]
@@ -279,13 +284,14 @@ def _degrees(way: complex) -> float:
 
 
 def _around(points: Sequence[complex]) -> list[complex]:
-    """The ends of a bar, or the corners of a plate in order round their middle."""
+    """Return the ends of a bar, or the corners of a plate in order round their middle."""
     middle = added(points) / len(points)
     return sorted(points, key=lambda z: cmath.phase(z - middle))
 
 
 def _straight(rigid: Sequence[complex], foot: complex, tip: complex) -> tuple[tuple[complex, complex], ...]:
-    """The two bars of a lever whose slot lies between its two pins, in one line with them; none if it does not."""
+    """Return the two bars of a lever whose slot lies between its two pins, in one line with them; none if it
+    does not."""
     if len(rigid) != 2:
         return ()
     base, other = sorted(rigid, key=lambda z: abs(z - foot))

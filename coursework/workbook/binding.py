@@ -32,7 +32,7 @@ def bound(
     solved: bool = True,
     advance: Callable[[], object] = lambda: None,
 ) -> Book:
-    """The book of a course.
+    """Return the book of a course.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def pieces_of(course: Course[Any]) -> int:
 
 
 def chapters_of(course: Course[Any], lang: str) -> Iterator[Chapter]:
-    """Those of the course, and one of what stands in none."""
+    """Yield those of the course, and one of what stands in none."""
     folder = course.folder
     yield from folder.chapters
     lessons = [n for n in folder.lessons if not any(n in c.lessons for c in folder.chapters)]
@@ -108,7 +108,8 @@ def _chapter(
 
 
 def _variant(exercise: CourseExercise[Variant], lang: str, seed: int) -> Variant:
-    """The first that is worth issuing for a book; of a students' copy, which cannot tell, that of its own number."""
+    """Return the first that is worth issuing for a book; of a students' copy, which cannot tell, that of its
+    own number."""
     if not exercise.folder.has_solutions:
         return exercise.variant(seed, lang)
     return distinct_variants(exercise, _FAR + _APART * seed, 1, lang)[0]

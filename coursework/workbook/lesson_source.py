@@ -68,7 +68,7 @@ _TARGET = re.compile(r"(figure|exercise):(\w+)(?:\?(\S*))?")
 
 
 def blocks(text: str, file: str) -> tuple[Block, ...]:
-    """The blocks of a lesson's text; ``file`` is what messages call it.
+    """Return the blocks of a lesson's text; ``file`` is what messages call it.
 
     Raises
     ------
@@ -114,7 +114,7 @@ def _words(text: str, start: int, stop: int) -> Iterator[Prose]:
 
 
 def _line(text: str, start: int, piece: str) -> int:
-    """The line of the first letter of a piece of the text."""
+    """Return the line of the first letter of a piece of the text."""
     before = len(piece) - len(piece.lstrip())
     return 1 + text.count("\n", 0, start + before)
 

@@ -39,7 +39,7 @@ class Opened(NamedTuple):
 
 
 def opened(course: Course[Any], name: str, lang: str) -> Opened:
-    """A lesson's file, proofread.
+    """Return a lesson's file, proofread.
 
     Raises
     ------
@@ -62,7 +62,7 @@ def opened(course: Course[Any], name: str, lang: str) -> Opened:
 
 
 def lesson_text(course: Course[Any], name: str, lang: str) -> LessonText:
-    """A lesson with its pictures drawn and its cells run.
+    """Return a lesson with its pictures drawn and its cells run.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def _told(course: Course[Any], name: str, lang: str, lesson: Opened) -> LessonTe
 
 
 def _untitled(blocks: Sequence[source.Block]) -> Iterator[source.Block]:
-    """The blocks without the title, with which the first one begins."""
+    """Yield the blocks without the title, with which the first one begins."""
     first, *others = blocks
     assert isinstance(first, source.Prose)  # proofread
     yield replace(first, text=_TITLE.sub("", first.text))
@@ -128,7 +128,7 @@ class _Lesson:
 
 
 def _parted(text: str) -> Iterator[Piece]:
-    """Running text, its headings apart."""
+    """Yield the running text, its headings apart."""
     end = 0
     for head in _HEAD.finditer(text):
         if before := text[end : head.start()].strip():
@@ -192,7 +192,7 @@ def order_faults(course: Course[Any]) -> tuple[str, ...]:
 
 
 def _titles(chapter: Chapter) -> Iterator[tuple[str, Mapping[str, str]]]:
-    """The titles of a chapter, and those of its sections that have one."""
+    """Yield the titles of a chapter, and those of its sections that have one."""
     yield "", chapter.titles
     for number, section in enumerate(chapter.sections, 1):
         if section.titles:
@@ -200,7 +200,7 @@ def _titles(chapter: Chapter) -> Iterator[tuple[str, Mapping[str, str]]]:
 
 
 def _cut_formulas(text: str, name: str, lang: str) -> list[str]:
-    """Rows of tables in which a bar of a formula ends a cell."""
+    """Return the rows of tables in which a bar of a formula ends a cell."""
     return [
         f"{name}, {lang}, line {k}: a bar inside a formula ends the cell of a table; write \\lvert, \\rvert or \\mid: {line.strip()}"
         for k, line in enumerate(text.splitlines(), 1)

@@ -22,12 +22,12 @@ _PPI = 150
 
 
 def notebook_name(name: str, lang: str) -> str:
-    """The file of a lesson's or an exercise's notebook."""
+    """Return the file of a lesson's or an exercise's notebook."""
     return f"{name}.{lang}.ipynb"
 
 
 def lesson_notebook(course: Course[Any], name: str, lang: str, beside: Collection[str] | None = None) -> str:
-    """A lesson as a notebook (JSON, nbformat 4.5).
+    """Return a lesson as a notebook (JSON, nbformat 4.5).
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ def _written(
 
 
 def _linked(course: Course[Any], text: str, lang: str, there: Collection[str]) -> str:
-    """The text with links to the notebooks beside this one; terms in italics."""
+    """Return the text with links to the notebooks beside this one; terms in italics."""
 
     def write(link: Link) -> str:
         if link.kind == TERM:
@@ -89,7 +89,7 @@ def _linked(course: Course[Any], text: str, lang: str, there: Collection[str]) -
 
 
 def _attached(shown: Drawn) -> Mapping[str, str]:
-    """A picture by its type: what moves is SVG, which moves in a notebook as well."""
+    """Return a picture by its type: what moves is SVG, which moves in a notebook as well."""
     if shown.svg:
         return {"image/svg+xml": base64.b64encode(shown.svg.encode()).decode()}
     assert shown.figure is not None  # a picture is one or the other
@@ -103,7 +103,7 @@ def _picture(file: str, shown: Drawn, lang: str) -> str:
 
 
 def _practise(course: Course[Any], name: str, lang: str, there: Collection[str]) -> list[str]:
-    """The exercises of the lesson, each a link to its notebook."""
+    """Return the exercises of the lesson, each a link to its notebook."""
     exercises = [one for one in practised(course.folder, name, lang) if one in there]
     if not exercises:
         return []

@@ -46,7 +46,7 @@ def proofread(found: Sequence[source.Block], file: str) -> None:
 
 
 def lines_of_words(found: Sequence[source.Block]) -> Iterator[tuple[str, int]]:
-    """The texts of a lesson, each with the line of its first line."""
+    """Yield the texts of a lesson, each with the line of its first line."""
     for block in found:
         if isinstance(block, source.Image):
             yield block.caption, block.line
@@ -91,7 +91,7 @@ def _check_leads(words: str, place: Callable[[str], str]) -> None:
 
 
 def _sections(words: str, before: Set[str], place: Callable[[str], str]) -> set[str]:
-    """The numbers of sections that begin in some words, each new."""
+    """Return the numbers of sections that begin in some words, each new."""
     found: set[str] = set()
     for number in _SECTION.findall(words):
         if number in before | found:

@@ -93,7 +93,7 @@ class Session:
         return eval(compile(ast.Expression(last.value), self._file, "eval"), self._names)
 
     def _said(self, fault: BaseException, cell: Cell) -> str:
-        """A fault in one line."""
+        """Return a fault in one line."""
         if isinstance(fault, SyntaxError) and fault.filename == self._file:
             return f"{self._file}, line {fault.lineno}: the cell is no Python: {fault.msg}"
         place = f"{self._file}, line {self._line(fault, cell)}"
@@ -138,7 +138,7 @@ class Session:
 
 
 def _beside(root: Path, place: Path) -> Path:
-    """A folder beside which the course stands, under its name."""
+    """Return a folder beside which the course stands, under its name."""
     try:
         (place / root.name).symlink_to(root, target_is_directory=True)
     except OSError:  # a system, or a user, without links

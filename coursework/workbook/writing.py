@@ -26,7 +26,7 @@ def files(
     paper: str = "a4",
     apart: bool = False,
 ) -> Iterator[File]:
-    """The files of a book: the same bytes for the same course, language and seed.
+    """Yield the files of a book: the same bytes for the same course, language and seed.
 
     Parameters
     ----------
