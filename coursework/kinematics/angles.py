@@ -18,7 +18,8 @@ from coursework.kinematics.elementary import tangent
 
 
 class Heading(NamedTuple):
-    """A direction by four numbers (scalars or arrays of one shape).
+    """Direction as four numbers: cosine and sine of its angle and of half its angle (scalars or arrays of one
+    shape).
 
     ``half_cos`` and ``half_sin`` are those of half the angle, signed: they tell an angle from the same angle
     a turn later, which a linkage that passes a change point needs.
@@ -31,7 +32,7 @@ class Heading(NamedTuple):
 
 
 class Degrees(NamedTuple):
-    """A heading by its angle in degrees, reduced exactly: at 180 the sine and the half cosine are 0.
+    """Heading given by its angle in degrees, reduced exactly: at 180 the sine and the half cosine are 0.
 
     Its four numbers are computed when they are asked for. ``rest`` is what rounding took from the angle.
     """
@@ -41,7 +42,7 @@ class Degrees(NamedTuple):
 
     @staticmethod
     def between(start: Any, end: Any) -> Degrees:
-        """From one direction to another, ``end - start``, without rounding."""
+        """Return the angle from one direction to another, ``end - start``, without rounding."""
         angle = end - start
         part = angle + start
         return Degrees(angle, (end - part) - (start - (part - angle)))
@@ -67,7 +68,8 @@ class Degrees(NamedTuple):
         return function(angle) + slope(angle) * rest if np.ndim(rest) or rest else function(angle)
 
     def half_squares(self, scale: Any) -> tuple[Any, Any, Any]:
-        """Of half the angle, times a scale: cosine squared, sine squared, cosine times sine. One tangent for the three."""
+        """Return cosine squared, sine squared and cosine times sine of half the angle, each times a scale.
+        One tangent gives all three."""
         quarters = np.rint(np.multiply(self.angle, 1 / 180))
         beyond = np.multiply(self.angle, 0.5)
         beyond -= 90.0 * quarters
@@ -88,8 +90,8 @@ _DEGREE = math.pi / 180
 
 
 def _quarters_on(quarters: Any, cos_squared: Any, sin_squared: Any, both: Any) -> tuple[Any, Any, Any]:
-    """Return the same three, whole quarters of a turn later: each exchanges cosine and sine, and turns the
-    product's sign."""
+    """Return the three products after whole quarters of a turn: each quarter exchanges cosine and sine and
+    changes the sign of their product."""
     least = np.min(quarters, initial=np.inf)
     if least == np.max(quarters, initial=-np.inf):
         odd = least % 2 == 1
@@ -109,7 +111,7 @@ def heading_in_degrees(angle: Any) -> Degrees:
 
 
 def taken_apart(angle: Any) -> tuple[Callable[..., Any], tuple[Any, ...]]:
-    """Return the arrays that make up radians or a heading, and what makes it from them again."""
+    """Return a constructor and the arrays from which it builds these radians or this heading again."""
     make, parts = (type(angle), angle) if isinstance(angle, (Heading, Degrees)) else (_radians, (angle,))
     return make, tuple(np.asarray(part, dtype=float)[()] for part in parts)
 
@@ -119,7 +121,7 @@ def _radians(angle: Any) -> Any:
 
 
 def heading_after_turns(turns: Any, angle: Any) -> Heading:
-    """Return the heading after whole turns and an angle in radians beyond: the turns lose no digit of the
+    """Return the heading after whole turns and a further angle in radians; the turns cost no digit of the
     angle."""
     sign = np.where(np.mod(turns, 2) == 0, 1.0, -1.0)[()]
     half = np.multiply(angle, 0.5)
@@ -127,7 +129,7 @@ def heading_after_turns(turns: Any, angle: Any) -> Heading:
 
 
 def heading_of(cos: Any, sin: Any) -> Heading:
-    """Return the heading of direction cosines (of a unit vector), the angle taken in (-pi, pi]."""
+    """Return the heading of a unit vector, its angle in (-pi, pi]."""
     larger, smaller = halves(np.abs(cos), sin)
     ahead = np.greater_equal(cos, 0)
     half_cos, half_sin = np.sqrt(np.where(ahead, larger, smaller)), np.sqrt(np.where(ahead, smaller, larger))
@@ -142,8 +144,7 @@ def full_angle(angle: Any) -> tuple[Any, Any]:
 
 
 def half_angle(angle: Any) -> tuple[Any, Any]:
-    """Return the cosine and sine of half the angle, signed; each is accurate to the last digits where it is
-    small."""
+    """Return the signed cosine and sine of half the angle, each accurate to the last digits near its zero."""
     if isinstance(angle, (Heading, Degrees)):
         return angle.half_cos, angle.half_sin
     half = np.multiply(angle, 0.5)
@@ -151,7 +152,7 @@ def half_angle(angle: Any) -> tuple[Any, Any]:
 
 
 def halves(abs_cos: Any, sin: Any) -> tuple[Any, Any]:
-    """Return the larger and the smaller of (1 + cos)/2 and (1 - cos)/2, neither a difference; also with the
-    roles exchanged."""
+    """Return (1 + cos)/2 and (1 - cos)/2, the larger first, neither as a difference. Exchange the arguments
+    for the sine."""
     larger = (1 + abs_cos) / 2
     return larger, np.multiply(sin, sin) / (4 * larger)

@@ -1,4 +1,4 @@
-"""Laws of motion of cams: the polynomial of degree five whose velocity and acceleration vanish at both ends.
+"""Cam laws: the polynomial of degree five whose velocity and acceleration vanish at both ends.
 
 Numbers, arrays and numbers of mpmath; a lift is a share of the whole rise.
 """
@@ -11,7 +11,8 @@ import numpy as np
 
 
 def rise_345(u: Any) -> tuple[Any, Any, Any]:
-    """Lift from 0 to 1 as ``u`` goes from 0 to 1, and its first and second derivatives by ``u``; at rest outside.
+    """Return the lift, 0 to 1 as ``u`` goes from 0 to 1, and its first and second derivatives by ``u``; at
+    rest outside.
 
     Source: ``10 u^3 - 15 u^4 + 6 u^5``, in factors that keep the digits near both ends.
     """
@@ -21,7 +22,8 @@ def rise_345(u: Any) -> tuple[Any, Any, Any]:
 
 
 def rise_dwell_return(u: Any, dwell: Any, turn: Any) -> tuple[Any, Any]:
-    """How far a follower is in its rise at the cam angle ``u``, 0 to 1, and +1, or -1 where it returns; angles in rises.
+    """Return a follower's lift, 0 to 1, at the cam angle ``u``, and +1 while it rises or -1 while it returns;
+    the angle of a rise is 1.
 
     It rises while u goes from 0 to 1, stays up during ``dwell``, returns as it rose, and stays down for the rest of the
     ``turn``, which is longer than ``2 + dwell``. ``u`` is no more than a turn from 0 either way.

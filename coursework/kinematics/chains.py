@@ -26,7 +26,8 @@ _EPS = np.finfo(float).eps
 
 
 class Vector(NamedTuple):
-    """One vector of a loop. ``turn`` is a constant angle added to the other one: that of a ternary link."""
+    """Vector of a loop. ``turn`` is a constant angle added to ``angle``, such as the corner of a ternary
+    link."""
 
     length: str | float
     angle: str | float
@@ -35,7 +36,7 @@ class Vector(NamedTuple):
 
 
 class Pose(NamedTuple):
-    """Unknowns by name, and how far to trust them.
+    """Unknowns of a closed chain by name, with residual, condition number and convergence.
 
     ``residual``: the largest loop gap, in units of length. ``condition``: of the Jacobian by its singular
     values, lengths measured by the longest known one, so that the unit does not matter; infinite at a
@@ -49,7 +50,7 @@ class Pose(NamedTuple):
 
 
 class Chain:
-    """Loops to close, and the names to find: two unknowns a loop.
+    """Closed chain of any number of loops, with two unknowns a loop.
 
     Raises
     ------
@@ -150,7 +151,7 @@ class Chain:
     def rates(
         self, values: Mapping[str, Any], known_rates: Mapping[str, Sequence[Any]], *, order: int = 1
     ) -> dict[str, tuple]:
-        """Time derivatives of the unknowns, from the first to ``order`` (at most 3), by name.
+        """Return the time derivatives of the unknowns by name, from the first to ``order`` (at most 3).
 
         ``values`` holds the known values and the unknowns of a closed pose; ``known_rates`` the
         derivatives of the known names that vary. All orders share the Jacobian.
@@ -197,8 +198,7 @@ class Chain:
         return found
 
     def _newton(self, values: dict[str, Any], x: np.ndarray, exponents: np.ndarray) -> tuple:
-        """Return the damped Newton steps on rows of unknowns, each until its own gap is rounding or will not
-        shrink."""
+        """Take damped Newton steps on rows of unknowns, each until its gap is rounding or no longer shrinks."""
         x = x.copy()
         gaps, size = self._gaps(values, x, exponents)
         best = _norm(gaps)
@@ -241,14 +241,14 @@ class Chain:
         return *x.T, best, condition, converged.astype(float)
 
     def _named(self, x: np.ndarray) -> dict[str, Any]:
-        """Return the rows of unknowns by name, an angle as its unit vector."""
+        """Return the columns of unknowns by name, an angle as its unit vector."""
         return {
             name: x[:, i] if name in self._lengths else np.cos(x[:, i]) + 1j * np.sin(x[:, i])
             for i, name in enumerate(self.unknowns)
         }
 
     def _gaps(self, values: dict[str, Any], x: np.ndarray, exponents: np.ndarray) -> tuple:
-        """Return the sum of each loop, real and imaginary parts in turn, and the size of what was added."""
+        """Return the sum of each loop, real and imaginary parts in turn, and the size of its terms."""
         values = values | self._named(x)
         parts, size = [], np.zeros(len(x))
         for loop in self.loops:
@@ -274,8 +274,8 @@ class Chain:
         return derivative(arm, unit, of_length[:n], of_angle[:n], n)
 
     def _jacobian(self, values: Mapping[str, Any], exponents: Any) -> np.ndarray:
-        """Return the shape ``(..., 2 loops, unknowns)``; lengths are scaled, so that every column is of size
-        1 or so."""
+        """Return the Jacobian, shape ``(..., 2 loops, unknowns)``. Lengths are scaled, so that every column
+        is of order 1."""
         rows = []
         for loop in self.loops:
             columns = dict.fromkeys(self.unknowns, 0.0)
@@ -301,14 +301,14 @@ def _norm(gaps: np.ndarray) -> np.ndarray:
 
 
 def _wrapped(angles: np.ndarray) -> np.ndarray:
-    """Return the same directions in (-pi, pi]; those that are there already keep all their digits."""
+    """Return the angles reduced to (-pi, pi]; an angle already there keeps all its digits."""
     inside = (angles > -math.pi) & (angles <= math.pi)
     return np.where(inside, angles, math.pi - np.mod(math.pi - angles, 2 * math.pi))
 
 
 def _steps(jacobian: np.ndarray, right: np.ndarray, otherwise: float) -> np.ndarray:
-    """Return the solutions of many linear systems; ``otherwise`` where a matrix is singular to rounding or
-    not finite."""
+    """Solve many linear systems; the solution is ``otherwise`` where a matrix is singular to rounding or not
+    finite."""
     finite = np.isfinite(jacobian).all(axis=(-1, -2)) & np.isfinite(right).all(axis=-1)
     identity = np.eye(jacobian.shape[-1])
     regular = finite & (abs(np.linalg.det(np.where(finite[..., None, None], jacobian, 0.0))) > 0)
@@ -320,7 +320,7 @@ def _steps(jacobian: np.ndarray, right: np.ndarray, otherwise: float) -> np.ndar
 
 
 def _condition(jacobian: np.ndarray) -> np.ndarray:
-    """Return largest over least singular value; NaN where the matrix is not finite."""
+    """Return the ratio of the largest to the least singular value; NaN where the matrix is not finite."""
     finite = np.isfinite(jacobian).all(axis=(-1, -2))
     sizes = np.linalg.svd(np.where(finite[..., None, None], jacobian, 0.0), compute_uv=False)
     return np.where(finite, np.divide(sizes[..., 0], sizes[..., -1]), np.nan)

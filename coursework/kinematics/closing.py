@@ -1,4 +1,4 @@
-"""How two margins decide whether a loop closes, and how fast it opens with its crank.
+"""Closure of a loop by two margins, and its derivatives by the crank angle.
 
 The four-bar and the slider-crank close by the same two margins of an angle t,
 
@@ -21,9 +21,11 @@ from coursework.kinematics.angles import Degrees, Heading, half_angle
 
 
 class Sweep(NamedTuple):
-    """Of half the angle, times w: cosine squared, sine squared, cosine times sine. Then the signed cosine
-    and sine times sqrt(w), for a linkage that is continued smoothly through a change point; None when it
-    keeps its mode."""
+    """Products of cosine and sine of half the angle, times w: cos squared, sin squared, cos times sin.
+
+    ``cos`` and ``sin`` are signed and times sqrt(w), for a linkage continued smoothly through a change point;
+    None for one that keeps its mode.
+    """
 
     cos_squared: Any
     sin_squared: Any
@@ -33,7 +35,7 @@ class Sweep(NamedTuple):
 
 
 def sweep(angle: Any, w: Any) -> Sweep:
-    """For radians or a heading; radians and degrees cost one tangent."""
+    """Return the sweep of an angle in radians or of a heading; radians and degrees cost one tangent."""
     if isinstance(angle, Degrees):
         return Sweep(*angle.half_squares(w))
     if isinstance(angle, Heading):
@@ -46,14 +48,14 @@ def sweep(angle: Any, w: Any) -> Sweep:
 
 
 def signed_sweep(angle: Any, w: Any) -> Sweep:
-    """Return the same with the signed cosine and sine."""
+    """Return the sweep of an angle with its signed cosine and sine."""
     cos, sin = half_angle(angle)
     cos, sin = np.sqrt(w) * cos, np.sqrt(w) * sin
     return Sweep(cos * cos, sin * sin, cos * sin, cos, sin)
 
 
 def in_time(by_angle: Sequence[tuple[Any, ...]], rates: Sequence[Any]) -> tuple[Any, ...]:
-    """Time derivatives of quantities that depend on a crank angle, order after order (chain rule).
+    """Return the time derivatives of quantities that depend on a crank angle, order after order (chain rule).
 
     ``by_angle`` holds, for each order, the derivatives of all quantities by the angle; ``rates`` the time
     derivatives of the angle, as many.
@@ -77,7 +79,7 @@ def in_time(by_angle: Sequence[tuple[Any, ...]], rates: Sequence[Any]) -> tuple[
 
 
 class Closing(NamedTuple):
-    """E+, E-, the side, and P, Q, PQ, S of a configuration."""
+    """Margins of a configuration: E+, E-, the side, and P, Q, PQ, S."""
 
     stretched: Any
     folded: Any
@@ -89,8 +91,8 @@ class Closing(NamedTuple):
 
 
 def closing(stretched: Any, folded: Any, side: Any, swept: Sweep, direct: Any = None) -> Closing:
-    """Return P, Q and S. Continued smoothly, sqrt(P) at E+ = 0 is the signed sqrt(w) cos(t / 2); likewise for
-    Q.
+    """Return the margins P, Q and S. Continued smoothly, sqrt(P) at E+ = 0 is the signed sqrt(w) cos(t / 2);
+    likewise for Q.
 
     ``direct`` is P where it is known better than by its sum, NaN elsewhere.
     """
@@ -109,7 +111,7 @@ def closing(stretched: Any, folded: Any, side: Any, swept: Sweep, direct: Any = 
 
 
 class Opening:
-    """rho = w sin(t) / (2 S) and its first two derivatives by t, each computed when it is asked for.
+    """Ratio rho = w sin(t) / (2 S) and its first two derivatives by t, each computed on first use.
 
     NaN where S is 0, except for the smooth policy at a change point, where the factor that vanishes is
     divided out.
@@ -182,5 +184,5 @@ class Opening:
 
 
 def _share(part: Any, whole: Any, flat: Any) -> Any:
-    """Return part / whole, and 0 where a smooth change point has divided it out."""
+    """Return part / whole, and 0 where the factor of a smooth change point is divided out."""
     return part / whole if flat is False else np.where(flat, 0.0, part / whole)

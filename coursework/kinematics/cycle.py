@@ -1,4 +1,4 @@
-"""A smooth periodic function over one turn: where it stops rising or falling, for many variants at once."""
+"""Turning points of smooth periodic functions over one turn, for many variants at once."""
 
 from __future__ import annotations
 
@@ -69,8 +69,8 @@ def _turning_points(
 
 
 def _dips(slope: Slope, parameters: list[np.ndarray], theta: np.ndarray, seen: np.ndarray) -> list[tuple]:
-    """Return the brackets of two zeros between neighbouring samples of one sign: the slope dips through zero
-    and back."""
+    """Return brackets of two zeros between neighbouring samples of one sign, where the slope crosses zero and
+    back."""
     before, after = np.roll(seen, 1, axis=1), np.roll(seen, -1, axis=1)
     sign = np.where(seen < 0, -1.0, 1.0)
     bend = sign * (before + after - 2 * seen)
@@ -97,7 +97,7 @@ def _dips(slope: Slope, parameters: list[np.ndarray], theta: np.ndarray, seen: n
 
 
 def _lowest(f: Slope, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the minimum of a function with one dip in each bracket, by golden sections: where, and how low."""
+    """Return the abscissa and the minimum of a function with one dip in each bracket, by golden sections."""
     ratio = (math.sqrt(5) - 1) / 2
     left, right = high - ratio * (high - low), low + ratio * (high - low)
     at_left, at_right = f(left), f(right)
@@ -113,7 +113,7 @@ def _lowest(f: Slope, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np
 
 
 def _zero(f: Slope, low: np.ndarray, high: np.ndarray, at_low: np.ndarray, at_high: np.ndarray) -> np.ndarray:
-    """Return the zero in each bracket; the signs at its ends differ."""
+    """Return the zero in each bracket; the function has opposite signs at its ends."""
     a, b, fa, fb = high, low, at_high, at_low
     c, fc = a, fa
     t = np.full(a.shape, 0.5)
@@ -141,7 +141,7 @@ def _zero(f: Slope, low: np.ndarray, high: np.ndarray, at_low: np.ndarray, at_hi
 
 
 def _in_rows(rows: np.ndarray, angles: np.ndarray, count: int) -> np.ndarray:
-    """Return the found angles as a table, a variant a row, NaN where a row has fewer."""
+    """Return the angles as a table, one variant a row, filled up with NaN."""
     angles = np.mod(angles - _FIRST, _TURN) + _FIRST
     order = np.lexsort((angles, rows))
     rows, angles = rows[order], angles[order]

@@ -29,7 +29,7 @@ Rates = Sequence[Any]  #: time derivatives of a point (complex) or of an angle, 
 
 
 def side_of(mode: Any) -> Any:
-    """Return +1 for ``open`` (or ``left``), -1 for ``crossed`` (or ``right``); arrays of texts too."""
+    """Return +1 for ``open`` (or ``left``), -1 for ``crossed`` (or ``right``); arrays of texts as well."""
     if isinstance(mode, str):
         return {"open": OPEN, "left": OPEN, "crossed": CROSSED, "right": CROSSED}[mode]
     return np.where(np.isin(mode, ("open", "left")), OPEN, CROSSED)
@@ -98,8 +98,7 @@ def rrp(p: Any, length: Any, line: Any, side: Any = 1, along: Any = 1.0) -> Any:
 
 
 def rpr(p: Any, q: Any, offset: Any = 0.0, side: Any = 1) -> tuple[Any, Any]:
-    """Return the block pinned at ``p`` that slides on a guide pinned at ``q``: the guide's direction and the
-    slide.
+    """Return the direction and the slide of a block pinned at ``p`` on a guide pinned at ``q``.
 
     The slot runs parallel to the guide's own direction u, ``offset`` to the left of q: p = q + (slide + i
     offset) u. Returns u, a complex unit vector, and the slide, whose sign is ``side``.
@@ -115,7 +114,7 @@ def rpr(p: Any, q: Any, offset: Any = 0.0, side: Any = 1) -> tuple[Any, Any]:
 
 
 def prp(first_point: Any, first_along: Any, second_point: Any, second_along: Any) -> Any:
-    """Return the pin of two blocks, each on its own line: where the lines meet. One assembly only.
+    """Return the pin of two blocks, each on its own line: the intersection of the lines. One assembly only.
 
     Raises
     ------
@@ -126,8 +125,8 @@ def prp(first_point: Any, first_along: Any, second_point: Any, second_along: Any
 
 
 def rpp(p: Any, point: Any, along: Any, across: Any) -> tuple[Any, Any]:
-    """Return the body pinned at ``p`` that slides in the direction ``across`` on a block, which slides
-    ``along`` a line.
+    """Return both slides of a body pinned at ``p`` that slides ``across`` a block, which slides ``along`` a
+    line.
 
     p = point + first * along + second * across; returns both slides. One assembly only.
 
@@ -243,7 +242,7 @@ def out_of_reach(
 
 
 def _solved(kernel: Callable, failure: Callable[..., CourseworkError], *given: Any) -> Any:
-    """Return the kernel in blocks; of scalars, plain numbers or the error that says why there are none."""
+    """Evaluate a kernel in blocks; scalars come back as plain numbers, or raise the error of ``failure``."""
     given = tuple(np.asarray(x)[()] for x in given)
     found = in_blocks(kernel, *given)
     if not np.ndim(found[0]):
@@ -255,7 +254,7 @@ def _solved(kernel: Callable, failure: Callable[..., CourseworkError], *given: A
 
 
 def _rates(known: Callable, first: Any, second: Any, count: int) -> tuple[tuple, tuple]:
-    """Order after order: ``first * x + second * y`` = what is known of that order."""
+    """Solve ``first * x + second * y = known(order)`` for the rates x and y, order after order."""
     xs: list[Any] = []
     ys: list[Any] = []
     with np.errstate(all="ignore"):

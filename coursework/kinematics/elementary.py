@@ -1,4 +1,4 @@
-"""Tangent and arctangent where their argument is small enough for one formula: by sums, products and quotients alone.
+"""Tangent and arctangent of small arguments by sums, products and quotients alone.
 
 They are as fast as those on every processor, where numpy computes its own one number at a time unless it has functions for
 the vector units. Scalars or arrays; errors are below an ulp and a half of the result, near 0 too.
@@ -41,17 +41,17 @@ _ARCTANGENT = (
 
 
 def tangent(angle: Any) -> Any:
-    """Of radians of at most an eighth of a turn, either sign."""
+    """Return the tangent of radians of at most an eighth of a turn, of either sign."""
     return _plus_cubed(angle, *_TANGENT)
 
 
 def quotient_arctangent(tangent: Any) -> Any:
-    """Return radians, of a tangent from -1 to 1."""
+    """Return the arctangent in radians of a tangent from -1 to 1."""
     return _plus_cubed(tangent, *_ARCTANGENT)
 
 
 def _numpy_has_one() -> bool:
-    """Return whether numpy's arctangent is made for this processor's vector units."""
+    """Return whether numpy has an arctangent for this processor's vector units."""
     units = np.show_config(mode="dicts").get("SIMD Extensions", {}).get("found", ())
     return sys.platform.startswith("linux") and not {"AVX512_SKX", "X86_V4"}.isdisjoint(units)
 
@@ -61,7 +61,7 @@ arctangent = np.arctan if _numpy_has_one() else quotient_arctangent
 
 
 def _plus_cubed(x: Any, above: Sequence[float], below: Sequence[float]) -> Any:
-    """Return x + x^3 P / Q. In place, so that of long arrays few are in the cache."""
+    """Return x + x^3 P / Q, computed in place so that few long arrays are in the cache."""
     squared = x * x
     found = above[-1] * squared
     found += above[-2]
@@ -74,7 +74,7 @@ def _plus_cubed(x: Any, above: Sequence[float], below: Sequence[float]) -> Any:
 
 
 def _horner(found: Any, lower: Sequence[float], x: Any) -> Any:
-    """Return a polynomial by Horner's rule, from the value of its highest terms and the lower coefficients."""
+    """Evaluate a polynomial by Horner's rule, from the value of its highest terms and the lower coefficients."""
     for coefficient in reversed(lower):
         found *= x
         found += coefficient

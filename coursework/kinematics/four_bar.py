@@ -1,4 +1,4 @@
-"""The four-bar linkage moved by its crank, exact to the last digits at its hard places too.
+"""Four-bar linkage moved by its crank, exact to the last digits near change points and dead points too.
 
 The crank a turns about O = (0, 0), the rocker c about D = (d, 0); the coupler b joins the crank pin A to the
 rocker's pin B. Angles are those of O -> A, A -> B and D -> B.
@@ -33,7 +33,7 @@ from coursework.system.blocks import in_blocks
 
 
 class FourBarMotion(NamedTuple):
-    """Angles (radians) of coupler and rocker, then as many of their time derivatives as were asked for."""
+    """Angles (radians) of coupler and rocker, then their time derivatives up to the order requested."""
 
     coupler_angle: Any
     rocker_angle: Any
@@ -46,7 +46,7 @@ class FourBarMotion(NamedTuple):
 
 
 class _Linkage(NamedTuple):
-    """What the formulas need of the lengths, once a linkage: lengths scaled to at most 1."""
+    """Combinations of the scaled lengths (at most 1) that the formulas use, computed once a linkage."""
 
     stretched: Any  # E+
     folded: Any  # E-
@@ -67,7 +67,7 @@ class _Linkage(NamedTuple):
 
 
 class FourBar:
-    """One four-bar linkage, or an array of them.
+    """Four-bar linkage, or an array of them.
 
     Parameters
     ----------
@@ -102,8 +102,8 @@ class FourBar:
 
     @property
     def margins(self) -> tuple[Any, Any]:
-        """E+ and E-, in squared units of length: both positive when the crank turns fully, 0 at a change
-        point."""
+        """Grashof margins E+ and E-, in squared units of length: both positive when the crank turns fully, 0
+        at a change point."""
         return grashof_margins(*self.lengths)
 
     def turns_fully(self) -> Any:
@@ -152,7 +152,7 @@ class FourBar:
         *,
         order: int = 2,
     ) -> FourBarMotion:
-        """Return the angles and their time derivatives up to ``order`` (0 to 3); nothing is computed beyond.
+        """Return the angles and their time derivatives up to ``order`` (0 to 3).
 
         Rates in rad/s where the crank's are. Errors are those of :meth:`angles`, and
 
@@ -175,8 +175,7 @@ class FourBar:
         return tuple(zip(found[::2], found[1::2], strict=True))
 
     def at(self, crank_angle: Any) -> FourBarPose:
-        """Return the linkage at a crank angle, from which angles and derivatives are had as they are asked
-        for.
+        """Return the linkage at a crank angle; its properties compute angles and derivatives on first use.
 
         Arrays are computed whole: for long ones asked for at once, :meth:`motion` is faster.
         """
@@ -192,8 +191,8 @@ class FourBar:
         return self._evaluate(_transmission_angle, crank_angle)[0]
 
     def conditioning(self, crank_angle: Any) -> Any:
-        """Return 1 / |sin(transmission angle)|: how much larger an error of the lengths comes out at B; inf
-        at a dead point."""
+        """Return 1 / |sin(transmission angle)|, the factor from an error of the lengths to one of B; inf at a
+        dead point."""
         return self._evaluate(_conditioning, crank_angle)[0]
 
     def _scaled_lengths(self) -> tuple[Any, Any, Any, Any]:
@@ -224,7 +223,7 @@ class FourBar:
         return found
 
     def _failure(self, crank_angle: Any) -> Exception:
-        """Why a scalar came out NaN."""
+        """Return the error that explains a NaN of scalar arguments."""
         t = self._linkage
         heading, parts = taken_apart(crank_angle)
         pose = _Pose(t, sweep(heading(*parts), t.reach))
@@ -251,7 +250,7 @@ class FourBar:
 
 
 class FourBarPose:
-    """A four-bar linkage at its crank angle. Nothing is computed before it is asked for, nor twice.
+    """Four-bar linkage at a crank angle. Each property is computed once, on first use.
 
     Angles are in radians; derivatives are by the crank angle. Errors are those of
     :meth:`FourBar.motion`, raised by the property whose value does not exist.
@@ -293,14 +292,14 @@ class FourBarPose:
 
     @property
     def corner(self) -> Any:
-        """The angle from A -> D to the coupler, in [0, pi]: that of the triangle A, B, D at A."""
+        """Angle from A -> D to the coupler, in [0, pi]: the angle of triangle ABD at A."""
         pose = self._pose
         with np.errstate(all="ignore"):
             return self._checked(np.arctan2(np.abs(pose.close.determinant), pose.of_coupler))
 
     @property
     def transmission_angle(self) -> Any:
-        """The angle CBA at B between coupler and rocker, in [0, pi]."""
+        """Angle CBA at B between coupler and rocker, in [0, pi]."""
         with np.errstate(all="ignore"):
             return self._checked(_transmission_angle(self._pose, None)[0])
 
@@ -320,9 +319,10 @@ class FourBarPose:
 
 
 def grashof_type(ground: Any, crank: Any, coupler: Any, rocker: Any) -> str:
-    """Which links turn: ``impossible``, ``change-point``, ``crank-rocker``, ``rocker-crank``,
-    ``double-crank``, ``double-rocker`` or ``triple-rocker``; decided exactly on the numbers given
-    (scalars).
+    """Return the class of a four-bar by the links that turn: ``impossible``, ``change-point``,
+    ``crank-rocker``, ``rocker-crank``, ``double-crank``, ``double-rocker`` or ``triple-rocker``.
+
+    Scalars only; the decision is exact on the given lengths.
     """
     d, a, b, c = _lengths(ground, crank, coupler, rocker)
     s, p, q, l = sorted((d, a, b, c))
@@ -347,7 +347,7 @@ def _lengths(*given: Any) -> list[Any]:
 
 
 def _side(mode: Any) -> Any:
-    """Return +1.0 or -1.0, from a mode or a side."""
+    """Return +1.0 or -1.0 for a mode or a side."""
     words = np.asarray(mode)
     side = np.asarray(side_of(mode) if words.dtype.kind in "UO" else words, dtype=float)
     return side if side.ndim else float(side)
@@ -376,7 +376,7 @@ def _linkage(d: Any, a: Any, b: Any, c: Any, side: Any) -> _Linkage:
 
 
 class _Pose:
-    """A linkage at a crank angle; each thing is computed when it is asked for, and once."""
+    """Linkage at a crank angle, with scaled lengths. Each property is computed once, on first use."""
 
     def __init__(self, linkage: _Linkage, swept: Sweep):
         self.linkage, self.swept = linkage, swept
@@ -390,7 +390,7 @@ class _Pose:
 
     @cached_property
     def squared_line(self) -> Any:
-        """m = AD^2."""
+        """Squared distance m = AD^2."""
         return self.linkage.gap * self.linkage.gap + self.swept.sin_squared
 
     # Coupler and rocker turn from A -> D by the angles of X3 + i S and X4 + i S, of lengths
@@ -434,7 +434,8 @@ class _Pose:
         return self._apart(self._excess() * self._swing(), self._opening.first * self._half)
 
     def _apart(self, common: Any, along: Any) -> tuple[Any, Any]:
-        """Of coupler and rocker, which turn with A -> D and against it."""
+        """Return the sums for coupler and rocker of a common term and a term along A -> D, which has each its
+        own factor."""
         coupler, rocker = along * self.of_rocker, along * self.of_coupler
         coupler += common
         rocker += common
@@ -450,7 +451,7 @@ class _Pose:
         return common + both * self.of_rocker - apart, common + both * self.of_coupler + apart
 
     def derivatives(self, order: int) -> tuple:
-        """Return those of the first ``order`` orders, in pairs."""
+        """Return the derivatives of the first ``order`` orders, in pairs."""
         return tuple(getattr(self, name) for name in ("first", "second", "third")[:order])
 
     @cached_property

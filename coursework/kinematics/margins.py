@@ -1,4 +1,4 @@
-"""Grashof margins of a four-bar linkage: by how much its longest reaches close.
+"""Grashof margins of a four-bar linkage, free of cancellation.
 
 A four-bar with sides b and c to the inner joint closes while their pins are between ``|b - c|`` and
 ``b + c`` apart. Near a dead point both margins are differences of nearly equal lengths; here each is
@@ -29,14 +29,14 @@ def exact_sum(*terms: Any) -> Any:
 
 
 def _sum_and_error(x: Any, y: Any) -> tuple[Any, Any]:
-    """Return the error of x + y, then x + y."""
+    """Return the rounding error of x + y, then x + y."""
     total = x + y
     of_y = total - x
     return (x - (total - of_y)) + (y - of_y), total
 
 
 def grashof_margins(ground: Any, crank: Any, coupler: Any, rocker: Any) -> tuple[Any, Any]:
-    """How far the linkage is from stretching out, and from folding, at its two aligned positions.
+    """Return the Grashof margins E+ and E-: of the stretched and of the folded aligned position.
 
     Lengths positive, one common unit, scalars or arrays; both margins in that unit squared:
     ``(coupler + rocker)^2 - (ground + crank)^2`` and ``(ground - crank)^2 - (coupler - rocker)^2``.

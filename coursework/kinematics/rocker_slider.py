@@ -1,4 +1,4 @@
-"""A slider moved by the rocker of a four-bar: where it turns back, over a whole turn of the crank.
+"""Slider moved by the rocker of a four-bar: its turning points over a full turn of the crank.
 
 The crank turns about O = (0, 0) and moves the rocker by the coupler; the rocker turns about D, which lies at
 ``ground`` from O in the direction ``ground_angle``. A rod joins the inner joint B to the slider C, to the right of B on
@@ -22,7 +22,7 @@ from coursework.kinematics.vectors import cross
 
 
 class RockerSlider(NamedTuple):
-    """One such mechanism, or an array of them: numbers that broadcast.
+    """Rocker-driven slider mechanism, or an array of them; the numbers broadcast.
 
     Lengths are positive, in one common unit, ``line`` of either sign; angles radians. ``side`` is +1 where B lies left of the
     line from the crank pin to D, -1 where right: it stays so over the turn.
@@ -38,8 +38,7 @@ class RockerSlider(NamedTuple):
     line: Any
 
     def rocker_vectors(self, crank_angles: Any) -> np.ndarray:
-        """Return the vector D -> B, complex, for crank angles along a last axis: shape ``(..., k)``, k angles
-        each.
+        """Return the vector D -> B, complex, for k crank angles along a last axis: shape ``(..., k)``.
 
         NaN where the loop does not close.
         """
@@ -67,7 +66,7 @@ class RockerSlider(NamedTuple):
         return angles.reshape(*shape, angles.shape[1])
 
     def stroke(self) -> Any:
-        """From the nearest to the farthest place of the slider, however often it turns back.
+        """Return the distance between the extreme positions of the slider, however often it turns back.
 
         A small crank costs no digit: nothing is a difference of two places. Errors as in :meth:`turning_points`.
 
@@ -82,7 +81,7 @@ class RockerSlider(NamedTuple):
         return found.reshape(shape) if shape else float(found[0])
 
     def times_turned(self) -> Any:
-        """How often the slider turns back in a turn, however near to each other; 0 where it does not close all turn.
+        """Count the turning points of the slider in a turn; 0 where the loop does not close all turn.
 
         Errors as in :meth:`turning_points`.
         """
@@ -117,7 +116,7 @@ def _refuse_negative(crank: float, rod: float) -> None:
 def _margins(
     ground: Any, ground_angle: Any, crank: Any, coupler: Any, rocker: Any, side: Any, rod: Any, line: Any
 ) -> tuple[np.ndarray, np.ndarray]:
-    """By how much the crank turns fully, and the rod reaches its line, at every crank angle; shape ``(n,)`` each."""
+    """Return the margins by which the crank turns fully and the rod reaches its line; shape ``(n,)`` each."""
     stretched, folded = grashof_margins(ground, crank, coupler, rocker)
     turns = np.minimum(stretched, folded) / (ground + crank + coupler + rocker)
     middle, half = _swing(ground, ground_angle, crank, coupler, rocker, side)
@@ -130,8 +129,8 @@ def _margins(
 def _swing(
     ground: Any, ground_angle: Any, crank: Any, coupler: Any, rocker: Any, side: Any
 ) -> tuple[Any, Any]:
-    """Return the arc of the rocker's directions, of a crank that turns fully: its middle, and half of its
-    size.
+    """Return the middle and the half-width of the arc of the rocker's directions, for a crank that turns
+    fully.
 
     That is half a turn where the rocker turns fully too: then crank and coupler are never in line.
     """
@@ -148,7 +147,8 @@ def _swing(
 def _in_line(
     ground: Any, ground_angle: Any, crank: Any, coupler: Any, rocker: Any, side: Any, rod: Any, line: Any
 ) -> np.ndarray:
-    """Where the rod is in line with the rocker, stretched and folded: from the middle of the arc; NaN out of it."""
+    """Return the angles from the middle of the arc at which rod and rocker are in line, stretched and folded;
+    NaN outside it."""
     middle, half = _swing(ground, ground_angle, crank, coupler, rocker, side)
     level = line - ground * np.sin(ground_angle)
     stretched, folded = np.arcsin(level / (rocker + rod)), math.pi - np.arcsin(level / (rocker - rod))
@@ -176,7 +176,7 @@ def _stroke(
 
 
 def _turn(angle: Any) -> Any:
-    """In [-pi, pi]."""
+    """Return the angle reduced to [-pi, pi]."""
     return angle - 2 * math.pi * np.rint(angle / (2 * math.pi))
 
 
@@ -190,14 +190,13 @@ def _rocker_and_coupler(
 
 
 def _rocker_ratio(rocker: Any, coupler: Any, crank: Any) -> Any:
-    """Return the angular velocity of the rocker over that of the crank, of the three vectors: along the
-    coupler both ends move alike."""
+    """Return the ratio of the angular velocities of rocker and crank: both ends of the coupler have one
+    velocity along it."""
     return cross(coupler, crank) / cross(coupler, rocker)
 
 
 def _advance_of_slider(angle: Any, *mechanism: Any) -> Any:
-    """Return the derivative of the slider's abscissa with respect to the crank angle: no velocity of C across
-    its line."""
+    """Return the derivative of the slider's abscissa by the crank angle: C has no velocity across its line."""
     ground, ground_angle, *_, rod, line = mechanism
     vectors = rocker, *_ = _rocker_and_coupler(angle, *mechanism[:6])
     rise = line - ground * np.sin(ground_angle) - rocker.imag

@@ -1,4 +1,4 @@
-"""The slider-crank moved by its crank, exact to the last digits at its hard places too.
+"""Slider-crank moved by its crank, exact to the last digits near dead centres too.
 
 The crank r turns about O = (0, 0), the rod l joins the crank pin A to the slider B = (x, e) on a line
 parallel to x. The rod's angle is that of A -> B. A mechanism along another axis is this one, turned.
@@ -25,8 +25,8 @@ from coursework.system.blocks import in_blocks
 
 
 class SliderCrankMotion(NamedTuple):
-    """The rod's angle (radians) and the slider's abscissa, then as many time derivatives as were asked
-    for."""
+    """The rod's angle (radians) and the slider's abscissa, then their time derivatives up to the order
+    requested."""
 
     rod_angle: Any
     position: Any
@@ -51,7 +51,7 @@ class _Linkage(NamedTuple):
 
 
 class SliderCrank:
-    """One slider-crank, or an array of them.
+    """Slider-crank, or an array of them.
 
     Parameters
     ----------
@@ -95,8 +95,7 @@ class SliderCrank:
         *,
         order: int = 2,
     ) -> SliderCrankMotion:
-        """Return the rod angle and slider position, with their time derivatives up to ``order`` (0 to 3),
-        nothing beyond.
+        """Return the rod angle and the slider position, with their time derivatives up to ``order`` (0 to 3).
 
         ``crank_angle`` is in radians or a heading, of any shape that broadcasts with the lengths.
 
@@ -118,14 +117,13 @@ class SliderCrank:
         return self._restored(self._evaluate(_position, crank_angle)[0])
 
     def run(self, crank_angle: Any) -> Any:
-        """How far the slider is to the right of the crank pin: the rod's projection on the line. Errors as in
-        :meth:`motion`."""
+        """Return the distance from the crank pin to the slider along the line, positive to the right. Errors
+        as in :meth:`motion`."""
         return self._restored(self._evaluate(_run, crank_angle)[0])
 
     def displacement(self, crank_angle: Any) -> Any:
-        """How far the slider is from its outer dead centre, to the last digits there too; at least 0 while
-        the slider is on the side +1. Errors as in :meth:`motion`.
-        """
+        """Return the distance of the slider from its outer dead centre, accurate to the last digits there; at
+        least 0 while the slider is on the side +1. Errors as in :meth:`motion`."""
         return self._restored(self._evaluate(_displacement, crank_angle)[0])
 
     def pressure_angle(self, crank_angle: Any) -> Any:
@@ -133,13 +131,12 @@ class SliderCrank:
         return self._evaluate(_pressure_angle, crank_angle)[0]
 
     def conditioning(self, crank_angle: Any) -> Any:
-        """Return 1 / |cos(rod angle)|: how much larger an error of the rod comes out at the slider; inf where
-        it is square."""
+        """Return 1 / |cos(rod angle)|, the factor from an error of the rod to one of the slider; inf where
+        the rod is perpendicular to the line."""
         return self._evaluate(_conditioning, crank_angle)[0]
 
     def stroke(self) -> Any:
-        """Return the distance between the two dead centres, of a crank that turns fully: no difference of two
-        distances."""
+        """Return the distance between the two dead centres of a crank that turns fully, without cancellation."""
         outer, inner = self._dead_centres()
         t = self._linkage
         with np.errstate(all="ignore"):
@@ -158,7 +155,7 @@ class SliderCrank:
             return np.arctan2(t.offset * stroke, t.offset * t.offset + outer * inner)[()]
 
     def _dead_centres(self) -> tuple[Any, Any]:
-        """Return the distances from O to the slider where rod and crank are in line, scaled."""
+        """Return the distances from O to the slider where rod and crank are in line, outer and inner, scaled."""
         t = self._linkage
         with np.errstate(all="ignore"):
             inner = np.sqrt((t.rod - t.crank - t.offset) * (t.rod - t.crank + t.offset))
@@ -197,7 +194,7 @@ class SliderCrank:
         return found
 
     def _failure(self, crank_angle: Any) -> Exception:
-        """Why a scalar came out NaN."""
+        """Return the error that explains a NaN of scalar arguments."""
         cos, sin = full_angle(crank_angle)
         if not math.isfinite(sin):
             return WrongValue(f"the crank angle is {crank_angle}, where a finite number is needed")
@@ -215,8 +212,8 @@ class SliderCrank:
 
 
 def time_ratio(excess: Any) -> Any:
-    """Return longer stroke's time over the shorter's, of strokes of pi + excess and pi - excess of crank
-    angle."""
+    """Return the time ratio of the longer to the shorter stroke, which take pi + excess and pi - excess of
+    crank angle."""
     return 1 + time_ratio_excess(excess)
 
 
@@ -257,7 +254,7 @@ def _signed_sweep(angle: Any, cos: Any, sin: Any, w: Any) -> Sweep:
 
 
 def _closing(t: _Linkage, swept: Sweep) -> Closing:
-    """Return P = l + p, Q = l - p; S is how far the slider is to the right of the crank pin."""
+    """Return the margins P = l + p and Q = l - p; S is the distance from the crank pin to the slider."""
     return closing(t.stretched, t.folded, t.side, swept)
 
 
@@ -292,10 +289,10 @@ def _motion(t: _Linkage, swept: Sweep, cos: Any, sin: Any, _: Any, *rates: Any) 
 
 
 def _opening_rate(t: _Linkage, close: Closing, swept: Sweep, r_sin: Any) -> Any:
-    """Return the first derivative of rho where the side is kept: as :class:`Opening`'s, and exact near its
-    zeros too.
+    """Return the first derivative of rho for a linkage that keeps its side: as in :class:`Opening`, and exact
+    near its zeros.
 
-    Of the two ways to take out the sine, for a line above and for one below O, each is a sum where the other cancels.
+    Two ways divide out the sine, for a line above and for one below O; each is a sum where the other cancels.
     """
     least, most = np.minimum(t.stretched, t.folded), np.maximum(t.stretched, t.folded)
     squared = np.where(np.greater(t.offset, 0), swept.cos_squared, swept.sin_squared)
@@ -304,8 +301,8 @@ def _opening_rate(t: _Linkage, close: Closing, swept: Sweep, r_sin: Any) -> Any:
 
 
 def _displacement(t: _Linkage, swept: Sweep, cos: Any, sin: Any, angle: Any) -> tuple[Any]:
-    """Return the differences of cosines and of square roots as products: each is zero with the angle from
-    dead centre."""
+    """Return the displacement from dead centre: differences of cosines and of square roots as products, each
+    zero with the angle."""
     half_cos, half_sin = half_angle(angle)
     outer = _outer(t)
     at_centre = 0.5 * np.arctan2(t.offset, outer)

@@ -1,4 +1,4 @@
-"""A crank pin that slides in the slot of a guide: the guide turns, or swings.
+"""Crank pin that slides in the slot of a guide, which turns fully or swings.
 
 The guide turns about O4 = (0, 0), the crank r about O2 = (d, 0); angles are measured from the direction
 O4 -> O2, so that 0 is the position in line with the pin farthest away. The arm is the vector from O4 to
@@ -26,7 +26,8 @@ from coursework.system.blocks import in_blocks
 
 
 class SlottedGuideMotion(NamedTuple):
-    """Angle of the guide (radians) and length of the arm, then as many time derivatives as were asked for."""
+    """Angle of the guide (radians) and length of the arm, then their time derivatives up to the order
+    requested."""
 
     guide_angle: Any
     arm: Any
@@ -48,7 +49,7 @@ def motion(
     *,
     order: int = 2,
 ) -> SlottedGuideMotion:
-    """Return the guide and sliding pin, with time derivatives up to ``order`` (0 to 3), nothing beyond.
+    """Return the guide's angle and the arm's length, with time derivatives up to ``order`` (0 to 3).
 
     Parameters
     ----------
@@ -87,7 +88,7 @@ def motion(
 
 def swing(ground: Any, crank: Any) -> Any:
     """Return the angle between the extreme positions of a guide that swings (crank <= ground), radians; NaN
-    if it turns.
+    if it turns fully.
 
     It is also the crank angle by which the slow stroke exceeds half a turn.
     """
@@ -96,7 +97,7 @@ def swing(ground: Any, crank: Any) -> Any:
 
 
 class SlottedGuidePose:
-    """The guide at a crank angle. Nothing is computed before it is asked for, nor twice.
+    """Slotted guide at a crank angle. Each property is computed once, on first use.
 
     Angles in radians; derivatives by the crank angle. Parameters, frame and errors are those of :func:`motion`;
     arrays are computed whole.
@@ -205,17 +206,17 @@ class _Pose:
 
     @cached_property
     def _passing(self) -> Any:
-        """c / m: 1 where the circle of A passes through O4."""
+        """Share c / m: 1 where the circle of A passes through O4."""
         return self.swept.cos_squared / self.squared
 
     @cached_property
     def _missing(self) -> Any:
-        """g^2 / m, the other share of it."""
+        """Share g^2 / m, the complement of ``_passing``."""
         return self.gap * (self.gap / self.squared)
 
     @cached_property
     def _bend(self) -> Any:
-        """-arm times the second derivative of the arm: (g^2 (c - s) + c^2) / 4 m."""
+        """Minus the arm times its second derivative: (g^2 (c - s) + c^2) / 4 m."""
         swept = self.swept
         return 0.25 * (
             self._missing * (swept.cos_squared - swept.sin_squared) + swept.cos_squared * self._passing

@@ -44,11 +44,11 @@ def corner(near: Any, other: Any, opposite: Any) -> Any:
 
 
 def corner_beside(one: Any, other: Any, angle: Any, third: Any) -> Any:
-    """Return the angle between ``one`` and the third side, where the angle between ``one`` and ``other`` is
-    known too.
+    """Return the angle between ``one`` and the third side, given the angle between ``one`` and ``other`` as
+    well.
 
-    ``third`` counts: where it is not what the two sides and their angle make, because it was rounded or measured, the
-    angle is that of the triangle of the three sides. Where it is, no digit is lost in a flat triangle.
+    ``third`` decides: if it differs from what the two sides and their angle give, being rounded or measured,
+    the angle is that of the triangle of the three sides. If it agrees, a flat triangle costs no digit.
 
     Raises
     ------

@@ -40,10 +40,10 @@ def direction(y: Any, x: Any) -> Any:
 
 
 def direction_of(y: Any, x: Any, length: Any) -> Any:
-    """Return the same of a vector whose length is known, by the tangent of half the angle: arrays are faster
-    still.
+    """Return the angle of the vector (x, y) of known length, by the tangent of half the angle; faster than
+    :func:`direction`.
 
-    Arrays that are given are used up.
+    Overwrites the arrays that it is given.
     """
     if np.min(x, initial=0.0) >= 0:
         length += x
@@ -65,7 +65,7 @@ def direction_of(y: Any, x: Any, length: Any) -> Any:
 
 
 def _twice_arctangent(y: Any, x: Any) -> Any:
-    """Of y / x, between -1 and 1."""
+    """Return twice the arctangent of y / x, a quotient between -1 and 1; overwrites ``y``."""
     y /= x
     found = arctangent(y)
     found *= 2
@@ -73,8 +73,8 @@ def _twice_arctangent(y: Any, x: Any) -> Any:
 
 
 def components(r: Any, u: Any, v: Any) -> tuple[Any, Any]:
-    """Return the two real numbers with ``first * u + second * v = r`` (Cramer's rule); inf or NaN when u and
-    v are parallel."""
+    """Return the real numbers with ``first * u + second * v = r`` (Cramer's rule); inf or NaN for parallel u
+    and v."""
     # Vectors of lengths far from 1 are scaled: their product would overflow or vanish.
     of_u, of_v = exponent_of(np.real(u), np.imag(u)), exponent_of(np.real(v), np.imag(v))
     u, v = scaled(u, -of_u), scaled(v, -of_v)
@@ -112,5 +112,5 @@ def derivative(
 
 
 def turned(arm: Any, angle_rates: Sequence[Any]) -> tuple[Any, ...]:
-    """Time derivatives of a vector of constant length, one for each rate of its angle."""
+    """Return the time derivatives of a vector of constant length, as many as there are rates of its angle."""
     return tuple(derivative(arm, 0.0, (), angle_rates[:n], n) for n in range(1, len(angle_rates) + 1))
