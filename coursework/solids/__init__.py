@@ -1,4 +1,4 @@
-"""Chains of solids: joints as spaces of twists, combined in parallel, in series and in loops.
+"""Spatial chains: joints as spaces of twists, combined in parallel, in series and in loops.
 
 A joint is a mapping ``{"joint": NAME, "axis": [x, y, z], "normal": …, "point": …, "pitch": p}`` with the
 keys that it needs, and ``"between": [i, j]`` in a chain; body 0 is the frame. Points and pitches are in

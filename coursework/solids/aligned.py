@@ -1,5 +1,5 @@
-"""Joints along the coordinate axes and along vectors of whole numbers, as exercises draw them, and functions of them on
-columns of draws."""
+"""Joints along coordinate axes and along vectors of whole numbers, and functions of them on columns of
+variants."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def aligned(
     between: Sequence[int] = (0, 1),
     tilt: str = "",
 ) -> dict[str, Any]:
-    """Return the mapping of a joint whose direction is ``x``, ``y`` or ``z``, or three whole numbers, ``3 4
-    0``.
+    """Return the mapping of a joint whose direction is ``x``, ``y``, ``z``, or three whole numbers such as
+    ``3 4 0``.
 
     The direction is the axis, the normal of a joint that has no axis, and the line of a contact along a
     line, whose normal is then the axis that follows: y after x, z after y, x after z; of a direction in a coordinate plane,
@@ -62,13 +62,13 @@ def directions_of(along: str, tilt: str = "") -> tuple[Whole, Whole]:
 
 
 def placed(point: tuple[float, float, float], tilt: str = "") -> tuple[float, float, float]:
-    """Where a point comes to lie by the tilt of :func:`aligned`."""
+    """Return a point turned by the tilt of :func:`aligned`."""
     x, y, z = (c / (5.0 if tilt else 1.0) for c in _turned(point, tilt))
     return x, y, z
 
 
 class Placed(NamedTuple):
-    """What :func:`aligned` makes a joint of."""
+    """Arguments of :func:`aligned` for one joint."""
 
     name: str
     along: str
@@ -91,7 +91,8 @@ ARRANGEMENTS: Mapping[str, tuple[int, bool, bool]] = {
 
 
 def arranged(arrangement: str, tilt: str, inclined: str, *joints: Sequence[Any]) -> tuple[Placed, ...]:
-    """Of joints, each (name, along, x, y, z) with lengths in mm, those of an arrangement, as it places them."""
+    """Return the joints of an arrangement at their positions; each joint is (name, along, x, y, z), lengths
+    in mm."""
     count, is_tilted, is_inclined = ARRANGEMENTS[arrangement]
     return tuple(
         Placed(
@@ -121,7 +122,7 @@ def _crossed(a: Any, b: Any) -> Any:
 
 
 def _turned(vector: Any, tilt: str) -> Any:
-    """Return five times what the tilt makes of a vector; without a tilt the vector."""
+    """Return five times the vector turned by the tilt; without a tilt the vector itself."""
     if not tilt:
         return vector
     about = _WHOLE[tilt]
@@ -137,9 +138,10 @@ def _unit(vector: Whole) -> list[float]:
 
 
 def each_distinct(function: Callable[..., Any], *columns: Any) -> Any:
-    """Return ``function`` of each row of columns that broadcast, called once for each distinct row.
+    """Evaluate ``function`` on each row of columns that broadcast, once for each distinct row.
 
-    Scalars give what the function gives. What is no number or truth value comes in an array of objects.
+    Scalars give the function's own result. Results that are neither numbers nor truth values come in an array
+    of objects.
     """
     if not any(np.ndim(column) for column in columns):
         return function(*columns)

@@ -1,7 +1,7 @@
-"""Closed and complex chains, in space and in a plane: loops of joints, their mobility and their constraint.
+"""Closed and complex chains, in space and in a plane: their loops, mobility and static indeterminacy.
 
-Bodies are numbered from 0, the frame, without holes. Each loop asks that the twists met along it add up to
-zero; the rates that do are the motions of the mechanism at the given position.
+Bodies are numbered from 0, the frame, without gaps. Around each loop the twists sum to zero; the joint rates
+that satisfy all loops are the motions of the mechanism at the given position.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from coursework.solids.ranks import Rank, rank_of
 
 
 class _Loops:
-    """What chains in space and in a plane share: the graph, and numbers that follow from ranks.
+    """Common base of chains in space and in a plane: the graph, and the numbers that follow from ranks.
 
     ``equations`` is the number of equations a loop, or a body, gives.
     """
@@ -44,7 +44,8 @@ class _Loops:
                 raise WrongValue(f"the {name} body is one of 1 to {self.n}; found {body}")
 
     def _walk(self) -> list[dict[int, int]]:
-        """For each body, the joints from the frame to it and the sense in which they are met: a tree."""
+        """Return for each body the joints from the frame to it, with the sense in which each is crossed: a
+        spanning tree."""
         paths: dict[int, dict[int, int]] = {0: {}}
         waiting = [0]
         while waiting:
@@ -63,7 +64,7 @@ class _Loops:
 
     @cached_property
     def loops(self) -> list[dict[int, int]]:
-        """Independent loops: in each, the joints met and their senses; one a joint that is not in the tree."""
+        """Independent loops as joints with their senses; each joint outside the spanning tree closes one."""
         in_tree = {index for path in self._paths for index in path}
         found = []
         for index, (one, other) in enumerate(self._ends):
@@ -86,7 +87,7 @@ class _Loops:
         raise NotImplementedError
 
     def _system(self, walks: Sequence[Mapping[int, int]]) -> np.ndarray:
-        """Return the sums of twists along some walks: shape (equations · walks, Nc)."""
+        """Return the twist sums along some walks: shape (equations · walks, Nc)."""
         places = np.cumsum([0, *(len(rows) for rows in self.columns)])
         size = self.equations
         matrix = np.zeros((size * len(walks), places[-1]))
@@ -98,22 +99,22 @@ class _Loops:
 
     @property
     def gamma(self) -> int:
-        """Independent loops."""
+        """Number of independent loops."""
         return len(self.joints) - self.n
 
     @property
     def Nc(self) -> int:
-        """Free rates of all the joints."""
+        """Number of free rates of all the joints."""
         return sum(len(rows) for rows in self.columns)
 
     @property
     def Ns(self) -> int:
-        """Unknown components of the actions of all the joints."""
+        """Number of unknown components of the actions of all the joints."""
         return self.equations * len(self.joints) - self.Nc
 
     @cached_property
     def rank(self) -> Rank:
-        """The rank of the loop system at the given position, with its gap."""
+        """Rank of the loop system at the given position, with its gap."""
         return rank_of(self._system(self.loops), "the loop equations")
 
     @property
@@ -127,7 +128,7 @@ class _Loops:
 
     @property
     def rs(self) -> int:
-        """The rank of the equations of equilibrium."""
+        """Rank of the equilibrium equations."""
         return self.equations * self.n - self.m
 
     @property
@@ -137,7 +138,7 @@ class _Loops:
 
     @property
     def i(self) -> int:
-        """Index of mobility, which needs no rank."""
+        """Index of mobility, which requires no rank."""
         return self.m - self.h
 
     @cached_property
@@ -154,7 +155,7 @@ class _Loops:
 
 
 class Chain(_Loops):
-    """A chain in space.
+    """Chain in space.
 
     Parameters
     ----------
@@ -178,7 +179,7 @@ class Chain(_Loops):
 
     @cached_property
     def static_rank(self) -> Rank:
-        """The rank of the equations of equilibrium of the moving bodies, found from the actions themselves."""
+        """Rank of the equilibrium equations of the moving bodies, computed from the actions themselves."""
         at = self.measure
         blocks = []
         for joint in self.joints:
@@ -199,7 +200,7 @@ _IN_PLANE_OR_SQUARE = 1e-9  #: largest component out of the plane, or in it, of 
 
 @lru_cache(maxsize=1024)
 def _projected(name: str, frame: tuple[Vector, Vector, Vector], pitch: float) -> np.ndarray:
-    """Return the freedoms of a joint in the plane xy, at its own point: shape (k, 3), not to be changed.
+    """Return the free twists of a joint in the plane xy, at its own point: shape (k, 3), read-only.
 
     Raises
     ------
@@ -228,7 +229,8 @@ def _projected(name: str, frame: tuple[Vector, Vector, Vector], pitch: float) ->
 
 
 def planar_kind(joint: Joint) -> str:
-    """What a joint is in the plane xy: ``rigid``, ``revolute``, ``prismatic``, ``point_contact`` or ``free``.
+    """Return the kind of a joint in the plane xy: ``rigid``, ``revolute``, ``prismatic``, ``point_contact``
+    or ``free``.
 
     Raises
     ------
@@ -241,7 +243,7 @@ def planar_kind(joint: Joint) -> str:
 
 
 class PlanarChain(_Loops):
-    """A chain in the plane xy: joints of space, of which what happens in the plane counts.
+    """Chain in the plane xy: spatial joints, restricted to their motions in the plane.
 
     Parameters and errors are those of :class:`Chain`; axes and normals lie in the plane or
     are perpendicular to it.

@@ -1,4 +1,4 @@
-"""Joints between the same two bodies, and joints in a row."""
+"""Joints in parallel, between the same two bodies, and joints in series."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ CONDITIONS = ("none", "directions", "positions", "both")
 
 
 def in_parallel(joints: Iterable[Joint | Mapping[str, Any]]) -> Parallel:
-    """Return the joints between the same two bodies: what one forbids is forbidden, what one transmits is
-    transmitted.
+    """Combine joints between the same two bodies: each constraint and each transmitted action of any joint
+    remains.
 
     Raises
     ------
@@ -31,8 +31,7 @@ def in_parallel(joints: Iterable[Joint | Mapping[str, Any]]) -> Parallel:
 
 
 def in_series(joints: Iterable[Joint | Mapping[str, Any]]) -> Series:
-    """Return the joints in a row: the motions that they leave free add up. Errors are those of
-    :func:`in_parallel`."""
+    """Combine joints in a row: their free motions add up. Errors are those of :func:`in_parallel`."""
     return Series(read_joints(joints))
 
 
@@ -43,7 +42,7 @@ def _unit_rows(rows: list[list[float]]) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Parallel:
-    """Joints in parallel. Each number is found when it is first asked for."""
+    """Joints in parallel. Each number is computed on first use."""
 
     joints: tuple[Joint, ...]
 
@@ -64,12 +63,12 @@ class Parallel:
 
     @property
     def Ns(self) -> int:
-        """Unknown components of the actions of all the joints."""
+        """Number of unknown components of the actions of all the joints."""
         return sum(6 - joint.freedoms for joint in self.joints)
 
     @property
     def rs(self) -> int:
-        """How many of them the six equations of equilibrium determine."""
+        """Number of those unknowns that the six equilibrium equations determine."""
         return self.rank.value
 
     @property
@@ -82,19 +81,19 @@ class Parallel:
 
     @cached_property
     def angular(self) -> int:
-        """How many of the superfluous unknowns are held by moments alone: conditions on directions."""
+        """Number of redundant unknowns that moments alone balance: conditions on directions."""
         moments = [row for joint in self.joints for row in joint.moments]
         rows = np.array(moments).reshape(-1, 3)
         return len(rows) - decompose(rows, "the transmitted moments", 1.0)[0].value
 
     @property
     def linear(self) -> int:
-        """How many conditions bear on positions: the other superfluous unknowns, which forces hold."""
+        """Number of conditions on positions: the other redundant unknowns, which forces balance."""
         return self.h - self.angular
 
     @property
     def condition(self) -> str:
-        """What must be made exactly for the joints to fit together, one of :data:`CONDITIONS`."""
+        """Geometric condition for the joints to fit together, one of :data:`CONDITIONS`."""
         if self.angular:
             return "both" if self.linear else "directions"
         return "positions" if self.linear else "none"
@@ -107,7 +106,7 @@ class Parallel:
 
 @dataclass(frozen=True)
 class Series:
-    """Joints in a row. Each number is found when it is first asked for."""
+    """Joints in series. Each number is computed on first use."""
 
     joints: tuple[Joint, ...]
 
@@ -128,7 +127,7 @@ class Series:
 
     @property
     def Nc(self) -> int:
-        """Free rates of all the joints."""
+        """Number of free rates of all the joints."""
         return sum(joint.freedoms for joint in self.joints)
 
     @property
@@ -147,12 +146,13 @@ class Series:
 
     @property
     def h(self) -> int:
-        """0: each action is that of the whole, so it is known."""
+        """Static indeterminacy, 0: each joint's action equals that of the whole, so it is known."""
         return 0
 
     @cached_property
     def equivalent(self) -> Equivalent:
-        """``free`` only where all six freedoms are there at every pose; where they are at this one, ``other``."""
+        """Equivalent joint: ``free`` only where all six freedoms exist at every pose; where they exist at
+        this pose alone, ``other``."""
         _, twists, wrenches = self._spaces
         if len(twists) == 6 and not all_free_at_every_pose(self.joints):
             return Equivalent("other")

@@ -1,4 +1,4 @@
-"""The joints of the course: what each lets move and what it transmits, at its own point.
+"""Joints of the course: their free motions and transmitted actions, at each joint's own point.
 
 A joint has a right-handed frame (u, v, w) of unit vectors: u is its axis, or its normal where it has no axis;
 v is the normal of a contact along a line. In that frame each joint but the helical one leaves some of the
@@ -23,7 +23,8 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Kind:
-    """A row of the table: free rotations and translations by the letters of the frame, and the keys needed."""
+    """Row of the joint table: free rotations and translations by the letters of the frame, and the required
+    keys."""
 
     rotations: str
     translations: str
@@ -66,7 +67,7 @@ def unit(a: Sequence[float]) -> Vector:
 
 @lru_cache(maxsize=1024)
 def frame_about(u: Vector) -> tuple[Vector, Vector, Vector]:
-    """Return the unit vectors u, v, w, right-handed; v leans on the coordinate axis that is least along u."""
+    """Return the right-handed unit vectors u, v, w; v is near the coordinate axis most perpendicular to u."""
     least = min(range(3), key=lambda i: abs(u[i]))
     w = unit(cross(u, tuple(float(i == least) for i in range(3))))
     return u, cross(w, u), w
@@ -74,7 +75,7 @@ def frame_about(u: Vector) -> tuple[Vector, Vector, Vector]:
 
 @dataclass(frozen=True)
 class Joint:
-    """A joint at its place. ``frame`` holds u, v, w; ``point`` is None where no point counts."""
+    """Joint at its position. ``frame`` holds u, v, w; ``point`` is None where the position does not matter."""
 
     name: str
     frame: tuple[Vector, Vector, Vector]
@@ -84,7 +85,7 @@ class Joint:
 
     @property
     def freedoms(self) -> int:
-        """How many rates it leaves free."""
+        """Number of free rates."""
         return FREEDOMS[self.name]
 
     @property
@@ -102,16 +103,17 @@ class Joint:
 
     @property
     def moments(self) -> list[Vector]:
-        """Unit vectors along the moments that it transmits without a force."""
+        """Unit vectors along the moments that the joint transmits without a force."""
         return _named(self.frame, _others(self.kind.rotations))
 
     @property
     def slides(self) -> list[Vector]:
-        """Unit vectors along its free translations; that of a screw goes with its rotation, and is none of them."""
+        """Unit vectors along the free translations; the helical joint has none, since its translation follows
+        its rotation."""
         return self._free[1]
 
     def twists(self, origin: Vector, length: float) -> list[list[float]]:
-        """Return its free twists at a point: ``freedoms`` rows of 6, velocities divided by the length."""
+        """Return the free twists at a point: ``freedoms`` rows of 6, velocities divided by the length."""
         arm = self.arm(origin, length)
         advance = self.pitch / (2 * math.pi * length) if self.name == "helical" else 0.0
         rotations, translations = self._free
@@ -122,7 +124,8 @@ class Joint:
         return rows + [[0.0, 0.0, 0.0, *along] for along in translations]
 
     def wrenches(self, origin: Vector, length: float) -> list[list[float]]:
-        """What it transmits, at a point: ``6 - freedoms`` rows of 6, moments divided by the length."""
+        """Return the transmitted wrenches at a point: ``6 - freedoms`` rows of 6, moments divided by the
+        length."""
         arm = self.arm(origin, length)
         moments = _named(self.frame, _others(self.kind.rotations))
         forces = _named(self.frame, _others(self.kind.translations))
@@ -137,7 +140,7 @@ class Joint:
         return rows
 
     def arm(self, origin: Vector, length: float) -> Vector:
-        """From the origin to its point, in lengths."""
+        """Return the vector from the origin to the joint's point, divided by the length."""
         if self.point is None:
             return (0.0, 0.0, 0.0)
         x, y, z = ((p - o) / length for p, o in zip(self.point, origin, strict=True))
@@ -153,7 +156,7 @@ def _others(letters: str) -> str:
 
 
 def joint_of(given: Mapping[str, Any]) -> Joint:
-    """Return a joint from its mapping; keys that it does not need are passed over.
+    """Return a joint from its mapping; keys that it does not use are ignored.
 
     Raises
     ------
@@ -181,7 +184,7 @@ def joint_of(given: Mapping[str, Any]) -> Joint:
 
 
 def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
-    """Return all the joints of a list, in its order; an empty list is refused."""
+    """Return the joints of a list of mappings, in order; refuse an empty list."""
     if isinstance(given, (Mapping, str)) or not isinstance(given, Iterable):
         raise WrongValue(f"a list of joints is a list of mappings; found {str(given)[:60]!r}")
     joints = tuple(joint_of(one) for one in given)
@@ -191,7 +194,7 @@ def joints_of(given: Iterable[Mapping[str, Any]]) -> tuple[Joint, ...]:
 
 
 def read_joints(given: Iterable[Joint | Mapping[str, Any]]) -> tuple[Joint, ...]:
-    """Return the joints as they are, or read from their mappings: all of one sort."""
+    """Return a list of joints unchanged, or read it from mappings; a mixture is refused."""
     every: tuple[Any, ...] = tuple(given)
     known = tuple(joint for joint in every if isinstance(joint, Joint))
     if known and len(known) == len(every):
@@ -245,7 +248,7 @@ _TOGETHER = 1e-12  #: points nearer to one another than that, relative to their 
 
 @dataclass(frozen=True)
 class Measure:
-    """Where twists are written and what their lengths are divided by, so that ranks do not hang on units."""
+    """Origin of twists and unit of their lengths, which make ranks independent of units."""
 
     origin: Vector
     length: float

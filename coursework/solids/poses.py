@@ -1,4 +1,4 @@
-"""What an open chain leaves free at every pose, not only at the one that is given.
+"""Freedoms that an open chain has at every pose, not only at the given one.
 
 Joints are moved without limit. Rotations span all directions at every pose only where one joint has them all: hinges in a row
 always come to lie in one plane somewhere. Translations span space at every pose if two sets of them do, each carried along by
@@ -22,10 +22,9 @@ _SAME = 1e-7  #: angles that differ by less are equal
 
 
 def all_free_at_every_pose(joints: Sequence[Joint]) -> bool:
-    """Return whether the last body of a row has six freedoms with respect to the first however the joints
-    between are moved.
+    """Return whether the last body of an open chain has six freedoms relative to the first at every pose.
 
-    A joint that turns and slides may carry its slide on either of its bodies: both must do.
+    A joint that turns and slides may carry its slide on either of its bodies: both cases must hold.
     """
     if not any(len(joint.kind.rotations) == 3 for joint in joints):
         return False
@@ -39,15 +38,15 @@ def all_free_at_every_pose(joints: Sequence[Joint]) -> bool:
 
 @dataclass(frozen=True)
 class _Block:
-    """Directions of slides that nothing turns with respect to one another, and the turns that follow: axes, in order,
-    or None where a joint turns in all ways."""
+    """Directions of translations that no rotation separates, and the rotations that follow: axes, in order,
+    or None for a joint with more than one."""
 
     span: np.ndarray
     turns: tuple[Vector, ...] | None
 
     @property
     def normal(self) -> np.ndarray:
-        """Of a plane of directions."""
+        """Normal of a plane of directions."""
         return np.cross(*self.span)
 
 
@@ -71,7 +70,7 @@ def _blocks(joints: Sequence[Joint]) -> list[_Block]:
 
 
 def _turns_of(joint: Joint) -> tuple[Vector, ...] | None:
-    """Return the axes of a joint's own turning; None where it turns in more than one way."""
+    """Return the rotation axes of a joint; None for a joint that rotates about more than one."""
     if len(joint.kind.rotations) > 1:
         return None
     return tuple(joint.turns)
@@ -82,7 +81,7 @@ def _spanned(slides: Sequence[Vector]) -> np.ndarray:
 
 
 def _span_together(blocks: Sequence[_Block], one: int, other: int) -> bool:
-    """Return whether two blocks span space however the turns between them stand."""
+    """Return whether two blocks span space at every position of the rotations between them."""
     first, last = blocks[one].span, blocks[other].span
     axes: list[Vector] = []
     for block in blocks[one:other]:
@@ -100,8 +99,8 @@ def _span_together(blocks: Sequence[_Block], one: int, other: int) -> bool:
 
 
 def _angles(fixed: np.ndarray, axes: Sequence[Vector], turned: np.ndarray) -> tuple[float, float]:
-    """Return the least and the largest angle between two directions, one of which is turned about axes in a
-    row."""
+    """Return the least and the largest angle between two directions, one of which is rotated about axes in
+    turn."""
     chain = [fixed, *(np.array(axis) for axis in axes), turned]
     low = high = _angle(chain[-1], chain[-2])
     for axis, before in zip(chain[-2:0:-1], chain[-3::-1], strict=True):

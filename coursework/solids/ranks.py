@@ -1,4 +1,4 @@
-"""Ranks as decisions: right, or not made."""
+"""Numerical ranks: a rank is right, or an error is raised."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ DISTINCT = 1e-7  #: what surely is no zero; two axes 1e-4 apart stay well above 
 
 @dataclass(frozen=True)
 class Rank:
-    """A rank and what it rests on: singular values, relative to the largest."""
+    """Rank with its evidence: the singular values on either side of the cut, relative to the largest."""
 
     value: int
     smallest_kept: float  #: 1 where there is nothing to keep
@@ -22,12 +22,13 @@ class Rank:
 
     @property
     def gap(self) -> float:
-        """The factor between the two; infinite where what was dropped is exactly zero."""
+        """Ratio of the smallest singular value kept to the largest dropped; infinite where the dropped one is
+        exactly zero."""
         return self.smallest_kept / self.largest_dropped if self.largest_dropped else float("inf")
 
 
 def is_zero(value: float, what: str) -> bool:
-    """Return whether a number that is of the order of 1 or vanishes does vanish.
+    """Return whether a number that is either 0 or of order 1 is 0.
 
     Raises
     ------

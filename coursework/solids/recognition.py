@@ -1,4 +1,4 @@
-"""Which joint of the table a space of twists is."""
+"""Recognition of the joint that has a given space of twists."""
 
 from __future__ import annotations
 
@@ -28,7 +28,8 @@ EQUIVALENTS: tuple[str, ...] = (
 
 @dataclass(frozen=True)
 class Equivalent:
-    """A recognised joint: unit vectors up to sign, a point in the unit of the data; None where it has none.
+    """Recognised joint: unit vectors up to sign, a point in the unit of the data; None for an attribute that
+    it lacks.
 
     ``point`` is any point of the axis or of the normal, the centre where the joint has one.
     """
@@ -41,7 +42,7 @@ class Equivalent:
 
     @property
     def direction(self) -> tuple[float, float, float] | None:
-        """The axis, or the normal of a joint that has no axis."""
+        """Axis, or the normal of a joint that has no axis."""
         return self.normal if self.axis is None else self.axis
 
 
@@ -60,7 +61,7 @@ def recognise(twists: np.ndarray, wrenches: np.ndarray, measure: Measure) -> Equ
 
 
 class _Space:
-    """A space of twists, or of wrenches: rotations or moments are not alike, lines are.
+    """Space of twists, or of wrenches.
 
     For twists ``line`` is the rotation and ``rest`` the velocity; for wrenches ``line`` is the force and
     ``rest`` the moment: both are a vector along a line, and what it gives at the origin.
@@ -73,8 +74,7 @@ class _Space:
         return _Space(np.roll(self.rows, 3, axis=1), self.measure)
 
     def split(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return a basis whose first rows have independent lines, and pure couples or translations after
-        them."""
+        """Return a basis whose first rows have independent lines; pure couples or translations follow."""
         lines = self.rows[:, :3]
         rank, _, _ = decompose(lines, "the directions of the axes", 1.0)
         left, _, _ = np.linalg.svd(lines)
@@ -82,30 +82,31 @@ class _Space:
         return mixed[: rank.value], mixed[rank.value :, 3:]
 
     def place(self, arm: np.ndarray) -> tuple[float, float, float]:
-        """Return a point given from the origin in lengths, in the unit of the data."""
+        """Return a point, given as a vector from the origin in lengths, in the unit of the data."""
         found = np.asarray(self.measure.origin) + arm * self.measure.length
         return _tidy(found, max(self.measure.length, *map(abs, self.measure.origin)))
 
 
 def _tidy(vector: np.ndarray, size: float) -> tuple[float, float, float]:
-    """Return the without what rounding leaves of zeros."""
+    """Return the vector with rounding errors replaced by zeros."""
     x, y, z = (0.0 if abs(x) <= 1e-12 * size else float(x) for x in vector)
     return x, y, z
 
 
 def _along(vector: np.ndarray) -> tuple[float, float, float]:
-    """Return its direction; the first coordinate that is not zero is positive."""
+    """Return the unit vector along the vector, signed so that its first coordinate other than zero is
+    positive."""
     x = np.asarray(_tidy(vector / np.linalg.norm(vector), 1.0))
     return tuple((x * np.sign(x[np.flatnonzero(x)[0]]) + 0.0).tolist())
 
 
 def _foot(line: np.ndarray, rest: np.ndarray) -> np.ndarray:
-    """Return the point nearest to the origin of the axis of (line, rest), where rest = arm × line + a pitch."""
+    """Return the point of the axis of (line, rest) nearest to the origin, where rest = arm × line + a pitch."""
     return np.cross(line, rest) / (line @ line)
 
 
 def _common_point(rows: np.ndarray) -> np.ndarray | None:
-    """Return the point that all axes pass through, each without pitch, or None."""
+    """Return the common point of all axes, each without pitch; None if there is none."""
     system = np.concatenate([_crossing(row[:3]) for row in rows])
     right = np.concatenate([row[3:] for row in rows])
     arm, *_ = np.linalg.lstsq(system, right, rcond=None)

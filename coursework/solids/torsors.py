@@ -1,4 +1,4 @@
-"""Twists and wrenches at a point: moved to another, and which of their components may differ from zero."""
+"""Twists and wrenches at a point: transport to another point, and their components that may differ from zero."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ def moved(resultant: Any, moment: Any, arm: Any) -> Any:
 
 
 def twist_components(of: Joint | Parallel | Series, point: Vector) -> str:
-    """Return the names of the components of its free twists at a point that may differ from zero, ``"wz
+    """Return the names of the components of the free twists at a point that may differ from zero, ``"wz
     vx"``; ``"0"`` for none."""
     return _named(_twists(of, point), TWIST)
 
 
 def wrench_components(of: Joint | Parallel | Series, point: Vector) -> str:
-    """Return the same of what it transmits, ``"X Y M"``."""
+    """Return the names of the components of the transmitted wrenches that may differ from zero, ``"X Y M"``."""
     if isinstance(of, Joint):
         rows = np.array(of.wrenches(point, _LENGTH)).reshape(-1, 6)
         return _named(np.roll(rows, 3, axis=1), WRENCH)
@@ -56,7 +56,8 @@ def _twists(of: Joint | Parallel | Series, point: Vector) -> np.ndarray:
 
 
 def _perpendicular(rows: np.ndarray) -> np.ndarray:
-    """What has no power in any of the rows: moments meet rotations, forces velocities, as the engine writes both."""
+    """Return a basis of the torsors that have no power in any row. Moments pair with rotations, forces with
+    velocities."""
     sizes = np.linalg.norm(rows, axis=1, keepdims=True)
     return decompose(rows / np.where(sizes > 0, sizes, 1.0), "the torsors")[2]
 
