@@ -1,4 +1,4 @@
-"""The structure of plane mechanisms: what is joined to what, whatever the lengths.
+"""Structure of plane mechanisms: the joint graph, independent of all lengths.
 
 A mechanism is a list of joints, records ``{"between": [i, j], "kind": "revolute" | "prismatic" | "higher",
 "at": label}``; bodies are numbered from 1, the frame is 1. Whole numbers and sets throughout: nothing is rounded.

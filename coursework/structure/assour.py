@@ -1,4 +1,4 @@
-"""Assour groups: what a mechanism is made of, seen from its driver.
+"""Decomposition of a plane mechanism into a driver and Assour groups.
 
 With the driver taken away, the pairs hold the other bodies in place: two conditions a pair, three unknowns a
 body. Conditions are given out to the unknowns that they settle; bodies that settle each other, in a ring,
@@ -20,7 +20,7 @@ Node = tuple[str, int]  #: ("body", number) or ("pin", index of a joint)
 
 @dataclass(frozen=True)
 class Group:
-    """Bodies that are placed together, in increasing order, and the number of their class, from 2 on."""
+    """Bodies of an Assour group, in increasing order, and its class, from 2 on."""
 
     bodies: tuple[int, ...]
     rank: int
@@ -32,14 +32,15 @@ class Group:
 
 @dataclass(frozen=True)
 class Decomposition:
-    """The groups of a mechanism in the order of assembly: of those that can be placed, the smallest first."""
+    """Assour groups of a mechanism in order of assembly; of the groups that can be placed, the smallest comes
+    first."""
 
     driver: int
     groups: tuple[Group, ...]
 
     @property
     def rank(self) -> int:
-        """The class of the mechanism as a number: that of its highest group, 1 if only the driver is left."""
+        """Class of the mechanism: the highest class of its groups, 1 for a driver alone."""
         return max((group.rank for group in self.groups), default=1)
 
     @property
@@ -108,8 +109,11 @@ def drivers(graph: JointGraph) -> tuple[int, ...]:
 
 
 def _conditions(graph: JointGraph) -> list[tuple[Node, Node]]:
-    """Return the ends of each pair of conditions. A pivot of several bodies holds each of them to a pin, a
-    point with two unknowns of its own: so no body of it is preferred."""
+    """Return the two ends of each pair of conditions.
+
+    A pivot of several bodies joins each of them to a pin, a point with two unknowns of its own, so that no
+    body is preferred.
+    """
     found: list[tuple[Node, Node]] = []
     for index, joint in enumerate(graph.joints):
         if len(joint.bodies) == 2:
@@ -120,7 +124,7 @@ def _conditions(graph: JointGraph) -> list[tuple[Node, Node]]:
 
 
 def _rings(graph: JointGraph, driver: int) -> list[tuple[int, ...]]:
-    """Return the sets of bodies that settle each other, in no order."""
+    """Return the sets of bodies whose positions determine each other, in no particular order."""
     conditions = _conditions(graph)
     placed = {("body", FRAME), ("body", driver)}
     # The driver's own pair is taken away: it stays among the conditions only in a multiple pivot, where
@@ -141,7 +145,7 @@ def _rings(graph: JointGraph, driver: int) -> list[tuple[int, ...]]:
 
 
 def _own_hold(graph: JointGraph, driver: int) -> tuple[Node, Node] | None:
-    """Return the driver's hold of a pin that the frame holds too."""
+    """Return the condition that joins the driver to a pin shared with the frame."""
     for index, joint in enumerate(graph.joints):
         if len(joint.bodies) > 2 and {FRAME, driver} <= set(joint.bodies):
             return ("pin", index), ("body", driver)
@@ -149,7 +153,7 @@ def _own_hold(graph: JointGraph, driver: int) -> tuple[Node, Node] | None:
 
 
 def _given_out(conditions: Sequence[tuple[Node, Node]], placed: set[Node]) -> list[list[int]]:
-    """How many of its two conditions each pair gives to its first and to its second end.
+    """Return how many of its two conditions each pair gives to its first and to its second end.
 
     A body takes three, a pin two, what is placed none.
     """
@@ -189,7 +193,7 @@ def _given_out(conditions: Sequence[tuple[Node, Node]], placed: set[Node]) -> li
 
 
 def _components(arrows: dict[Node, set[Node]], left_out: set[Node]) -> list[list[Node]]:
-    """Return the strongly connected parts: nodes that reach each other."""
+    """Return the strongly connected components of the graph without ``left_out``."""
     back: dict[Node, set[Node]] = {node: set() for node in arrows}
     for node, after in arrows.items():
         for other in after - left_out:
@@ -214,7 +218,7 @@ def _visit_all(nodes: Iterable[Node], arrows: dict[Node, set[Node]], left_out: s
 
 
 def _visit(start: Node, arrows: dict[Node, set[Node]], seen: set[Node], leave: Any) -> None:
-    """Depth first, without recursion; ``leave`` is told each node when all after it are done."""
+    """Traverse depth first, without recursion; call ``leave`` on each node after all its successors."""
     seen.add(start)
     path = [(start, iter(sorted(arrows[start])))]
     while path:
@@ -232,7 +236,8 @@ def _visit(start: Node, arrows: dict[Node, set[Node]], seen: set[Node], leave: A
 
 
 def _ordered(graph: JointGraph, driver: int, rings: Sequence[tuple[int, ...]]) -> tuple[Group, ...]:
-    """Return Assembly: again and again the smallest set that has all its pairs, the lowest bodies first."""
+    """Return the groups in order of assembly: at each step the smallest set with all its pairs, lowest bodies
+    first."""
     placed = {FRAME, driver}
     ready: list[tuple[int, tuple[int, ...]]] = []
     waiting = set(rings)
@@ -249,7 +254,7 @@ def _ordered(graph: JointGraph, driver: int, rings: Sequence[tuple[int, ...]]) -
 
 
 def _pairs_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
-    """Return the pairs of some bodies among themselves and to what is placed."""
+    """Count the pairs of some bodies among themselves and with the bodies placed before."""
     total = 0
     for joint in graph.joints:
         own = len(set(joint.bodies) & set(ring))
@@ -259,7 +264,8 @@ def _pairs_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
 
 
 def class_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
-    """Return the larger of the longest chordless loop of the bodies and of the most joints on one of them.
+    """Return the class of a group: the larger of its longest chordless loop and of the most joints on one
+    body.
 
     A multiple pivot is one corner of each of its bodies.
     """
@@ -270,7 +276,7 @@ def class_of(graph: JointGraph, ring: Sequence[int], placed: set[int]) -> int:
 
 
 def longest_loop(joined: Sequence[set[int]], bodies: Iterable[int]) -> int:
-    """Return the sides of the longest loop of bodies that no joint shortens; 0 if there is none.
+    """Return the number of sides of the longest chordless loop of bodies; 0 if there is none.
 
     ``joined`` holds the bodies of each joint. Bodies on one common pivot are no loop.
     """

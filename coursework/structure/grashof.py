@@ -1,4 +1,4 @@
-"""Grashof's rule, decided exactly on the lengths as they are printed.
+"""Grashof's rule, decided exactly on the printed decimals of the lengths.
 
 A printed length such as 0.3 is no double: the lengths are the decimals, the shortest that their doubles stand for, and
 their sums are compared without rounding. So 0.1 + 0.6 equals 0.3 + 0.4, and a length that differs from another in its
@@ -35,12 +35,14 @@ def longest(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
 
 
 def closing_excess(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
-    """Of s + p + q over l: the bars close a loop when it is positive. Its sign is that of the decimals."""
+    """Return the excess of s + p + q over l: the bars close a loop when it is positive. Its sign is exact for
+    the decimals."""
     return _exact(_closing, r1, r2, r3, r4)
 
 
 def grashof_excess(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
-    """Of p + q over s + l: some bar turns fully when it is positive. Its sign is that of the decimals."""
+    """Return the excess of p + q over s + l: some bar turns fully when it is positive. Its sign is exact for
+    the decimals."""
     return _exact(_grashof, r1, r2, r3, r4)
 
 
@@ -53,8 +55,8 @@ def _grashof(s: Any, p: Any, q: Any, l: Any) -> tuple[Any, ...]:
 
 
 def _exact(terms: Callable[..., tuple[Any, ...]], *lengths: Any) -> Any:
-    """Return the sum of the terms of the lengths in order: of decimals wherever that of the doubles leaves
-    its sign open."""
+    """Return the sum of the terms of the sorted lengths, from the decimals wherever doubles leave its sign
+    open."""
     ordered = np.sort(np.stack(np.broadcast_arrays(*[np.asarray(r, dtype=float) for r in lengths])), axis=0)
     excess = np.asarray(exact_sum(*terms(*ordered)))
     # Of up to six decimals, the usual case, the millionths are whole numbers, and so are their sums.
@@ -68,7 +70,7 @@ def _exact(terms: Callable[..., tuple[Any, ...]], *lengths: Any) -> Any:
 
 
 def type_by_shortest(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
-    """Of a linkage that keeps Grashof's rule: who is the shortest bar?"""
+    """Return the type of a linkage that satisfies Grashof's rule, by its shortest bar."""
     short = shortest(r1, r2, r3, r4)
     return np.select(
         [r2 == short, r4 == short, r1 == short],
@@ -78,7 +80,7 @@ def type_by_shortest(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
 
 
 def linkage_type(r1: Any, r2: Any, r3: Any, r4: Any) -> Any:
-    """Return one of :data:`TYPES`, for a frame r1, input r2, coupler r3, output r4: positive scalars or
+    """Return one of :data:`TYPES` for a frame r1, input r2, coupler r3, output r4: positive scalars or
     arrays."""
     excess = grashof_excess(r1, r2, r3, r4)
     return np.select(

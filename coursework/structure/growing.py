@@ -1,4 +1,4 @@
-"""Mechanisms from whole numbers: a driver or two, then groups attached one after another.
+"""Mechanisms generated from whole numbers: one or two drivers, then groups attached one after another.
 
 Every mechanism grown here can move as its count says: no two of the joints by which a group hangs on what is
 placed lie on one body, so nothing is held twice. The same number gives the same mechanism for ever.
@@ -20,7 +20,7 @@ _HANGS_ON = {DYAD: 2, TRIAD: 3, TETRAD: 2, FOLLOWER: 2, STIFFENER: 2}
 
 
 class Choices:
-    """A stream of small whole numbers that a number fixes."""
+    """Reproducible stream of small whole numbers, seeded by a number."""
 
     def __init__(self, number: int, purpose: str):
         self._bits = self._stream(f"coursework/structure/{purpose}/{number}")
@@ -47,7 +47,7 @@ class Choices:
 
 
 class Grown(NamedTuple):
-    """A mechanism as a list of records, in the order a statement gives them, and its drivers."""
+    """Generated mechanism as a list of records, in the order of the statement, and its drivers."""
 
     joints: tuple[Record, ...]
     drivers: tuple[int, ...]
@@ -58,8 +58,7 @@ class Grown(NamedTuple):
 
 
 def grow(number: int, groups: Sequence[str], *, drivers: int = 1) -> Grown:
-    """Return the mechanism of a number, made of these groups in this order, its bodies and joints in any
-    order.
+    """Return the mechanism of a number: these groups attached in this order, bodies and joints then shuffled.
 
     ``groups`` holds ``dyad`` (class II), ``triad`` (III), ``tetrad`` (IV: a loop of four bodies), ``follower``
     (one body, a lower and a higher pair) and ``stiffener`` (a bar, which takes a degree of freedom away).
@@ -71,7 +70,7 @@ def grow(number: int, groups: Sequence[str], *, drivers: int = 1) -> Grown:
 
 
 def relabelled(number: int, joints: Sequence[Joint], drivers: Sequence[int] = ()) -> Grown:
-    """Return the moving bodies numbered anew, joints listed in any order and lettered A, B, C, … along the
+    """Return the mechanism with moving bodies renumbered, joints shuffled and lettered A, B, C, … along the
     list."""
     choices = Choices(number, "relabel")
     moving = sorted({body for joint in joints for body in joint.bodies} - {FRAME})
@@ -84,13 +83,13 @@ def relabelled(number: int, joints: Sequence[Joint], drivers: Sequence[int] = ()
 
 
 def _letter(place: int) -> str:
-    """Return a to Z, then A1, B1, …"""
+    """Return the label of a joint: A to Z, then A1, B1, …"""
     round_, letter = divmod(place, 26)
     return chr(ord("A") + letter) + (str(round_) if round_ else "")
 
 
 class _Plant:
-    """A mechanism that grows."""
+    """Mechanism under construction."""
 
     def __init__(self, choices: Choices, drivers: int):
         self.choices = choices
@@ -116,9 +115,11 @@ class _Plant:
         getattr(self, f"_{group}")(hosts)
 
     def _hosts(self, count: int) -> list[frozenset[int]]:
-        """Where a group hangs: on single bodies, or now and then on a pivot that is there, so on all its bodies.
+        """Return the bodies to which a group attaches: single bodies, or now and then an existing pivot with
+        all its bodies.
 
-        No body twice, save for the third joint of a group, which may share a body: its loop still moves.
+        No body occurs twice, save for the third joint of a group, which may share a body: its loop still
+        moves.
         """
         found = [self._first_host()]
         found.append(self._second_host(found[0]))
@@ -141,7 +142,7 @@ class _Plant:
         return self._place(first)
 
     def _place(self, taken: frozenset[int]) -> frozenset[int]:
-        """Return a body, or the bodies of a pivot, that are not taken; a pivot leaves some other body free."""
+        """Return a body, or the bodies of a pivot, that are not taken; at least one other body stays free."""
         pivots = [
             frozenset(joint.bodies)
             for joint in self.joints
@@ -154,7 +155,7 @@ class _Plant:
         return frozenset([self.choices.one_of([body for body in self.bodies if body not in taken])])
 
     def _hang(self, body: int, host: frozenset[int], kind: str) -> None:
-        """A joint of a new body with its host; on a pivot it makes the pivot a multiple one."""
+        """Join a new body to its host; a host that is a pivot becomes a multiple pivot."""
         if len(host) == 1:
             self._join(body, min(host), kind)
             return

@@ -1,4 +1,4 @@
-"""The joint graph of a plane mechanism: which bodies each joint holds together.
+"""Joint graph of a plane mechanism: the bodies that each joint connects.
 
 Answers depend on the mechanism alone: not on the order of the list, nor of the bodies in a record, nor on how
 a multiple pivot is written (one record of k bodies, or records of the same ``at`` label that share bodies).
@@ -24,7 +24,7 @@ Pair = tuple[int, int]
 
 
 class Joint(NamedTuple):
-    """Bodies held together at one place, in increasing order; only a pivot holds more than two."""
+    """Bodies joined at one point, in increasing order; only a pivot joins more than two."""
 
     bodies: tuple[int, ...]
     kind: str
@@ -32,12 +32,12 @@ class Joint(NamedTuple):
 
     @property
     def pairs(self) -> int:
-        """How many kinematic pairs it counts: a pivot of k bodies is k - 1 pairs."""
+        """Number of kinematic pairs: a pivot of k bodies counts as k - 1 pairs."""
         return len(self.bodies) - 1
 
 
 class Counts(NamedTuple):
-    """What the formulas count, under the course's letters."""
+    """Numbers of bodies and pairs and the mobility count, under the course's letters."""
 
     n: int  #: moving bodies
     b: int  #: lower pairs
@@ -50,7 +50,7 @@ class Counts(NamedTuple):
 
 @dataclass(frozen=True)
 class JointGraph:
-    """A mechanism as its joints, in one canonical order: equal mechanisms are equal values."""
+    """Joint graph in one canonical order: equal mechanisms are equal values."""
 
     joints: tuple[Joint, ...]
 
@@ -80,12 +80,12 @@ class JointGraph:
 
     @property
     def text(self) -> str:
-        """The joints in one text, as an answer of kind ``graph`` has them: ``1-2 revolute, 3-4-5 revolute``."""
+        """Text of the joints, as an answer of kind ``graph`` has them: ``1-2 revolute, 3-4-5 revolute``."""
         return ", ".join(f"{'-'.join(map(str, joint.bodies))} {joint.kind}" for joint in self.joints)
 
     @cached_property
     def bodies(self) -> tuple[int, ...]:
-        """1, the frame, to N."""
+        """Bodies from 1, the frame, to N."""
         return tuple(sorted({body for joint in self.joints for body in joint.bodies}))
 
     @property
@@ -94,7 +94,7 @@ class JointGraph:
 
     @cached_property
     def counts(self) -> Counts:
-        """Pairs, bodies, and what the formulas of the course make of them."""
+        """Numbers of bodies and pairs, with the mobility formula of the course."""
         higher = sum(joint.pairs for joint in self.joints if joint.kind == "higher")
         pairs = sum(joint.pairs for joint in self.joints)
         lower, total = pairs - higher, len(self.bodies)
@@ -110,7 +110,7 @@ class JointGraph:
         return tuple(sorted((joint.bodies[0], other) for joint in self.joints for other in joint.bodies[1:]))
 
     def cycles(self) -> tuple[tuple[int, ...], ...]:
-        """Return the independent cycles, as many as ``counts.gamma``: the bodies met, in order.
+        """Return the independent cycles, ``counts.gamma`` of them, as the bodies in order.
 
         Each closes by one pair that no other cycle uses. A cycle of two bodies is two pairs between them.
         """
@@ -121,7 +121,7 @@ class JointGraph:
 
     @cached_property
     def _parents(self) -> dict[int, int]:
-        """For each body, its neighbour on a shortest way to the frame; 0 for the frame."""
+        """Neighbour of each body on a shortest path to the frame; 0 for the frame."""
         neighbours: dict[int, set[int]] = {body: set() for body in self.bodies}
         for one, other in self.pairs():
             neighbours[one].add(other)
@@ -136,12 +136,12 @@ class JointGraph:
 
 
 def copied(records: Iterable[Record]) -> tuple[dict[str, Any], ...]:
-    """Return the records of their own, for whom may change them."""
+    """Return copies of the records, which the caller may change."""
     return tuple({**record, "between": list(record["between"])} for record in records)
 
 
 def _cycle(parents: Mapping[int, int], one: int, other: int) -> tuple[int, ...]:
-    """Return the cycle that a pair closes with the ways of its two bodies towards the frame."""
+    """Return the cycle that a pair closes with the paths of its two bodies towards the frame."""
     left, right = _way(parents, one), _way(parents, other)
     while len(left) > 1 and len(right) > 1 and left[-2] == right[-2]:
         left.pop()
@@ -191,7 +191,7 @@ def _bodies(between: Any, where: str) -> tuple[int, ...]:
 
 
 def _merged(joints: Sequence[Joint]) -> list[Joint]:
-    """Return the pivots of one label as one pivot."""
+    """Return the joints with pivots of one label merged."""
     found = [joint for joint in joints if joint.kind != "revolute" or not joint.at]
     labelled: dict[str, list[Joint]] = {}
     for joint in joints:

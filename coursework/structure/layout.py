@@ -1,4 +1,4 @@
-"""Where the joints of a mechanism are drawn: a plane picture in which each body is told from the next.
+"""Layout of a mechanism's joints on paper: a plane picture in which bodies can be told apart.
 
 Lengths are free, so any places make a mechanism that closes. Places lie on whole millimetres of paper. They are
 found by moving one joint after another to where the picture reads best: bodies long enough, few bars that cross,
@@ -39,9 +39,10 @@ class Slide:
 
 
 def slides(graph: JointGraph, at: Sequence[complex] = ()) -> dict[int, Slide]:
-    """By joint index. The frame guides; else the body of most joints, so that blocks are small bodies.
+    """Return the sliding pairs by joint index. The frame guides; else the body with the most joints, so that
+    blocks are small bodies.
 
-    Where places of the joints are given, ``at``, a body with a pivot where it slides is the block.
+    With the positions ``at`` of the joints, a body with a pivot where it slides is the block.
     """
 
     def rank(body: int, index: int) -> tuple[bool, bool, int, int]:
@@ -61,8 +62,8 @@ def slides(graph: JointGraph, at: Sequence[complex] = ()) -> dict[int, Slide]:
 
 
 def sites(graph: JointGraph) -> list[int]:
-    """Return the site of each joint: a block that has one pivot besides sits on that pivot, one block a
-    pivot."""
+    """Return the site of each joint. A block with one other pivot sits on that pivot; a pivot takes one
+    block."""
     number = list(range(len(graph.joints)))
     taken: set[int] = set()
     for index, slide in slides(graph).items():
@@ -78,7 +79,7 @@ def sites(graph: JointGraph) -> list[int]:
 
 @lru_cache(maxsize=1024)
 def places(graph: JointGraph) -> tuple[complex, ...]:
-    """Return a place for each joint of the graph, mm on paper, y up."""
+    """Return the position of each joint of the graph, mm on paper, y up."""
     picture = _Picture(graph)
     pictures = picture.settled(picture.starts())
     found = pictures[int(np.argmin(picture.cost(pictures)))]
@@ -86,7 +87,7 @@ def places(graph: JointGraph) -> tuple[complex, ...]:
 
 
 class _Terms(NamedTuple):
-    """What the cost of a picture is summed over, as index arrays and what goes with them: each once, or not at all."""
+    """Index arrays and weights of the sums in the cost of a picture."""
 
     sites: _Once  #: two sites
     apart: _Once  #: two lines that share no site
@@ -99,7 +100,7 @@ class _Terms(NamedTuple):
 
 
 class _Picture:
-    """What is drawn of a mechanism, as arrays over its lines and points.
+    """Arrays of the lines and points that are drawn of a mechanism.
 
     A line goes from a site to a site and ``beyond`` it, or has a fixed direction from its site (supports, rails).
     """
@@ -145,14 +146,14 @@ class _Picture:
         self._plates += [(body, three) for three in combinations(corners, 3)]
 
     def _add_contacts(self) -> None:
-        """At a contact the two bodies come from opposite sides."""
+        """Add each contact with its two bodies, which must approach it from opposite sides."""
         for index, joint in enumerate(self.graph.joints):
             if joint.kind == "higher" and FRAME not in joint.bodies:
                 one, other = (set(self._sites_of(b)) - {self.site[index]} for b in joint.bodies)
                 self._contacts += [(self.site[index], p, q) for p in one for q in other if p != q]
 
     def _pair_up(self) -> None:
-        """The pairs of things whose distance or angle matters, as index arrays."""
+        """Collect the pairs of lines and sites whose distance or angle counts, as index arrays."""
         lines = self._lines
         self._owner, self._p, self._q = (np.array([line[k] for line in lines]) for k in range(3))
         self._a, self._b = (np.array([line[k] for line in lines]) for k in (3, 4))
@@ -187,7 +188,8 @@ class _Picture:
     # ---------------------------------------------------------------- cost
 
     def cost(self, z: np.ndarray, moved: int | None = None) -> np.ndarray:
-        """How ill each picture (row of sites) reads; with ``moved``, only what that site changes."""
+        """Return the cost of each picture (row of sites), low for a clear one; with ``moved``, only the terms
+        of that site."""
         of = self._changed(moved)
         start, end = self._ends(z)
         total = 0.12 * np.where(self._grounded, z.imag, 0.25 * abs(z.imag - self.box[1] * 0.6)).sum(axis=1)
@@ -215,7 +217,7 @@ class _Picture:
         return np.round(total, 6)
 
     def _changed(self, moved: int | None) -> _Terms:
-        """What a site that moves changes; all there is for None."""
+        """Return the terms that a moved site changes; all terms for None."""
         if moved not in self._terms:
             sites = np.ones(self.count, bool) if moved is None else np.arange(self.count) == moved
             lines = sites[self._p] | sites[self._q]
@@ -239,7 +241,7 @@ class _Picture:
     def _angle(
         self, start: np.ndarray, end: np.ndarray, e: np.ndarray, f: np.ndarray, s: np.ndarray
     ) -> np.ndarray:
-        """Return the lines that leave one site: not too near to each other, nor in one line."""
+        """Return the cost of the angles between lines at a common site: too sharp, or in one line."""
         cosine = _cosine(self._leaving(start, end, e, s), self._leaving(start, end, f, s))
         sharp = 14.0 * _short(cosine, 0.85, below=False) + 3.0 * _short(cosine, 0.5, below=False)
         return sharp + 6.0 * _short(-cosine, 0.95, below=False)
@@ -251,8 +253,8 @@ class _Picture:
     # ---------------------------------------------------------------- search
 
     def starts(self) -> np.ndarray:
-        """Return the grounded sites in a row below, the others above them, farther the more bodies lie
-        between."""
+        """Return starting pictures: grounded sites in a row below, the others higher the farther they are
+        from the frame."""
         depth = self._depths()
         found = []
         for variant in range(_STARTS):
@@ -282,8 +284,8 @@ class _Picture:
         return depth
 
     def settled(self, z: np.ndarray) -> np.ndarray:
-        """Return every site of each picture moved in turn to its best place: over the whole sheet first, then
-        round about."""
+        """Move every site of each picture in turn to its best position, over the whole sheet first, then
+        nearby; return the pictures."""
         wide, high = self.box
         sheet = np.array([
             complex(x + (_SPACING // 2) * (y // _SPACING % 2), y)
@@ -295,8 +297,8 @@ class _Picture:
         return self._swept(z, lambda here: here + about)
 
     def _swept(self, z: np.ndarray, tried: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        """Return the sites moved in turn, over and over until none moves. What is tried is told of a column
-        of places."""
+        """Move the sites in turn until none moves; return the pictures. ``tried`` gives the candidates of a
+        column of positions."""
         z, moving = z.copy(), np.arange(len(z))
         for _ in range(_SWEEPS):
             before = z[moving]
@@ -317,8 +319,8 @@ def _columns(rows: Sequence[Sequence[int]], width: int) -> np.ndarray:
 
 
 def _those(rows: np.ndarray, *touched: np.ndarray, also: Sequence[np.ndarray] = ()) -> _Once:
-    """Return the columns of the rows of which some entry is touched, and what goes with them; nothing if
-    there is none."""
+    """Return the columns of the rows with a touched entry, and the arrays ``also`` for them; nothing if there
+    is none."""
     keep = np.zeros(len(rows), bool)
     for column, mask in enumerate(touched):
         keep |= mask[rows[:, column]]
@@ -326,7 +328,7 @@ def _those(rows: np.ndarray, *touched: np.ndarray, also: Sequence[np.ndarray] = 
 
 
 def _short(value: np.ndarray, least: np.ndarray | float, *, below: bool = True) -> np.ndarray:
-    """By how much a value falls short of a bound, or goes beyond it."""
+    """Return the amount by which a value falls short of a bound, or exceeds it."""
     return np.maximum(0.0, least - value if below else value - least)
 
 
@@ -343,7 +345,7 @@ def _cross(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> np.nda
 
 
 def _distance(z: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """From points to segments."""
+    """Return the distances from points to segments."""
     way = b - a
     along = ((z - a) * way.conj()).real / np.maximum(abs(way) ** 2, 1e-9)
     return abs(z - a - np.clip(along, 0.0, 1.0) * way)

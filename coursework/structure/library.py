@@ -1,4 +1,4 @@
-"""The mechanisms of the course's figures as joint graphs, and where their joints are drawn (chapter 3).
+"""Mechanisms of the course's figures as joint graphs, with the drawn positions of their joints (chapter 3).
 
 Figures 13, 14 and 3, 7, 9, 10, 12 (the four-bar) are as the text and its equations describe them. The pictures
 of the others are lost: their structure follows from their titles. In all of them body 1 is the frame, body 2 the
@@ -16,7 +16,8 @@ _KINDS = {"R": "revolute", "P": "prismatic", "H": "higher"}
 
 
 def _graph(text: str) -> JointGraph:
-    """Return ``R1-2:O`` a pivot of bodies 1 and 2 at O; P a slide, H a higher pair."""
+    """Return the joint graph of a text: ``R1-2:O`` is a pivot of bodies 1 and 2 at O; P a slide, H a higher
+    pair."""
     joints = []
     for word in text.split():
         bodies, _, at = word[1:].partition(":")

@@ -1,4 +1,4 @@
-"""Whether a mechanism is one of the course's under other numbers and letters, and where its joints are drawn then."""
+"""Comparison of a mechanism with those of the course, whatever its numbers and letters."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ Drawn = tuple[tuple[complex, ...], dict[int, float]]
 
 
 def drawn_in_course(graph: JointGraph) -> Drawn | None:
-    """Return a place for each joint, and the direction of each fixed rail that is not level; None if no
-    figure is like it."""
+    """Return the drawn position of each joint and the direction of each fixed inclined rail; None if no
+    figure of the course is isomorphic."""
     for figure, known in LIBRARY.items():
         if figure not in PLACES or len(known.joints) != len(graph.joints):
             continue
@@ -33,9 +33,10 @@ def _drawn(graph: JointGraph, known: JointGraph, bodies: Mapping[int, int], figu
 
 
 def likeness(graph: JointGraph, known: JointGraph) -> dict[int, int] | None:
-    """For each body of a mechanism the one of ``known`` that it stands for; None if they are not alike.
+    """Return an isomorphism: for each body of a mechanism its counterpart in ``known``; None if there is
+    none.
 
-    The same numbers are tried first, so a figure of the course is like itself.
+    The identity is tried first, so a figure of the course maps to itself.
     """
     if len(graph.bodies) != len(known.bodies) or _kinds(graph) != _kinds(known):
         return None
@@ -58,7 +59,8 @@ def _matched(graph: JointGraph, known: JointGraph, found: dict[int, int]) -> Ite
 
 
 def _seen(graph: JointGraph, body: int, names: Mapping[int, int]) -> list[tuple[str, int, list[int]]]:
-    """Return a body's joints as far as its neighbours are named: their kinds, how many they hold, and whom."""
+    """Return the joints of a body with their kinds, numbers of bodies, and those neighbours that are already
+    mapped."""
     return sorted(
         (joint.kind, len(joint.bodies), sorted(names[b] for b in joint.bodies if b in names))
         for joint in graph.joints_of(body)

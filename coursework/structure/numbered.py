@@ -1,4 +1,4 @@
-"""The mechanisms that exercises hand out, by number: some from the course's figures, most grown."""
+"""Mechanisms of the exercises by number: some from the course's figures, most generated."""
 
 from __future__ import annotations
 
@@ -38,21 +38,20 @@ _DECOMPOSED_GROUPS = (
 
 
 class Driven(NamedTuple):
-    """A mechanism and its driver, (frame, body)."""
+    """Mechanism and its driver, (frame, body)."""
 
     joints: tuple[Record, ...]
     driver: tuple[int, int]
 
     @property
     def body(self) -> int:
-        """The body that questions name."""
+        """Body that the questions name."""
         return last_body(JointGraph.of(self.joints), self.driver)
 
 
 @lru_cache(maxsize=4096)
 def to_count(number: int) -> tuple[Record, ...]:
-    """Return a mechanism whose joints and bodies are to be counted; 0, 1 or 2 degrees of freedom by the
-    formula."""
+    """Return a mechanism to count joints and bodies of; its mobility by the formula is 0, 1 or 2."""
     choices = Choices(number, "count")
     if choices.below(_ONE_IN) == 0:
         return relabelled(number, LIBRARY[choices.one_of(_COUNTED_FIGURES)].joints).joints
@@ -65,8 +64,7 @@ def to_count(number: int) -> tuple[Record, ...]:
 
 @lru_cache(maxsize=4096)
 def to_decompose(number: int) -> Driven:
-    """Return a mechanism to be taken apart into Assour groups of class II to IV, and any driver that allows
-    it."""
+    """Return a mechanism to decompose into Assour groups of class II to IV, and any driver that allows it."""
     choices = Choices(number, "decompose")
     if choices.below(_ONE_IN) == 0:
         grown = relabelled(number, LIBRARY[choices.one_of(_DECOMPOSED_FIGURES)].joints, (2,))
@@ -85,6 +83,5 @@ def _can_drive(graph: JointGraph, body: int) -> bool:
 
 
 def last_body(graph: JointGraph, driver: tuple[int, int]) -> int:
-    """Return the highest number of a body that is neither frame nor driven; the driven one where there is no
-    other."""
+    """Return the highest body that is neither frame nor driven; the driven one where there is no other."""
     return max((body for body in graph.moving if body not in driver), default=max(driver))

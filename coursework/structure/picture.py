@@ -1,4 +1,4 @@
-"""The joint graph as a figure: a circle a body, a line a joint, a dot where a pivot holds more than two."""
+"""Joint graph as a figure: a circle for each body, a line for each joint, a dot for a multiple pivot."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ Line = tuple[complex, complex]
 
 
 def kinematic_graph(joints: JointGraph | Iterable[Record]) -> Figure:
-    """Return the bodies as numbered circles (the frame has a second one), joints as lines with the letter of
-    their kind.
+    """Draw bodies as numbered circles (the frame has a second one), joints as lines with the letter of their
+    kind.
 
     Two joints of the same two bodies are drawn side by side; a pivot of several bodies is a dot with a line to each.
     """
@@ -46,18 +46,19 @@ def kinematic_graph(joints: JointGraph | Iterable[Record]) -> Figure:
 
 
 def _between(p: complex, q: complex, *, ends: bool = True) -> Line:
-    """From rim to rim, or from the rim of p to the point q."""
+    """Return the line from rim to rim, or from the rim of p to the point q."""
     way = (q - p) / abs(q - p) * _RADIUS * 1.2
     return p + way, q - way if ends else q
 
 
 def _hub(joint: Joint, places: dict[int, complex]) -> complex:
-    """Where a multiple pivot is drawn: amid its bodies, drawn towards the middle of the figure."""
+    """Return the position of a multiple pivot: the mean of its bodies, drawn towards the middle of the
+    figure."""
     return 0.8 * added(places[body] for body in joint.bodies) / len(joint.bodies)
 
 
 def _places(graph: JointGraph) -> dict[int, complex]:
-    """Return the bodies around a circle, the frame below, in an order in which few lines cross."""
+    """Return positions of the bodies around a circle, the frame below, in an order with few crossings."""
     order = list(graph.moving)
     best = _tangle(graph, order)
     improving = True
@@ -83,7 +84,7 @@ def _on_circle(order: Sequence[int]) -> dict[int, complex]:
 
 
 def _tangle(graph: JointGraph, order: Sequence[int]) -> int:
-    """How often lines cross, and above all pass through a circle or a dot that they do not belong to."""
+    """Count crossings of lines, and with weight 3 lines that pass through a foreign circle or dot."""
     places = _on_circle(order)
     lines: list[Line] = []
     for joint in graph.joints:

@@ -1,4 +1,5 @@
-"""The kinematic scheme of a mechanism as a figure: bars, plates, blocks and guides, wheels and cams, on a hatched frame.
+"""Kinematic scheme of a mechanism as a figure: bars, plates, blocks and guides, wheels and cams, on a hatched
+frame.
 
 Bodies bear their numbers; the frame is what is hatched, and bears none.
 """
@@ -41,7 +42,7 @@ _OFF_AXIS = math.radians(35)  #: a wheel's pivot is no farther from the normal o
 def kinematic_scheme(
     joints: JointGraph | Iterable[Record], *, letters: bool = True, driver: Sequence[int] = ()
 ) -> Figure:
-    """Return the scheme at a scale of its own: lengths are of no account.
+    """Draw the kinematic scheme at a scale of its own; lengths do not matter.
 
     A mechanism of the course's figures is drawn as the course draws it, any other one as it reads best.
 
@@ -92,8 +93,8 @@ class _Scheme:
     # ---------------------------------------------------------------- bodies
 
     def _body(self, body: int) -> list[Element]:
-        """Return its bar or plate, its wheel, its guides; its number once, at the block of a body that has
-        nothing else."""
+        """Return the bar or plate of a body, its wheel, its guides, and its number once: at the block of a
+        body without others."""
         rigid, number = self._rigid(body), str(body)
         own = [k for k in self._own(body) if k in self.slides and self.slides[k].guide == body]
         guides = [self._guide(k, self._base(k, rigid, own)) for k in own]
@@ -107,7 +108,7 @@ class _Scheme:
         return [wheel(*disc, label=number)] if disc else []
 
     def _rigid(self, body: int) -> list[complex]:
-        """Return the points that a bar or a plate of the body holds together: pins, blocks, noses."""
+        """Return the points that a bar or plate of the body connects: pins, blocks, contact noses."""
         found: list[complex] = []
         for k in self._own(body):
             if k in self.slides and self.slides[k].guide == body:
@@ -122,13 +123,14 @@ class _Scheme:
         return found
 
     def _base(self, index: int, rigid: Sequence[complex], guides: Sequence[int]) -> complex:
-        """Return the nearest point of the body from which a guide comes to its block."""
+        """Return the nearest point of the body from which a guide leads to its block."""
         here = self.at[index]
         able = [z for z in rigid if abs(z - here) > 1] or [self.at[k] for k in guides if k != index]
         return min(able, key=lambda z: (z not in self.at, abs(z - here)), default=here - 2 * BEYOND)
 
     def _way_of(self, index: int, foot: complex, tip: complex) -> Element:
-        """Return a slot, or a rod through a block that turns on the frame, whose support a slot would hide."""
+        """Return the slot of a block, or a rod through it where a slot would hide the block's support on the
+        frame."""
         fixed = any(
             self._together(index, k) and FRAME in self.graph.joints[k].bodies for k in range(len(self.at))
         )
@@ -157,7 +159,8 @@ class _Scheme:
         return abs(self.at[one] - self.at[other]) < 1e-6
 
     def _direction(self, index: int) -> float:
-        """Of a slide, degrees: along its guide; a fixed guide is level, or along what pushes a follower."""
+        """Return the direction of a slide in degrees: along its guide; a fixed guide is level, or along the
+        contact that pushes a follower."""
         slide = self.slides[index]
         here = self.at[index]
         if slide.guide != FRAME:
@@ -176,8 +179,8 @@ class _Scheme:
         return 0.0
 
     def _below(self, index: int) -> complex:
-        """Return the side of a block on which its fixed guide lies: the one with fewer bars, below if there
-        is none."""
+        """Return the side of a block on which its fixed guide lies: the side with fewer bars, below if they
+        are equal."""
         along = cmath.exp(1j * math.radians(self._direction(index)))
         here, side = self.at[index], -1j * along if along.real >= 0 else 1j * along
         bodies = {
@@ -188,8 +191,8 @@ class _Scheme:
         return -side if crowd > 0.3 else side
 
     def _slide(self, index: int) -> list[Element]:
-        """Return the block, with its number if it is a body of its own, else with its letter; its rail on the
-        frame."""
+        """Return the block, labelled by its number if it is a body of its own, else by its letter, and its
+        rail on the frame."""
         here, block = self.at[index], self.slides[index].block
         alone = len(self._rigid(block)) == 1
         label = str(block) if alone else self._letter(self.graph.joints[index])
@@ -200,7 +203,7 @@ class _Scheme:
         return found
 
     def _normal(self, joint: Joint) -> complex:
-        """From the first body of a contact towards the second."""
+        """Return the unit normal from the first body of a contact towards the second."""
         one, other = (self._comes_from(body, joint) for body in joint.bodies)
         way = one - other
         return way / abs(way) if abs(way) > 1e-6 else (one or -other) * 1j
@@ -215,7 +218,7 @@ class _Scheme:
         return way / (abs(way) or 1.0)
 
     def _inward(self, index: int, body: int) -> complex:
-        """From a contact into one of its bodies."""
+        """Return the normal from a contact into one of its bodies."""
         first = self.graph.joints[index].bodies[0] == body
         return -self.normals[index] if first else self.normals[index]
 
@@ -223,8 +226,8 @@ class _Scheme:
         return self.at[index] + _NOSE * self._inward(index, body)
 
     def _wheel(self, body: int) -> tuple[complex, float] | None:
-        """Return the centre and radius of the disc about the pivot of a body that has a pivot and a contact
-        alone."""
+        """Return the centre and radius of the disc of a body with one pivot and contacts alone; None for
+        another body."""
         own = self._own(body)
         kinds = sorted(self.graph.joints[k].kind for k in own)
         if kinds == ["revolute"]:
@@ -255,7 +258,8 @@ class _Scheme:
     # ---------------------------------------------------------------- driver
 
     def _arrow(self) -> list[Element]:
-        """What drives: an arrow round the pivot, or along the slide, that ties the driven body to the frame."""
+        """Return the arrow of the driver, round the pivot or along the slide between the frame and the driven
+        body."""
         for k in self._own(self.driven):
             joint, here = self.graph.joints[k], self.at[k]
             if FRAME not in joint.bodies:
@@ -270,7 +274,7 @@ class _Scheme:
         return []
 
     def _gap(self, here: complex) -> tuple[float, float]:
-        """Return the middle of the widest angle between bars at a pivot, and half of what an arrow takes of
+        """Return the middle of the widest angle between bars at a pivot, and half the opening of an arrow in
         it."""
         around = [z for b in self.graph.moving for z in self._rigid(b) if here in self._rigid(b)]
         taken = sorted({_degrees(z - here) for z in around if abs(z - here) > 1} | {-120.0, -60.0})
@@ -290,8 +294,8 @@ def _around(points: Sequence[complex]) -> list[complex]:
 
 
 def _straight(rigid: Sequence[complex], foot: complex, tip: complex) -> tuple[tuple[complex, complex], ...]:
-    """Return the two bars of a lever whose slot lies between its two pins, in one line with them; none if it
-    does not."""
+    """Return the two bars of a lever whose slot lies between its two pins, in one line with them; nothing for
+    another lever."""
     if len(rigid) != 2:
         return ()
     base, other = sorted(rigid, key=lambda z: abs(z - foot))
