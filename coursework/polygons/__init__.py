@@ -1,4 +1,5 @@
-"""Velocity and acceleration polygons: stated by their sides, constructed step by step, judged where drawn by hand."""
+"""Velocity and acceleration polygons: stated by their sides, constructed step by step, judged when drawn by
+hand."""
 
 from coursework.polygons.pieces import (
     crank_a,

@@ -1,6 +1,6 @@
-"""A polygon as it is drawn on paper: to scale, step by step, with what is known and what is read off.
+"""Construction of a polygon on paper, to scale and step by step, with known and measured values.
 
-Everything here is the same polygon seen once more; no number comes from anywhere else.
+Every number comes from the polygon itself.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _SAME = 0.25  #: mm on paper under which two points are one
 
 @dataclass(frozen=True)
 class Row:
-    """A side in the table: what is known of it before the drawing, what is read on it after."""
+    """Table row of a side: its data before the drawing, its measured length and direction after."""
 
     name: str  #: LaTeX of the vector
     direction: str  #: LaTeX; empty when it is not known
@@ -41,7 +41,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Step:
-    """A step of the construction."""
+    """Step of the construction: its text and its drawing."""
 
     number: int
     text: str  #: Markdown
@@ -49,7 +49,7 @@ class Step:
 
 
 class Construction:
-    """The drawing of a polygon in a language: a figure at true scale, steps, a table.
+    """Drawing of a polygon in a language: a figure at true scale, steps, a table.
 
     As the last line of a notebook's cell it shows all of them.
 
@@ -76,18 +76,18 @@ class Construction:
 
     @property
     def title(self) -> str:
-        """``Velocity polygon``."""
+        """Title of the polygon: ``Velocity polygon``."""
         return self._said[self.polygon.kind]
 
     @cached_property
     def scale(self) -> float:
-        """mm/s or mm/s^2 for a mm on paper: the exercise's own, or 1, 2 or 5 times a power of ten."""
+        """Scale in mm/s or mm/s^2 for a mm on paper: the exercise's own, or 1, 2 or 5 times a power of ten."""
         room = (whole - taken for whole, taken in zip(BOX_MM, _SYMBOLS_MM, strict=True))
         return self.polygon.scale or self.polygon.scale_in(*room)
 
     @property
     def opening(self) -> str:
-        """What the table shows, Markdown."""
+        """Introduction of the table, Markdown."""
         return self._said["opening"]
 
     @property
@@ -97,7 +97,7 @@ class Construction:
 
     @property
     def scale_text(self) -> str:
-        r"""Markdown: ``$k_v = 20$ mm/s for 1 mm``."""
+        r"""Markdown of the scale: ``$k_v = 20$ mm/s for 1 mm``."""
         value = rf"${SCALES[self.polygon.kind]} = \num{{{significant(self.scale)}}}$"
         return self._said["scale"].format(value, self.unit)
 
@@ -143,7 +143,7 @@ class Construction:
 
     @cached_property
     def steps(self) -> tuple[Step, ...]:
-        """The construction, each step with a small drawing of what stands so far."""
+        """Steps of the construction, each with a small drawing of its state."""
         low, high = self.polygon.extent()
         size = high - low
         scale = max(size.real / _SMALL_MM[0], size.imag / _SMALL_MM[1])
@@ -159,7 +159,7 @@ class Construction:
         return tuple(steps)
 
     def _told(self, stage: Stage) -> str:
-        """Return a stage in words."""
+        """Return the text of a stage."""
         text = " ".join(self._sentences(stage))
         if stage is not self.polygon.stages[0]:
             return text
@@ -207,7 +207,7 @@ class Construction:
 
 
 class _Drawing:
-    """The elements of a polygon at a scale, in the order in which they are drawn."""
+    """Elements of a polygon at a scale, in the order of drawing."""
 
     def __init__(self, polygon: Polygon, scale: float, beyond: float, *, named: bool):
         self.at = {name: z / scale for name, z in polygon.points.items()}
@@ -241,7 +241,7 @@ class _Drawing:
             yield vector(p, q - p, side.name if self.named else None)
 
     def _points(self, names: Iterable[str]) -> Iterator[Element]:
-        """Yield dots, one for points that are one on paper, with all their names."""
+        """Yield the dots; points that coincide on paper share one dot with all their names."""
         for name in names:
             if name in self.shown:
                 continue
@@ -250,7 +250,7 @@ class _Drawing:
             yield point(self.at[name], r",\ ".join(there), self._outward(name))
 
     def _outward(self, name: str) -> float | None:
-        """Return the away from the sides that meet at a point, degrees."""
+        """Return the direction away from the sides that meet at a point, degrees."""
         ways = 0j
         for side in self.polygon.sides:
             if name in (side.start, side.end):

@@ -1,4 +1,4 @@
-"""Vector polygons that a student has drawn: which vector is wrong, and how.
+r"""Marking of vector polygons drawn by a student: the wrong vectors, and the kind of each error.
 
 A drawing comes as points in millimetres on paper, x to the right, y up, from any origin; the pole may stand
 anywhere, and the scale may be any. Directions are absolute: a sheet that is turned is another drawing.
@@ -9,7 +9,7 @@ point; one in proportion to another is judged by the student's own; a line of kn
 costs the vector that it is made on, and nothing of what is drawn rightly from there.
 
 Each point may be off by ``tolerance`` mm, so a vector by twice that at its end, and a line by twice that across.
-A direction is thus right to :math:`\\arcsin(2\\,\\mathrm{tolerance} / \\mathrm{length})`: 1.1 degrees for 100 mm, 6 for
+A direction is thus right to :math:`\arcsin(2\,\mathrm{tolerance} / \mathrm{length})`: 1.1 degrees for 100 mm, 6 for
 20 mm, and anything for a vector of 2 mm, whose direction no ruler shows.
 """
 
@@ -35,7 +35,7 @@ LENGTH, DIRECTION, SENSE, VECTOR, HUNG, MISSING = KINDS = (
 
 @dataclass(frozen=True)
 class Fault:
-    """What is wrong with a drawn point.
+    """Error of a drawn point.
 
     ``length``, ``direction``, ``sense``: of the vector that should end there; ``vector``: nothing of it is right;
     ``hung``: it is right, but starts from another point; ``missing``: the point is not drawn. A point found by two lines
@@ -50,7 +50,7 @@ class Fault:
 
     @property
     def explanations(self) -> Iterator[Fault]:
-        """Itself, then what else explains the point."""
+        """Yield the fault, then less specific ones that explain the point as well."""
         fault: Fault | None = self
         while fault:
             yield fault
@@ -63,7 +63,7 @@ class Fault:
 
 @dataclass(frozen=True)
 class Drawing:
-    """A judged drawing."""
+    """Judged drawing."""
 
     polygon: Polygon
     points: Mapping[str, complex]  #: those drawn, mm on paper
@@ -81,14 +81,15 @@ class Drawing:
         return point not in self.faults
 
     def follows(self, point: str) -> bool:
-        """Return whether it is right only as it follows from an earlier point that is not."""
+        """Return whether the point is right only relative to an earlier point that is wrong."""
         return self.is_right(point) and any(q in self.faults for q in ancestors(self.polygon, point))
 
     def length_fault(self, start: str, end: str, measured: float) -> str:
-        """What is wrong with a length measured on paper, mm: nothing (``""``), ``own``, ``length``.
+        """Return the fault of a length measured on paper, mm: ``""`` for none, ``own``, ``length``.
 
-        ``own``: it is that of the student's own drawing, which is wrong there. Where both points are drawn, a length is
-        measured between them, to a millimetre; where they are not, it is what it should be at the scale, to two.
+        ``own``: it is the length in the student's drawing, which is wrong there. Where both points are drawn,
+        a length is measured between them, to a millimetre; otherwise it is the right length at the scale, to
+        two.
         """
         right = abs(self.polygon.points[end] - self.polygon.points[start]) / self.scale
         if abs(measured - right) <= 2 * self.tolerance:
@@ -101,13 +102,12 @@ class Drawing:
 
 
 def is_scale(polygon: Polygon, scale: float) -> bool:
-    """Return whether the polygon can be drawn at a scale: a positive one, at which it is not beyond any
-    paper."""
+    """Return whether the polygon can be drawn at a scale: a positive one at which it fits on paper."""
     return 0 < scale < float("inf") and polygon.size <= MOST_MM * scale
 
 
 def on_paper(x: float, y: float) -> complex:
-    """Return a drawn point or arrow, brought back to the widest of papers, so that it can be computed with."""
+    """Return a drawn point or arrow, clipped to the largest paper, so that it can be computed with."""
     return complex(*(max(-MOST_MM, min(MOST_MM, float(c))) for c in (x, y)))
 
 
@@ -117,7 +117,7 @@ def judge_drawing(
     scale: float | None = None,
     tolerance: float = TOLERANCE_MM,
 ) -> Drawing:
-    """Return the judge drawn points against the polygon that they should make.
+    """Judge drawn points against the polygon that they should form.
 
     Parameters
     ----------
@@ -171,7 +171,7 @@ def judge_drawing(
 
 
 def vector_fault(drawn: complex, right: complex, width: float) -> str:
-    """What is wrong with one vector, all mm on paper: nothing (``""``), or a kind of :class:`Fault`.
+    """Return the fault of one vector, all mm on paper: ``""`` for none, or a kind of :class:`Fault`.
 
     Its end may be ``width`` off.
     """
@@ -190,7 +190,7 @@ def vector_fault(drawn: complex, right: complex, width: float) -> str:
 
 
 def ancestors(polygon: Polygon, point: str) -> frozenset[str]:
-    """Return the points, but for the pole, that a point is found from."""
+    """Return the points, except the pole, from which a point is constructed."""
     found: set[str] = set()
     waiting = [point]
     while waiting:
@@ -208,7 +208,7 @@ def _anchor(side: Side, point: str) -> str:
 
 
 def _split(vector: complex, along: complex) -> tuple[float, float]:
-    """Return its components along a unit vector, and 90 degrees ahead."""
+    """Return the components of a vector along a unit vector, and 90 degrees ahead."""
     turned = vector * along.conjugate()
     return turned.real, turned.imag
 
@@ -222,7 +222,8 @@ def _known(
     scale: float,
     width: float,
 ) -> tuple[complex, Fault | None]:
-    """Where a vector of known length leads from the student's own point, and what is wrong with the one drawn."""
+    """Return the end of a vector of known length, laid off from the student's point, and the fault of the one
+    drawn."""
     anchor = _anchor(side, point)
     right, way = side.value / scale, 1 if side.end == point else -1
     ratio = polygon.ratio(side)
@@ -247,7 +248,7 @@ def _crossing(
     point: str, sides: tuple[Side, ...], here: Mapping[str, complex], drawn: Mapping[str, complex],
     polygon: Polygon, scale: float, width: float, on_drawn: bool,
 ) -> tuple[complex, Fault | None]:  # fmt: skip
-    """Where two lines meet that are drawn from the student's own points, and what is wrong with the point drawn.
+    """Return the intersection of two lines through the student's points, and the fault of the point drawn.
 
     ``on_drawn``: both lines start from points that are right, in a drawing of some size.
     """
@@ -283,25 +284,24 @@ def _crossing(
 
 
 def _is_spread(here: Mapping[str, complex], drawn: Mapping[str, complex], width: float) -> bool:
-    """Return whether the points drawn so far are more than one spot."""
+    """Return whether the points drawn so far do not all coincide."""
     first, *others = (drawn[q] for q in here if q in drawn)
     return any(abs(z - first) > 2 * width for z in others)
 
 
 def _off(side: Side, there: complex, through: complex) -> float:
-    """How far a point is from a side's line through another."""
+    """Return the distance of a point from a side's line through another."""
     return abs(_split(there - through, side.along)[1])
 
 
 def _through(side: Side, there: complex, names: list[str], here: Mapping[str, complex], width: float) -> str:
-    """Return the through which of these points a side's line goes that a drawn point is on; none when through
-    none."""
+    """Return the name of the point through which a side's line passes near a drawn point; empty for none."""
     nearest = min(names, key=lambda q: _off(side, there, here[q]), default="")
     return nearest if nearest and _off(side, there, here[nearest]) <= width else ""
 
 
 def _meeting(sides: tuple[Side, ...], through: list[complex]) -> complex | None:
-    """Where two lines meet; None for lines that are as good as parallel."""
+    """Return the intersection of two lines; None for nearly parallel lines."""
     u, v = sides[0].along, sides[1].along
     slope = (u.conjugate() * v).imag
     if abs(slope) < 1e-6:
@@ -315,10 +315,10 @@ def _meeting(sides: tuple[Side, ...], through: list[complex]) -> complex | None:
 def _scale(
     polygon: Polygon, points: Mapping[str, complex], stated: float | None, width: float
 ) -> tuple[float, bool]:
-    """Return the scale to judge at, and whether the stated one is it.
+    """Return the scale to judge at, and whether it is the stated one.
 
-    Each known vector is right for a range of scales. The stated scale is taken, unless it makes none of them
-    right and another makes several right; without one, that which makes most of them right.
+    Each known vector is right for a range of scales. The stated scale is taken unless no vector is right at
+    it and several are right at another; without a stated one, the scale at which most vectors are right.
     """
     ranges = list(_ranges(polygon, points, width))
     best, count = _most_covered(ranges)
@@ -332,7 +332,7 @@ def _scale(
 
 
 def _ranges(polygon: Polygon, points: Mapping[str, complex], width: float) -> Iterator[tuple[float, float]]:
-    """For each known vector that is drawn, the mm of paper for a unit between which it is right."""
+    """Yield for each known vector that is drawn the range, in mm of paper for a unit, in which it is right."""
     for side in polygon.sides:
         if not (side.is_known and side.start in points and side.end in points and side.value):
             continue
@@ -346,7 +346,8 @@ def _ranges(polygon: Polygon, points: Mapping[str, complex], width: float) -> It
 
 
 def _most_covered(ranges: list[tuple[float, float]]) -> tuple[float, int]:
-    """Return the middle of what most of the ranges have in common, and their number; of several, the first's.
+    """Return the middle of the interval that most ranges have in common, and their number; of several, the
+    first.
 
     A vector as short as the tolerance is right down to no length at all: it bounds a scale, and tells none.
     """
@@ -361,7 +362,7 @@ def _most_covered(ranges: list[tuple[float, float]]) -> tuple[float, int]:
 
 
 def _by_length(polygon: Polygon, points: Mapping[str, complex]) -> float:
-    """Return the scale at which the first known vector has its length, whatever its direction."""
+    """Return the scale at which the first known vector has its length, in any direction."""
     for side in polygon.sides:
         if side.is_known and side.value and side.start in points and side.end in points:
             length = abs(points[side.end] - points[side.start])

@@ -1,4 +1,4 @@
-r"""The pieces that polygons are made of: a driven crank, two bars that meet, a rod and its slider, a slotted guide.
+r"""Parts of polygons: a driven crank, two bars that meet, a rod and its slider, a slotted guide.
 
 Each gives the sides of a velocity polygon (``_v``) or of an acceleration polygon (``_a``) in order of construction.
 Image points have the small letters of their points. Vectors are complex numbers in mm; what a bar's length
@@ -26,14 +26,14 @@ def polygon_of_accelerations(*pieces: Sides, scale: float | None = None) -> Poly
 def crank_v(
     A: str, line: str, vector: complex, omega: float, number: str = "2", length: str = "r_2"
 ) -> Sides:
-    """Return a crank of known rate about a fixed point."""
+    """Return the velocity of a crank of known rate about a fixed point."""
     return (turning("p_v", A.lower(), A, line, vector, omega, rf"{length} \left|\omega_{number}\right|"),)
 
 
 def crank_a(
     A: str, line: str, vector: complex, omega: float, alpha: float = 0.0, length: str = "r_2"
 ) -> Sides:
-    """Return the same; one that turns steadily has no tangential part."""
+    """Return the acceleration of a crank about a fixed point; a steady one has no tangential part."""
     a = A.lower()
     square, growth = rf"{length}\,\omega_2^2", rf"{length} \left|\alpha_2\right|"
     if not alpha:
@@ -45,7 +45,7 @@ def crank_a(
 
 
 def two_bars_v(B: str, A: str, C: str, AB: complex, omega: float, CB: complex, omega_C: float) -> Sides:
-    """Return the bar AB, whose end A is known, meets at B a bar that turns about the fixed point C."""
+    """Return the velocities where the bar AB, whose end A is known, meets at B a bar about the fixed point C."""
     a, b = A.lower(), B.lower()
     return (
         turning(a, b, f"{B}/{A}", A + B, AB, omega),
@@ -58,7 +58,7 @@ def two_bars_a(
     AB: complex, omega: float, alpha: float, length: str,
     CB: complex, omega_C: float, alpha_C: float, length_C: str,
 ) -> Sides:  # fmt: skip
-    """Return the same: the normal parts are known from the velocities."""
+    """Return the accelerations of two bars that meet; the velocities give the normal parts."""
     a, b = A.lower(), B.lower()
     return (
         normal(a, f"{b}'", f"{B}/{A}", A + B, AB, omega, rf"V_{{{B}/{A}}}^2 / {length}"),
@@ -70,7 +70,7 @@ def two_bars_a(
 
 
 def slider_v(B: str, A: str, AB: complex, omega: float, v: complex) -> Sides:
-    """Return the rod AB, whose end A is known, carries at B a slider that goes along x."""
+    """Return the velocities of a rod AB, whose end A is known, with a slider at B that moves along x."""
     a, b = A.lower(), B.lower()
     return (
         turning(a, b, f"{B}/{A}", A + B, AB, omega),
@@ -90,8 +90,11 @@ def slider_a(
 
 
 def guide_v(A: str, of_guide: str, line: str, vector: complex, omega: float, sliding: float) -> Sides:
-    """Return a guide that turns about a fixed point, and the block A that slides on it; ``vector`` goes from
-    the guide's pivot to A, ``sliding`` is positive away from it. ``of_guide`` is the guide's own point at A."""
+    """Return the velocities of a guide about a fixed point, and of the block A that slides on it.
+
+    ``vector`` leads from the guide's pivot to A; ``sliding`` is positive away from it. ``of_guide`` is the
+    guide's own point at A.
+    """
     a, own = A.lower(), of_guide.lower()
     along = vector / abs(vector)
     return (
@@ -105,8 +108,8 @@ def guide_a(
     vector: complex, omega: float, alpha: float, sliding: float, gain: float,
     length: str, rate: str,
 ) -> Sides:  # fmt: skip
-    """Return the same; the Coriolis term is laid off back from the image of A, ``gain`` is the rate of
-    ``sliding``."""
+    """Return the accelerations of a guide and its block. The Coriolis term is laid off back from the image of
+    A; ``gain`` is the rate of ``sliding``."""
     a, own = A.lower(), of_guide.lower()
     along = vector / abs(vector)
     slide = f"{A}/{of_guide}"

@@ -1,4 +1,5 @@
-r"""Velocity and acceleration polygons: vectors laid end to end from a pole, each point of them the image of one.
+r"""Velocity and acceleration polygons: vectors laid end to end from a pole; each point is the image of a
+mechanism's point.
 
 A solution states its polygons in a function ``polygons`` of its quantities, as data; what is drawn, printed or marked
 follows from them::
@@ -35,7 +36,7 @@ _CLOSED = 1e-6  #: of the longest side: what two ways to one point may differ by
 
 @dataclass(frozen=True)
 class Side:
-    r"""A vector of a polygon, from the image of a point to that of another.
+    r"""Vector of a polygon, from the image of one point to that of another.
 
     ``direction`` (``\perp AB``) and ``length`` (``r_2\,\omega_2``) are LaTeX of what is known before the drawing; an
     empty ``length`` is not known, and neither is an empty ``direction``. ``way``, a complex number of any
@@ -68,29 +69,29 @@ class Side:
 
     @property
     def is_known(self) -> bool:
-        """Direction and length are known before the drawing."""
+        """True if direction and length are known before the drawing."""
         return bool(self.length)
 
     @property
     def is_line(self) -> bool:
-        """The direction alone is known: a line on which an end is still to be found."""
+        """True if only the direction is known: a line on which an end is still to be found."""
         return bool(self.direction) and not self.length
 
     @property
     def is_result(self) -> bool:
-        """Nothing is known: it joins two points that the others have given."""
+        """True if nothing is known: the side joins two points that other sides have given."""
         return not self.direction
 
     @property
     def along(self) -> complex:
-        """Unit vector of its line; 0 for a side that has neither length nor ``way``."""
+        """Unit vector of the line; 0 for a side that has neither length nor ``way``."""
         way = self.value if self.way is None else complex(self.way)
         return way / abs(way) if way else 0j
 
 
 @dataclass(frozen=True)
 class Stage:
-    """A step of the construction: the sides that it draws, and the points that it finds.
+    """Step of the construction: the sides that it draws, and the points that it finds.
 
     ``known`` sides are laid off one after another; a ``line`` is drawn through a point, its other end not yet
     found; a ``crossing`` draws the second line and finds the point where it meets the first; a ``result``
@@ -105,7 +106,7 @@ class Stage:
 
 @dataclass(frozen=True)
 class Polygon:
-    """A velocity or an acceleration polygon, or what is known of a mechanism drawn to scale.
+    """Velocity or acceleration polygon, or the known part of a mechanism drawn to scale.
 
     Parameters
     ----------
@@ -138,7 +139,7 @@ class Polygon:
 
     @property
     def pole(self) -> str:
-        """The image of all points at rest."""
+        """Image of all points at rest."""
         return self.sides[0].start
 
     @property
@@ -162,7 +163,7 @@ class Polygon:
 
     @cached_property
     def hangs(self) -> Mapping[str, tuple[Side, ...]]:
-        """The sides that find each point: one that is known, or the two lines that cross there."""
+        """Sides that determine each point: one known side, or the two lines that cross there."""
         found = (stage for stage in self.stages if stage.points)
         return {
             point: stage.sides if stage.kind == "crossing" else (stage.sides[k],)
@@ -171,7 +172,8 @@ class Polygon:
         }
 
     def ratio(self, side: Side) -> complex | None:
-        """Of a side to the vector that it is in proportion to; None unless it is, or where that vector vanishes."""
+        """Return the ratio of a side to the vector that it is proportional to; None if there is none or it
+        vanishes."""
         if side.image is None:
             return None
         of = self.points[side.image[1]] - self.points[side.image[0]]
@@ -217,20 +219,20 @@ class Polygon:
 
     @staticmethod
     def _lay_off(stages: list[Stage], side: Side, point: str) -> None:
-        """A known side, in one stage with those just before it."""
+        """Add a known side, in one stage with the known sides just before it."""
         before = stages.pop() if stages and stages[-1].kind == "known" else Stage("known", (), ())
         stages.append(Stage("known", (*before.sides, side), (*before.points, point)))
 
     @staticmethod
     def _hung(side: Side, found: Mapping[str, complex]) -> tuple[str, str, int]:
-        """Return the end of a side that is found already, the other, and the sign of the way between them."""
+        """Return the known end of a side, the other end, and the sign of the vector between them."""
         if (side.start in found) == (side.end in found):
             fault = "both its ends are" if side.start in found else "neither of its ends is"
             raise BadCourse(f"{side}: {fault} found by the sides before it")
         return (side.start, side.end, 1) if side.start in found else (side.end, side.start, -1)
 
     def _check(self, side: Side, found: Mapping[str, complex]) -> None:
-        """A side joins the points that it says, and its line goes through them."""
+        """Refuse a side that does not join its points or whose line misses them."""
         missing = [name for name in (side.start, side.end) if name not in found]
         if missing:
             raise BadCourse(f"{side}: {missing[0]} is not found by the sides before it")
@@ -278,7 +280,7 @@ class Polygon:
         return " = ".join(" + ".join(side.name for side in sum_) for sum_ in (left, right))
 
     def _path(self, side: Side, target: str) -> Iterator[tuple[Side, int]]:
-        """Yield the sides from the pole to a point, the last of them told, each with its sign."""
+        """Yield the sides from the pole to a point, each with its sign; the last one is given."""
         anchor = side.start if side.end == target else side.end
         if anchor != self.pole:
             straight = [s for s in self.sides if (s.start, s.end) == (self.pole, anchor)]
@@ -292,7 +294,7 @@ class Polygon:
 def turning(
     start: str, end: str, of: str, line: str, vector: complex, omega: float, length: str = ""
 ) -> Side:
-    r"""Return the velocity that a turning bar gives one of its points about another: square to the bar.
+    r"""Return the velocity of a point of a turning bar relative to another: perpendicular to the bar.
 
     ``of`` names it (``B/A``, or ``B`` about a fixed point), ``line`` is the bar (``AB``), ``vector`` its vector in
     mm, ``omega`` its rate in rad/s; ``length`` is stated where it is known before the drawing.
@@ -303,8 +305,8 @@ def turning(
 
 
 def normal(start: str, end: str, of: str, line: str, vector: complex, omega: float, length: str) -> Side:
-    """Return the normal acceleration of a bar's point about another, along the bar: known once the velocities
-    are."""
+    """Return the normal acceleration of a bar's point relative to another, along the bar: known once the
+    velocities are."""
     return Side(
         start, end, rf"\vec{{a}}^n_{{{of}}}", -(omega**2) * vector, rf"\parallel {line}", length, -vector
     )
@@ -313,15 +315,15 @@ def normal(start: str, end: str, of: str, line: str, vector: complex, omega: flo
 def tangential(
     start: str, end: str, of: str, line: str, vector: complex, alpha: float, length: str = ""
 ) -> Side:
-    """Return the tangential acceleration of a bar's point about another, square to the bar; ``alpha`` in
-    rad/s^2."""
+    """Return the tangential acceleration of a bar's point relative to another, perpendicular to the bar;
+    ``alpha`` in rad/s^2."""
     return Side(
         start, end, rf"\vec{{a}}^t_{{{of}}}", 1j * alpha * vector, rf"\perp {line}", length, 1j * vector
     )
 
 
 def image(start: str, end: str, name: str, value: complex, of: tuple[str, str], length: str) -> Side:
-    r"""Return the image of one more point of a bar: the vector between two image points of it, in proportion.
+    r"""Return the image of a third point of a bar: the vector between two image points, in proportion.
 
     ``of`` are these two points, ``length`` the proportion as LaTeX (``\frac{OD}{OP}\,p_v p_4``).
     """
